@@ -1,0 +1,62 @@
+#include "bentaxis/analytic/derived.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::analytic {
+
+DerivedQuantities derived_quantities(const Geometry& g) {
+  // With u = cos(theta): z_B = p u + sqrt(q(u)) + const, q(u) = c0 + c1 u + c2 u^2.
+  const double difference = g.bore_circle_radius - g.joint_circle_radius;
+  const double projected = g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt);
+  const double offset = g.axis_offset * std::sin(g.tilt);
+  const double p = g.joint_circle_radius * std::sin(g.tilt);
+  const double c2 = difference * difference - projected * projected;
+  const double c1 = 2 * projected * offset;
+  const double c0 = g.piston_length * g.piston_length - difference * difference - offset * offset;
+  const auto q = [&](double u) { return c0 + u * (c1 + u * c2); };
+
+  // z_B' = 0 squared: 4 p^2 q = q'^2. A root that squaring added is no extremum, so it is harmless.
+  std::vector<double> candidates = {-1, 1};
+  const auto consider = [&](double u) {
+    if (u > -1 && u < 1) candidates.push_back(u);
+  };
+  const double a = 4 * c2 * (p * p - c2);
+  const double half_b = 2 * c1 * (p * p - c2);
+  const double c = 4 * p * p * c0 - c1 * c1;
+  const double discriminant = half_b * half_b - a * c;
+  if (discriminant >= 0) {
+    const double root = -half_b - std::copysign(std::sqrt(discriminant), half_b);
+    if (a != 0) consider(root / a);
+    if (root != 0) consider(c / root);
+  }
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const double u : candidates) {
+    const double z = p * u + std::sqrt(std::max(0.0, q(u)));
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+
+  DerivedQuantities result;
+  result.stroke = high - low;
+  result.piston_area = kPi / 4 * g.bore_diameter * g.bore_diameter;
+  result.displacement = g.pistons * result.piston_area * result.stroke;
+
+  // The tilt of a piston follows from q alone; its extremes are at u = -1, 1 or the vertex of q.
+  std::vector<double> angles;
+  for (const double u : {-1.0, 1.0, c2 != 0 ? std::clamp(-c1 / (2 * c2), -1.0, 1.0) : 1.0}) {
+    const double across = g.piston_length * g.piston_length - q(u);
+    angles.push_back(std::asin(std::clamp(std::sqrt(std::max(0.0, across)) / g.piston_length,
+                                          0.0, 1.0)));
+  }
+  const auto [smallest, largest] = std::minmax_element(angles.begin(), angles.end());
+  result.smallest_tilt = *smallest;
+  result.largest_tilt = *largest;
+  return result;
+}
+
+}  // namespace bentaxis::analytic

@@ -1,0 +1,21 @@
+// Quantities that follow from the geometry alone.
+#pragma once
+
+#include "bentaxis/pump/parameters.h"
+
+namespace bentaxis::analytic {
+
+/// What an engineer checks first about a pump.
+struct DerivedQuantities {
+  double stroke = 0;        ///< m, max - min of z_B over a turn
+  double displacement = 0;  ///< m3 per revolution, N A stroke
+  double piston_area = 0;   ///< m2
+  double smallest_tilt = 0;  ///< rad, of a piston against the block axis
+  double largest_tilt = 0;   ///< rad
+};
+
+/// Exact: z_B depends on theta through cos(theta) alone and its stationary points are the roots of
+/// a quadratic.
+DerivedQuantities derived_quantities(const Geometry& geometry);
+
+}  // namespace bentaxis::analytic

@@ -1,0 +1,27 @@
+# What every target of the project has in common: standard, warnings as errors, include path.
+#   bentaxis_library(<name> STANDARD <17|20> SOURCES ... HEADERS ...)
+option(BENTAXIS_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
+
+function(bentaxis_target name standard)
+  target_compile_features(${name} PRIVATE cxx_std_${standard})
+  target_compile_options(${name} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+  if(BENTAXIS_SANITIZE)
+    target_compile_options(${name} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
+      -fno-omit-frame-pointer)
+    target_link_options(${name} PUBLIC -fsanitize=address,undefined)
+  endif()
+endfunction()
+
+function(bentaxis_library room)
+  cmake_parse_arguments(ARG "" "STANDARD" "SOURCES;HEADERS" ${ARGN})
+  set(name bentaxis_${room})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  add_library(bentaxis::${room} ALIAS ${name})
+  set_target_properties(${name} PROPERTIES EXPORT_NAME ${room})
+  bentaxis_target(${name} ${ARG_STANDARD})
+  target_include_directories(${name} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  install(TARGETS ${name} EXPORT bentaxisTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bentaxis/${room})
+endfunction()

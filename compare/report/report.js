@@ -1,0 +1,695 @@
+// Draws the comparison report from the two JSON blocks of the page. Knows no physics and no channel
+// names: every name, unit and number comes from the data. Text goes in by textContent only, so nothing
+// in a case file can become markup.
+(() => {
+"use strict";
+
+// Okabe-Ito without its yellow (too pale on white), then four dark colours for pumps with many pistons.
+const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000",
+                 "#7f3b08", "#542788", "#5f6b75"];
+const DASHES = [null, [8, 5], [2, 4]];  // by table; the first is solid
+const DASH = "\u2013";                  // stands for "not computed", never for zero
+const GOOD = ["agrees", "holds", "explained", "inside"];
+const BAD = ["differs", "violated", "unexplained", "not explained", "outside"];
+
+// ---- Elements ----------------------------------------------------------------------------------
+
+// el("p.note", {title: "..."}, children...): strings become text nodes, null children are skipped.
+function el(spec, attributes, ...children) {
+  const [tag, ...classes] = spec.split(".");
+  const node = document.createElement(tag);
+  if (classes.length) node.className = classes.join(" ");
+  for (const [name, value] of Object.entries(attributes || {}))
+    if (value != null && value !== false) node.setAttribute(name, value === true ? "" : value);
+  node.append(...children.flat(2).filter(child => child != null));
+  return node;
+}
+
+function svg(tag, attributes, text) {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  if (text != null) node.textContent = text;
+  return node;
+}
+
+const list = value => (Array.isArray(value) ? value : []);
+const chip = word => {
+  const tone = GOOD.includes(word) ? "good" : BAD.includes(word) ? "bad" : "neutral";
+  return el("span.chip." + tone, {}, word || DASH);
+};
+
+// Names and values of a short list of facts: [["compiler", "..."], ...].
+const facts = (pairs, style = "") => !list(pairs).length ? null :
+  el("dl.facts" + style, {}, pairs.map(([name, value]) =>
+    el("div", {}, el("dt", {}, String(name)), el("dd", {}, value instanceof Node ? value : number(value)))));
+
+// ---- Numbers -----------------------------------------------------------------------------------
+
+const scientific = (v, digits) =>
+  v.toExponential(digits - 1).replace(/\.?0*e\+?/, "e");  // 2.10e+3 -> 2.1e3
+
+function number(v, digits = 5) {
+  if (v == null || v === "") return DASH;
+  if (typeof v !== "number") return String(v);
+  const size = Math.abs(v);
+  if (size === 0) return "0";
+  if (size < 1e-3 || size >= 1e7) return scientific(v, digits);
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return String(Number(v.toFixed(decimals)));
+}
+
+// Differences are known to their order of magnitude only: more digits would be noise.
+const small = v => typeof v === "number" && Math.abs(v) < 1e-3 ? number(v, 2) : number(v, 3);
+// A ratio reads as per cent where per cent is a natural size.
+const ratio = v => typeof v === "number" && Math.abs(v) >= 1e-3 ? number(100 * v, 3) + " %" : small(v);
+const unit = (text, name) => (text === DASH || !name ? text : text + "\u00a0" + name);
+const degrees = v => unit(typeof v === "number" ? number(Number(v.toFixed(3)), 6) : DASH, "deg");
+
+// ---- Tables ------------------------------------------------------------------------------------
+
+// columns: {head, cell: row -> text or node, num: right-aligned, main: names the row}. Every cell carries
+// its heading, because on a narrow page the style sheet shows each row as a block of "heading: value"
+// (then the roles keep it a table for a screen reader).
+function table(columns, rows, { rowClass, fold = true } = {}) {
+  const head = el("tr", { role: "row" }, columns.map(c =>
+    el(c.num ? "th.num" : "th", { scope: "col", role: "columnheader" }, c.head)));
+  const body = rows.map(row => el("tr", { role: "row", class: rowClass && rowClass(row) || null }, columns.map(c =>
+    el((c.main ? "th" : "td") + (c.num ? ".num" : ""),
+       { scope: c.main && "row", role: c.main ? "rowheader" : "cell", "data-head": c.head }, c.cell(row)))));
+  return el("div.scroll", {}, el("table" + (fold ? ".fold" : ""), { role: "table" },
+    el("thead", { role: "rowgroup" }, head), el("tbody", { role: "rowgroup" }, body)));
+}
+
+// ---- Sections above the figures ----------------------------------------------------------------
+
+function verdictBanner({ verdict, meaning }, data) {
+  if (!verdict && !meaning) return null;
+  const tiles = [];
+  if (verdict) {
+    const worst = verdict.worst || {};
+    if (verdict.compared != null) tiles.push(["channels compared", verdict.compared]);
+    if (worst.max_over_peak != null) tiles.push(["worst difference", ratio(worst.max_over_peak) + " of peak"]);
+    if (worst.channel) tiles.push(["found in", el("span", {}, el("code", {}, worst.channel),
+      worst.theta_deg == null ? null : " at " + degrees(worst.theta_deg))]);
+    if (verdict.tolerance != null) tiles.push(["tolerance", small(verdict.tolerance) + " of peak"]);
+    if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
+  }
+  const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
+  return el("div", {},
+    el("div.banner." + tone, { role: "status" },
+      el("p.word", {}, { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
+      el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
+      facts(tiles, ".tiles")),
+    meaning ? el("p.meaning", {}, meaning) : null);
+}
+
+const warnings = ({ warnings }) => !list(warnings).length ? null :
+  el("ul.warnings", {}, warnings.map(w => el("li", {}, el("strong", {}, w.name), el("span", {}, w.text))));
+
+const commonInputs = ({ common }) => !list(common).length ? null : table([
+  { head: "Input", main: true, cell: r => r.input },
+  { head: "How both models get it", cell: r => r.value },
+  { head: "What would catch an error in it", cell: r => r.caught_by || DASH },
+], common);
+
+const validity = ({ validity }) => !list(validity).length ? null : table([
+  { head: "Limit", main: true, cell: r => r.limit },
+  { head: "State", cell: r => chip(r.violated == null ? "not computed" : r.violated ? "violated" : "holds") },
+  { head: "Share of the turn", num: true, cell: r => unit(number(r.share_percent, 3), "%") },
+  { head: "Worst value", num: true, cell: r => unit(number(r.worst), r.unit) },
+  { head: "at", num: true, cell: r => degrees(r.theta_deg) },
+  { head: "Consequence", cell: r => r.consequence || DASH },
+], validity, { rowClass: r => (r.violated ? "flag" : "") });
+
+function assumptionSplit({ assumptions }, data) {
+  if (!assumptions || !list(assumptions.rows).length && !list(assumptions.channels).length) return null;
+  const share = (c, channel) => el("li", {}, el("b", {}, c.assumption), ": " + unit(small(c.max_abs), channel.unit)
+    + ` (${ratio(c.over_peak)} of peak)` + (c.mean == null ? "" : ", mean " + unit(small(c.mean), channel.unit)));
+  return el("div", {},
+    assumptions.text ? el("p", {}, assumptions.text) : null,
+    !list(assumptions.rows).length ? null : table([
+      { head: "Assumption", main: true, cell: r => r.name },
+      ...data.pair.map((name, i) => ({ head: name, cell: r => number(data.ofTable(r, i)) })),
+      { head: "", cell: r => data.ofTable(r, 0) === data.ofTable(r, 1) ? "same" : el("span.chip.warn", {}, "unequal") },
+    ], assumptions.rows),
+    !list(assumptions.channels).length ? null : table([
+      { head: "Channel", main: true, cell: r => el("code", {}, r.name) },
+      { head: "Peak", num: true, cell: r => unit(number(r.peak), r.unit) },
+      { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), r.unit) },
+      { head: "of peak", num: true, cell: r => ratio(r.over_peak) },
+      { head: "Made up of", cell: r => list(r.contributions).length
+          ? el("ul.plain", {}, r.contributions.map(c => share(c, r))) : DASH },
+      { head: "Rest", num: true, cell: r => el("span", {}, unit(small(r.rest), r.unit),
+          r.rest_over_peak == null ? null : el("small", {}, ratio(r.rest_over_peak) + " of peak")) },
+      { head: "Verdict", cell: r => chip(r.verdict) },
+    ], assumptions.channels));
+}
+
+const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(run => el("div.block", {},
+  el("h3", {}, run.title), run.text ? el("p", {}, run.text) : null, facts(run.facts),
+  !run.table || !list(run.table.rows).length ? null : table(run.table.columns.map((head, i) => ({
+    head, main: i === 0, num: run.table.rows.every(r => r[i] == null || typeof r[i] === "number"),
+    cell: r => small(r[i]) })), run.table.rows, { fold: run.table.columns.length > 3 }))));
+
+const published = ({ published }, data) => !published || !list(published.rows).length ? null : el("div", {},
+  published.text ? el("p", {}, published.text) : null,
+  table([
+    { head: "Quantity", main: true, cell: r => r.quantity },
+    { head: "Paper", cell: r => number(r.paper) },
+    ...data.pair.map((name, i) => ({ head: name, num: true, cell: r => unit(number(data.ofTable(r, i)), r.unit) })),
+    { head: "Verdict", cell: r => chip(r.verdict) },
+    { head: "Status", cell: r => r.status || DASH },
+    { head: "Where", cell: r => r.where || DASH },
+  ], published.rows));
+
+const checks = ({ checks }) => !list(checks).length ? null : table([
+  { head: "Check", main: true, cell: r => r.name },
+  { head: "Model", cell: r => r.model },
+  { head: "Verdict", cell: r => chip(r.verdict) },
+  { head: "Worst", num: true, cell: r => unit(small(r.worst), r.unit) },
+  { head: "Scale", num: true, cell: r => unit(number(r.scale), r.unit) },
+  { head: "Relative", num: true, cell: r => small(r.relative) },
+  { head: "Tolerance", num: true, cell: r => small(r.tolerance) },
+  { head: "at", num: true, cell: r => degrees(r.theta_deg) },
+], checks, { rowClass: r => (r.verdict === "violated" ? "flag" : "") });
+
+// ---- Comparison table: a row per group of channels, which opens into its channels ----------------
+
+// worst: +1 where large is bad, -1 where small is bad; the first click on a heading puts the worst on top.
+const STATISTICS = [
+  { key: "peak", head: "Peak", worst: 1, show: c => unit(number(c.peak), c.unit) },
+  { key: "max_abs", head: "Largest difference", worst: 1, show: c => unit(small(c.max_abs), c.unit) },
+  { key: "max_over_peak", head: "of peak", worst: 1, show: c => ratio(c.max_over_peak) },
+  { key: "rms_over_peak", head: "RMS of peak", worst: 1, show: c => ratio(c.rms_over_peak) },
+  { key: "theta_of_max_deg", head: "at", worst: 1, show: c => degrees(c.theta_of_max_deg) },
+  { key: "digits", head: "Digits", worst: -1, show: c => (c.digits == null ? DASH : c.digits.toFixed(1)) },
+];
+const stateOf = c => (c.compared === false ? "not compared" : c.verdict);
+
+// Order by one statistic, what has no number last whichever the direction.
+function byStatistic(items, key, direction) {
+  const missing = direction > 0 ? -Infinity : Infinity;
+  const value = item => item[key] ?? missing;
+  return key ? [...items].sort((a, b) => (value(a) === value(b) ? 0 : direction * (value(b) > value(a) ? 1 : -1))) : items;
+}
+
+// Channels of one group; each statistic of the group is its worst channel's.
+function groupChannels(channels) {
+  const groups = new Map();
+  for (const channel of channels) {
+    const key = channel.group + "|" + channel.kind;
+    if (!groups.has(key)) groups.set(key, { name: channel.group, channels: [] });
+    groups.get(key).channels.push(channel);
+  }
+  return [...groups.values()].map(group => {
+    const worst = byStatistic(group.channels, "max_over_peak", 1)[0];
+    for (const { key, worst: sign } of STATISTICS) group[key] = byStatistic(group.channels, key, sign)[0][key];
+    const states = group.channels.map(stateOf);
+    const missing = states.filter(s => s === "not computed").length;
+    return Object.assign(group, { worst, unit: worst.unit, meaning: worst.meaning,
+      theta_of_max_deg: worst.theta_of_max_deg,
+      state: states.includes("differs") ? "differs" : states.find(s => s !== "not computed") || "not computed",
+      missing: missing < states.length ? missing : 0 });
+  });
+}
+
+// The second line of a channel: what acts on what, and the statistics that have no column.
+function channelDetails(c, data) {
+  const both = (values, format) => list(values).map(format).join(" / ");
+  const acts = [c.on_body && "on " + c.on_body, c.by_body && "by " + c.by_body, c.point && "at " + c.point];
+  return facts([
+    ["acts", acts.filter(Boolean).join(", ")],
+    ["meaning", c.meaning], ["frame", [c.frame, c.axis && "axis " + c.axis].filter(Boolean).join(", ")],
+    ["equation", c.equation],
+    ["RMS difference", c.rms == null ? "" : unit(small(c.rms), c.unit)],
+    ["tolerance", c.tolerance == null ? "" : small(c.tolerance) + " of peak"],
+    [`mean (${data.pair.join(" / ")})`, list(c.mean).every(m => m == null) ? "" : unit(both(c.mean, m => number(m)), c.unit)],
+    ["difference of means", c.mean_difference == null ? "" : unit(small(c.mean_difference), c.unit)],
+    ...list(c.orders).map(o => ["order " + o.order,
+      unit(both(o.amplitude, a => number(a)), c.unit) + ", phase " + unit(both(o.phase_deg, p => number(p, 4)), "deg")]),
+  ].filter(([, value]) => value), ".inline");
+}
+
+function comparisonTable(channels, data) {
+  const groups = groupChannels(channels);
+  const differs = groups.some(g => g.state === "differs");
+  const order = differs ? { key: "max_over_peak", direction: 1 } : { key: null, direction: 1 };
+  const headings = [{ key: null, head: "Reaction" }, { head: "Verdict" }, ...STATISTICS];
+
+  const statisticCells = item => STATISTICS.map(s =>
+    el("td.num", { role: "cell", "data-head": s.head }, s.show(item)));
+  const channelRows = group => byStatistic(group.channels, order.key, order.direction).flatMap(c => [
+    el("tr.channel", { role: "row" }, el("th", { scope: "row", role: "rowheader" }, el("code", {}, c.name)),
+      el("td", { role: "cell", "data-head": "Verdict" }, chip(stateOf(c))), statisticCells(c)),
+    el("tr.details", { role: "row" }, el("td", { role: "cell", colspan: headings.length }, channelDetails(c, data)))]);
+
+  // The channels of a closed group are not built: a pump may have hundreds.
+  function setOpen(group, open) {
+    group.open = open;
+    group.button.setAttribute("aria-expanded", open);
+    group.body.replaceChildren(...(open ? channelRows(group) : []));
+  }
+  for (const group of groups) {
+    const n = group.channels.length;
+    group.button = el("button.expand", { type: "button", "aria-expanded": "false" }, group.name || DASH);
+    group.button.addEventListener("click", () => setOpen(group, !group.open));
+    group.head = el("tbody.group", { role: "rowgroup" }, el("tr", { role: "row" },
+      el("th", { scope: "rowgroup", role: "rowheader" }, group.button, el("span.meaning-of", {}, group.meaning || ""),
+        el("small", {}, n === 1 ? "1 channel" : n + " channels",
+          n > 1 && group.max_over_peak != null ? [", worst ", el("code", {}, group.worst.name)] : null)),
+      el("td", { role: "cell", "data-head": "Verdict" }, chip(group.state),
+        group.missing ? el("small", {}, group.missing + " not computed") : null),
+      statisticCells(group)));
+    group.body = el("tbody", { role: "rowgroup" });
+  }
+
+  const cells = headings.map(h => {
+    const cell = el(h.worst ? "th.num" : "th", { scope: "col", role: "columnheader" });
+    if (h.key === undefined) return cell.append(h.head), cell;
+    const button = el("button.sort", { type: "button",
+      title: h.key ? "Sort by this column, worst first; again to reverse" : "Back to the order of the files" }, h.head);
+    button.addEventListener("click", () => {
+      order.direction = order.key === h.key ? -order.direction : h.worst || 1;
+      order.key = h.key;
+      arrange();
+    });
+    cell.append(button);
+    return cell;
+  });
+  const grid = el("table.comparison.fold", { role: "table" },
+    el("thead", { role: "rowgroup" }, el("tr", { role: "row" }, cells)));
+  function arrange() {
+    headings.forEach((h, i) => h.key && h.key === order.key
+      ? cells[i].setAttribute("aria-sort", order.direction > 0 ? "descending" : "ascending")
+      : cells[i].removeAttribute("aria-sort"));
+    for (const group of byStatistic(groups, order.key, order.direction)) {
+      grid.append(group.head, group.body);
+      if (group.open) setOpen(group, true);
+    }
+  }
+  arrange();
+  const all = el("button.small", { type: "button" }, "Open all groups");
+  all.addEventListener("click", () => {
+    const open = !groups.every(g => g.open);
+    groups.forEach(g => setOpen(g, open));
+    all.textContent = open ? "Close all groups" : "Open all groups";
+  });
+  return el("div", {}, el("div.tools", {}, all), el("div.scroll", {}, grid));
+}
+
+function comparison({ channels }, data) {
+  if (!list(channels).length) return null;
+  const compared = channels.filter(c => c.compared !== false);
+  const others = channels.filter(c => c.compared === false);
+  return el("div", {},
+    el("p.hint", {}, "One row per reaction, showing its worst channel. Open a row for its channels; click a heading to sort."),
+    compared.length ? comparisonTable(compared, data) : null,
+    others.length ? el("details.others", {}, el("summary", {}, `Columns that are not part of the verdict (${others.length})`),
+      comparisonTable(others, data)) : null);
+}
+
+// ---- Sections below the figures ------------------------------------------------------------------
+
+function caseTable(report) {
+  const entries = list(report.case && report.case.entries);
+  if (!entries.length) return null;
+  const tables = [...new Set(entries.map(e => e.table || ""))];
+  return el("div", {}, report.case.file ? el("p", {}, "Case file ", el("code", {}, report.case.file)) : null,
+    el("div.columns", {}, tables.map(name => el("div.block", {}, el("h3", {}, name ? `[${name}]` : "top level"),
+      facts(entries.filter(e => (e.table || "") === name).map(e => [e.key, el("span", {}, String(e.value),
+        e.defaulted ? el("span.default", {}, "default") : null)]), ".rows")))));
+}
+
+const derived = ({ derived }) => !list(derived).length ? null : table([
+  { head: "Quantity", main: true, cell: r => r.name },
+  { head: "Symbol", cell: r => r.symbol || DASH },
+  { head: "Value", num: true, cell: r => unit(number(r.value), r.unit) },
+  { head: "From", cell: r => r.source || DASH },
+], derived);
+
+const models = ({ models }) => !list(models).length ? null : el("div.cards", {}, models.map(m => el("div.block.card", {},
+  el("h3", {}, m.name),
+  facts([...list(m.facts), ...(m.seconds == null ? [] : [["time", unit(number(m.seconds, 3), "s")]])], ".pairs"),
+  list(m.assumptions).length ? [el("h4", {}, "Assumptions"), facts(m.assumptions, ".pairs")] : null)));
+
+const versions = ({ program }) => facts(program, ".pairs");
+
+// ---- Figures: curves -----------------------------------------------------------------------------
+
+const hasNumbers = values => list(values).some(v => typeof v === "number");
+
+// Ticks of the shaft angle: fractions of a turn (45, 60, 90 ...) for a whole turn or more, finer when zoomed.
+function angleTicks(low, high, pixels) {
+  const steps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1440, 3600, 7200, 36000];
+  const room = Math.max(2, pixels / 48);
+  const step = steps.find(s => (high - low) / s <= room && (high - low < 359 || s >= 45)) || (high - low) / 4;
+  const ticks = [];
+  for (let i = Math.ceil(low / step - 1e-6); i * step <= high + 1e-6 * step; ++i)
+    ticks.push({ v: Math.min(i * step, high - 1e-9 * (high - low)),  // dygraphs drops a tick on the very end
+                 label: number(Number((i * step).toFixed(6)), 6) });
+  return ticks;
+}
+
+// Decimals follow from the spacing of the ticks: no two ticks read alike and no tick shows round-off.
+function tickLabels(values) {
+  const step = Math.abs(values[1] - values[0]) || 1;
+  const largest = Math.max(...values.map(Math.abs));
+  const digit = v => Math.floor(Math.log10(v) + 1e-9);
+  const plain = largest >= 1e-2 && largest < 1e6;
+  return values.map(v => Math.abs(v) < 1e-6 * step ? "0"
+    : plain ? v.toFixed(Math.max(0, -digit(step)))
+    : v.toExponential(Math.max(0, digit(Math.abs(v) * (1 + 1e-12)) - digit(step))).replace("e+", "e"));
+}
+
+function valueTicks(low, high, pixels, options, graph) {
+  const ticks = Dygraph.numericTicks(low, high, pixels, options, graph);
+  const labels = tickLabels(ticks.map(t => t.v));
+  return ticks.map((t, i) => ({ v: t.v, label: labels[i] }));
+}
+
+// One dygraph. lines: {values, colour, width, dash, silent}; bands are filled behind the curves.
+function plot(box, data, lines, bands, yLabel) {
+  const names = lines.map((_, i) => String(i));
+  const rows = data.order.map(i => [data.theta[i], ...lines.map(l => l.values[i] ?? null)]);
+  // Empty rows at the whole turns: the axis then ends at 360 although the last sample does not.
+  const nothing = lines.map(() => null);
+  if (data.low < rows[0][0]) rows.unshift([data.low, ...nothing]);
+  if (data.high > rows[rows.length - 1][0]) rows.push([data.high, ...nothing]);
+  const series = {};
+  lines.forEach((l, i) => {
+    series[i] = { color: l.colour, strokeWidth: l.width, strokePattern: l.dash || null, pointSize: 2.5,
+                  drawPoints: rows.length < 20 && !l.silent, highlightCircleSize: l.silent ? 0 : 4 };
+  });
+  // Without the touch handlers a finger on a plot still scrolls the page.
+  const { touchstart, touchmove, touchend, ...mouse } = Dygraph.defaultInteractionModel;
+  return new Dygraph(box, rows, {
+    labels: ["theta", ...names], series, legend: "never", interactionModel: mouse,
+    xlabel: "shaft angle (deg)", ylabel: yLabel, labelsDiv: el("div"),
+    axes: { x: { ticker: angleTicks, axisLabelWidth: 44 },
+            y: { ticker: valueTicks, axisLabelWidth: 74, pixelsPerLabel: 26 } },
+    axisLabelFontSize: 13, xLabelHeight: 20, yLabelWidth: 22, rightGap: 22, yRangePad: 8,
+    gridLineColor: "#e1e6ec", gridLineWidth: 1, axisLineColor: "#67727e",
+    underlayCallback(canvas, area, graph) {
+      for (const band of bands) {
+        const [top, bottom] = [graph.toDomYCoord(band.high), graph.toDomYCoord(band.low)];
+        canvas.fillStyle = "rgba(110, 125, 140, 0.16)";
+        canvas.fillRect(area.x, top, area.w, bottom - top);
+      }
+      canvas.fillStyle = "#9aa5b1";
+      canvas.fillRect(area.x, Math.round(graph.toDomYCoord(0)), area.w, 1);
+    },
+  });
+}
+
+// Both plots of a figure show the same angles, and hovering one marks and reads out the other.
+function synchronise(graphs, firstRow, readOut) {
+  graphs.forEach((graph, which) => {
+    const others = graphs.filter((_, i) => i !== which);
+    graph.updateOptions({
+      highlightCallback: (event, x, points, row) => {
+        others.forEach(g => g.setSelection(row));
+        readOut(row - firstRow);
+      },
+      unhighlightCallback: () => {
+        others.forEach(g => g.clearSelection());
+        readOut(null);
+      },
+      zoomCallback: (low, high) => others.forEach(g => g.updateOptions({
+        dateWindow: graph.isZoomed("x") ? [low, high] : null,
+        ...(graph.isZoomed() ? {} : { valueRange: null }) })),
+    });
+  });
+}
+
+// A piece of line for the legend.
+function swatch(colour, width, dash) {
+  const box = svg("svg", { width: 34, height: 10, "aria-hidden": "true", class: "swatch" });
+  box.append(svg("line", { x1: 0, x2: 34, y1: 5, y2: 5, stroke: colour, "stroke-width": width,
+                           "stroke-dasharray": dash ? dash.join(" ") : "none" }));
+  return box;
+}
+
+// The first table is drawn wide and pale, the others thin and dashed over it: equal curves stay both visible.
+const strokeOf = (t, alone) => (t === 0 && !alone ? { width: 4.5, alpha: "66" } : { width: alone ? 2 : 1.8, alpha: "" });
+
+function curvesFigure(figure, data) {
+  const drawn = [], missing = [], lines = [], differences = [];
+  list(figure.channels).forEach((name, i) => {
+    const colour = COLOURS[i % COLOURS.length];
+    const columns = data.tables.map(t => (hasNumbers(t.columns[name]) ? t.columns[name] : null));
+    columns.forEach((c, t) => c || missing.push(`${name} (${data.tables[t].name})`));
+    const alone = columns.filter(Boolean).length < 2;
+    columns.forEach((values, t) => {
+      const stroke = strokeOf(t, alone);
+      if (values) lines.push({ values, colour: colour + stroke.alpha, width: stroke.width, dash: DASHES[t % 3] });
+    });
+    const difference = hasNumbers(data.difference[name]) ? data.difference[name] : null;
+    if (difference) differences.push({ values: difference, colour, width: 1.5 });
+    if (columns.some(Boolean)) drawn.push({ name, colour, columns, difference });
+  });
+  const extras = list(figure.extra).filter(e => hasNumbers(e.values)).map((e, i) => ({
+    label: e.label, values: e.values, colour: ["#444c55", "#8a5a00", "#7a3b8f"][i % 3], width: 1.6, dash: [10, 4, 2, 4] }));
+  const notes = [figure.note, missing.length ? "Not computed: " + missing.join(", ") + "." : null];
+  const footer = () => notes.filter(Boolean).map(n => el("p.note", {}, n));
+  if (!drawn.length && !extras.length)
+    return [el("p.empty", {}, "There is nothing to draw: no model computed these channels."), ...footer()];
+
+  const bands = list(figure.bands);
+  const edges = bands.flatMap(b => [b.low, b.high]).map(v => (
+    { values: data.theta.map(() => v), colour: "#6b7682", width: 1, dash: [3, 3], silent: true }));
+  const readings = readOutTable(figure, drawn, extras, bands, data);
+  const label = figure.unit ? ` (${figure.unit})` : "";
+  const upper = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves over the shaft angle` });
+  const exact = differences.length > 0 && differences.every(d => d.values.every(v => !v));
+  const lower = differences.length && !exact
+    ? el("div.plot.low", { role: "img", "aria-label": `${figure.title}: difference over the shaft angle` }) : null;
+  if (exact) notes.push("The difference is exactly zero at every angle.");
+  data.mounts.push(() => {
+    const graphs = [plot(upper, data, [...edges, ...lines, ...extras], bands, "value" + label)];
+    if (lower) graphs.push(plot(lower, data, differences, [], "difference" + label));
+    synchronise(graphs, data.low < data.theta[data.order[0]] ? 1 : 0, readings.show);
+    graphs.forEach(g => data.redraws.push(() => g.resize()));
+  });
+  return [readings.node, upper,
+    lower ? el("p.subplot", {}, `Difference: ${data.pair[1]} minus ${data.pair[0]}`) : null, lower, ...footer()];
+}
+
+// Legend and hover values in one table above the plots, so that it never covers a curve. While nothing is
+// pointed at it shows the angle of the largest difference.
+function readOutTable(figure, drawn, extras, bands, data) {
+  const compared = drawn.filter(d => d.difference);
+  let home = 0, largest = -1;
+  data.order.forEach((i, row) => compared.forEach(d => {
+    if (Math.abs(d.difference[i] ?? 0) > largest) { largest = Math.abs(d.difference[i] ?? 0); home = row; }
+  }));
+  const angle = el("span.angle");
+  const columns = data.tables.map((t, i) => el("th.num", { scope: "col" }, t.name, swatch("#444c55", i ? 1.8 : 2.6, DASHES[i % 3])));
+  const cell = () => el("td.num");
+  const rows = drawn.map(d => ({ ...d, cells: d.columns.map(cell), gap: compared.length ? cell() : null }));
+  const more = extras.map(e => ({ ...e, cell: el("td.num", { colspan: data.tables.length + (compared.length ? 1 : 0) }) }));
+  const node = el("div.scroll", {}, el("table.readout", {},
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, angle), columns,
+      compared.length ? el("th.num", { scope: "col" }, "difference") : null)),
+    el("tbody", {},
+      rows.map(r => el("tr", {}, el("th", { scope: "row" }, swatch(r.colour, 4), el("code", { title: data.meaning(r.name) }, r.name)), r.cells, r.gap)),
+      more.map(e => el("tr", {}, el("th", { scope: "row" }, swatch(e.colour, e.width, e.dash), e.label), e.cell)),
+      bands.map(b => el("tr", {}, el("th", { scope: "row" }, el("span.band"), b.label),
+        el("td.num", { colspan: data.tables.length + (compared.length ? 1 : 0) }, `${number(b.low)} to ${unit(number(b.high), figure.unit)}`))))));
+  function show(row) {
+    const at = row == null ? home : Math.min(Math.max(row, 0), data.order.length - 1);
+    const i = data.order[at];
+    angle.textContent = degrees(data.theta[i]) + (row != null ? "" : compared.length ? " (largest difference)" : " (first angle)");
+    const value = v => unit(number(v, 6), figure.unit);
+    for (const r of rows) {
+      r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
+      if (r.gap) r.gap.textContent = unit(small(r.difference && r.difference[i]), figure.unit);
+    }
+    for (const e of more) e.cell.textContent = value(e.values[i]);
+  }
+  show(null);
+  return { node, show };
+}
+
+// ---- Figures: each piston's share at one angle ---------------------------------------------------
+
+const sum = values => (values.some(v => typeof v !== "number") ? null : values.reduce((a, b) => a + b, 0));
+
+function barsFigure(figure, data) {
+  const names = list(figure.channels);
+  const tables = data.tables.filter(t => names.some(n => hasNumbers(t.columns[n])));
+  if (!tables.length) return [el("p.empty", {}, "There is nothing to draw: no model computed these channels.")];
+  const value = (table, name, i) => list(table.columns[name])[i] ?? null;
+  // One scale for the whole turn: the bars can be compared from angle to angle.
+  const every = tables.flatMap(t => names.flatMap(n => list(t.columns[n]).filter(v => typeof v === "number")));
+  const low = every.reduce((a, b) => Math.min(a, b), 0), high = every.reduce((a, b) => Math.max(a, b), 0);
+
+  const slider = el("input", { type: "range", min: 0, max: data.order.length - 1, step: 1, "aria-label": "Shaft angle" });
+  const reading = el("output.angle");
+  const nearest = angle => data.order.reduce((best, i, row) =>
+    Math.abs(data.theta[i] - angle) < Math.abs(data.theta[data.order[best]] - angle) ? row : best, 0);
+  const buttons = list(figure.angles).map(angle => {
+    const button = el("button.small", { type: "button" }, degrees(angle));
+    button.addEventListener("click", () => { slider.value = nearest(angle); update(); });
+    return { button, row: nearest(angle) };
+  });
+  slider.value = buttons.length ? buttons[0].row : 0;
+  const total = el("p.total", { "aria-live": "polite" });
+  const chart = el("div.bars");
+  const numbers = el("div.numbers");
+
+  function update() {
+    const row = Number(slider.value), i = data.order[row];
+    reading.textContent = degrees(data.theta[i]);
+    slider.setAttribute("aria-valuetext", degrees(data.theta[i]));
+    buttons.forEach(b => b.button.setAttribute("aria-pressed", b.row === row));
+    const sums = tables.map(t => sum(names.map(n => value(t, n, i))));
+    total.textContent = `Sum at ${degrees(data.theta[i])}: `
+      + tables.map((t, k) => `${t.name} ${unit(number(sums[k]), figure.unit)}`).join(", ");
+    numbers.replaceChildren(table([
+      { head: "Piston", main: true, cell: r => r.label },
+      ...tables.map((t, k) => ({ head: figure.unit ? `${t.name} (${figure.unit})` : t.name, num: true, cell: r => (Math.abs(r.values[k]) < 1e-3 ? small(r.values[k]) : number(r.values[k])) })),
+    ], [...names.map(n => ({ label: data.pistonOf(n), values: tables.map(t => value(t, n, i)) })),
+        { label: "sum", values: sums, total: true }], { fold: false, rowClass: r => (r.total ? "total" : "") }));
+    chart.replaceChildren(barChart(chart.clientWidth || 600, names.map(n => ({
+      label: data.pistonOf(n), values: tables.map(t => value(t, n, i)) })), [low, high], figure));
+  }
+  slider.addEventListener("input", update);
+  data.mounts.push(() => { update(); new ResizeObserver(update).observe(chart); });
+  data.redraws.push(update);
+  const key = tables.length < 2 ? null : el("p.key", {}, tables.map((t, k) => el("span", {}, el("i.bar.t" + (k ? 1 : 0)), t.name)));
+  return [el("div.slide", {}, el("label", {}, "Shaft angle ", reading), slider, buttons.map(b => b.button)), total,
+    el("div.split", {}, el("div", {}, key, chart), numbers), figure.note ? el("p.note", {}, figure.note) : null];
+}
+
+// Bars as SVG in the pixels of their box, so that text keeps its size at every width.
+function barChart(width, groups, [low, high], figure) {
+  const size = { left: 74, right: 10, top: 12, bottom: 44, height: 280 };
+  const inner = { w: width - size.left - size.right, h: size.height - size.top - size.bottom };
+  const span = high - low || 1, [from, to] = [low - (low < 0 ? 0.06 * span : 0), high + (high > 0 || low === high ? 0.06 * span : 0)];
+  const y = v => size.top + inner.h * (to - v) / (to - from);
+  const root = svg("svg", { width, height: size.height, role: "img", "aria-label": `${figure.title}, bars; the values are in the table` });
+  const raw = (to - from) / 8, power = 10 ** Math.floor(Math.log10(raw));
+  const step = power * [1, 2, 5, 10].find(m => m * power >= raw);
+  const ticks = [];
+  for (let k = Math.ceil(from / step); k * step <= to; ++k) ticks.push(k * step);
+  const labels = tickLabels(ticks);
+  ticks.forEach((v, i) => root.append(
+    svg("line", { x1: size.left, x2: width - size.right, y1: y(v), y2: y(v), class: Math.abs(v) < 1e-9 * step ? "zero" : "grid" }),
+    svg("text", { x: size.left - 8, y: y(v) + 4, "text-anchor": "end" }, labels[i])));
+  const slot = inner.w / groups.length;
+  const every = Math.ceil(26 / slot);  // not every piston has room for its number when there are many
+  groups.forEach((g, i) => {
+    const bar = 0.72 * slot / g.values.length;
+    g.values.forEach((v, k) => v != null && root.append(svg("rect", { class: "bar t" + (k ? 1 : 0),
+      x: size.left + i * slot + 0.14 * slot + k * bar + 1, width: Math.max(1, bar - 2), y: y(Math.max(v, 0)), height: Math.abs(y(v) - y(0)) })));
+    if (i % every === 0) root.append(svg("text", { x: size.left + (i + 0.5) * slot, y: size.height - 26, "text-anchor": "middle" }, g.label));
+  });
+  const middle = size.top + inner.h / 2;
+  root.append(svg("text", { x: size.left + inner.w / 2, y: size.height - 6, "text-anchor": "middle", class: "axis" }, "piston"),
+    svg("text", { x: 14, y: middle, transform: `rotate(-90 14 ${middle})`, "text-anchor": "middle", class: "axis" }, figure.unit ? `share (${figure.unit})` : "share"));
+  return root;
+}
+
+function figures({ figures }, data) {
+  if (!list(figures).length || !data.order.length) return null;
+  return el("div", {},
+    el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; double-click to see all again. "
+      + "Point at a curve to read the values in the table above it."),
+    figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
+      f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
+      f.kind === "piston_bars" ? barsFigure(f, data) : curvesFigure(f, data))));
+}
+
+// ---- The page --------------------------------------------------------------------------------------
+
+// What the sections need of the curves. A run backwards has falling angles: `order` lists the samples by
+// rising angle. The axis is rounded out to whole turns where the last step of a turn is all that is missing.
+function prepare(report, curves) {
+  const theta = list(curves.theta_deg);
+  const order = theta.map((_, i) => i).sort((a, b) => theta[a] - theta[b]);
+  const first = theta[order[0]], last = theta[order[order.length - 1]];
+  const step = order.length > 1 ? (last - first) / (order.length - 1) : 360;
+  const turns = (v, round) => { const whole = 360 * round(v / 360); return Math.abs(whole - v) <= 1.01 * step ? whole : v; };
+  const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
+  const channels = new Map(list(report.channels).map(c => [c.name, c]));
+  const usual = ["analytic", "multibody"];
+  const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
+  return {
+    theta, order, low: turns(first, Math.floor), high: turns(last, Math.ceil), tables, pair,
+    difference: curves.difference || {}, mounts: [], redraws: [],
+    ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
+    meaning: name => { const c = channels.get(name); return c ? [c.meaning, c.on_body && "on " + c.on_body].filter(Boolean).join(", ") : null; },
+    pistonOf: name => { const c = channels.get(name); return c && c.piston ? String(c.piston) : name; },
+  };
+}
+
+const SECTIONS = [
+  ["verdict", "Verdict", verdictBanner], ["warnings", "Warnings", warnings],
+  ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
+  ["comparison", "Comparison", comparison], ["assumptions", "Assumptions that differ", assumptionSplit],
+  ["runs", "Runs", runs], ["published", "Against the published numbers", published], ["checks", "Checks of each model", checks],
+  ["figures", "Figures", figures], ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
+  ["models", "How each model was obtained", models], ["versions", "Versions", versions],
+];
+
+function header(report, data) {
+  const n = data.order.length;
+  const range = n ? `${n} angle${n === 1 ? "" : "s"}` + (n > 1 ? ` from ${degrees(data.theta[0])} to ${degrees(data.theta[n - 1])}` : "") : null;
+  const made = list(report.program)[0];
+  const parts = [report.case && report.case.file, data.tables.map(t => t.name).join(" and ") || null, range, made && made.join(" ")];
+  return [el("h1", {}, report.title || document.title), el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))];
+}
+
+// Contents beside the report where there is room, folded above it where there is not.
+function contents(sections, report) {
+  const link = (id, text) => el("a", { href: "#" + id }, text);
+  const folding = el("details", {}, el("summary", {}, "Contents"), el("ul", {}, sections.map(s => el("li", {}, link(s.id, s.title),
+    s.id !== "figures" ? null : el("ul", {}, report.figures.map(f => el("li", {}, link("figure-" + f.id, f.title))))))));
+  const wide = matchMedia("(min-width: 1100px)");
+  const fold = () => { folding.open = wide.matches; };
+  wide.addEventListener("change", fold);
+  fold();
+  const links = new Map([...folding.querySelectorAll("a")].map(a => [a.getAttribute("href").slice(1), a]));
+  folding.addEventListener("click", e => { if (e.target.closest("a") && !wide.matches) folding.open = false; });
+  const watcher = new IntersectionObserver(entries => entries.forEach(e => {
+    const a = links.get(e.target.id);
+    if (e.isIntersecting) a.setAttribute("aria-current", "true"); else a.removeAttribute("aria-current");
+  }), { rootMargin: "-15% 0px -80% 0px" });
+  links.forEach((_, id) => watcher.observe(document.getElementById(id)));
+  return folding;
+}
+
+// Canvases do not follow the width of the paper by themselves.
+function fitToPaper(redraws) {
+  const fit = printing => { document.documentElement.classList.toggle("printing", printing); redraws.forEach(f => f()); };
+  addEventListener("beforeprint", () => fit(true));
+  addEventListener("afterprint", () => fit(false));
+}
+
+function render() {
+  const read = id => JSON.parse(document.getElementById(id).textContent);
+  const report = read("report"), data = prepare(report, read("curves") || {});
+  document.getElementById("head").append(...header(report, data));
+  const main = document.getElementById("main");
+  const shown = [];
+  for (const [id, title, build] of SECTIONS) {
+    const body = build(report, data);
+    if (!body) continue;
+    main.append(el("section", { id, "aria-labelledby": id + "-title" }, el("h2", { id: id + "-title" }, title), body));
+    shown.push({ id, title });
+  }
+  data.mounts.forEach(mount => mount());  // a plot needs its box in the page, to know its width
+  document.getElementById("contents").append(contents(shown, report));
+  fitToPaper(data.redraws);
+}
+
+try {
+  render();
+  document.documentElement.dataset.ready = "true";
+} catch (error) {
+  document.body.prepend(el("p.error-box", { role: "alert" }, "This report could not be drawn: " + error.message
+    + ". The numbers are in report.json and in the CSV files of the same directory."));
+  document.documentElement.dataset.ready = "error";
+  console.error(error);
+}
+})();

@@ -1,0 +1,110 @@
+#include "bentaxis/multibody/gear_mesh.h"
+
+#include <cmath>
+
+namespace bentaxis::multibody {
+
+using SimTK::Array_;
+using SimTK::ConstrainedBodyIndex;
+using SimTK::ConstrainedQIndex;
+using SimTK::Real;
+using SimTK::Rotation;
+using SimTK::SpatialVec;
+using SimTK::State;
+using SimTK::Transform;
+using SimTK::Vec3;
+
+namespace {
+
+class GearMeshImplementation : public SimTK::Constraint::Custom::Implementation {
+ public:
+  GearMeshImplementation(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& shaft,
+                         SimTK::MobilizedBody& block, const Vec3& point, const Vec3& line,
+                         const Rotation& block_frame)
+      : Implementation(matter, 1, 0, 0), point_(point), line_(line), block_frame_(block_frame) {
+    shaft_ = addConstrainedBody(shaft);
+    block_ = addConstrainedBody(block);
+    // Moment arm of the line about the block's axis, signed: rate of the error per unit of speed.
+    const Vec3 from_axis = point - block.getDefaultInboardFrame().p();
+    arm_ = SimTK::dot(block_frame.z() % from_axis, line);
+  }
+
+  Implementation* clone() const override { return new GearMeshImplementation(*this); }
+
+  void calcPositionErrors(const State&, const Array_<Transform, ConstrainedBodyIndex>& bodies,
+                          const Array_<Real, ConstrainedQIndex>&,
+                          Array_<Real>& error) const override {
+    const double phase = turn_angle(bodies[block_].R(), block_frame_) -
+                         turn_angle(bodies[shaft_].R(), shaft_frame_);
+    error[0] = arm_ * std::remainder(phase, 2 * SimTK::Pi);
+  }
+
+  void calcPositionDotErrors(const State& state,
+                             const Array_<SpatialVec, ConstrainedBodyIndex>& velocities,
+                             const Array_<Real, ConstrainedQIndex>&,
+                             Array_<Real>& error) const override {
+    error[0] = SimTK::dot(line_, velocity(state, velocities[block_], block_) -
+                                     velocity(state, velocities[shaft_], shaft_));
+  }
+
+  void calcPositionDotDotErrors(const State& state,
+                                const Array_<SpatialVec, ConstrainedBodyIndex>& accelerations,
+                                const Array_<Real, ConstrainedQIndex>&,
+                                Array_<Real>& error) const override {
+    error[0] = SimTK::dot(line_, velocity_rate(state, accelerations[block_], block_) -
+                                     velocity_rate(state, accelerations[shaft_], shaft_));
+  }
+
+  void addInPositionConstraintForces(const State& state, const Array_<Real>& multipliers,
+                                     Array_<SpatialVec, ConstrainedBodyIndex>& forces,
+                                     Array_<Real, ConstrainedQIndex>&) const override {
+    const Vec3 force = multipliers[0] * line_;
+    forces[block_] += SpatialVec(lever(state, block_) % force, force);
+    forces[shaft_] -= SpatialVec(lever(state, shaft_) % force, force);
+  }
+
+ private:
+  // Mesh point from the body's origin, in Ground.
+  Vec3 lever(const State& state, ConstrainedBodyIndex body) const {
+    return point_ - getBodyOriginLocationFromState(state, body);
+  }
+  // Velocity of the body's material that passes the mesh point.
+  Vec3 velocity(const State& state, const SpatialVec& body, ConstrainedBodyIndex index) const {
+    return body[1] + body[0] % lever(state, index);
+  }
+  // Its rate at the point fixed in space, not that of the material.
+  Vec3 velocity_rate(const State& state, const SpatialVec& body, ConstrainedBodyIndex index) const {
+    const SpatialVec& v = getBodyVelocityFromState(state, index);
+    return body[1] + body[0] % lever(state, index) - v[0] % v[1];
+  }
+
+  Vec3 point_, line_;
+  Rotation block_frame_, shaft_frame_;
+  double arm_ = 0;
+  ConstrainedBodyIndex shaft_, block_;
+};
+
+}  // namespace
+
+double turn_angle(const Rotation& body_in_ground, const Rotation& frame) {
+  const SimTK::Mat33& body = body_in_ground.asMat33();
+  const SimTK::Mat33& axes = frame.asMat33();
+  double x = 0;
+  double y = 0;
+  for (int i = 0; i < 3; ++i) {
+    x += axes(i, 0) * body(i, 0);
+    y += axes(i, 1) * body(i, 0);
+  }
+  return std::atan2(y, x);
+}
+
+GearMesh::GearMesh(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& shaft,
+                   SimTK::MobilizedBody& block, const Vec3& point, const SimTK::UnitVec3& line,
+                   const Rotation& block_frame)
+    : Custom(new GearMeshImplementation(matter, shaft, block, point, Vec3(line), block_frame)) {}
+
+double GearMesh::tooth_force(const State& state) const {
+  return -getMultipliersAsVector(state)[0];  // a multiplier is minus the applied force
+}
+
+}  // namespace bentaxis::multibody

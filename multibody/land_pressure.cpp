@@ -1,0 +1,64 @@
+#include "bentaxis/multibody/land_pressure.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::multibody {
+namespace {
+
+// Five-point Gauss-Legendre rule on [-1, 1] (Abramowitz & Stegun 1964, table 25.4).
+constexpr std::array<std::pair<double, double>, 5> kGauss = {{
+    {-0.906179845938663992797626878299, 0.236926885056189087514264040720},
+    {-0.538469310105683091036314420700, 0.478628670499366468041291514836},
+    {0.0, 0.568888888888888888888888888889},
+    {0.538469310105683091036314420700, 0.478628670499366468041291514836},
+    {0.906179845938663992797626878299, 0.236926885056189087514264040720},
+}};
+
+// Calls visit(x, weight) for the points of the rule on [a, b].
+template <class Visit>
+void quadrature(double a, double b, Visit visit) {
+  for (const auto& [at, weight] : kGauss)
+    visit((a + b) / 2 + (b - a) / 2 * at, (b - a) / 2 * weight);
+}
+
+void add_port(FilmLoad& load, const PortPlate& plate, const PortArc& arc, double port_pressure) {
+  const std::array<std::pair<double, double>, 3> rings = {
+      {{plate.r1, plate.r2}, {plate.r2, plate.r3}, {plate.r3, plate.r4}}};
+  const auto pressure = [&](double r) {
+    if (r < plate.r2) return port_pressure * (r - plate.r1) / (plate.r2 - plate.r1);
+    if (r > plate.r3) return port_pressure * (plate.r4 - r) / (plate.r4 - plate.r3);
+    return port_pressure;
+  };
+  constexpr int kPanels = 36;  // at most 10 degrees each
+  const double from = radians(arc.from_deg);
+  const double width = radians(arc.to_deg - arc.from_deg) / kPanels;
+  for (int panel = 0; panel < kPanels; ++panel) {
+    quadrature(from + panel * width, from + (panel + 1) * width, [&](double psi, double d_psi) {
+      for (const auto& [inner, outer] : rings) {
+        quadrature(inner, outer, [&](double r, double d_r) {
+          const double push = pressure(r) * r * d_r * d_psi;  // along -z2
+          const double x = -r * std::sin(psi);
+          const double y = r * std::cos(psi);
+          load.force_z -= push;
+          load.moment_x -= y * push;
+          load.moment_y += x * push;
+        });
+      }
+    });
+  }
+}
+
+}  // namespace
+
+FilmLoad film_load(const PortPlate& plate, const PortPressures& ports) {
+  FilmLoad load;
+  add_port(load, plate, plate.delivery, ports.delivery);
+  add_port(load, plate, plate.suction, ports.suction);
+  return load;
+}
+
+}  // namespace bentaxis::multibody

@@ -1,0 +1,50 @@
+// Applied loads of the pump as one Simbody force element, and what they depend on.
+#pragma once
+
+#include <SimTKsimbody.h>
+#include <functional>
+#include <vector>
+
+#include "bentaxis/pump/parameters.h"
+#include "bentaxis/pump/pressure.h"
+
+namespace bentaxis::multibody {
+
+/// What the loads depend on besides the state. Changed by whoever runs the pump, between
+/// realizations; the pump's force element reads it.
+struct LoadInputs {
+  /// Chamber pressures (Pa gauge) at shaft angle theta, rad in (-pi, pi].
+  std::function<void(double theta, std::vector<double>& pressure)> chamber_pressure;
+  PortPressures ports;
+  /// Torque about z1 on the shaft at angle theta where the shaft runs free; empty where driven.
+  std::function<double(double theta)> shaft_torque;
+  double nominal_speed = 0;  ///< omega, rad/s: sets the speed at which a piston counts as at rest
+};
+
+/// The bodies the loads act on; A and B of each piston at z = 0 and z = length of its frame.
+struct PumpBodies {
+  SimTK::MobilizedBody shaft;
+  SimTK::MobilizedBody block;
+  std::vector<SimTK::MobilizedBody> pistons;
+  SimTK::Rotation block_frame;  ///< S2 in Ground
+  SimTK::Vec3 block_origin;     ///< O2 in Ground
+};
+
+/// Adds pressure on pistons and block, friction, spring, port-plate film and viscous torques.
+/// Weight is not among them (Simbody's own gravity element).
+/// @param inputs  must outlive the system
+class PumpLoads : public SimTK::Force::Custom {
+ public:
+  PumpLoads(SimTK::GeneralForceSubsystem& forces, const PumpParameters& pump,
+            const Assumptions& assumptions, const PumpBodies& bodies, const LoadInputs& inputs);
+};
+
+/// Axial force on a piston along z2 at B: pressure and friction, N.
+struct AxialLoad {
+  double pressure = 0;
+  double friction = 0;
+};
+AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions, double pressure,
+                     double velocity, double nominal_speed);
+
+}  // namespace bentaxis::multibody

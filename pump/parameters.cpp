@@ -1,0 +1,42 @@
+#include "bentaxis/pump/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis {
+
+double piston_friction_force(const Friction& friction, double velocity, double rest_speed) {
+  double direction = 0;
+  if (friction.regularization > 0) {
+    direction = std::tanh(velocity / friction.regularization);
+  } else if (std::abs(velocity) > rest_speed) {
+    direction = velocity > 0 ? 1 : -1;
+  }
+  return -(friction.piston_coulomb * direction + friction.piston_viscous * velocity);
+}
+
+double piston_rest_speed(const Geometry& geometry, double omega) {
+  return 1e-12 * std::abs(omega) * geometry.joint_circle_radius;
+}
+
+AssemblyMargin assembly_margin(const Geometry& g) {
+  // With u = cos theta the squared distance of A from its bore axis is
+  // (Rd - Ra)^2 (1 - u^2) + (q u - s)^2: its maximum is at u = -1, at u = 1 or at the vertex.
+  const double difference = g.bore_circle_radius - g.joint_circle_radius;
+  const double q = g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt);
+  const double s = g.axis_offset * std::sin(g.tilt);
+  const auto distance = [&](double u) {
+    return std::hypot(difference * std::sqrt(std::max(0.0, 1 - u * u)), q * u - s);
+  };
+  double worst_u = distance(-1) > distance(1) ? -1 : 1;
+  const double curvature = q * q - difference * difference;
+  if (curvature < 0) {
+    const double vertex = std::clamp(q * s / curvature, -1.0, 1.0);
+    if (distance(vertex) > distance(worst_u)) worst_u = vertex;
+  }
+  return {distance(worst_u), std::acos(worst_u) / kRadPerDegree};
+}
+
+}  // namespace bentaxis

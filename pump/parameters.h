@@ -1,0 +1,149 @@
+// The raw description of a bent-axis pump: the only thing both models are built from.
+//
+// Everything here is an input in SI units. Nothing is derived: each model works out its own angles,
+// points and derivatives, so that a mistake in one of them shows as a difference.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace bentaxis {
+
+/// Main dimensions. Frames: S1 has its origin O1 where the shaft axis z1 meets the plane of the
+/// piston joints, y1 up; S2 has its origin at (0, 0, axis_offset) in S1 and is bent by `tilt`
+/// about x towards +y1; z2 is the block axis (Roccatello & Nervegna 2009, Fig. 1, (7)).
+struct Geometry {
+  int pistons = 0;                   ///< N
+  double tilt = 0;                   ///< alpha, rad, between shaft and block axis
+  double joint_circle_radius = 0;    ///< R_a, m, of the spherical joints A_k about z1
+  double bore_circle_radius = 0;     ///< R_d, m, of the bores about z2
+  double axis_offset = 0;            ///< b, m, z1 of the block frame's origin O2
+  double piston_length = 0;          ///< b_1, m, from A to B
+  double bore_diameter = 0;          ///< D_pi, m
+};
+
+/// Bevel gear pair with equal tooth counts that carries the block round (19)-(23).
+struct Gear {
+  double pitch_diameter = 0;  ///< d = m Z, m
+  double pressure_angle = 0;  ///< alpha_p, rad
+};
+
+/// Bearing centres on the shaft axis, z1 in m.
+struct Bearings {
+  double tapered_z = 0;      ///< of C1, takes x, y and z
+  double cylindrical_z = 0;  ///< of C2, takes x and y
+};
+
+enum class PistonInertia {
+  lumped,  ///< two point masses, chi m at A and (1 - chi) m at B (27), (28)
+  real,    ///< rigid, axisymmetric, spinning about its own axis at constant rate (appendix)
+};
+
+/// Mass properties of one piston. Each kind's own data is present when the case file gives it.
+struct PistonMass {
+  struct Real {
+    double centre_of_mass = 0;      ///< s_G, m, from A towards B
+    double transverse_inertia = 0;  ///< I_t, kg m2, about the centre of mass
+    double axial_inertia = 0;       ///< I_a, kg m2
+    double spin = 0;                ///< w_s, rad/s, absolute, positive along A->B
+  };
+  PistonInertia inertia = PistonInertia::lumped;
+  double mass = 0;                  ///< m_pi, kg
+  double joint_mass_fraction = 0.5;  ///< chi, share of the mass at A
+  std::optional<Real> real;
+};
+
+struct Shaft {
+  double mass = 0;              ///< m_s, kg
+  double centre_of_mass_z = 0;  ///< z1, m
+  double axial_inertia = 0;     ///< kg m2, about z1; matters only when the speed changes
+};
+
+struct Block {
+  double mass = 0;              ///< m_c, kg
+  double centre_of_mass_z = 0;  ///< z2, m
+  double pin_z = 0;             ///< z2 of the pin's mean contact point H_cn, m
+  double bottom_area = 0;       ///< A_c per bore, m2
+  double spring_force = 0;      ///< F_m, N, pushes block and shaft apart
+  double axial_inertia = 0;     ///< kg m2, about z2; matters only when the speed changes
+};
+
+struct Friction {
+  double piston_coulomb = 0;      ///< F_c, N
+  double piston_viscous = 0;      ///< c_v, N s/m
+  double regularization = 0.01;   ///< v_reg, m/s; 0 gives the sign function
+  double block_viscous = 0;       ///< C_c, Nm s/rad
+  double shaft_viscous = 0;       ///< C_s, Nm s/rad
+  double shaft_torque_factor = 1;  ///< C_t of (38); 1 means no proportional loss
+};
+
+/// Arc of a port on the fixed port plate, degrees; the point at angle psi is
+/// (-r sin psi, r cos psi) in S2.
+struct PortArc {
+  double from_deg = 0;
+  double to_deg = 0;
+};
+
+/// Lands of the port plate: full port pressure between r2 and r3, falling linearly to 0 at r1, r4.
+struct PortPlate {
+  double r1 = 0, r2 = 0, r3 = 0, r4 = 0;  ///< m
+  PortArc delivery, suction;
+};
+
+/// All of the pump that the mechanical models need.
+struct PumpParameters {
+  Geometry geometry;
+  Gear gear;
+  Bearings bearings;
+  PistonMass piston;
+  Shaft shaft;
+  Block block;
+  Friction friction;
+  std::optional<PortPlate> port_plate;
+  double gravity = 9.80665;  ///< m/s2, along -y1
+};
+
+/// How the block is carried round.
+enum class GearScene {
+  mesh,     ///< the shaft drives it by the tooth force R_cs along z4 at O4
+  imposed,  ///< its speed is imposed on its own joint, as in the paper's ADAMS run; no R_cs
+};
+
+/// What a model takes into account beyond the raw description. Two models may differ here; the
+/// comparison then accounts for every difference.
+struct Assumptions {
+  bool piston_friction = true;
+  PistonInertia inertia = PistonInertia::lumped;
+  GearScene gear = GearScene::mesh;
+};
+
+inline bool operator==(const Assumptions& a, const Assumptions& b) {
+  return a.piston_friction == b.piston_friction && a.inertia == b.inertia && a.gear == b.gear;
+}
+
+inline std::string to_string(PistonInertia inertia) {
+  return inertia == PistonInertia::lumped ? "lumped" : "real";
+}
+inline std::string to_string(GearScene gear) {
+  return gear == GearScene::mesh ? "mesh" : "imposed";
+}
+
+/// Applies the law of piston friction Fpf = -(Fc tanh(v/v_reg) + cv v), N, along z2 at B.
+/// With v_reg = 0 the tanh is sign(v), and |v| <= `rest_speed` counts as rest.
+/// @param velocity  z2-velocity of B, m/s.
+double piston_friction_force(const Friction& friction, double velocity, double rest_speed);
+
+/// The speed below which a piston counts as at rest in the sign law: 1e-12 |omega| R_a, m/s.
+double piston_rest_speed(const Geometry& geometry, double omega);
+
+/// Ideal gap between the longest distance from a joint A to the axis of its bore and the piston
+/// length that has to span it: where it is not positive the pump cannot be assembled.
+struct AssemblyMargin {
+  double longest_distance = 0;  ///< m, largest distance of A from its bore axis over a turn
+  double theta_deg = 0;         ///< where
+};
+
+/// The worst angle for assembly, exactly (the squared distance is a quadratic in cos theta).
+AssemblyMargin assembly_margin(const Geometry& geometry);
+
+}  // namespace bentaxis
