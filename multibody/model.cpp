@@ -68,26 +68,33 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) {
                 self.layout, values);
 }
 
-Provenance Model::provenance() const {
-  const Implementation& self = *implementation_;
-  const bool mesh = self.system.has_gear();
-  const int n = self.layout.pistons();
-  Provenance provenance;
-  provenance.facts = {
+std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
+                                                             const Assumptions& assumptions) {
+  const bool mesh = assumptions.gear == GearScene::mesh;
+  const int n = pump.geometry.pistons;
+  return {
       {"method", "multibody, Simbody " + simbody_version()},
-      {"way", "driven: assembled at each angle by projection, accelerations and reactions solved, "
-              "no time integration"},
       {"scene", std::string("full pump, gear ") +
                     (mesh ? "in mesh (tooth force along z4 at O4)"
                           : "replaced by a speed imposed on the block's joint")},
       {"bodies", std::to_string(n + 2) + " (shaft, block, " + std::to_string(n) + " pistons)"},
-      {"joints", std::string("shaft spherical at C1, block pin about z2, pistons ") +
-                     "spherical at A to the shaft"},
+      {"joints",
+       "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
       {"constraints", std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
-                          (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"},
-      {"mobilities", std::to_string(self.rank.mobilities)},
-      {"constraint equations", std::to_string(self.rank.equations)},
-      {"rank of the constraint matrix", std::to_string(self.rank.rank)}};
+                          (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
+}
+
+Provenance Model::provenance() const {
+  const Implementation& self = *implementation_;
+  Provenance provenance;
+  provenance.facts = scene_facts(self.system.pump(), self.system.assumptions());
+  auto& facts = provenance.facts;
+  facts.insert(facts.begin() + 1,
+               {"way", "driven: assembled at each angle by projection, accelerations and reactions "
+                       "solved, no time integration"});
+  facts.emplace_back("mobilities", std::to_string(self.rank.mobilities));
+  facts.emplace_back("constraint equations", std::to_string(self.rank.equations));
+  facts.emplace_back("rank of the constraint matrix", std::to_string(self.rank.rank));
   return provenance;
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bentaxis/pump/case.h"
@@ -39,6 +41,10 @@ class Model {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// What the multibody scene consists of, as lines for a report.
+std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
+                                                             const Assumptions& assumptions);
 
 /// One turn of a case under the given assumptions, as a table.
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,

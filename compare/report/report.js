@@ -14,6 +14,15 @@ const BAD = ["differs", "violated", "unexplained", "not explained", "outside"];
 
 // ---- Elements ----------------------------------------------------------------------------------
 
+// Browsers may break a line inside 2.1e-14; such numbers are kept whole.
+const unbroken = text => text.split(/(\d[\d.]*e-\d+)/).map((part, i) => {
+  if (i % 2 === 0) return part;
+  const span = document.createElement("span");
+  span.className = "whole";
+  span.textContent = part;
+  return span;
+});
+
 // el("p.note", {title: "..."}, children...): strings become text nodes, null children are skipped.
 function el(spec, attributes, ...children) {
   const [tag, ...classes] = spec.split(".");
@@ -21,7 +30,8 @@ function el(spec, attributes, ...children) {
   if (classes.length) node.className = classes.join(" ");
   for (const [name, value] of Object.entries(attributes || {}))
     if (value != null && value !== false) node.setAttribute(name, value === true ? "" : value);
-  node.append(...children.flat(2).filter(child => child != null));
+  for (const child of children.flat(2))
+    if (child != null) node.append(...(child instanceof Node ? [child] : unbroken(String(child))));
   return node;
 }
 
@@ -61,22 +71,26 @@ function number(v, digits = 5) {
 // Differences are known to their order of magnitude only: more digits would be noise.
 const small = v => typeof v === "number" && Math.abs(v) < 1e-3 ? number(v, 2) : number(v, 3);
 // A ratio reads as per cent where per cent is a natural size.
-const ratio = v => typeof v === "number" && Math.abs(v) >= 1e-3 ? number(100 * v, 3) + " %" : small(v);
+const ratio = v => typeof v === "number" && Math.abs(v) >= 1e-5 ? number(100 * v, 3) + " %" : small(v);
 const unit = (text, name) => (text === DASH || !name ? text : text + "\u00a0" + name);
 const degrees = v => unit(typeof v === "number" ? number(Number(v.toFixed(3)), 6) : DASH, "deg");
 
 // ---- Tables ------------------------------------------------------------------------------------
 
+const tableCell = (tag, head, ...content) =>
+  el(tag, { role: "cell", "data-head": head }, el("div", {}, ...content));
+
 // columns: {head, cell: row -> text or node, num: right-aligned, main: names the row}. Every cell carries
 // its heading, because on a narrow page the style sheet shows each row as a block of "heading: value"
 // (then the roles keep it a table for a screen reader).
-function table(columns, rows, { rowClass, fold = true } = {}) {
+function table(columns, rows, { rowClass, fold = true, style = "" } = {}) {
   const head = el("tr", { role: "row" }, columns.map(c =>
     el(c.num ? "th.num" : "th", { scope: "col", role: "columnheader" }, c.head)));
-  const body = rows.map(row => el("tr", { role: "row", class: rowClass && rowClass(row) || null }, columns.map(c =>
-    el((c.main ? "th" : "td") + (c.num ? ".num" : ""),
-       { scope: c.main && "row", role: c.main ? "rowheader" : "cell", "data-head": c.head }, c.cell(row)))));
-  return el("div.scroll", {}, el("table" + (fold ? ".fold" : ""), { role: "table" },
+  const body = rows.map(row => el("tr", { role: "row", class: rowClass && rowClass(row) || null }, columns.map(c => {
+    const style = c.num ? ".num" : "";
+    return c.main ? el("th" + style, { scope: "row", role: "rowheader" }, c.cell(row)) : tableCell("td" + style, c.head, c.cell(row));
+  })));
+  return el("div.scroll", {}, el("table" + style + (fold ? ".fold" : ""), { role: "table" },
     el("thead", { role: "rowgroup" }, head), el("tbody", { role: "rowgroup" }, body)));
 }
 
@@ -149,7 +163,7 @@ const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(ru
   el("h3", {}, run.title), run.text ? el("p", {}, run.text) : null, facts(run.facts),
   !run.table || !list(run.table.rows).length ? null : table(run.table.columns.map((head, i) => ({
     head, main: i === 0, num: run.table.rows.every(r => r[i] == null || typeof r[i] === "number"),
-    cell: r => small(r[i]) })), run.table.rows, { fold: run.table.columns.length > 3 }))));
+    cell: r => small(r[i]) })), run.table.rows, { fold: run.table.columns.length > 3, style: ".narrow" }))));
 
 const published = ({ published }, data) => !published || !list(published.rows).length ? null : el("div", {},
   published.text ? el("p", {}, published.text) : null,
@@ -236,11 +250,10 @@ function comparisonTable(channels, data) {
   const order = differs ? { key: "max_over_peak", direction: 1 } : { key: null, direction: 1 };
   const headings = [{ key: null, head: "Reaction" }, { head: "Verdict" }, ...STATISTICS];
 
-  const statisticCells = item => STATISTICS.map(s =>
-    el("td.num", { role: "cell", "data-head": s.head }, s.show(item)));
+  const statisticCells = item => STATISTICS.map(s => tableCell("td.num", s.head, s.show(item)));
   const channelRows = group => byStatistic(group.channels, order.key, order.direction).flatMap(c => [
     el("tr.channel", { role: "row" }, el("th", { scope: "row", role: "rowheader" }, el("code", {}, c.name)),
-      el("td", { role: "cell", "data-head": "Verdict" }, chip(stateOf(c))), statisticCells(c)),
+      tableCell("td", "Verdict", chip(stateOf(c))), statisticCells(c)),
     el("tr.details", { role: "row" }, el("td", { role: "cell", colspan: headings.length }, channelDetails(c, data)))]);
 
   // The channels of a closed group are not built: a pump may have hundreds.
@@ -257,7 +270,7 @@ function comparisonTable(channels, data) {
       el("th", { scope: "rowgroup", role: "rowheader" }, group.button, el("span.meaning-of", {}, group.meaning || ""),
         el("small", {}, n === 1 ? "1 channel" : n + " channels",
           n > 1 && group.max_over_peak != null ? [", worst ", el("code", {}, group.worst.name)] : null)),
-      el("td", { role: "cell", "data-head": "Verdict" }, chip(group.state),
+      tableCell("td", "Verdict", chip(group.state),
         group.missing ? el("small", {}, group.missing + " not computed") : null),
       statisticCells(group)));
     group.body = el("tbody", { role: "rowgroup" });
@@ -341,7 +354,7 @@ const hasNumbers = values => list(values).some(v => typeof v === "number");
 // Ticks of the shaft angle: fractions of a turn (45, 60, 90 ...) for a whole turn or more, finer when zoomed.
 function angleTicks(low, high, pixels) {
   const steps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360, 720, 1440, 3600, 7200, 36000];
-  const room = Math.max(2, pixels / 48);
+  const room = Math.max(2, pixels / 52);
   const step = steps.find(s => (high - low) / s <= room && (high - low < 359 || s >= 45)) || (high - low) / 4;
   const ticks = [];
   for (let i = Math.ceil(low / step - 1e-6); i * step <= high + 1e-6 * step; ++i)
@@ -358,7 +371,7 @@ function tickLabels(values) {
   const plain = largest >= 1e-2 && largest < 1e6;
   return values.map(v => Math.abs(v) < 1e-6 * step ? "0"
     : plain ? v.toFixed(Math.max(0, -digit(step)))
-    : v.toExponential(Math.max(0, digit(Math.abs(v) * (1 + 1e-12)) - digit(step))).replace("e+", "e"));
+    : scientific(v, 1 + Math.max(0, digit(Math.abs(v) * (1 + 1e-12)) - digit(step))));
 }
 
 function valueTicks(low, high, pixels, options, graph) {
@@ -392,7 +405,7 @@ function plot(box, data, lines, bands, yLabel) {
     underlayCallback(canvas, area, graph) {
       for (const band of bands) {
         const [top, bottom] = [graph.toDomYCoord(band.high), graph.toDomYCoord(band.low)];
-        canvas.fillStyle = "rgba(110, 125, 140, 0.16)";
+        canvas.fillStyle = "rgba(110, 125, 140, 0.13)";
         canvas.fillRect(area.x, top, area.w, bottom - top);
       }
       canvas.fillStyle = "#9aa5b1";
@@ -463,7 +476,7 @@ function curvesFigure(figure, data) {
   const exact = differences.length > 0 && differences.every(d => d.values.every(v => !v));
   const lower = differences.length && !exact
     ? el("div.plot.low", { role: "img", "aria-label": `${figure.title}: difference over the shaft angle` }) : null;
-  if (exact) notes.push("The difference is exactly zero at every angle.");
+  if (exact) notes.push("The difference is exactly zero wherever both were computed.");
   data.mounts.push(() => {
     const graphs = [plot(upper, data, [...edges, ...lines, ...extras], bands, "value" + label)];
     if (lower) graphs.push(plot(lower, data, differences, [], "difference" + label));
@@ -478,7 +491,7 @@ function curvesFigure(figure, data) {
 // pointed at it shows the angle of the largest difference.
 function readOutTable(figure, drawn, extras, bands, data) {
   const compared = drawn.filter(d => d.difference);
-  let home = 0, largest = -1;
+  let home = 0, largest = 0;
   data.order.forEach((i, row) => compared.forEach(d => {
     if (Math.abs(d.difference[i] ?? 0) > largest) { largest = Math.abs(d.difference[i] ?? 0); home = row; }
   }));
@@ -498,7 +511,7 @@ function readOutTable(figure, drawn, extras, bands, data) {
   function show(row) {
     const at = row == null ? home : Math.min(Math.max(row, 0), data.order.length - 1);
     const i = data.order[at];
-    angle.textContent = degrees(data.theta[i]) + (row != null ? "" : compared.length ? " (largest difference)" : " (first angle)");
+    angle.textContent = degrees(data.theta[i]) + (row != null ? "" : largest > 0 ? " (largest difference)" : " (first angle)");
     const value = v => unit(number(v, 6), figure.unit);
     for (const r of rows) {
       r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
@@ -626,7 +639,7 @@ function prepare(report, curves) {
 const SECTIONS = [
   ["verdict", "Verdict", verdictBanner], ["warnings", "Warnings", warnings],
   ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
-  ["comparison", "Comparison", comparison], ["assumptions", "Assumptions that differ", assumptionSplit],
+  ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
   ["runs", "Runs", runs], ["published", "Against the published numbers", published], ["checks", "Checks of each model", checks],
   ["figures", "Figures", figures], ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
   ["models", "How each model was obtained", models], ["versions", "Versions", versions],
