@@ -269,7 +269,8 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
     values[at.axis_moment(k)] = axis.dot(moment) / length;
   }
   values[at.Tcs()] = carry;
-  values[at.power_residual()] = work;
+  // The gear passes power on; an imposed block speed brings in power of its own.
+  values[at.power_residual()] = imposed_ ? work + carry : work;
 }
 
 Model::FlankChange Model::other_flank(double tooth_force) const {

@@ -389,7 +389,8 @@ def _():
     Fh, Tx, Ty = (row[COLUMN[n]] for n in ("Fh_z2_N", "Th_x2_Nm", "Th_y2_Nm"))
     point = [-Ty / Fh, Tx / Fh, mpf(0)]
     off = norm(sub(cross(point, [mpf(0), mpf(0), Fh]), [Tx, Ty, mpf(0)]))
-    yield f"moment of Fh at ({', '.join(show(1000 * x) for x in point[:2])}) mm less Th: {show(off)} Nm", off < ROUND_OFF * 1e3
+    where = ", ".join(show(1000 * x) for x in point[:2])
+    yield f"moment of Fh at ({where}) mm less Th: {show(off)} Nm", off < ROUND_OFF * 1e3
 
 
 @check("C23", "(38) as printed: the proportional friction feeds energy in when Td omega < 0")
@@ -633,7 +634,7 @@ def _():
     F, M_O2 = in_S2(g, total[:3]), in_S2(g, sub(total[3:], cross(g.O2, total[:3])))
     Rcs = -M_O2[2] / (case.pitch_diameter / 2 * mp.cos(case.pressure_angle))
     Rcn = [-F[0] - Rcs * k[0], -F[1] - Rcs * k[1]]
-    m = cross([mpf(0), case.pitch_diameter / 2, -case.pitch_diameter / 2 * -mp.tan(case.tilt / 2)], scale(Rcs, k))
+    m = cross([mpf(0), case.pitch_diameter / 2, case.pitch_diameter / 2 * mp.tan(case.tilt / 2)], scale(Rcs, k))
     block = [-F[2] - Rcs * k[2], -M_O2[0] - m[0] + case.z_pin * Rcn[1], -M_O2[1] - m[1] - case.z_pin * Rcn[0]]
     worst = max(abs(x - y) for x, y in zip(block + Rcn + [Rcs], row[25:31]))
     yield f"block: {show(worst)}", worst < ROUND_OFF * 1e5

@@ -111,7 +111,7 @@ class Runner {
       advance_to(std::abs(samples_.theta_deg[row]));
       note(row);
       if (at_sample) at_sample(row);
-      if (progress) progress(static_cast<double>(row + 1) / samples_.theta_deg.size());
+      if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(samples_.theta_deg.size()));
     }
     const SimTK::State& state = integrator_->getState();
     system_.system().realize(state, Stage::Acceleration);

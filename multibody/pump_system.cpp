@@ -22,8 +22,10 @@ using SimTK::Vector;
 
 namespace {
 
-// Positions are assembled to this error (m), which Newton's last step undercuts by far; what a
-// piston of b1 = 1 m can resolve is 1e-16.
+// Constraint errors (m) the projection is asked to reach: below the round-off of positions, so that
+// it goes on until Newton's step no longer helps.
+constexpr double kAssemblyGoal = 1e-17;
+// What an assembly must reach to count as one.
 constexpr double kAssemblyTolerance = 1e-12;
 // Singular values of the scaled constraint matrix below this share of the largest count as zero.
 constexpr double kRankTolerance = 1e-11;
@@ -272,7 +274,7 @@ void PumpSystem::assemble(double theta, double omega) {
   const bool nearby = assembled_theta_ && std::abs(theta - *assembled_theta_) < kNearby;
   assembled_theta_.reset();
 
-  SimTK::ProjectOptions options(kAssemblyTolerance);
+  SimTK::ProjectOptions options(kAssemblyGoal);
   options.setOption(SimTK::ProjectOptions::DontThrow);
   options.setOption(SimTK::ProjectOptions::ForceProjection);
   SimTK::ProjectResults results;
@@ -293,7 +295,7 @@ void PumpSystem::assemble(double theta, double omega) {
       system_.realize(assembly_, SimTK::Stage::Position);
       const double after = assembly_.getQErr().normInf();
       done = after <= kAssemblyTolerance;
-      if (!done && !(after < before)) break;
+      if (!(after < before)) break;
     }
     const Vec3 z2(bodies_.block_frame.z());
     for (const auto& piston : bodies_.pistons)

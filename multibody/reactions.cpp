@@ -148,7 +148,8 @@ void read_channels(const PumpSystem& pump, const State& state, const WorkRate& r
 
   values[at.power_residual()] =
       net - (p.friction.shaft_viscous + p.friction.block_viscous) * omega -
-      (p.shaft.axial_inertia + p.block.axial_inertia) * omega_dot + work / rate.omega;
+      (p.shaft.axial_inertia + p.block.axial_inertia) * omega_dot + work / rate.omega +
+      (pump.has_gear() ? 0 : values[at.Tcs()]);
 }
 
 }  // namespace bentaxis::multibody

@@ -174,6 +174,18 @@ class TableReader {
     throw InputError(place(line_) + label(key) + ": " + why);
   }
 
+  // A key of the table that was probably meant to be `key`.
+  std::string misspelt(const std::string& key) const {
+    if (table_ == nullptr) return "";
+    for (const auto& [found, node] : *table_) {
+      const std::string word(found.str());
+      if (known_.count(word) == 0 && edit_distance(word, key) <= 3)
+        return "; is \"" + word + "\" in line " +
+               std::to_string(node.source().begin.line) + " meant?";
+    }
+    return "";
+  }
+
  private:
   std::string place(int line) const {
     return file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": ";
@@ -196,7 +208,7 @@ class TableReader {
     known_.insert(key);
     const toml::node* node = table_ == nullptr ? nullptr : table_->get(key);
     if (node == nullptr && !optional)
-      throw InputError(place(line_) + label(key) + " is missing: must be " + wanted);
+      throw InputError(place(line_) + label(key) + " is missing: must be " + wanted + misspelt(key));
     return node;
   }
 
@@ -261,7 +273,8 @@ class CaseReader {
  private:
   TableReader table(TableReader& parent, const std::string& key, bool required = true) {
     if (!parent.has(key)) {
-      if (required) throw InputError(file_ + ": table [" + key + "] is missing");
+      if (required)
+        throw InputError(file_ + ": table [" + key + "] is missing" + parent.misspelt(key));
       return {file_, key, nullptr, 0, result_.entries};
     }
     return section(root_.get(key), key);

@@ -7,6 +7,7 @@
 // Okabe-Ito without its yellow (too pale on white), then four dark colours for pumps with many pistons.
 const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000",
                  "#7f3b08", "#542788", "#5f6b75"];
+const EXTRA_COLOURS = ["#444c55", "#8a5a00", "#7a3b8f"];
 const DASHES = [null, [8, 5], [2, 4]];  // by table; the first is solid
 const DASH = "\u2013";                  // stands for "not computed", never for zero
 const GOOD = ["agrees", "holds", "explained", "inside"];
@@ -43,6 +44,7 @@ function svg(tag, attributes, text) {
 }
 
 const list = value => (Array.isArray(value) ? value : []);
+const phrases = (...parts) => parts.filter(Boolean).join(", ");
 const chip = word => {
   const tone = GOOD.includes(word) ? "good" : BAD.includes(word) ? "bad" : "neutral";
   return el("span.chip." + tone, {}, word || DASH);
@@ -88,7 +90,8 @@ function table(columns, rows, { rowClass, fold = true, style = "" } = {}) {
     el(c.num ? "th.num" : "th", { scope: "col", role: "columnheader" }, c.head)));
   const body = rows.map(row => el("tr", { role: "row", class: rowClass && rowClass(row) || null }, columns.map(c => {
     const style = c.num ? ".num" : "";
-    return c.main ? el("th" + style, { scope: "row", role: "rowheader" }, c.cell(row)) : tableCell("td" + style, c.head, c.cell(row));
+    return c.main ? el("th" + style, { scope: "row", role: "rowheader" }, c.cell(row))
+                  : tableCell("td" + style, c.head, c.cell(row));
   })));
   return el("div.scroll", {}, el("table" + style + (fold ? ".fold" : ""), { role: "table" },
     el("thead", { role: "rowgroup" }, head), el("tbody", { role: "rowgroup" }, body)));
@@ -144,7 +147,7 @@ function assumptionSplit({ assumptions }, data) {
     !list(assumptions.rows).length ? null : table([
       { head: "Assumption", main: true, cell: r => r.name },
       ...data.pair.map((name, i) => ({ head: name, cell: r => number(data.ofTable(r, i)) })),
-      { head: "", cell: r => data.ofTable(r, 0) === data.ofTable(r, 1) ? "same" : el("span.chip.warn", {}, "unequal") },
+      { head: "Equal", cell: r => (data.ofTable(r, 0) === data.ofTable(r, 1) ? "yes" : el("span.chip.warn", {}, "no")) },
     ], assumptions.rows),
     !list(assumptions.channels).length ? null : table([
       { head: "Channel", main: true, cell: r => el("code", {}, r.name) },
@@ -200,11 +203,10 @@ const STATISTICS = [
 ];
 const stateOf = c => (c.compared === false ? "not compared" : c.verdict);
 
-// Order by one statistic, what has no number last whichever the direction.
+// Order by one statistic (+1 largest first, -1 smallest first), what has no number last in both.
 function byStatistic(items, key, direction) {
-  const missing = direction > 0 ? -Infinity : Infinity;
-  const value = item => item[key] ?? missing;
-  return key ? [...items].sort((a, b) => (value(a) === value(b) ? 0 : direction * (value(b) > value(a) ? 1 : -1))) : items;
+  const value = item => item[key] ?? -direction * Number.MAX_VALUE;
+  return key ? [...items].sort((a, b) => direction * Math.sign(value(b) - value(a))) : items;
 }
 
 // Channels of one group; each statistic of the group is its worst channel's.
@@ -229,32 +231,34 @@ function groupChannels(channels) {
 
 // The second line of a channel: what acts on what, and the statistics that have no column.
 function channelDetails(c, data) {
-  const both = (values, format) => list(values).map(format).join(" / ");
-  const acts = [c.on_body && "on " + c.on_body, c.by_body && "by " + c.by_body, c.point && "at " + c.point];
+  const both = (values, digits) => list(values).map(v => number(v, digits)).join(" / ");
+  const unless = (missing, text) => (missing ? "" : text);
   return facts([
-    ["acts", acts.filter(Boolean).join(", ")],
-    ["meaning", c.meaning], ["frame", [c.frame, c.axis && "axis " + c.axis].filter(Boolean).join(", ")],
+    ["acts", phrases(c.on_body && "on " + c.on_body, c.by_body && "by " + c.by_body, c.point && "at " + c.point)],
+    ["meaning", c.meaning],
+    ["frame", phrases(c.frame, c.axis && "axis " + c.axis)],
     ["equation", c.equation],
-    ["RMS difference", c.rms == null ? "" : unit(small(c.rms), c.unit)],
-    ["tolerance", c.tolerance == null ? "" : small(c.tolerance) + " of peak"],
-    [`mean (${data.pair.join(" / ")})`, list(c.mean).every(m => m == null) ? "" : unit(both(c.mean, m => number(m)), c.unit)],
-    ["difference of means", c.mean_difference == null ? "" : unit(small(c.mean_difference), c.unit)],
+    ["RMS difference", unless(c.rms == null, unit(small(c.rms), c.unit))],
+    ["tolerance", unless(c.tolerance == null, small(c.tolerance) + " of peak")],
+    [`mean (${data.pair.join(" / ")})`, unless(list(c.mean).every(m => m == null), unit(both(c.mean), c.unit))],
+    ["difference of means", unless(c.mean_difference == null, unit(small(c.mean_difference), c.unit))],
     ...list(c.orders).map(o => ["order " + o.order,
-      unit(both(o.amplitude, a => number(a)), c.unit) + ", phase " + unit(both(o.phase_deg, p => number(p, 4)), "deg")]),
+      unit(both(o.amplitude), c.unit) + ", phase " + unit(both(o.phase_deg, 4), "deg")]),
   ].filter(([, value]) => value), ".inline");
 }
 
-function comparisonTable(channels, data) {
+function comparisonTable(channels, data, title) {
   const groups = groupChannels(channels);
   const differs = groups.some(g => g.state === "differs");
   const order = differs ? { key: "max_over_peak", direction: 1 } : { key: null, direction: 1 };
-  const headings = [{ key: null, head: "Reaction" }, { head: "Verdict" }, ...STATISTICS];
+  const headings = [{ key: null, head: title }, { head: "Verdict" }, ...STATISTICS];
 
   const statisticCells = item => STATISTICS.map(s => tableCell("td.num", s.head, s.show(item)));
   const channelRows = group => byStatistic(group.channels, order.key, order.direction).flatMap(c => [
     el("tr.channel", { role: "row" }, el("th", { scope: "row", role: "rowheader" }, el("code", {}, c.name)),
       tableCell("td", "Verdict", chip(stateOf(c))), statisticCells(c)),
-    el("tr.details", { role: "row" }, el("td", { role: "cell", colspan: headings.length }, channelDetails(c, data)))]);
+    el("tr.details", { role: "row" },
+      el("td", { role: "cell", colspan: headings.length }, channelDetails(c, data)))]);
 
   // The channels of a closed group are not built: a pump may have hundreds.
   function setOpen(group, open) {
@@ -280,7 +284,7 @@ function comparisonTable(channels, data) {
     const cell = el(h.worst ? "th.num" : "th", { scope: "col", role: "columnheader" });
     if (h.key === undefined) return cell.append(h.head), cell;
     const button = el("button.sort", { type: "button",
-      title: h.key ? "Sort by this column, worst first; again to reverse" : "Back to the order of the files" }, h.head);
+      title: h.key ? "Sort by this column, worst first; again to reverse" : "Back to the files' order" }, h.head);
     button.addEventListener("click", () => {
       order.direction = order.key === h.key ? -order.direction : h.worst || 1;
       order.key = h.key;
@@ -315,10 +319,12 @@ function comparison({ channels }, data) {
   const compared = channels.filter(c => c.compared !== false);
   const others = channels.filter(c => c.compared === false);
   return el("div", {},
-    el("p.hint", {}, "One row per reaction, showing its worst channel. Open a row for its channels; click a heading to sort."),
-    compared.length ? comparisonTable(compared, data) : null,
-    others.length ? el("details.others", {}, el("summary", {}, `Columns that are not part of the verdict (${others.length})`),
-      comparisonTable(others, data)) : null);
+    el("p.hint", {}, "One row per reaction, showing its worst channel. "
+      + "Open a row for its channels; click a heading to sort."),
+    compared.length ? comparisonTable(compared, data, "Reaction") : null,
+    others.length ? el("details.others", {},
+      el("summary", {}, `Columns that are not part of the verdict (${others.length})`),
+      comparisonTable(others, data, "Quantity")) : null);
 }
 
 // ---- Sections below the figures ------------------------------------------------------------------
@@ -340,10 +346,12 @@ const derived = ({ derived }) => !list(derived).length ? null : table([
   { head: "From", cell: r => r.source || DASH },
 ], derived);
 
-const models = ({ models }) => !list(models).length ? null : el("div.cards", {}, models.map(m => el("div.block.card", {},
-  el("h3", {}, m.name),
-  facts([...list(m.facts), ...(m.seconds == null ? [] : [["time", unit(number(m.seconds, 3), "s")]])], ".pairs"),
-  list(m.assumptions).length ? [el("h4", {}, "Assumptions"), facts(m.assumptions, ".pairs")] : null)));
+function models({ models }) {
+  const time = m => (m.seconds == null ? [] : [["time", unit(number(m.seconds, 3), "s")]]);
+  return !list(models).length ? null : el("div.cards", {}, models.map(m => el("div.block.card", {},
+    el("h3", {}, m.name), facts([...list(m.facts), ...time(m)], ".pairs"),
+    list(m.assumptions).length ? [el("h4", {}, "Assumptions"), facts(m.assumptions, ".pairs")] : null)));
+}
 
 const versions = ({ program }) => facts(program, ".pairs");
 
@@ -427,9 +435,11 @@ function synchronise(graphs, firstRow, readOut) {
         others.forEach(g => g.clearSelection());
         readOut(null);
       },
-      zoomCallback: (low, high) => others.forEach(g => g.updateOptions({
-        dateWindow: graph.isZoomed("x") ? [low, high] : null,
-        ...(graph.isZoomed() ? {} : { valueRange: null }) })),
+      zoomCallback: (low, high) => others.forEach(g => {
+        const [from, to] = g.xAxisRange();
+        if (!graph.isZoomed()) g.updateOptions({ dateWindow: null, valueRange: null });
+        else if (from !== low || to !== high) g.updateOptions({ dateWindow: [low, high] });
+      }),
     });
   });
 }
@@ -443,7 +453,10 @@ function swatch(colour, width, dash) {
 }
 
 // The first table is drawn wide and pale, the others thin and dashed over it: equal curves stay both visible.
-const strokeOf = (t, alone) => (t === 0 && !alone ? { width: 4.5, alpha: "66" } : { width: alone ? 2 : 1.8, alpha: "" });
+function lineOf(values, colour, t, alone) {
+  const pale = t === 0 && !alone;
+  return { values, colour: colour + (pale ? "66" : ""), width: pale ? 4.5 : 1.9, dash: DASHES[t % DASHES.length] };
+}
 
 function curvesFigure(figure, data) {
   const drawn = [], missing = [], lines = [], differences = [];
@@ -452,16 +465,13 @@ function curvesFigure(figure, data) {
     const columns = data.tables.map(t => (hasNumbers(t.columns[name]) ? t.columns[name] : null));
     columns.forEach((c, t) => c || missing.push(`${name} (${data.tables[t].name})`));
     const alone = columns.filter(Boolean).length < 2;
-    columns.forEach((values, t) => {
-      const stroke = strokeOf(t, alone);
-      if (values) lines.push({ values, colour: colour + stroke.alpha, width: stroke.width, dash: DASHES[t % 3] });
-    });
+    columns.forEach((values, t) => values && lines.push(lineOf(values, colour, t, alone)));
     const difference = hasNumbers(data.difference[name]) ? data.difference[name] : null;
     if (difference) differences.push({ values: difference, colour, width: 1.5 });
     if (columns.some(Boolean)) drawn.push({ name, colour, columns, difference });
   });
   const extras = list(figure.extra).filter(e => hasNumbers(e.values)).map((e, i) => ({
-    label: e.label, values: e.values, colour: ["#444c55", "#8a5a00", "#7a3b8f"][i % 3], width: 1.6, dash: [10, 4, 2, 4] }));
+    ...e, colour: EXTRA_COLOURS[i % EXTRA_COLOURS.length], width: 1.6, dash: [10, 4, 2, 4] }));
   const notes = [figure.note, missing.length ? "Not computed: " + missing.join(", ") + "." : null];
   const footer = () => notes.filter(Boolean).map(n => el("p.note", {}, n));
   if (!drawn.length && !extras.length)
@@ -477,6 +487,7 @@ function curvesFigure(figure, data) {
   const lower = differences.length && !exact
     ? el("div.plot.low", { role: "img", "aria-label": `${figure.title}: difference over the shaft angle` }) : null;
   if (exact) notes.push("The difference is exactly zero wherever both were computed.");
+  if (data.order.length < 2) return [readings.node, ...footer()];  // one angle makes no curve
   data.mounts.push(() => {
     const graphs = [plot(upper, data, [...edges, ...lines, ...extras], bands, "value" + label)];
     if (lower) graphs.push(plot(lower, data, differences, [], "difference" + label));
@@ -496,22 +507,31 @@ function readOutTable(figure, drawn, extras, bands, data) {
     if (Math.abs(d.difference[i] ?? 0) > largest) { largest = Math.abs(d.difference[i] ?? 0); home = row; }
   }));
   const angle = el("span.angle");
-  const columns = data.tables.map((t, i) => el("th.num", { scope: "col" }, t.name, swatch("#444c55", i ? 1.8 : 2.6, DASHES[i % 3])));
-  const cell = () => el("td.num");
-  const rows = drawn.map(d => ({ ...d, cells: d.columns.map(cell), gap: compared.length ? cell() : null }));
-  const more = extras.map(e => ({ ...e, cell: el("td.num", { colspan: data.tables.length + (compared.length ? 1 : 0) }) }));
+  const heading = (...content) => el("th.num", { scope: "col" }, ...content);
+  const name = (...content) => el("th", { scope: "row" }, ...content);
+  const wide = () => el("td.num", { colspan: data.tables.length + (compared.length ? 1 : 0) });
+  const rows = drawn.map(d => ({ ...d, cells: d.columns.map(() => el("td.num")),
+                                 gap: compared.length ? el("td.num") : null }));
+  const more = extras.map(e => ({ ...e, cell: wide() }));
+  const bandRows = bands.map(b => {
+    const cell = wide();
+    cell.textContent = `${number(b.low)} to ${unit(number(b.high), figure.unit)}`;
+    return el("tr", {}, name(el("span.band"), b.label), cell);
+  });
   const node = el("div.scroll", {}, el("table.readout", {},
-    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, angle), columns,
-      compared.length ? el("th.num", { scope: "col" }, "difference") : null)),
+    el("thead", {}, el("tr", {}, el("th", { scope: "col" }, angle),
+      data.tables.map((t, i) => heading(t.name, swatch("#444c55", i ? 1.8 : 2.6, DASHES[i % DASHES.length]))),
+      compared.length ? heading("difference") : null)),
     el("tbody", {},
-      rows.map(r => el("tr", {}, el("th", { scope: "row" }, swatch(r.colour, 4), el("code", { title: data.meaning(r.name) }, r.name)), r.cells, r.gap)),
-      more.map(e => el("tr", {}, el("th", { scope: "row" }, swatch(e.colour, e.width, e.dash), e.label), e.cell)),
-      bands.map(b => el("tr", {}, el("th", { scope: "row" }, el("span.band"), b.label),
-        el("td.num", { colspan: data.tables.length + (compared.length ? 1 : 0) }, `${number(b.low)} to ${unit(number(b.high), figure.unit)}`))))));
+      rows.map(r => el("tr", {}, name(swatch(r.colour, 4), el("code", { title: data.meaning(r.name) }, r.name)),
+        r.cells, r.gap)),
+      more.map(e => el("tr", {}, name(swatch(e.colour, e.width, e.dash), e.label), e.cell)),
+      bandRows)));
   function show(row) {
     const at = row == null ? home : Math.min(Math.max(row, 0), data.order.length - 1);
     const i = data.order[at];
-    angle.textContent = degrees(data.theta[i]) + (row != null ? "" : largest > 0 ? " (largest difference)" : " (first angle)");
+    const why = row != null ? "" : largest > 0 ? " (largest difference)" : " (first angle)";
+    angle.textContent = degrees(data.theta[i]) + why;
     const value = v => unit(number(v, 6), figure.unit);
     for (const r of rows) {
       r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
@@ -531,83 +551,96 @@ function barsFigure(figure, data) {
   const names = list(figure.channels);
   const tables = data.tables.filter(t => names.some(n => hasNumbers(t.columns[n])));
   if (!tables.length) return [el("p.empty", {}, "There is nothing to draw: no model computed these channels.")];
-  const value = (table, name, i) => list(table.columns[name])[i] ?? null;
   // One scale for the whole turn: the bars can be compared from angle to angle.
   const every = tables.flatMap(t => names.flatMap(n => list(t.columns[n]).filter(v => typeof v === "number")));
   const low = every.reduce((a, b) => Math.min(a, b), 0), high = every.reduce((a, b) => Math.max(a, b), 0);
 
-  const slider = el("input", { type: "range", min: 0, max: data.order.length - 1, step: 1, "aria-label": "Shaft angle" });
-  const reading = el("output.angle");
+  const slider = el("input", { type: "range", min: 0, max: data.order.length - 1, "aria-label": "Shaft angle" });
   const nearest = angle => data.order.reduce((best, i, row) =>
     Math.abs(data.theta[i] - angle) < Math.abs(data.theta[data.order[best]] - angle) ? row : best, 0);
-  const buttons = list(figure.angles).map(angle => {
-    const button = el("button.small", { type: "button" }, degrees(angle));
-    button.addEventListener("click", () => { slider.value = nearest(angle); update(); });
-    return { button, row: nearest(angle) };
+  // A button leads to the sample next to its angle and says which; angles outside the run have none.
+  const inside = list(figure.angles).filter(angle => angle > data.theta[data.order[0]] - data.step
+    && angle < data.theta[data.order[data.order.length - 1]] + data.step);
+  const buttons = [...new Set(inside.map(nearest))].map(row => {
+    const button = el("button.small", { type: "button" }, degrees(data.theta[data.order[row]]));
+    button.addEventListener("click", () => { slider.value = row; update(); });
+    return { button, row };
   });
   slider.value = buttons.length ? buttons[0].row : 0;
-  const total = el("p.total", { "aria-live": "polite" });
-  const chart = el("div.bars");
-  const numbers = el("div.numbers");
+  const reading = el("output.angle"), total = el("p.total", { "aria-live": "polite" });
+  const chart = el("div.bars"), numbers = el("div.numbers");
+  const share = v => (Math.abs(v) < 1e-3 ? small : number)(v);
+  const key = el("p.key", {}, tables.map((t, k) => el("span", {}, el(k ? "i.t1" : "i.t0"), t.name)));
 
   function update() {
-    const row = Number(slider.value), i = data.order[row];
-    reading.textContent = degrees(data.theta[i]);
-    slider.setAttribute("aria-valuetext", degrees(data.theta[i]));
+    const row = Number(slider.value), i = data.order[row], angle = degrees(data.theta[i]);
+    const groups = names.map(n => (
+      { label: data.pistonOf(n), values: tables.map(t => list(t.columns[n])[i] ?? null) }));
+    const sums = tables.map((_, k) => sum(groups.map(g => g.values[k])));
+    reading.textContent = angle;
+    slider.setAttribute("aria-valuetext", angle);
     buttons.forEach(b => b.button.setAttribute("aria-pressed", b.row === row));
-    const sums = tables.map(t => sum(names.map(n => value(t, n, i))));
-    total.textContent = `Sum at ${degrees(data.theta[i])}: `
-      + tables.map((t, k) => `${t.name} ${unit(number(sums[k]), figure.unit)}`).join(", ");
+    total.textContent = `Sum at ${angle}: `
+      + tables.map((t, k) => `${t.name} ${unit(share(sums[k]), figure.unit)}`).join(", ");
+    chart.replaceChildren(barChart(chart.clientWidth || 600, groups, [low, high], figure));
     numbers.replaceChildren(table([
-      { head: "Piston", main: true, cell: r => r.label },
-      ...tables.map((t, k) => ({ head: figure.unit ? `${t.name} (${figure.unit})` : t.name, num: true, cell: r => (Math.abs(r.values[k]) < 1e-3 ? small(r.values[k]) : number(r.values[k])) })),
-    ], [...names.map(n => ({ label: data.pistonOf(n), values: tables.map(t => value(t, n, i)) })),
-        { label: "sum", values: sums, total: true }], { fold: false, rowClass: r => (r.total ? "total" : "") }));
-    chart.replaceChildren(barChart(chart.clientWidth || 600, names.map(n => ({
-      label: data.pistonOf(n), values: tables.map(t => value(t, n, i)) })), [low, high], figure));
+      { head: "Piston", main: true, cell: g => g.label },
+      ...tables.map((t, k) => ({ head: figure.unit ? `${t.name} (${figure.unit})` : t.name, num: true,
+        cell: g => share(g.values[k]) })),
+    ], [...groups, { label: "sum", values: sums, total: true }],
+    { fold: false, rowClass: g => (g.total ? "total" : "") }));
   }
   slider.addEventListener("input", update);
   data.mounts.push(() => { update(); new ResizeObserver(update).observe(chart); });
   data.redraws.push(update);
-  const key = tables.length < 2 ? null : el("p.key", {}, tables.map((t, k) => el("span", {}, el("i.bar.t" + (k ? 1 : 0)), t.name)));
   return [el("div.slide", {}, el("label", {}, "Shaft angle ", reading), slider, buttons.map(b => b.button)), total,
     el("div.split", {}, el("div", {}, key, chart), numbers), figure.note ? el("p.note", {}, figure.note) : null];
 }
 
 // Bars as SVG in the pixels of their box, so that text keeps its size at every width.
 function barChart(width, groups, [low, high], figure) {
-  const size = { left: 74, right: 10, top: 12, bottom: 44, height: 280 };
-  const inner = { w: width - size.left - size.right, h: size.height - size.top - size.bottom };
-  const span = high - low || 1, [from, to] = [low - (low < 0 ? 0.06 * span : 0), high + (high > 0 || low === high ? 0.06 * span : 0)];
-  const y = v => size.top + inner.h * (to - v) / (to - from);
-  const root = svg("svg", { width, height: size.height, role: "img", "aria-label": `${figure.title}, bars; the values are in the table` });
-  const raw = (to - from) / 8, power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * [1, 2, 5, 10].find(m => m * power >= raw);
-  const ticks = [];
-  for (let k = Math.ceil(from / step); k * step <= to; ++k) ticks.push(k * step);
-  const labels = tickLabels(ticks);
-  ticks.forEach((v, i) => root.append(
-    svg("line", { x1: size.left, x2: width - size.right, y1: y(v), y2: y(v), class: Math.abs(v) < 1e-9 * step ? "zero" : "grid" }),
-    svg("text", { x: size.left - 8, y: y(v) + 4, "text-anchor": "end" }, labels[i])));
-  const slot = inner.w / groups.length;
+  const left = 74, right = width - 10, top = 12, bottom = 236, height = 280;
+  const margin = 0.06 * (high - low || 1), from = low < 0 ? low - margin : 0, to = high + margin;
+  const y = v => top + (bottom - top) * (to - v) / (to - from);
+  const root = svg("svg", { width, height, role: "img",
+                            "aria-label": figure.title + ", bars; the values are in the table" });
+  const text = (x, y, content, more) =>
+    root.append(svg("text", { x, y, "text-anchor": "middle", ...more }, content));
+
+  const ticks = roundTicks(from, to, 8), labels = tickLabels(ticks);
+  ticks.forEach((v, i) => {
+    root.append(svg("line", { x1: left, x2: right, y1: y(v), y2: y(v), class: labels[i] === "0" ? "zero" : "grid" }));
+    text(left - 8, y(v) + 4, labels[i], { "text-anchor": "end" });
+  });
+  const slot = (right - left) / groups.length;
   const every = Math.ceil(26 / slot);  // not every piston has room for its number when there are many
   groups.forEach((g, i) => {
-    const bar = 0.72 * slot / g.values.length;
-    g.values.forEach((v, k) => v != null && root.append(svg("rect", { class: "bar t" + (k ? 1 : 0),
-      x: size.left + i * slot + 0.14 * slot + k * bar + 1, width: Math.max(1, bar - 2), y: y(Math.max(v, 0)), height: Math.abs(y(v) - y(0)) })));
-    if (i % every === 0) root.append(svg("text", { x: size.left + (i + 0.5) * slot, y: size.height - 26, "text-anchor": "middle" }, g.label));
+    const start = left + (i + 0.14) * slot, bar = 0.72 * slot / g.values.length;
+    g.values.forEach((v, k) => v != null && root.append(svg("rect", { class: k ? "t1" : "t0",
+      x: start + k * bar + 1, width: Math.max(1, bar - 2), y: y(Math.max(v, 0)), height: Math.abs(y(v) - y(0)) })));
+    if (i % every === 0) text(left + (i + 0.5) * slot, bottom + 18, g.label);
   });
-  const middle = size.top + inner.h / 2;
-  root.append(svg("text", { x: size.left + inner.w / 2, y: size.height - 6, "text-anchor": "middle", class: "axis" }, "piston"),
-    svg("text", { x: 14, y: middle, transform: `rotate(-90 14 ${middle})`, "text-anchor": "middle", class: "axis" }, figure.unit ? `share (${figure.unit})` : "share"));
+  const middle = (top + bottom) / 2;
+  text((left + right) / 2, height - 6, "piston", { class: "axis" });
+  text(14, middle, figure.unit ? `share (${figure.unit})` : "share",
+       { class: "axis", transform: `rotate(-90 14 ${middle})` });
   return root;
+}
+
+// Multiples of 1, 2 or 5 times a power of ten.
+function roundTicks(low, high, most) {
+  const power = 10 ** Math.floor(Math.log10((high - low) / most));
+  const step = power * [1, 2, 5, 10].find(m => m * power * most >= high - low);
+  const ticks = [];
+  for (let k = Math.ceil(low / step); k * step <= high; ++k) ticks.push(k * step);
+  return ticks;
 }
 
 function figures({ figures }, data) {
   if (!list(figures).length || !data.order.length) return null;
   return el("div", {},
-    el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; double-click to see all again. "
-      + "Point at a curve to read the values in the table above it."),
+    el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; double-click to see "
+      + "all again. Point at a curve to read the values in the table above it."),
     figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
       f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
       f.kind === "piston_bars" ? barsFigure(f, data) : curvesFigure(f, data))));
@@ -622,17 +655,18 @@ function prepare(report, curves) {
   const order = theta.map((_, i) => i).sort((a, b) => theta[a] - theta[b]);
   const first = theta[order[0]], last = theta[order[order.length - 1]];
   const step = order.length > 1 ? (last - first) / (order.length - 1) : 360;
-  const turns = (v, round) => { const whole = 360 * round(v / 360); return Math.abs(whole - v) <= 1.01 * step ? whole : v; };
+  const turns = (v, round) => (Math.abs(360 * round(v / 360) - v) <= 1.01 * step ? 360 * round(v / 360) : v);
   const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
   const channels = new Map(list(report.channels).map(c => [c.name, c]));
+  const about = name => channels.get(name) || {};
   const usual = ["analytic", "multibody"];
   const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
   return {
-    theta, order, low: turns(first, Math.floor), high: turns(last, Math.ceil), tables, pair,
+    theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil), tables, pair,
     difference: curves.difference || {}, mounts: [], redraws: [],
     ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
-    meaning: name => { const c = channels.get(name); return c ? [c.meaning, c.on_body && "on " + c.on_body].filter(Boolean).join(", ") : null; },
-    pistonOf: name => { const c = channels.get(name); return c && c.piston ? String(c.piston) : name; },
+    meaning: name => phrases(about(name).meaning, about(name).on_body && "on " + about(name).on_body),
+    pistonOf: name => String(about(name).piston || name),
   };
 }
 
@@ -640,24 +674,28 @@ const SECTIONS = [
   ["verdict", "Verdict", verdictBanner], ["warnings", "Warnings", warnings],
   ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
   ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
-  ["runs", "Runs", runs], ["published", "Against the published numbers", published], ["checks", "Checks of each model", checks],
+  ["runs", "Runs", runs], ["published", "Against the published numbers", published],
+  ["checks", "Checks of each model", checks],
   ["figures", "Figures", figures], ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
   ["models", "How each model was obtained", models], ["versions", "Versions", versions],
 ];
 
 function header(report, data) {
-  const n = data.order.length;
-  const range = n ? `${n} angle${n === 1 ? "" : "s"}` + (n > 1 ? ` from ${degrees(data.theta[0])} to ${degrees(data.theta[n - 1])}` : "") : null;
-  const made = list(report.program)[0];
-  const parts = [report.case && report.case.file, data.tables.map(t => t.name).join(" and ") || null, range, made && made.join(" ")];
-  return [el("h1", {}, report.title || document.title), el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))];
+  const { theta, tables } = data, n = theta.length;
+  const angles = n === 0 ? null : n === 1 ? "1 angle, " + degrees(theta[0])
+    : `${n} angles from ${degrees(theta[0])} to ${degrees(theta[n - 1])}`;
+  const parts = [report.case && report.case.file, tables.map(t => t.name).join(" and "), angles,
+                 list(list(report.program)[0]).join(" ")];
+  return [el("h1", {}, report.title || document.title),
+          el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))];
 }
 
 // Contents beside the report where there is room, folded above it where there is not.
 function contents(sections, report) {
-  const link = (id, text) => el("a", { href: "#" + id }, text);
-  const folding = el("details", {}, el("summary", {}, "Contents"), el("ul", {}, sections.map(s => el("li", {}, link(s.id, s.title),
-    s.id !== "figures" ? null : el("ul", {}, report.figures.map(f => el("li", {}, link("figure-" + f.id, f.title))))))));
+  const link = (id, text, inner) => el("li", {}, el("a", { href: "#" + id }, text), inner);
+  const inner = () => el("ul", {}, report.figures.map(f => link("figure-" + f.id, f.title)));
+  const folding = el("details", {}, el("summary", {}, "Contents"),
+    el("ul", {}, sections.map(s => link(s.id, s.title, s.id === "figures" ? inner() : null))));
   const wide = matchMedia("(min-width: 1100px)");
   const fold = () => { folding.open = wide.matches; };
   wide.addEventListener("change", fold);
@@ -674,7 +712,10 @@ function contents(sections, report) {
 
 // Canvases do not follow the width of the paper by themselves.
 function fitToPaper(redraws) {
-  const fit = printing => { document.documentElement.classList.toggle("printing", printing); redraws.forEach(f => f()); };
+  const fit = printing => {
+    document.documentElement.classList.toggle("printing", printing);
+    redraws.forEach(redraw => redraw());
+  };
   addEventListener("beforeprint", () => fit(true));
   addEventListener("afterprint", () => fit(false));
 }
@@ -688,7 +729,8 @@ function render() {
   for (const [id, title, build] of SECTIONS) {
     const body = build(report, data);
     if (!body) continue;
-    main.append(el("section", { id, "aria-labelledby": id + "-title" }, el("h2", { id: id + "-title" }, title), body));
+    main.append(el("section", { id, "aria-labelledby": id + "-title" },
+      el("h2", { id: id + "-title" }, title), body));
     shown.push({ id, title });
   }
   data.mounts.forEach(mount => mount());  // a plot needs its box in the page, to know its width

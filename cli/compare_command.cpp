@@ -1,0 +1,375 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fmt/format.h>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/validity.h"
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/compare/page.h"
+#include "bentaxis/compare/report.h"
+#include "bentaxis/compare/split.h"
+#include "bentaxis/multibody/integrated.h"
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/files.h"
+#include "bentaxis/pump/units.h"
+#include "commands.h"
+#include "console.h"
+#include "pump_report.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+constexpr double kDrivenTolerance = 1e-9;     // of peak; both models are exact to round-off
+constexpr double kIntegratedFactor = 100;     // achieved error over Simbody's accuracy per step
+constexpr double kDrivenRestTolerance = 1e-10;  // of what no assumption explains, of peak
+
+// One comparison with everything it needs.
+struct Study {
+  Case analytic_case, multibody_case;
+  PressureTrace pressure, multibody_pressure;
+  Samples samples, multibody_samples;
+  double tolerance = 0;
+  ResultTable analytic, multibody;
+};
+
+// Runs the multibody model in the way asked for; integrated runs add their record.
+ResultTable run_multibody(const Study& study, const CompareOptions& options, double accuracy,
+                          multibody::IntegrationRecord* record) {
+  const Case& the_case = study.multibody_case;
+  if (options.way == Way::driven)
+    return multibody::run_driven(the_case, the_case.multibody, study.multibody_samples,
+                                 progress_of("multibody"));
+  multibody::IntegrationOptions integration = options.integration;
+  integration.accuracy = accuracy;
+  auto run = multibody::run_integrated(the_case, the_case.multibody, study.multibody_samples,
+                                       study.multibody_pressure, integration,
+                                       progress_of("multibody, accuracy " + number_text(accuracy)));
+  if (record != nullptr) *record = run.record;
+  return std::move(run.table);
+}
+
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
+  const LoadScale scale = load_scale(the_case, samples);
+  const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
+                                 the_case.pump.geometry.bore_circle_radius);
+  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
+}
+
+// The analytic torque as a function of the shaft angle, for the torque-driven run.
+std::function<double(double)> analytic_torque(const Study& study, const Assumptions& assumptions) {
+  auto model = std::make_shared<analytic::Model>(study.analytic_case.pump, assumptions);
+  auto values = std::make_shared<std::vector<double>>(model->layout().size());
+  auto instant = std::make_shared<Instant>();
+  instant->omega = study.samples.omega;
+  instant->ports = study.samples.ports;
+  instant->chamber_pressure.resize(study.samples.pistons);
+  return [=, &study](double theta_deg) {
+    instant->theta = radians(std::fmod(theta_deg, 360.0));
+    for (int k = 1; k <= study.samples.pistons; ++k)
+      instant->chamber_pressure[k - 1] =
+          study.pressure(piston_angle_deg(theta_deg, k, study.samples.pistons));
+    model->reactions(*instant, *values);
+    return (*values)[model->layout().Td()];
+  };
+}
+
+double worst_of_group(const compare::Comparison& comparison, const std::string& group) {
+  double worst = 0;
+  for (const auto& c : comparison.channels)
+    if (c.channel.group == group && c.verdict != compare::Verdict::not_computed)
+      worst = std::max(worst, c.largest_over_peak());
+  return worst;
+}
+
+// Integrated runs at every accuracy asked for: achieved error, drift, work and cost. The last one's
+// table is the one compared.
+Json integrate_all(Study& study, const CompareOptions& options,
+                   const compare::Options& comparison_options) {
+  Json rows = Json::array();
+  Json facts = Json::array();
+  const auto torque = analytic_torque(study, study.multibody_case.multibody);
+  for (const double accuracy : options.accuracies) {
+    multibody::IntegrationRecord record;
+    study.multibody = run_multibody(study, options, accuracy, &record);
+    const auto comparison =
+        compare::compare_tables(study.analytic, study.multibody, comparison_options);
+    multibody::IntegrationOptions integration = options.integration;
+    integration.accuracy = accuracy;
+    const auto free_shaft = multibody::run_torque_driven(
+        study.multibody_case, study.multibody_case.multibody, study.multibody_samples,
+        study.multibody_pressure, torque, integration, progress_of("torque-driven"));
+    rows.push_back({accuracy, worst_of_group(comparison, "Rs"), worst_of_group(comparison, "Rc"),
+                    std::max(worst_of_group(comparison, "Rb1"), worst_of_group(comparison, "Rb2")),
+                    worst_of_group(comparison, "Rcs"), worst_of_group(comparison, "Td"),
+                    record.worst_position_error, record.worst_velocity_error,
+                    record.worst_gear_phase / kRadPerDegree, record.work_residual(),
+                    free_shaft.worst_speed, record.steps, record.evaluations});
+    facts = {{"gear phase, worst (block minus shaft)",
+              fmt::format("{:.2e} deg", record.worst_gear_phase / kRadPerDegree)},
+             {"shaft angle against omega t, worst",
+              fmt::format("{:.2e} deg", record.worst_shaft_angle / kRadPerDegree)},
+             {"work of loads", fmt::format("{:.6g} J", record.work_of_loads)},
+             {"work of the drive", fmt::format("{:.6g} J", record.work_of_drives)},
+             {"kinetic energy gained", fmt::format("{:.3g} J", record.kinetic_energy_gained)},
+             {"work unaccounted for", fmt::format("{:.3g} J", record.work_residual())}};
+  }
+  const std::string name =
+      multibody::integrator_names()[static_cast<std::size_t>(options.integration.integrator)];
+  return {{{"title", "Integrated run and torque-driven run"},
+           {"text",
+            fmt::format("Integrator {}, {} revolution(s). Errors are the largest difference from "
+                        "the analytic model over the peak. In the torque-driven run the shaft is "
+                        "free and fed the analytic Td; its speed error is relative to omega. Facts "
+                        "are of the last accuracy.",
+                        name, study.multibody_case.operation.revolutions)},
+           {"facts", facts},
+           {"table",
+            {{"columns",
+              {"accuracy asked", "error Rs", "error Rc", "error Rb", "error Rcs", "error Td",
+               "constraint error, m", "constraint rate error, m/s", "gear phase, deg",
+               "work lost, J", "torque-driven speed error", "steps", "evaluations"}},
+             {"rows", rows}}}}};
+}
+
+compare::Lines assumption_lines(const Assumptions& a) {
+  return {{"piston friction", a.piston_friction ? "on" : "off"},
+          {"piston inertia", to_string(a.inertia)},
+          {"gear", to_string(a.gear)}};
+}
+
+// Takes the difference apart where the models' assumptions differ.
+struct SplitResult {
+  std::vector<compare::AssumptionRow> rows;
+  std::optional<compare::Split> split;
+};
+
+SplitResult split_assumptions(const Study& study, const compare::ZeroScales& scales,
+                              double tolerance) {
+  const Assumptions from = study.analytic_case.analytic;
+  const Assumptions to = study.multibody_case.multibody;
+  SplitResult result;
+  using Change = void (*)(Assumptions&, const Assumptions&);
+  std::vector<Change> changes;
+  std::vector<std::string> names;
+  const auto from_lines = assumption_lines(from);
+  const auto to_lines = assumption_lines(to);
+  const Change all_changes[] = {
+      [](Assumptions& a, const Assumptions& b) { a.piston_friction = b.piston_friction; },
+      [](Assumptions& a, const Assumptions& b) { a.inertia = b.inertia; },
+      [](Assumptions& a, const Assumptions& b) { a.gear = b.gear; }};
+  for (std::size_t i = 0; i < from_lines.size(); ++i) {
+    if (from_lines[i].second == to_lines[i].second) continue;
+    result.rows.push_back({from_lines[i].first, from_lines[i].second, to_lines[i].second});
+    names.push_back(from_lines[i].first);
+    changes.push_back(all_changes[i]);
+  }
+  if (names.empty()) return result;
+  const auto variant = [&](unsigned mask) {
+    Assumptions assumptions = from;
+    for (std::size_t i = 0; i < changes.size(); ++i)
+      if ((mask & (1U << i)) != 0) changes[i](assumptions, to);
+    return analytic::run(study.analytic_case, assumptions, study.samples);
+  };
+  result.split = compare::split_difference(study.analytic, study.multibody, names, variant, scales,
+                                           tolerance);
+  return result;
+}
+
+std::string headline(const compare::Comparison& comparison, const SplitResult& split, bool agrees) {
+  const auto* worst = comparison.worst();
+  const std::string where =
+      worst == nullptr ? ""
+                       : fmt::format("{} at {:g} deg: {:.1e} of its peak", worst->channel.name,
+                                     worst->theta_of_largest_deg, worst->largest_over_peak());
+  if (split.split) {
+    double rest = 0;
+    for (const auto& channel : split.split->channels)
+      if (channel.computed) rest = std::max(rest, channel.rest_over_peak());
+    return fmt::format(
+        "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak is "
+        "left (tolerance {:g}).",
+        agrees ? "Explained." : "Not explained.", where,
+        agrees ? "After accounting for each assumption" : "Each assumption accounted for", rest,
+        split.split->tolerance);
+  }
+  return fmt::format("{} Largest difference {} (tolerance {:g}).",
+                     agrees ? "The two models agree." : "The two models differ.", where,
+                     comparison.tolerance);
+}
+
+void check_same_run(const Case& first, const Case& second) {
+  const auto differs = [&](const char* what) {
+    throw InputError(second.file.string() + ": must have the same " + what + " as " +
+                     first.file.string());
+  };
+  if (first.pump.geometry.pistons != second.pump.geometry.pistons) differs("number of pistons");
+  if (first.operation.samples_per_revolution != second.operation.samples_per_revolution)
+    differs("samples_per_revolution");
+  if (first.operation.revolutions != second.operation.revolutions) differs("revolutions");
+}
+
+}  // namespace
+
+void apply_assumption(const std::string& text, const PumpParameters& pump,
+                      Assumptions& assumptions) {
+  const auto equals = text.find('=');
+  const std::string key = text.substr(0, equals);
+  const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
+  const auto pick = [&](const char* no, const char* yes) {
+    if (value != no && value != yes)
+      throw InputError("assumption \"" + text + "\": " + key + " must be " + no + " or " + yes);
+    return value == yes;
+  };
+  if (key == "piston_friction") {
+    assumptions.piston_friction = pick("off", "on");
+  } else if (key == "inertia") {
+    assumptions.inertia = pick("lumped", "real") ? PistonInertia::real : PistonInertia::lumped;
+    if (assumptions.inertia == PistonInertia::real && !pump.piston.real)
+      throw InputError("assumption \"" + text +
+                       "\": the case has no centre_of_mass_mm, transverse_inertia_kg_mm2 and "
+                       "axial_inertia_kg_mm2 in [piston]");
+  } else if (key == "gear") {
+    assumptions.gear = pick("mesh", "imposed") ? GearScene::imposed : GearScene::mesh;
+  } else {
+    throw InputError("assumption \"" + text +
+                     "\": must be piston_friction=on|off, inertia=lumped|real or gear=mesh|imposed");
+  }
+}
+
+int compare_command(const CompareOptions& options) {
+  Case first = read_case(options.case_file);
+  Case second = options.multibody_case.empty() ? first : read_case(options.multibody_case);
+  for (const auto& text : options.analytic) apply_assumption(text, first.pump, first.analytic);
+  for (const auto& text : options.multibody) apply_assumption(text, second.pump, second.multibody);
+  check_same_run(first, second);
+  OutputFolder folder(options.out);
+
+  const bool integrated = options.way == Way::integrated;
+  const auto sample = [&](const Case& c, const PressureTrace& pressure) {
+    return sample_case(c, pressure, integrated ? c.operation.revolutions : 1,
+                       integrated && c.operation.speed_rpm < 0);
+  };
+  PressureTrace pressure(first.pressure);
+  PressureTrace second_pressure(second.pressure);
+  Samples samples = sample(first, pressure);
+  Samples second_samples = sample(second, second_pressure);
+  Study study{std::move(first),   std::move(second),         std::move(pressure),
+              std::move(second_pressure), std::move(samples), std::move(second_samples), 0, {}, {}};
+  const Case& the_case = study.analytic_case;
+  const int n = the_case.pump.geometry.pistons;
+
+  study.tolerance = options.tolerance > 0 ? options.tolerance
+                    : integrated          ? kIntegratedFactor * options.accuracies.back()
+                                          : kDrivenTolerance;
+  compare::Options comparison_options;
+  comparison_options.tolerance = study.tolerance;
+  comparison_options.orders = {n, 2 * n};
+  comparison_options.zero_scales = zero_scales(the_case, study.samples);
+
+  study.analytic =
+      analytic::run(the_case, the_case.analytic, study.samples, progress_of("analytic"));
+  Json runs = Json::array();
+  if (integrated)
+    runs = integrate_all(study, options, comparison_options);
+  else
+    study.multibody = run_multibody(study, options, 0, nullptr);
+
+  const auto comparison =
+      compare::compare_tables(study.analytic, study.multibody, comparison_options);
+  std::vector<compare::Check> checks =
+      compare::judge_checks(study.analytic, comparison_options.zero_scales, study.tolerance);
+  for (auto& check :
+       compare::judge_checks(study.multibody, comparison_options.zero_scales, study.tolerance))
+    checks.push_back(std::move(check));
+  const SplitResult split = split_assumptions(
+      study, comparison_options.zero_scales,
+      integrated ? study.tolerance : std::min(study.tolerance, kDrivenRestTolerance));
+  const bool checks_hold =
+      std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.holds(); });
+  const bool agrees =
+      checks_hold && (split.split ? split.split->explained() : comparison.agrees());
+
+  // Fig. 32 with and without the block's viscous torque.
+  std::vector<ResultTable> without_viscous;
+  if (the_case.pump.friction.block_viscous > 0 && !integrated) {
+    Case still = the_case;
+    still.pump.friction.block_viscous = 0;
+    without_viscous.push_back(analytic::run(still, the_case.analytic, study.samples));
+    Case still_second = study.multibody_case;
+    still_second.pump.friction.block_viscous = 0;
+    without_viscous.push_back(multibody::run_driven(still_second, still_second.multibody,
+                                                    study.multibody_samples,
+                                                    progress_of("multibody, Cc = 0")));
+  }
+
+  const auto limits = analytic::check_validity(the_case, the_case.analytic, study.samples,
+                                               study.analytic);
+  const auto* worst = comparison.worst();
+  Json report = {
+      {"schema", 1},
+      {"title", the_case.name},
+      {"program", versions()},
+      {"case", case_section(the_case)},
+      {"derived", derived_section(the_case)},
+      {"verdict",
+       {{"agrees", agrees},
+        {"headline", headline(comparison, split, agrees)},
+        {"tolerance", study.tolerance},
+        {"compared", comparison.compared()},
+        {"checks_hold", checks_hold},
+        {"digits", worst != nullptr ? Json(worst->digits) : Json()},
+        {"worst", worst != nullptr ? Json{{"channel", worst->channel.name},
+                                          {"max_over_peak", worst->largest_over_peak()},
+                                          {"theta_deg", worst->theta_of_largest_deg}}
+                                   : Json()}}},
+      {"meaning",
+       "Two models that agree have solved the same equations correctly: that is verification. It "
+       "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
+       "so is validation, and needs measurements."},
+      {"warnings", warnings_section(limits)},
+      {"common", common_section(the_case)},
+      {"validity", validity_section(limits)},
+      {"models", Json::array({compare::model_section(study.analytic,
+                                                     assumption_lines(the_case.analytic)),
+                              compare::model_section(
+                                  study.multibody,
+                                  assumption_lines(study.multibody_case.multibody))})},
+      {"channels", compare::channel_rows(comparison)},
+      {"checks", compare::check_rows(checks)},
+      {"assumptions", nullptr},
+      {"runs", runs},
+      {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
+  if (split.split)
+    report["assumptions"] = compare::split_section(
+        *split.split, split.rows,
+        "The models were asked to assume different things. Each assumption's contribution is its "
+        "effect in the analytic model, averaged over the orders in which the assumptions can be "
+        "taken over; what is left is a difference between the models themselves.");
+
+  const Json curves = compare::curve_section(study.analytic, study.multibody);
+  folder.add("report.html", compare::render_page(the_case.name, report, curves));
+  folder.add("report.json",
+             report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  folder.add("analytic.csv", to_csv(study.analytic));
+  folder.add("multibody.csv", to_csv(study.multibody));
+  const auto paths = folder.commit();
+
+  std::printf("%s\n%s\n\n%s", the_case.name.c_str(),
+              report["verdict"]["headline"].get<std::string>().c_str(),
+              compare::text_table(comparison).c_str());
+  for (const auto& check : checks)
+    std::printf("%s: %s: %.1e of scale, %s\n", check.table.c_str(), check.name.c_str(),
+                check.relative(), check.holds() ? "holds" : "violated");
+  for (const auto& warning : report["warnings"])
+    std::printf("warning: %s: %s\n", warning["name"].get<std::string>().c_str(),
+                warning["text"].get<std::string>().c_str());
+  std::printf("\n");
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  return agrees ? kDone : kOutOfTolerance;
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,49 @@
+#include "console.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <unistd.h>
+
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void on_signal(int signal) {
+  interrupted = 1;
+  std::signal(signal, SIG_DFL);  // a second one ends the program at once
+}
+
+}  // namespace
+
+void watch_for_interruption() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+Progress progress_of(const std::string& job) {
+  using Clock = std::chrono::steady_clock;
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  auto shown = std::make_shared<Clock::time_point>(Clock::now());
+  return [=](double fraction) {
+    if (interrupted != 0) {
+      if (terminal) std::fputs("\r\033[K", stderr);
+      throw Interrupted();
+    }
+    if (!terminal) return;
+    const auto now = Clock::now();
+    if (fraction >= 1) {
+      std::fputs("\r\033[K", stderr);
+    } else if (now - *shown > std::chrono::milliseconds(100)) {
+      *shown = now;
+      std::fprintf(stderr, "\r%s %3.0f %%", job.c_str(), 100 * fraction);
+      std::fflush(stderr);
+    }
+  };
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,39 @@
+#include "versions.h"
+
+#include <Eigen/Core>
+#include <fstream>
+#include <sys/utsname.h>
+
+#include "bentaxis/multibody/versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  utsname name{};
+  return uname(&name) == 0 ? name.machine : "unknown";
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> versions() {
+  return {{"bentaxis", BENTAXIS_VERSION},
+          {"compiler",
+#ifdef __clang__
+           "Clang " __clang_version__
+#else
+           "GCC " __VERSION__
+#endif
+          },
+          {"build", std::string(BENTAXIS_BUILD_TYPE) + ", " + BENTAXIS_CXX_FLAGS},
+          {"Eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                        "." + std::to_string(EIGEN_MINOR_VERSION)},
+          {"Simbody", multibody::simbody_version()},
+          {"BLAS", multibody::blas_library()},
+          {"processor", processor()}};
+}
+
+}  // namespace bentaxis::cli

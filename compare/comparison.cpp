@@ -1,0 +1,192 @@
+#include "bentaxis/compare/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::compare {
+namespace {
+
+// A peak below this share of the load scale is the round-off of loads that cancel, not a signal.
+constexpr double kZeroPeak = 1e-12;
+// A double holds no more digits.
+constexpr double kMostDigits = 16;
+
+// Samples per turn if the table covers whole turns evenly, else 0.
+std::size_t samples_per_turn(const std::vector<double>& theta) {
+  if (theta.size() < 2) return 0;
+  const double step = theta[1] - theta[0];
+  const double turns = step * static_cast<double>(theta.size()) / 360;
+  const double whole = std::round(turns);
+  if (whole == 0 || std::abs(turns - whole) > 1e-9) return 0;
+  for (std::size_t i = 1; i < theta.size(); ++i)
+    if (std::abs(theta[i] - theta[0] - step * static_cast<double>(i)) > 1e-9) return 0;
+  return static_cast<std::size_t>(std::llround(static_cast<double>(theta.size()) / std::abs(whole)));
+}
+
+std::complex<double> fourier(const ResultTable& table, std::size_t column, int order) {
+  std::complex<double> sum = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    sum += table.at(row, column) * std::polar(1.0, order * radians(table.theta_deg[row]));
+  return sum * 2.0 / static_cast<double>(table.rows());
+}
+
+// Statistics of a channel that both tables have; leaves the verdict "not computed" where no angle
+// has both values or one table misses some that the other has.
+void compare_channel(const ResultTable& first, std::size_t a, const ResultTable& second,
+                     std::size_t b, ChannelComparison& result) {
+  std::size_t both = 0;
+  double square = 0;
+  for (std::size_t row = 0; row < first.rows(); ++row) {
+    const double x = first.at(row, a);
+    const double y = second.at(row, b);
+    if (is_computed(x) != is_computed(y)) return;
+    if (!is_computed(x)) continue;
+    ++both;
+    const double difference = y - x;
+    square += difference * difference;
+    result.mean[0] += x;
+    result.mean[1] += y;
+    result.mean_difference += difference;
+    if (both == 1 || std::abs(difference) > result.largest) {
+      result.largest = std::abs(difference);
+      result.theta_of_largest_deg = first.theta_deg[row];
+    }
+  }
+  if (both == 0) return;
+  const auto count = static_cast<double>(both);
+  result.rms = std::sqrt(square / count);
+  for (double* value : {&result.mean[0], &result.mean[1], &result.mean_difference}) *value /= count;
+  const double relative = result.largest_over_peak();
+  result.digits =
+      relative > 0 ? std::clamp(-std::log10(relative), 0.0, kMostDigits) : kMostDigits;
+  result.verdict = relative <= result.tolerance ? Verdict::agrees : Verdict::differs;
+}
+
+}  // namespace
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::differs:
+      return "differs";
+    case Verdict::not_computed:
+      break;
+  }
+  return "not computed";
+}
+
+bool Comparison::agrees() const {
+  return compared() > 0 && std::none_of(channels.begin(), channels.end(), [](const auto& c) {
+           return c.judged && c.verdict == Verdict::differs;
+         });
+}
+
+const ChannelComparison* Comparison::worst() const {
+  const ChannelComparison* worst = nullptr;
+  for (const auto& c : channels) {
+    if (!c.judged || c.verdict == Verdict::not_computed) continue;
+    if (worst == nullptr || c.largest_over_peak() > worst->largest_over_peak()) worst = &c;
+  }
+  return worst;
+}
+
+int Comparison::compared() const {
+  return static_cast<int>(std::count_if(channels.begin(), channels.end(), [](const auto& c) {
+    return c.judged && c.verdict != Verdict::not_computed;
+  }));
+}
+
+const ChannelComparison* Comparison::find(const std::string& channel_name) const {
+  for (const auto& c : channels)
+    if (c.channel.name == channel_name) return &c;
+  return nullptr;
+}
+
+double scale_of(const ResultTable& table, const Channel& channel, const ZeroScales& zero_scales) {
+  const double peak = table.peak(channel.group);
+  const auto scale = zero_scales.find(channel.unit);
+  if (scale != zero_scales.end() && peak <= kZeroPeak * scale->second) return scale->second;
+  return peak;
+}
+
+Comparison compare_tables(const ResultTable& first, const ResultTable& second,
+                          const Options& options) {
+  if (first.theta_deg != second.theta_deg)
+    throw InputError("tables \"" + first.name + "\" and \"" + second.name +
+                     "\" have different shaft angles");
+  Comparison comparison;
+  comparison.first = first.name;
+  comparison.second = second.name;
+  comparison.tolerance = options.tolerance;
+  const std::size_t per_turn = samples_per_turn(first.theta_deg);
+  std::map<std::string, double> scales;  // by group
+  for (std::size_t a = 0; a < first.columns(); ++a) {
+    ChannelComparison result;
+    result.channel = first.channels[a];
+    result.tolerance = options.tolerance;
+    const auto& channel = result.channel;
+    result.judged = channel.kind == ChannelKind::reaction || channel.kind == ChannelKind::derived;
+    if (channel.kind == ChannelKind::check) continue;
+    auto scale = scales.find(channel.group);
+    if (scale == scales.end())
+      scale = scales.emplace(channel.group, scale_of(first, channel, options.zero_scales)).first;
+    result.peak = scale->second;
+    const std::size_t b = second.find(channel.name);
+    if (b < second.columns()) compare_channel(first, a, second, b, result);
+    if (result.verdict != Verdict::not_computed) {
+      for (const int order : options.orders) {
+        if (per_turn <= static_cast<std::size_t>(2 * order)) continue;  // would alias
+        Harmonic harmonic;
+        harmonic.order = order;
+        const std::complex<double> values[2] = {fourier(first, a, order), fourier(second, b, order)};
+        if (!std::isfinite(std::abs(values[0]))) continue;  // not computed everywhere
+        for (int i = 0; i < 2; ++i) {
+          harmonic.amplitude[i] = std::abs(values[i]);
+          if (harmonic.amplitude[i] > kZeroPeak * result.peak)
+            harmonic.phase_deg[i] = std::arg(values[i]) / kRadPerDegree;
+        }
+        result.harmonics.push_back(harmonic);
+      }
+    }
+    comparison.channels.push_back(std::move(result));
+  }
+  return comparison;
+}
+
+std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scales,
+                                double tolerance) {
+  std::vector<Check> checks;
+  for (std::size_t column = 0; column < table.columns(); ++column) {
+    const Channel& channel = table.channels[column];
+    if (channel.kind != ChannelKind::check) continue;
+    auto it = std::find_if(checks.begin(), checks.end(),
+                           [&](const Check& check) { return check.name == channel.meaning; });
+    if (it == checks.end()) {
+      Check check;
+      check.table = table.name;
+      check.name = channel.meaning;
+      check.unit = channel.unit;
+      const auto scale = scales.find(channel.unit);
+      check.scale = scale == scales.end() ? 1 : scale->second;
+      check.tolerance = tolerance;
+      checks.push_back(check);
+      it = checks.end() - 1;
+    }
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const double value = table.at(row, column);
+      if (is_computed(value) && std::abs(value) > it->worst) {
+        it->worst = std::abs(value);
+        it->theta_deg = table.theta_deg[row];
+      }
+    }
+  }
+  return checks;
+}
+
+}  // namespace bentaxis::compare
