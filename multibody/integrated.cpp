@@ -86,6 +86,11 @@ class Runner {
         system_(the_case.pump, assumptions, samples.omega, drive),
         direction_(samples.omega < 0 ? -1 : 1) {
     system_.inputs().ports = samples.ports;
+    // A piston slower than what the integration resolves is at rest: at a dead centre the sign of
+    // its velocity would be that of the error.
+    system_.inputs().rest_speed =
+        std::max(system_.inputs().rest_speed, options.accuracy * std::abs(samples.omega) *
+                                                  the_case.pump.geometry.joint_circle_radius);
     const double end = samples.theta_deg.empty() ? 0 : std::abs(samples.theta_deg.back());
     edges_ = edge_distances(the_case, assumptions, pressure, end);
     system_.assemble(0, samples.omega);

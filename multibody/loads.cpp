@@ -11,13 +11,12 @@ using SimTK::State;
 using SimTK::Vec3;
 
 AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions, double pressure,
-                     double velocity, double nominal_speed) {
+                     double velocity, double rest_speed) {
   AxialLoad load;
   const double radius = pump.geometry.bore_diameter / 2;
   load.pressure = -pressure * kPi * radius * radius;
   if (assumptions.piston_friction)
-    load.friction = piston_friction_force(pump.friction, velocity,
-                                          piston_rest_speed(pump.geometry, nominal_speed));
+    load.friction = piston_friction_force(pump.friction, velocity, rest_speed);
   return load;
 }
 
@@ -45,7 +44,7 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
       const double velocity =
           SimTK::dot(z2, piston.findStationVelocityInGround(state, ring));
       const AxialLoad load =
-          axial_load(pump_, assumptions_, pressure[k], velocity, inputs_.nominal_speed);
+          axial_load(pump_, assumptions_, pressure[k], velocity, inputs_.rest_speed);
       piston.applyForceToBodyPoint(state, ring, (load.pressure + load.friction) * z2, forces);
       const Vec3 on_block = block.findStationAtGroundPoint(
           state, piston.findStationLocationInGround(state, ring));

@@ -18,7 +18,7 @@ struct LoadInputs {
   PortPressures ports;
   /// Torque about z1 on the shaft at angle theta where the shaft runs free; empty where driven.
   std::function<double(double theta)> shaft_torque;
-  double nominal_speed = 0;  ///< omega, rad/s: sets the speed at which a piston counts as at rest
+  double rest_speed = 0;  ///< m/s, below which a piston counts as at rest in the sign law of friction
 };
 
 /// The bodies the loads act on; A and B of each piston at z = 0 and z = length of its frame.
@@ -45,6 +45,6 @@ struct AxialLoad {
   double friction = 0;
 };
 AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions, double pressure,
-                     double velocity, double nominal_speed);
+                     double velocity, double rest_speed);
 
 }  // namespace bentaxis::multibody

@@ -46,7 +46,7 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) {
     throw InputError("multibody model: changing speed needs axial inertias above 0");
   self.pressure = instant.chamber_pressure;
   system.inputs().ports = instant.ports;
-  system.inputs().nominal_speed = instant.omega;
+  system.inputs().rest_speed = piston_rest_speed(system.pump().geometry, instant.omega);
 
   SimTK::State& state = system.dynamics();
   system.assemble(instant.theta, instant.omega);

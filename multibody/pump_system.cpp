@@ -25,6 +25,8 @@ namespace {
 // Constraint errors (m) the projection is asked to reach: below the round-off of positions, so that
 // it goes on until Newton's step no longer helps.
 constexpr double kAssemblyGoal = 1e-17;
+// An error this small cannot be improved: round-off of coordinates of 0.1 m.
+constexpr double kRoundOff = 5e-17;
 // What an assembly must reach to count as one.
 constexpr double kAssemblyTolerance = 1e-12;
 // Singular values of the scaled constraint matrix below this share of the largest count as zero.
@@ -142,7 +144,7 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   if (drive == Drive::torque &&
       !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
     throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
-  inputs_.nominal_speed = omega;
+  inputs_.rest_speed = piston_rest_speed(pump.geometry, omega);
   inputs_.chamber_pressure = [](double, std::vector<double>& p) {
     std::fill(p.begin(), p.end(), 0.0);
   };
@@ -277,6 +279,7 @@ void PumpSystem::assemble(double theta, double omega) {
   SimTK::ProjectOptions options(kAssemblyGoal);
   options.setOption(SimTK::ProjectOptions::DontThrow);
   options.setOption(SimTK::ProjectOptions::ForceProjection);
+  options.setOption(SimTK::ProjectOptions::ForceFullNewton);
   SimTK::ProjectResults results;
   Vector no_estimate;
   bool done = false;
@@ -288,14 +291,17 @@ void PumpSystem::assemble(double theta, double omega) {
     system_.realize(assembly_, SimTK::Stage::Position);
     // Far from the solution the projection may stop early without harm: go on from there.
     constexpr int kAttempts = 30;
-    for (int attempt = 0; attempt < kAttempts && !done; ++attempt) {
-      const double before = attempt == 0 ? SimTK::Infinity : assembly_.getQErr().normInf();
+    double before = SimTK::Infinity;
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
       results = SimTK::ProjectResults();
       system_.projectQ(assembly_, no_estimate, options, results);
+      // projectQ leaves quaternions unnormalized when it gives up short of its goal.
+      matter_.normalizeQuaternions(assembly_);
       system_.realize(assembly_, SimTK::Stage::Position);
       const double after = assembly_.getQErr().normInf();
       done = after <= kAssemblyTolerance;
-      if (!(after < before)) break;
+      if (after <= kRoundOff || !(after < before / 2)) break;
+      before = after;
     }
     const Vec3 z2(bodies_.block_frame.z());
     for (const auto& piston : bodies_.pistons)

@@ -61,6 +61,7 @@ class PumpSystem {
   const SimTK::State& assembly() const { return assembly_; }
   SimTK::State& dynamics() { return dynamics_; }
   LoadInputs& inputs() { return inputs_; }
+  const LoadInputs& inputs() const { return inputs_; }
 
   const std::vector<SimTK::Constraint::PointOnLine>& bores() const { return bores_; }
   const SimTK::Constraint::PointOnLine& cylindrical_bearing() const { return cylindrical_; }

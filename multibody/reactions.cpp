@@ -109,7 +109,7 @@ void read_channels(const PumpSystem& pump, const State& state, const WorkRate& r
     const double velocity =
         dot(Vec3(s2.z()), piston.findStationVelocityInGround(state, ring_station));
     const AxialLoad load =
-        axial_load(p, pump.assumptions(), pressure[k], velocity, omega);
+        axial_load(p, pump.assumptions(), pressure[k], velocity, pump.inputs().rest_speed);
     const double axial_rate =
         dot(Vec3(s2.z()), piston.findStationVelocityInGround(rate.state, ring_station));
     const BodyPower power = piston_power(pump, piston, state, rate.state);

@@ -38,6 +38,13 @@ constexpr Range kAny{};
 constexpr Range kPositive{0, kInfinity, true};
 constexpr Range kNotNegative{0, kInfinity};
 
+// A computed number for a message, to six digits.
+std::string short_text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
 std::string quoted(const toml::node& node) {
   std::ostringstream out;
   out << toml::default_formatter(node, toml::format_flags::none);
@@ -301,10 +308,10 @@ class CaseReader {
     const AssemblyMargin margin = assembly_margin(g);
     if (!(g.piston_length > margin.longest_distance))
       in.fail("piston_length_mm",
-              "must be > " + number_text(margin.longest_distance * 1e3) +
-                  ": the pump cannot be assembled at theta = " + number_text(margin.theta_deg) +
+              "must be > " + short_text(margin.longest_distance * 1e3) +
+                  ": the pump cannot be assembled at theta = " + short_text(margin.theta_deg) +
                   " deg, where " +
-                  number_text((margin.longest_distance - g.piston_length) * 1e3) +
+                  short_text((margin.longest_distance - g.piston_length) * 1e3) +
                   " mm are missing (set by joint_circle_radius_mm, bore_circle_radius_mm, "
                   "axis_offset_mm, tilt_deg)");
   }

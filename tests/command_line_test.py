@@ -1,0 +1,762 @@
+#!/usr/bin/env python3
+"""Tests of the program from outside: arguments, files, exit statuses, messages.
+
+usage: command_line_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import contextlib
+import csv
+import json
+import os
+import pathlib
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+DONE, OUT_OF_TOLERANCE, BAD_INPUT, COMPUTATION_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
+REPORT_FILES = {"report.html", "report.json", "analytic.csv", "multibody.csv"}
+SECONDS = 120  # no single command may take longer
+
+PROGRAM = REPO = None  # set in main
+
+
+# ---- Cases -----------------------------------------------------------------------------------------
+
+
+class Case:
+    """The text of a case file, edited key by key. "pump.tilt_deg" is a key of a table, "name" one of none."""
+
+    def __init__(self, **changes):
+        self.lines = (REPO / "cases" / "bap63_rated.toml").read_text().splitlines()
+        self.set({"operation.samples_per_revolution": 36})
+        self.set(changes)
+
+    def set(self, changes):
+        """Sets keys to values or, given None, takes them out. A str value is written as it is."""
+        for name, value in changes.items():
+            table, _, key = name.rpartition(".")
+            line = self.line_of(name)
+            text = [] if value is None else [f"{key} = {self._toml(value)}"]
+            if line:
+                self.lines[line - 1:line] = text
+            elif text:
+                self.lines[self.line_of_table(table):self.line_of_table(table)] = text
+        return self
+
+    def get(self, name):
+        return self.lines[self.line_of(name) - 1].split("=", 1)[1].strip()
+
+    def without_table(self, table):
+        first = self.line_of_table(table) - 1
+        last = next((i for i in range(first + 1, len(self.lines)) if self.lines[i].startswith("[")), len(self.lines))
+        del self.lines[first:last]
+        return self
+
+    def line_of_table(self, table):
+        """Number of the line of the heading, 0 for the keys above all tables; adds the table where it is missing."""
+        if not table:
+            return 0
+        if f"[{table}]" not in self.lines:
+            self.lines += ["", f"[{table}]"]
+        return self.lines.index(f"[{table}]") + 1
+
+    def line_of(self, name):
+        """Number of the line of a key; 0 if there is none."""
+        table, _, key = name.rpartition(".")
+        current = ""
+        for number, line in enumerate(self.lines, 1):
+            if line.startswith("["):
+                current = line.strip("[]")
+            elif current == table and re.match(rf"{key}\s*=", line):
+                return number
+        return 0
+
+    def write(self, file):
+        file.write_text("\n".join(self.lines) + "\n")
+        return file
+
+    @staticmethod
+    def _toml(value):
+        return value if isinstance(value, str) else json.dumps(value)
+
+
+CURVE = "theta_deg,pressure_bar\n0,5\n90,6\n180,100\n270,90\n"
+
+
+# ---- Running ---------------------------------------------------------------------------------------
+
+
+class ProgramTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bentaxis_test_")))
+
+    def start(self, *arguments, **options):
+        return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+
+    def finish(self, process, status):
+        try:
+            process.out, process.err = process.communicate(timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            self.fail(f"not done after {SECONDS} s: {process.args}")
+        shown = f"{' '.join(process.args[1:])}\nstatus {process.returncode}\n{process.out}{process.err}"
+        self.assertEqual(process.returncode, status, shown)
+        self.assertNotRegex(process.out + process.err, "[\x1b\r]", f"colour or progress without a terminal: {shown}")
+        return process
+
+    def run_program(self, *arguments, status=DONE, **options):
+        return self.finish(self.start(*arguments, **options), status)
+
+    def refused(self, *arguments, status=BAD_INPUT, **options):
+        """Runs what must fail: one line on standard error, nothing on standard output, no file made or changed.
+        Returns the line."""
+        before = self.contents()
+        result = self.run_program(*arguments, status=status, **options)
+        self.assertEqual(result.out, "")
+        self.assertEqual(result.err.count("\n"), 1, result.err)
+        self.assertTrue(result.err.endswith("\n") and result.err.strip(), result.err)
+        self.assertEqual(self.contents(), before)
+        return result.err.strip()
+
+    def contents(self):
+        """All paths below the folder of the test; of files with their bytes."""
+        return {str(p.relative_to(self.folder)): p.read_bytes() if p.is_file() else None
+                for p in self.folder.rglob("*")}
+
+    def case(self, name="case.toml", **changes):
+        return Case(**changes).write(self.folder / name)
+
+    def assert_mentions(self, line, *words):
+        for word in words:
+            self.assertIn(str(word), line)
+
+    def read_csv(self, name):
+        """Heading and rows of text."""
+        with (self.folder / name).open(newline="") as file:
+            heading, *rows = csv.reader(file)
+        for row in rows:
+            self.assertEqual(len(row), len(heading), name)
+        return heading, rows
+
+    def column(self, name, channel):
+        heading, rows = self.read_csv(name)
+        return [row[heading.index(channel)] for row in rows]
+
+
+# ---- Usage -----------------------------------------------------------------------------------------
+
+
+class UsageTest(ProgramTest):
+    def test_help_and_version_go_to_standard_output(self):
+        for arguments, word in (
+            (["--help"], "compare"), (["-h"], "compare"), (["run", "--help"], "--model"),
+            (["compare", "--help"], "--tolerance"), (["--version"], "bentaxis "),
+        ):
+            with self.subTest(arguments):
+                result = self.run_program(*arguments)
+                self.assertIn(word, result.out)
+                self.assertEqual(result.err, "")
+
+    def test_version_is_the_one_of_the_project(self):
+        version = re.search(r"project\(bentaxis VERSION (\S+)", (REPO / "CMakeLists.txt").read_text())[1]
+        self.assertEqual(self.run_program("--version").out, f"bentaxis {version}\n")
+
+    def test_help_names_every_option_of_the_interface(self):
+        self.assertTrue(self.folder.exists())
+        for command, options in (("run", "--model --out --way --scene --gear --integrator --accuracy"),
+                                 ("compare", "--out --tolerance")):
+            self.assert_mentions(self.run_program(command, "--help").out, *options.split())
+
+    def test_bad_usage(self):
+        case = self.case()
+        run = ["run", case, "--out", "out"]
+        compare = ["compare", case, "--out", "out"]
+        for arguments, words in (
+            ([], []),
+            (["--nonsense"], ["--nonsense"]),
+            (["frobnicate"], ["frobnicate"]),
+            (["run"], []),
+            (["compare"], []),
+            (run, ["--model"]),
+            ([*run, "--model", "magic"], ["magic", "analytic", "multibody"]),
+            ([*run, "--model", "analytic", "--nonsense"], ["--nonsense"]),
+            ([*run, "--model", "analytic", "other.toml"], ["other.toml"]),
+            ([*run, "--model", "analytic", "--out"], ["--out"]),
+            ([*run, "--model", "multibody", "--way", "sideways"], ["sideways", "driven", "integrated"]),
+            ([*run, "--model", "multibody", "--scene", "none"], ["none", "full"]),
+            ([*run, "--model", "multibody", "--gear", "belt"], ["belt", "mesh", "imposed"]),
+            ([*run, "--model", "multibody", "--integrator", "magic"], ["magic", "rk-merson"]),
+            ([*run, "--model", "multibody", "--way", "integrated", "--accuracy", "1"], ["1e-12", "0.1"]),
+            ([*run, "--model", "multibody", "--way", "integrated", "--accuracy", "nan"], ["nan"]),
+            ([*compare, "--tolerance", "0"], ["--tolerance"]),
+            ([*compare, "--tolerance", "-1"], ["--tolerance"]),
+            ([*compare, "--tolerance", "nan"], ["--tolerance", "nan"]),
+            ([*compare, "--tolerance", "small"], ["--tolerance", "small"]),
+            ([*compare, "--multibody", "gear=belt"], ["gear=belt", "mesh", "imposed"]),
+            ([*compare, "--multibody", "colour=red"], ["colour=red", "piston_friction", "inertia", "gear"]),
+            ([*compare, "--multibody", "gear"], ["gear", "mesh", "imposed"]),
+            ([*compare, "--multibody-case", "absent.toml"], ["absent.toml"]),
+        ):
+            with self.subTest(arguments[:1] + arguments[4:]):
+                self.assert_mentions(self.refused(*arguments), *words)
+
+    def test_second_case_must_be_the_same_run(self):
+        case = self.case()
+        for key, value in (("pump.pistons", 7), ("operation.samples_per_revolution", 72),
+                           ("operation.revolutions", 2)):
+            with self.subTest(key):
+                other = self.case("other.toml", **{key: value})
+                line = self.refused("compare", case, "--multibody-case", other, "--out", "out")
+                self.assert_mentions(line, "other.toml")
+
+
+# ---- Results ---------------------------------------------------------------------------------------
+
+
+def heading_of(pistons):
+    """The columns that never change."""
+    axes = ("Rs_{}_x2_N", "Rs_{}_y2_N", "Rs_{}_z2_N", "Rc_{}_x2_N", "Rc_{}_y2_N")
+    return (["theta_deg"] + [name.format(k) for k in range(1, pistons + 1) for name in axes] + """
+            Fh_z2_N Th_x2_Nm Th_y2_Nm Rcn_x2_N Rcn_y2_N Rcs_z4_N Rb1_x1_N Rb1_y1_N Rb1_z1_N Rb2_x1_N Rb2_y1_N
+            Td_z1_Nm xh_x2_mm yh_y2_mm""".split())
+
+
+def digits(text):
+    """Significant digits of a number's text, without sign, point, exponent and zeros at either end."""
+    return re.split("[eE]", text)[0].replace("-", "").replace(".", "").strip("0")
+
+
+class RunTest(ProgramTest):
+    MODELS = ("analytic", "multibody")
+
+    def test_curves_of_both_models(self):
+        case = self.case()
+        for model in self.MODELS:
+            with self.subTest(model):
+                result = self.run_program("run", case, "--model", model, "--out", "new/folder")
+                self.assertEqual(result.out, f"new/folder/{model}.csv\n")
+                self.assertEqual(result.err, "")
+                heading, rows = self.read_csv(f"new/folder/{model}.csv")
+                wanted = heading_of(5)
+                self.assertEqual(heading[:len(wanted)], wanted)
+                self.assertEqual(len(set(heading)), len(heading))
+                self.assertEqual([float(row[0]) for row in rows], [10 * i for i in range(36)])
+        self.assertEqual({p.name for p in self.folder.glob("new/folder/*")}, {"analytic.csv", "multibody.csv"})
+
+    def test_other_numbers_of_pistons(self):
+        for pistons in (1, 9):
+            for model in self.MODELS:
+                with self.subTest(pistons=pistons, model=model):
+                    case = self.case(**{"pump.pistons": pistons, "operation.samples_per_revolution": 7})
+                    self.run_program("run", case, "--model", model, "--out", "out")
+                    heading, rows = self.read_csv(f"out/{model}.csv")
+                    wanted = heading_of(pistons)
+                    self.assertEqual(heading[:len(wanted)], wanted)
+                    self.assertEqual([float(row[0]) for row in rows], [360 * i / 7 for i in range(7)])
+
+    def test_numbers_are_the_shortest_that_read_back(self):
+        case = self.case()
+        for model in self.MODELS:
+            self.run_program("run", case, "--model", model, "--out", "out")
+            heading, rows = self.read_csv(f"out/{model}.csv")
+            for row in rows:
+                for name, text in zip(heading, row):
+                    if text == "":
+                        continue
+                    self.assertRegex(text, r"^-?\d+(\.\d+)?(e[+-]\d+)?$", name)
+                    self.assertEqual(digits(text), digits(repr(float(text))), name)
+                    self.assertNotEqual(text, "-0", name)
+
+    def test_integrated_run(self):
+        for speed, sign in ((1500.0, 1), (-1500.0, -1)):
+            with self.subTest(speed=speed):
+                case = self.case(**{"operation.speed_rpm": speed, "operation.revolutions": 3})
+                self.run_program("run", case, "--model", "multibody", "--way", "integrated", "--out", "out")
+                theta = [float(text) for text in self.column("out/multibody.csv", "theta_deg")]
+                self.assertEqual(len(theta), 36 * 3)
+                for i, angle in enumerate(theta):
+                    self.assertAlmostEqual(angle, sign * 10 * i, delta=1e-9)
+
+    def test_driven_angles_rise_whatever_the_sign_of_the_speed(self):
+        case = self.case(**{"operation.speed_rpm": -1500.0, "operation.revolutions": 3})
+        for model in self.MODELS:
+            self.run_program("run", case, "--model", model, "--out", "out")
+            self.assertEqual([float(t) for t in self.column(f"out/{model}.csv", "theta_deg")],
+                             [10 * i for i in range(36)])
+
+    def test_imposed_gear_has_no_tooth_force(self):
+        case = self.case()
+        for model in self.MODELS:
+            with self.subTest(model):
+                self.run_program("run", case, "--model", model, "--out", "out")
+                self.assertTrue(all(self.column(f"out/{model}.csv", "Rcs_z4_N")))
+                self.run_program("run", case, "--model", model, "--gear", "imposed", "--out", "out")
+                self.assertEqual(set(self.column(f"out/{model}.csv", "Rcs_z4_N")), {""})
+
+    def test_point_of_a_film_force_of_zero_is_empty(self):
+        # Nothing presses the block along its axis.
+        case = self.case(**{"pump.tilt_deg": 0.0, "pump.axis_offset_mm": 0.0, "pressure.delivery_bar": 0.0,
+                            "block.spring_force_N": 0.0, "piston.mass_kg": 0.0, "friction.piston_coulomb_N": 0.0})
+        self.run_program("run", case, "--model", "analytic", "--out", "out")
+        self.assertEqual(set(self.column("out/analytic.csv", "Fh_z2_N")), {"0"})
+        for name in ("xh_x2_mm", "yh_y2_mm"):
+            self.assertEqual(set(self.column("out/analytic.csv", name)), {""})
+
+    def test_out_is_the_default_folder(self):
+        self.run_program("run", self.case(), "--model", "analytic")
+        self.assertTrue((self.folder / "out" / "analytic.csv").is_file())
+
+    def test_curve_is_found_beside_the_case(self):
+        elsewhere = self.folder / "some where" / "Fälle"
+        elsewhere.mkdir(parents=True)
+        case = Case(**{"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'}).write(elsewhere / "a b.toml")
+        for text in (CURVE, CURVE.replace("\n", "\r\n"), CURVE.rstrip("\n"), CURVE + "\n\n"):
+            (elsewhere / "curve.csv").write_bytes(text.encode())
+            self.run_program("run", case, "--model", "analytic", "--out", elsewhere / "out")
+            self.assertEqual(self.column(elsewhere / "out" / "analytic.csv", "p_1_bar")[9], "6")
+
+    def test_line_ends_of_other_systems(self):
+        case = self.case()
+        case.write_bytes(b"\xef\xbb\xbf" + case.read_bytes().replace(b"\n", b"\r\n"))
+        self.run_program("run", case, "--model", "analytic", "--out", "out")
+
+    def test_a_float_may_be_written_as_an_integer(self):
+        case = self.case(**{"operation.speed_rpm": "1500", "pump.tilt_deg": "40"})
+        self.run_program("run", case, "--model", "analytic", "--out", "out")
+
+    def test_same_input_gives_same_bytes(self):
+        case = self.case()
+        for out in ("one", "two"):
+            for model in self.MODELS:
+                self.run_program("run", case, "--model", model, "--out", out)
+        for model in self.MODELS:
+            self.assertEqual(*[(self.folder / out / f"{model}.csv").read_bytes() for out in ("one", "two")])
+
+
+class CompareTest(ProgramTest):
+    def test_writes_four_files(self):
+        result = self.run_program("compare", self.case(), "--out", "out")
+        self.assertEqual({p.name for p in (self.folder / "out").iterdir()}, REPORT_FILES)
+        self.assertEqual(result.err, "")
+        for name in REPORT_FILES:
+            self.assertIn(f"out/{name}\n", result.out)
+        report = json.loads((self.folder / "out" / "report.json").read_text(), parse_constant=self.fail)
+        self.assertIs(report["verdict"]["agrees"], True)
+        self.assertEqual(report["verdict"]["tolerance"], 1e-9)
+
+    def test_curves_are_those_of_run(self):
+        case = self.case()
+        self.run_program("compare", case, "--out", "both")
+        for model in RunTest.MODELS:
+            self.run_program("run", case, "--model", model, "--out", "each")
+            self.assertEqual(*[(self.folder / out / f"{model}.csv").read_bytes() for out in ("both", "each")])
+
+    def test_tolerance_decides_the_status(self):
+        self.run_program("compare", self.case(), "--tolerance", "1e-25", "--out", "out", status=OUT_OF_TOLERANCE)
+        self.assertEqual({p.name for p in (self.folder / "out").iterdir()}, REPORT_FILES)
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        self.assertIs(report["verdict"]["agrees"], False)
+
+    def test_unequal_assumptions_are_explained(self):
+        self.run_program("compare", self.case(), "--multibody", "gear=imposed", "piston_friction=off", "--out", "out")
+        self.assertEqual(set(self.column("out/multibody.csv", "Rcs_z4_N")), {""})
+
+    def test_integrated(self):
+        case = self.case(**{"operation.revolutions": 2})
+        self.run_program("compare", case, "--way", "integrated", "--out", "out")
+        for model in RunTest.MODELS:
+            self.assertEqual(len(self.column(f"out/{model}.csv", "theta_deg")), 72)
+
+
+# ---- Refused input ---------------------------------------------------------------------------------
+
+# What is wrong: changed keys, the key that is to be named with its line, and words of the message beside these
+# (the value and what is allowed).
+BAD_VALUES = (
+    ("text for a number", {"pump.tilt_deg": '"forty"'}, ['"forty"', "number", "in [0, 90)"]),
+    ("number for a text", {"name": 5}, ["5", "text"]),
+    ("table for a number", {"pump.tilt_deg": "{ value = 40.0 }"}, ["number", "in [0, 90)"]),
+    ("float for an integer", {"pump.pistons": 5.0}, ["5.0", "integer", "in [1, 99]"]),
+    ("truth value for a number", {"shaft.mass_kg": True}, ["true", "number", ">= 0"]),
+    ("number for a word", {"piston.inertia": 1}, ["1", '"lumped" or "real"']),
+    ("unknown word", {"piston.inertia": '"spread"'}, ['"spread"', '"lumped" or "real"']),
+    ("pistons cannot reach", {"pump.piston_length_mm": 20.0}, ["20.0", "must be >"]),
+    ("no pistons", {"pump.pistons": 0}, ["0", "in [1, 99]"]),
+    ("too many pistons", {"pump.pistons": 100}, ["100", "in [1, 99]"]),
+    ("not a number", {"pump.joint_circle_radius_mm": "nan"}, ["nan", "> 0"]),
+    ("infinite", {"operation.speed_rpm": "inf"}, ["inf", "finite"]),
+    ("infinite mass", {"piston.mass_kg": "-inf"}, ["-inf", ">= 0"]),
+    ("number too large for a double", {"operation.speed_rpm": "1e999"}, []),
+    ("negative radius", {"pump.joint_circle_radius_mm": -24.92}, ["-24.92", "> 0"]),
+    ("radius of zero", {"pump.bore_circle_radius_mm": 0}, ["0", "> 0"]),
+    ("tilt of 90 degrees", {"pump.tilt_deg": 90.0}, ["90.0", "in [0, 90)"]),
+    ("negative tilt", {"pump.tilt_deg": -1.0}, ["-1.0", "in [0, 90)"]),
+    ("pressure angle", {"gear.pressure_angle_deg": 61.0}, ["61.0", "in [0, 60]"]),
+    ("equal bearings", {"bearings.cylindrical_z_mm": -26.0}, ["-26.0", "tapered_z_mm"]),
+    ("mass fraction", {"piston.joint_mass_fraction": 1.5}, ["1.5", "in [0, 1]"]),
+    ("torque factor", {"friction.shaft_torque_factor": 0.0}, ["0.0", "in (0, 1]"]),
+    ("negative friction", {"friction.piston_coulomb_N": -1.0}, ["-1.0", ">= 0"]),
+    ("no samples", {"operation.samples_per_revolution": 0}, ["0", ">= 1"]),
+    ("negative revolutions", {"operation.revolutions": -1}, ["-1", ">= 1"]),
+    ("transition", {"pressure.transition_deg": 181.0}, ["181.0", "in [0, 180]"]),
+    ("kind of pressure not there yet", {"pressure.kind": '"hydraulic"'}, ['"hydraulic"', '"ideal"', '"curve"']),
+    ("kind of pump", {"pump.type": '"axial"'}, ['"axial"', '"bent_axis_bevel"']),
+    ("schema", {"schema": 2}, ["2", "[1, 1]"]),
+    ("land", {"port_plate.inner_land_mm": [19.0, 17.2]}, ["19.0", "r1 < r2"]),
+    ("lands overlap", {"port_plate.outer_land_mm": [18.0, 26.0]}, ["18.0", "r2 < r3 < r4"]),
+    ("land of three numbers", {"port_plate.inner_land_mm": [1.0, 2.0, 3.0]}, ["3.0", "pair"]),
+    ("negative land", {"port_plate.inner_land_mm": [-1.0, 19.0]}, ["-1.0", ">= 0"]),
+    ("arc too long", {"port_plate.delivery_arc_deg": [0.0, 361.0]}, ["361.0", "from + 360"]),
+    ("arc backwards", {"port_plate.suction_arc_deg": [168.0, 12.0]}, ["168.0", "from < to"]),
+    ("no such curve", {"pressure.file": '"absent.csv"', "pressure.kind": '"curve"'}, ["absent.csv"]),
+    ("folder for a curve", {"pressure.file": '"."', "pressure.kind": '"curve"'}, ["folder"]),
+    ("axial inertia above twice the transverse",
+     {"piston.axial_inertia_kg_mm2": 50.0, "piston.centre_of_mass_mm": 19.0, "piston.transverse_inertia_kg_mm2": 24.0},
+     ["50.0", "in [0, 48]"]),
+    ("inertia of pistons without their data", {"assumptions.multibody.inertia": '"real"'},
+     ['"real"', "centre_of_mass_mm", "transverse_inertia_kg_mm2"]),
+    ("assumption", {"assumptions.analytic.piston_friction": '"off"'}, ['"off"', "true or false"]),
+    ("unknown key", {"pump.bore_diameter_in": 1.0}, ["pump"]),
+    ("misspelt key beside the right one", {"pump.tilt_degs": 1.0}, ["pump", '"tilt_deg"']),
+    ("unknown key above all tables", {"author": '"me"'}, []),
+)
+
+# Contents of a curve; number of the line to be named (0: none), words of the message.
+BAD_CURVES = (
+    ("empty", "", 0, ["empty"]),
+    ("only a heading", "theta_deg,pressure_bar\n", 0, ["3"]),
+    ("two points", "theta_deg,pressure_bar\n0,5\n90,6\n", 0, ["2", "at least 3"]),
+    ("text in a number", CURVE.replace("90,6", "90,6x"), 3, ["6x", "pressure_bar"]),
+    ("empty field", CURVE.replace("90,6", "90,"), 3, ["pressure_bar"]),
+    ("not a number", CURVE.replace("90,6", "90,nan"), 3, ["nan", "pressure_bar", "finite"]),
+    ("infinite", CURVE.replace("90,6", "90,inf"), 3, ["inf", "pressure_bar", "finite"]),
+    ("too few fields", CURVE.replace("90,6", "90"), 3, []),
+    ("too many fields", CURVE.replace("90,6", "90,6,7"), 3, []),
+    ("another heading", CURVE.replace("pressure_bar", "pressure"), 1, ["theta_deg,pressure_bar"]),
+    ("falling angles", CURVE.replace("180,", "80,"), 4, ["theta_deg", "80"]),
+    ("equal angles", CURVE.replace("180,", "90,"), 4, ["theta_deg", "90"]),
+    ("end point repeated", CURVE + "360,5\n", 6, ["theta_deg", "360"]),
+)
+
+
+class BadInputTest(ProgramTest):
+    def refused_by_every_command(self, case):
+        lines = {self.refused(*command, "--out", "out/of/it") for command in (
+            ["run", case, "--model", "analytic"], ["run", case, "--model", "multibody"], ["compare", case])}
+        self.assertEqual(len(lines), 1, lines)
+        return lines.pop()
+
+    def test_values(self):
+        for label, changes, words in BAD_VALUES:
+            with self.subTest(label):
+                case = Case(**changes)
+                name = next(iter(changes))
+                file = case.write(self.folder / "case.toml")
+                line = self.refused_by_every_command(file)
+                self.assert_mentions(line, f"case.toml:{case.line_of(name)}:", name.rpartition(".")[2], *words)
+
+    def test_every_key_that_is_required(self):
+        optional = {"operation.gravity_m_per_s2", "operation.samples_per_revolution", "piston.joint_mass_fraction",
+                    "block.bottom_area_mm2", "block.spring_force_N", "pressure.delivery_start_deg"}
+        table, count = "", 0
+        for text in Case().lines:
+            if text.startswith("["):
+                table = text.strip("[]")
+            key = text.partition("=")[0].strip()
+            name = f"{table}.{key}" if table else key
+            if "=" not in text or table == "friction" or name in optional:
+                continue
+            count += 1
+            with self.subTest(name):
+                case = Case(**{name: None})
+                line = self.refused_by_every_command(case.write(self.folder / "case.toml"))
+                place = f"case.toml:{case.line_of_table(table)}:" if table else "case.toml:"
+                self.assert_mentions(line, place, key, "missing", "must be")
+        self.assertGreater(count, 25)
+
+    def test_every_table_that_is_required(self):
+        for table in ("pump", "gear", "bearings", "piston", "shaft", "block", "operation", "pressure"):
+            with self.subTest(table):
+                file = Case().without_table(table).write(self.folder / "case.toml")
+                self.assert_mentions(self.refused_by_every_command(file), "case.toml", f"[{table}]", "missing")
+
+    def test_unknown_table(self):
+        case = Case(**{"hydraulic.bulk_modulus_bar": 1.0})
+        line = self.refused_by_every_command(case.write(self.folder / "case.toml"))
+        self.assert_mentions(line, f"case.toml:{case.line_of_table('hydraulic')}:", "[hydraulic]")
+
+    def test_misspelt_key(self):
+        case = Case(**{"pump.tilt_deg": None, "pump.tlit_deg": 40.0})
+        line = self.refused_by_every_command(case.write(self.folder / "case.toml"))
+        self.assert_mentions(line, "case.toml:", "tilt_deg", "tlit_deg")
+
+    def test_syntax(self):
+        for label, text in (("no value", "tilt_deg ="), ("no equals sign", "tilt_deg 40"), ("open text", 'type = "bent'),
+                            ("twice", "pistons = 5"), ("not UTF-8", "# \udcff")):
+            with self.subTest(label):
+                case = Case()
+                case.lines.insert(case.line_of("pump.pistons"), text)
+                (self.folder / "case.toml").write_bytes("\n".join(case.lines).encode(errors="surrogateescape"))
+                line = self.refused_by_every_command("case.toml")
+                self.assert_mentions(line, f"case.toml:{case.line_of('pump.pistons') + 1}:")
+
+    def test_curves(self):
+        case = self.case(**{"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'})
+        for label, text, number, words in BAD_CURVES:
+            with self.subTest(label):
+                (self.folder / "curve.csv").write_text(text)
+                line = self.refused_by_every_command(case)
+                self.assert_mentions(line, f"curve.csv:{number}:" if number else "curve.csv:", *words)
+
+    def test_files_that_are_none(self):
+        (self.folder / "empty.toml").write_text("")
+        (self.folder / "binary.toml").write_bytes(bytes(range(256)))
+        for name in ("absent.toml", ".", "empty.toml", "binary.toml", "/dev/null", ""):
+            with self.subTest(name):
+                self.assert_mentions(self.refused_by_every_command(name), name)
+
+    def test_inertia_asked_for_without_data(self):
+        case = self.case()
+        for model in ("--analytic", "--multibody"):
+            line = self.refused("compare", case, model, "inertia=real", "--out", "out")
+            self.assert_mentions(line, "inertia=real", "centre_of_mass_mm", "transverse_inertia_kg_mm2",
+                                 "axial_inertia_kg_mm2")
+
+    def test_integrated_run_at_standstill(self):
+        case = self.case(**{"operation.speed_rpm": 0.0})
+        for command in (["run", case, "--model", "multibody"], ["compare", case]):
+            line = self.refused(*command, "--way", "integrated", "--out", "out")
+            self.assert_mentions(line, "case.toml", "speed_rpm")
+        self.run_program("compare", case, "--out", "out")  # driven, standstill is a case as any other
+
+    def test_massless_piston(self):
+        case = self.case(**{"piston.mass_kg": 0.0})
+        for command in (["run", case, "--model", "multibody"], ["compare", case],
+                        ["run", case, "--model", "multibody", "--way", "integrated"]):
+            line = self.refused(*command, "--out", "out", status=COMPUTATION_FAILED)
+            self.assert_mentions(line, "multibody", "mass")
+        self.run_program("run", case, "--model", "analytic", "--out", "out")
+
+
+# ---- Output that cannot be written, interruption, company ---------------------------------------------
+
+
+def limit_file_size(size):
+    """For a child process: writing beyond `size` bytes is an error, as on a full disk."""
+    def limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+    return limit
+
+
+class OutputTest(ProgramTest):
+    COMMANDS = (["compare"], ["run", "--model", "analytic"], ["run", "--model", "multibody"])
+
+    def test_folder_cannot_be_made(self):
+        (self.folder / "file").write_text("mine")
+        case = self.case()
+        for out in ("file", "file/below", "/proc/bentaxis", "/dev/null"):
+            for command in self.COMMANDS:
+                with self.subTest(out=out, command=command):
+                    self.assert_mentions(self.refused(*command, case, "--out", out), out, "cannot be written")
+
+    def test_folder_where_a_file_should_be(self):
+        self.run_program("compare", self.case(), "--out", "out")
+        faster = self.case(**{"operation.speed_rpm": 3000.0})
+        for name in sorted(REPORT_FILES):
+            with self.subTest(name):
+                file = self.folder / "out" / name
+                kept = file.read_bytes()
+                file.unlink()
+                file.mkdir()
+                self.assert_mentions(self.refused("compare", faster, "--out", "out"), f"out/{name}", "folder")
+                file.rmdir()
+                file.write_bytes(kept)
+
+    def test_full_disk(self):
+        case = self.case()
+        for command in self.COMMANDS:
+            for size in (0, 10_000):
+                with self.subTest(command=command, size=size):
+                    line = self.refused(*command, case, "--out", "new/one", preexec_fn=limit_file_size(size))
+                    self.assert_mentions(line, "new/one/", "cannot be written")
+
+    def test_full_disk_leaves_earlier_results(self):
+        self.run_program("compare", self.case(), "--out", "out")
+        faster = self.case(**{"operation.speed_rpm": 3000.0})
+        for command in self.COMMANDS:
+            with self.subTest(command=command):
+                self.refused(*command, faster, "--out", "out", preexec_fn=limit_file_size(10_000))
+
+    def test_new_results_replace_old_ones_and_nothing_else(self):
+        self.run_program("compare", self.case(), "--out", "out")
+        (self.folder / "out" / "notes.txt").write_text("mine")
+        before = self.contents()
+        self.run_program("compare", self.case(**{"operation.speed_rpm": 3000.0}), "--out", "out")
+        after = self.contents()
+        self.assertEqual(after.keys(), before.keys())
+        self.assertEqual(after["out/notes.txt"], b"mine")
+        for name in REPORT_FILES:
+            self.assertNotEqual(after[f"out/{name}"], before[f"out/{name}"], name)
+
+
+class InterruptionTest(ProgramTest):
+    def long_case(self):
+        return self.case("long.toml", **{"operation.samples_per_revolution": 200000})
+
+    def start_and_wait(self, *arguments):
+        """Starts what takes long and waits until it computes."""
+        process = self.start(*arguments)
+        self.addCleanup(contextlib.suppress(ProcessLookupError).__enter__)
+        self.addCleanup(process.kill)
+        out = self.folder / arguments[arguments.index("--out") + 1]
+        until = time.monotonic() + 20
+        while not out.exists() and time.monotonic() < until and process.poll() is None:
+            time.sleep(0.02)
+        time.sleep(0.5)
+        self.assertIsNone(process.poll(), "ended before it could be interrupted")
+        return process
+
+    def test_interrupted_run_leaves_nothing(self):
+        case = self.long_case()
+        for command in (["run", case, "--model", "multibody"], ["compare", case],
+                        ["run", case, "--model", "multibody", "--way", "integrated"]):
+            for out in ("new/folder", "there"):
+                with self.subTest(command=command, out=out):
+                    (self.folder / "there").mkdir(exist_ok=True)
+                    (self.folder / "there" / "multibody.csv").write_text("earlier result")
+                    before = self.contents()
+                    process = self.start_and_wait(*command, "--out", out)
+                    process.send_signal(signal.SIGINT)
+                    sent = time.monotonic()
+                    self.finish(process, INTERRUPTED)
+                    self.assertLess(time.monotonic() - sent, 5)
+                    self.assertEqual((process.out, process.err.count("\n")), ("", 1), process.err)
+                    self.assertEqual(self.contents(), before)
+
+    def test_interrupted_run_keeps_what_others_put_into_its_folder(self):
+        process = self.start_and_wait("run", self.long_case(), "--model", "multibody", "--out", "out")
+        self.run_program("run", self.case(), "--model", "analytic", "--out", "out")
+        (self.folder / "out" / "notes.txt").write_text("mine")
+        process.send_signal(signal.SIGINT)
+        self.finish(process, INTERRUPTED)
+        self.assertEqual({p.name for p in self.folder.glob("out/*")}, {"analytic.csv", "notes.txt"})
+
+
+class TogetherTest(ProgramTest):
+    def test_runs_into_one_folder(self):
+        case = self.case(**{"operation.samples_per_revolution": 720})
+        commands = [["run", case, "--model", model, "--out", "out"] for model in RunTest.MODELS]
+        for process in [self.start(*command) for command in commands]:
+            self.finish(process, DONE)
+        self.assertEqual({p.name for p in self.folder.glob("out/*")}, {"analytic.csv", "multibody.csv"})
+        for model in RunTest.MODELS:
+            self.assertEqual(len(self.column(f"out/{model}.csv", "theta_deg")), 720)
+
+    def test_same_command_several_times(self):
+        case = self.case()
+        for process in [self.start("compare", case, "--out", "out") for _ in range(4)]:
+            self.finish(process, DONE)
+        self.assertEqual({p.name for p in (self.folder / "out").iterdir()}, REPORT_FILES)
+        json.loads((self.folder / "out" / "report.json").read_text())
+        self.assertTrue((self.folder / "out" / "report.html").read_text().rstrip().endswith("</html>"))
+        for model in RunTest.MODELS:
+            self.assertEqual(len(self.column(f"out/{model}.csv", "theta_deg")), 36)
+
+
+# ---- Negative controls: a wrong input to one model is noticed -------------------------------------------
+
+# Cases in which every parameter has something to do. Pressure hides weights and inertia: light cases show them.
+RATED = {"pressure.suction_bar": 5.0, "friction.piston_viscous_N_s_per_m": 20.0}
+LIGHT = {"pressure.delivery_bar": 0.0, "operation.speed_rpm": 3000.0}
+REAL = {**LIGHT, "piston.inertia": '"real"', "piston.centre_of_mass_mm": 19.0, "piston.transverse_inertia_kg_mm2": 24.0,
+        "piston.axial_inertia_kg_mm2": 5.0, "piston.spin_rpm": 900.0}
+CURVED = {"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'}
+
+CONTROLS = (
+    (RATED, """
+        pump.tilt_deg pump.joint_circle_radius_mm pump.bore_circle_radius_mm pump.axis_offset_mm pump.piston_length_mm
+        pump.bore_diameter_mm gear.pitch_diameter_mm gear.pressure_angle_deg bearings.tapered_z_mm
+        bearings.cylindrical_z_mm piston.mass_kg piston.joint_mass_fraction block.pin_z_mm block.bottom_area_mm2
+        block.spring_force_N friction.piston_coulomb_N friction.piston_viscous_N_s_per_m friction.regularization_m_per_s
+        friction.block_viscous_Nm_per_rpm friction.shaft_viscous_Nm_per_rpm friction.shaft_torque_factor
+        operation.speed_rpm pressure.suction_bar pressure.delivery_bar pressure.transition_deg
+        pressure.delivery_start_deg port_plate.inner_land_mm port_plate.outer_land_mm port_plate.delivery_arc_deg
+        port_plate.suction_arc_deg"""),
+    (LIGHT, """
+        piston.mass_kg piston.joint_mass_fraction shaft.mass_kg shaft.centre_of_mass_z_mm block.mass_kg
+        block.centre_of_mass_z_mm operation.gravity_m_per_s2 operation.speed_rpm"""),
+    (REAL, """
+        piston.mass_kg piston.centre_of_mass_mm piston.transverse_inertia_kg_mm2 piston.axial_inertia_kg_mm2
+        piston.spin_rpm"""),
+)
+# Without effect at constant speed, whatever their size.
+WITHOUT_EFFECT = (
+    (RATED, "shaft.axial_inertia_kg_mm2", 20000.0), (RATED, "block.axial_inertia_kg_mm2", 15000.0),
+    (LIGHT, "shaft.axial_inertia_kg_mm2", 0.0), (LIGHT, "block.axial_inertia_kg_mm2", 0.0),
+    (REAL, "piston.joint_mass_fraction", 0.7), (LIGHT, "piston.spin_rpm", 900.0),
+)
+
+
+class NegativeControlTest(ProgramTest):
+    def compare(self, first, second, status):
+        first.write(self.folder / "first.toml")
+        second.write(self.folder / "second.toml")
+        self.run_program("compare", "first.toml", "--multibody-case", "second.toml", "--out", "out", status=status)
+
+    def test_equal_cases_agree(self):
+        (self.folder / "curve.csv").write_text(CURVE)
+        for base in (RATED, LIGHT, REAL, CURVED):
+            self.compare(Case(**base), Case(**base), DONE)
+
+    def test_every_parameter_counts(self):
+        for base, names in CONTROLS:
+            for name in names.split():
+                value = json.loads(Case(**base).get(name))
+                pair = isinstance(value, list)
+                for i in range(2 if pair else 1):
+                    changed = ([v * (1 + 1e-6 * (i == j)) for j, v in enumerate(value)] if pair
+                               else value * (1 + 1e-6))
+                    with self.subTest(name, changed=changed):
+                        self.assertNotEqual(changed, value)
+                        self.compare(Case(**base), Case(**base).set({name: changed}), OUT_OF_TOLERANCE)
+
+    def test_no_parameter_is_forgotten(self):
+        """Whatever number stands in the cases above is off by a millionth somewhere in the controls."""
+        structure = {"schema", "pump.pistons", "operation.samples_per_revolution"}
+        tried = {name for _, names in CONTROLS for name in names.split()}
+        for base in (RATED, LIGHT, REAL):
+            table = ""
+            for text in Case(**base).lines:
+                if text.startswith("["):
+                    table = text.strip("[]")
+                key, _, value = (part.strip() for part in text.partition("="))
+                name = f"{table}.{key}" if table else key
+                if value and not value.startswith('"') and name not in structure:
+                    self.assertIn(name, tried)
+
+    def test_pressure_curve_counts(self):
+        (self.folder / "curve.csv").write_text(CURVE)
+        (self.folder / "other.csv").write_text(CURVE.replace("180,100", "180,100.0001"))
+        other = Case(**{**CURVED, "pressure.file": '"other.csv"'})
+        self.compare(Case(**CURVED), other, OUT_OF_TOLERANCE)
+
+    def test_what_has_no_effect_at_constant_speed(self):
+        for base, name, value in WITHOUT_EFFECT:
+            with self.subTest(name, value=value):
+                self.compare(Case(**base), Case(**base).set({name: value}), DONE)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    PROGRAM, REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Fails if one model includes or links the other, or the comparison includes a model.
+# usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY MULTIBODY_LIBRARY
+set -euo pipefail
+source_dir=$1 analytic=$2 multibody=$3
+status=0
+
+forbid_include() {  # folder, forbidden room
+  if grep -rnE "#include *[\"<]([^\">]*/)?$2/" "$1" --include='*.h' --include='*.cpp'; then
+    echo "error: $(basename "$1") includes $2"
+    return 1
+  fi
+}
+forbid_symbol() {  # library, forbidden namespace
+  if nm -C --undefined-only "$1" 2>/dev/null | grep -E "bentaxis::$2::"; then
+    echo "error: $(basename "$1") uses bentaxis::$2"
+    return 1
+  fi
+}
+
+forbid_include "$source_dir/analytic" multibody || status=1
+forbid_include "$source_dir/multibody" analytic || status=1
+for room in analytic multibody; do forbid_include "$source_dir/compare" $room || status=1; done
+for room in analytic multibody compare cli; do forbid_include "$source_dir/pump" $room || status=1; done
+forbid_symbol "$analytic" multibody || status=1
+forbid_symbol "$multibody" analytic || status=1
+
+# The check itself must be able to fail.
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+echo '#include "bentaxis/analytic/model.h"' > "$scratch/x.cpp"
+if forbid_include "$scratch" analytic > /dev/null; then
+  echo "error: the check does not notice a forbidden include"; status=1
+fi
+if [ "$(nm -C --undefined-only "$multibody" 2>/dev/null | grep -c "bentaxis::")" = 0 ]; then
+  echo "error: the check sees no symbols"; status=1
+fi
+[ $status = 0 ] && echo "independent"
+exit $status

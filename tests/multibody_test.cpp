@@ -1,0 +1,248 @@
+// The multibody model against the analytic one, driven and integrated.
+#include <gtest/gtest.h>
+
+#include "bentaxis/multibody/integrated.h"
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/error.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+// The constraint solver's condition number (up to 1e3) times round-off: 2e-13 measured, 1e-10
+// required.
+constexpr double kDrivenTolerance = 5e-12;
+
+class Driven : public testing::TestWithParam<std::string> {};
+
+TEST_P(Driven, AgreesWithTheAnalyticModel) {
+  const Case the_case = reference_case(GetParam());
+  const Samples samples = one_turn(the_case);
+  const ResultTable a = analytic::run(the_case, the_case.analytic, samples);
+  const ResultTable m = multibody::run_driven(the_case, the_case.multibody, samples);
+  const Worst worst = worst_difference(a, m, true);
+  EXPECT_LE(worst.over_peak, scaled(kDrivenTolerance)) << worst.channel;
+}
+
+TEST_P(Driven, SatisfiesItsOwnChecks) {
+  const Case the_case = reference_case(GetParam());
+  const ResultTable m = multibody::run_driven(the_case, the_case.multibody, one_turn(the_case));
+  const double scale = m.peak("Rs") * the_case.pump.geometry.joint_circle_radius;
+  for (std::size_t c = 0; c < m.columns(); ++c) {
+    if (m.channels[c].kind != ChannelKind::check) continue;
+    for (std::size_t row = 0; row < m.rows(); ++row)
+      ASSERT_NEAR(m.at(row, c), 0, scaled(1e-12) * scale) << m.channels[c].name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Driven, testing::ValuesIn(reference_cases()),
+                         [](const auto& test) { return test.param; });
+
+TEST(DrivenModel, AgreesOnRandomPumpsAndChangingSpeed) {
+  RandomPump random(21);
+  for (int n = 0; n < 60; ++n) {
+    const PumpParameters pump = random.pump();
+    Assumptions assumptions = random.assumptions(pump);
+    if (n % 4 == 3) assumptions.gear = GearScene::imposed;
+    const Instant instant = random.instant(pump, n % 2 == 0 && assumptions.gear == GearScene::mesh);
+    const analytic::Model a(pump, assumptions);
+    multibody::Model m(pump, assumptions, instant.omega);
+    std::vector<double> va(a.layout().size());
+    std::vector<double> vm(a.layout().size());
+    a.evaluate(instant, va);
+    m.evaluate(instant, vm);
+    double largest = 0;
+    for (std::size_t c = 0; c < a.layout().reactions(); ++c)
+      if (is_computed(va[c])) largest = std::max(largest, std::abs(va[c]));
+    for (std::size_t c = 0; c < a.layout().reactions(); ++c) {
+      ASSERT_EQ(is_computed(va[c]), is_computed(vm[c]));
+      if (is_computed(va[c])) {
+        ASSERT_NEAR(va[c], vm[c], scaled(1e-11) * largest)
+            << a.layout().channels()[c].name << ", pump " << n;
+      }
+    }
+    ASSERT_NEAR(va[a.layout().Tcs()], vm[a.layout().Tcs()], scaled(1e-11) * largest) << n;
+  }
+}
+
+TEST(DrivenModel, DoesNotDependOnTheOrderOfCalls) {
+  const Case the_case = reference_case("bap63_rated");
+  multibody::Model fresh(the_case.pump, the_case.multibody, 1);
+  multibody::Model used(the_case.pump, the_case.multibody, 1);
+  Instant i;
+  i.omega = 150;
+  i.chamber_pressure.assign(5, 1e7);
+  std::vector<double> a(fresh.layout().size());
+  std::vector<double> b(fresh.layout().size());
+  for (const double theta : {0.0, 0.05, 3.0, 6.2}) {
+    i.theta = theta;
+    used.evaluate(i, b);
+  }
+  i.theta = 2.0;
+  used.evaluate(i, b);
+  fresh.evaluate(i, a);
+  for (std::size_t c = 0; c < fresh.layout().reactions(); ++c)
+    EXPECT_NEAR(a[c], b[c], scaled(1e-8)) << fresh.layout().channels()[c].name;  // N of 1e4
+}
+
+TEST(DrivenModel, AxialInertiasDoNotActAtConstantSpeed) {
+  Case the_case = reference_case("bap63_rated");
+  const Samples samples = one_turn(the_case);
+  const ResultTable a = multibody::run_driven(the_case, the_case.multibody, samples);
+  the_case.pump.shaft.axial_inertia *= 10;
+  the_case.pump.block.axial_inertia *= 10;
+  const ResultTable b = multibody::run_driven(the_case, the_case.multibody, samples);
+  EXPECT_LE(worst_difference(a, b, true).over_peak, scaled(kDrivenTolerance));
+  the_case.pump.shaft.axial_inertia = the_case.pump.block.axial_inertia = 0;
+  const ResultTable c = multibody::run_driven(the_case, the_case.multibody, samples);
+  EXPECT_LE(worst_difference(a, c, true).over_peak, scaled(kDrivenTolerance));
+}
+
+TEST(DrivenModel, RefusesAPistonWithoutInertiaAboutItsJoint) {
+  Case the_case = reference_case("bap63_rated");
+  the_case.pump.piston.mass = 0;
+  EXPECT_THROW(multibody::run_driven(the_case, the_case.multibody, one_turn(the_case)),
+               ComputationError);
+  the_case.pump.piston.mass = 0.1;
+  the_case.pump.piston.joint_mass_fraction = 1;
+  EXPECT_THROW(multibody::run_driven(the_case, the_case.multibody, one_turn(the_case)),
+               ComputationError);
+}
+
+// Every parameter that acts in the case, off by 1e-6 of itself in the multibody model alone, must
+// show; and every reaction must be reached by at least one of them.
+struct Perturbation {
+  std::string name;
+  std::function<double&(Case&)> value;
+};
+
+TEST(NegativeControl, EveryActiveParameterShowsInSomeReaction) {
+  Case the_case = reference_case("asymmetric_ports");
+  the_case.pump.friction.regularization = 0.5;  // of the order of the pistons' speed, so that it acts
+  const Samples samples = one_turn(the_case);
+  const ResultTable reference = analytic::run(the_case, the_case.analytic, samples);
+#define BENTAXIS_FIELD(path) {#path, [](Case& c) -> double& { return c.pump.path; }}
+  const std::vector<Perturbation> perturbations = {
+      BENTAXIS_FIELD(geometry.tilt), BENTAXIS_FIELD(geometry.joint_circle_radius),
+      BENTAXIS_FIELD(geometry.bore_circle_radius), BENTAXIS_FIELD(geometry.axis_offset),
+      BENTAXIS_FIELD(geometry.piston_length), BENTAXIS_FIELD(geometry.bore_diameter),
+      BENTAXIS_FIELD(gear.pitch_diameter), BENTAXIS_FIELD(gear.pressure_angle),
+      BENTAXIS_FIELD(bearings.tapered_z), BENTAXIS_FIELD(bearings.cylindrical_z),
+      BENTAXIS_FIELD(piston.mass), BENTAXIS_FIELD(piston.real->centre_of_mass),
+      BENTAXIS_FIELD(piston.real->transverse_inertia), BENTAXIS_FIELD(piston.real->axial_inertia),
+      BENTAXIS_FIELD(piston.real->spin), BENTAXIS_FIELD(shaft.mass),
+      BENTAXIS_FIELD(shaft.centre_of_mass_z), BENTAXIS_FIELD(block.mass),
+      BENTAXIS_FIELD(block.centre_of_mass_z), BENTAXIS_FIELD(block.pin_z),
+      BENTAXIS_FIELD(block.bottom_area), BENTAXIS_FIELD(block.spring_force),
+      BENTAXIS_FIELD(friction.piston_coulomb), BENTAXIS_FIELD(friction.piston_viscous),
+      BENTAXIS_FIELD(friction.regularization), BENTAXIS_FIELD(friction.block_viscous),
+      BENTAXIS_FIELD(friction.shaft_viscous), BENTAXIS_FIELD(friction.shaft_torque_factor),
+      BENTAXIS_FIELD(gravity), BENTAXIS_FIELD(port_plate->r1), BENTAXIS_FIELD(port_plate->r4),
+      BENTAXIS_FIELD(port_plate->delivery.from_deg), BENTAXIS_FIELD(port_plate->suction.to_deg)};
+#undef BENTAXIS_FIELD
+  std::map<std::string, int> noticed_in;
+  for (const Perturbation& perturbation : perturbations) {
+    Case wrong = the_case;
+    perturbation.value(wrong) *= 1 + 1e-6;
+    const ResultTable m = multibody::run_driven(wrong, wrong.multibody, samples);
+    bool noticed = false;
+    for (std::size_t c = 0; c < reference.columns(); ++c) {
+      const Channel& channel = reference.channels[c];
+      if (channel.kind != ChannelKind::reaction) continue;
+      const double peak = reference.peak(channel.group);
+      for (std::size_t row = 0; row < reference.rows(); ++row) {
+        // Ten times what agreement is held to.
+        if (std::abs(m.at(row, c) - reference.at(row, c)) > 10 * kDrivenTolerance * peak) {
+          noticed = true;
+          ++noticed_in[channel.name];
+          break;
+        }
+      }
+    }
+    EXPECT_TRUE(noticed) << perturbation.name;
+  }
+  for (const Channel& channel : reference.channels) {
+    if (channel.kind == ChannelKind::reaction) {
+      EXPECT_GT(noticed_in[channel.name], 0) << channel.name;
+    }
+  }
+}
+
+// ---- integrated --------------------------------------------------------------------------------
+
+struct IntegratedError {
+  double reactions = 0;
+  multibody::IntegrationRecord record;
+};
+
+IntegratedError integrate(Case the_case, int revolutions, double accuracy) {
+  the_case.operation.revolutions = revolutions;
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples =
+      sample_case(the_case, pressure, revolutions, the_case.operation.speed_rpm < 0);
+  const ResultTable a = analytic::run(the_case, the_case.analytic, samples);
+  multibody::IntegrationOptions options;
+  options.accuracy = accuracy;
+  auto run = multibody::run_integrated(the_case, the_case.multibody, samples, pressure, options);
+  return {worst_difference(a, run.table, true).over_peak, run.record};
+}
+
+TEST(Integrated, ErrorShrinksWithTheAccuracyAskedFor) {
+  const Case the_case = reference_case("bap63_rated");
+  double before = 1;
+  for (const double accuracy : {1e-3, 1e-5, 1e-7}) {
+    const IntegratedError error = integrate(the_case, 3, accuracy);
+    // Measured: 3e-5, 3e-5 (held by the step between samples), 8e-7.
+    EXPECT_LT(error.reactions, std::max(100 * accuracy, 1e-6)) << accuracy;
+    EXPECT_LE(error.reactions, before);
+    EXPECT_LT(std::abs(error.record.worst_gear_phase), 1e-6);
+    EXPECT_LT(std::abs(error.record.work_residual()), 1e-4);  // J of 5434 J
+    before = error.reactions;
+  }
+  EXPECT_LT(before, 5e-6);
+}
+
+TEST(Integrated, BackwardsStepsAndDryFrictionToo) {
+  EXPECT_LT(integrate(reference_case("reversed"), 1, 1e-6).reactions, 1e-4);
+  EXPECT_LT(integrate(reference_case("step_single"), 1, 1e-6).reactions, 1e-4);
+  EXPECT_LT(integrate(reference_case("asymmetric_ports"), 1, 1e-6).reactions, 1e-4);
+}
+
+TEST(Integrated, RefusesStandstill) {
+  EXPECT_THROW(integrate(reference_case("standstill"), 1, 1e-4), InputError);
+}
+
+// The shaft is free and fed the analytic torque: it must hold its speed. A torque that is 1 % off
+// must not (the control).
+TEST(Integrated, AnalyticTorqueHoldsTheSpeedOfAFreeShaft) {
+  const Case the_case = reference_case("bap63_rated");
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples = sample_case(the_case, pressure, 1);
+  const analytic::Model model(the_case.pump, the_case.analytic);
+  std::vector<double> values(model.layout().size());
+  Instant instant;
+  instant.omega = samples.omega;
+  instant.ports = samples.ports;
+  instant.chamber_pressure.resize(5);
+  double factor = 1;
+  const auto torque = [&](double theta_deg) {
+    instant.theta = radians(theta_deg);
+    for (int k = 1; k <= 5; ++k)
+      instant.chamber_pressure[k - 1] = pressure(piston_angle_deg(theta_deg, k, 5));
+    model.reactions(instant, values);
+    return factor * values[model.layout().Td()];
+  };
+  multibody::IntegrationOptions options;
+  options.accuracy = 1e-7;
+  const auto run = [&] {
+    return multibody::run_torque_driven(the_case, the_case.multibody, samples, pressure, torque,
+                                        options)
+        .worst_speed;
+  };
+  EXPECT_LT(run(), 1e-7);
+  factor = 1.01;
+  EXPECT_GT(run(), 1e-3);
+}
+
+}  // namespace
+}  // namespace bentaxis::test

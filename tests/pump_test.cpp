@@ -1,0 +1,447 @@
+// Shared room: case files, pressure, curves as CSV, channels, tables, output folders.
+#include <fstream>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bentaxis/analytic/port_plate.h"
+#include "bentaxis/multibody/land_pressure.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/files.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Scratch {
+ public:
+  Scratch()
+      : path_(fs::temp_directory_path() /
+              ("bentaxis_test_" + std::to_string(getpid()) + "_" +
+               testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::create_directories(path_);
+  }
+  ~Scratch() { fs::remove_all(path_); }
+  fs::path file(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string default_text() {
+  std::ifstream in(reference_folder() / "bap63_rated" / "case.toml");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("no \"" + from + "\" in the case");
+  return text.replace(at, from.size(), to);
+}
+
+std::string message(const std::string& text) {
+  try {
+    parse_case(text, "x.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// ---- case file ---------------------------------------------------------------------------------
+
+TEST(CaseFile, ReadsEveryKeyInSi) {
+  const Case c = reference_case("asymmetric_ports");
+  EXPECT_EQ(c.pump.geometry.pistons, 5);
+  EXPECT_DOUBLE_EQ(c.pump.geometry.tilt, 40 * kPi / 180);
+  EXPECT_DOUBLE_EQ(c.pump.geometry.joint_circle_radius, 0.02492);
+  EXPECT_DOUBLE_EQ(c.pump.geometry.axis_offset, 1e-4);
+  EXPECT_DOUBLE_EQ(c.pump.gear.pressure_angle, kPi / 9);
+  EXPECT_DOUBLE_EQ(c.pump.bearings.cylindrical_z, -0.068);
+  ASSERT_TRUE(c.pump.piston.real);
+  EXPECT_DOUBLE_EQ(c.pump.piston.real->transverse_inertia, 24e-6);
+  EXPECT_DOUBLE_EQ(c.pump.piston.real->spin, 700 * kPi / 30);
+  EXPECT_DOUBLE_EQ(c.pump.block.bottom_area, 250e-6);
+  EXPECT_DOUBLE_EQ(c.pump.friction.block_viscous, 0.0054 * 30 / kPi);
+  EXPECT_DOUBLE_EQ(c.operation.speed_rpm, -1800);
+  EXPECT_DOUBLE_EQ(c.pressure.ports.suction, 5e5);
+  EXPECT_DOUBLE_EQ(c.pressure.delivery_start_deg, 170);
+  ASSERT_TRUE(c.pump.port_plate);
+  EXPECT_DOUBLE_EQ(c.pump.port_plate->r4, 0.026);
+  EXPECT_DOUBLE_EQ(c.pump.port_plate->delivery.from_deg, 196);
+}
+
+TEST(CaseFile, FillsInDefaults) {
+  const Case c = reference_case("noload_1500_lumped");
+  EXPECT_DOUBLE_EQ(c.pump.shaft.axial_inertia, 2000e-6);
+  EXPECT_DOUBLE_EQ(c.pump.block.axial_inertia, 1500e-6);
+  EXPECT_EQ(c.operation.revolutions, 1);
+  EXPECT_FALSE(c.pump.port_plate);
+  const Case bare = parse_case(with(default_text(), "samples_per_revolution = 72\n", ""), "x.toml");
+  EXPECT_EQ(bare.operation.samples_per_revolution, 720);
+  const auto is_default = [&](const std::string& key) {
+    for (const CaseEntry& entry : bare.entries)
+      if (entry.key == key) return entry.defaulted;
+    return false;
+  };
+  EXPECT_TRUE(is_default("samples_per_revolution"));
+  EXPECT_FALSE(is_default("tilt_deg"));
+}
+
+TEST(CaseFile, IntegerServesAsANumberButNotTheReverse) {
+  EXPECT_NO_THROW(parse_case(with(default_text(), "tilt_deg = 40.0", "tilt_deg = 40"), "x.toml"));
+  EXPECT_THAT(message(with(default_text(), "pistons = 5", "pistons = 5.0")),
+              HasSubstr("x.toml:5: [pump] pistons = 5.0: must be an integer in [1, 99]"));
+}
+
+struct BadCase {
+  std::string from, to, expected;
+};
+
+TEST(CaseFile, RefusesWithFileLineKeyValueAndRange) {
+  const std::vector<BadCase> bad = {
+      {"tilt_deg = 40.0", "tilt_deg = 90", "x.toml:6: [pump] tilt_deg = 90: must be in [0, 90)"},
+      {"tilt_deg = 40.0", "tilt_deg = -1", "must be in [0, 90)"},
+      {"tilt_deg = 40.0", "tilt_deg = \"40\"", "tilt_deg = \"40\": must be a number"},
+      {"tilt_deg = 40.0", "tilt_deg = nan", "finite"},
+      {"tilt_deg = 40.0", "tilt_degg = 40.0", "is \"tilt_degg\" in line 6 meant?"},
+      {"tilt_deg = 40.0", "tilt_deg = 40.0\nweight = 3", "unknown key \"weight\" in [pump]"},
+      {"pistons = 5", "pistons = 0", "[1, 99]"},
+      {"pistons = 5", "pistons = 100", "[1, 99]"},
+      {"bore_diameter_mm = 22.5", "bore_diameter_mm = 0", "must be > 0"},
+      {"piston_length_mm = 46.0", "piston_length_mm = 2.9", "cannot be assembled at theta = 180"},
+      {"piston_length_mm = 46.0", "piston_length_mm = inf", "finite"},
+      {"cylindrical_z_mm = -68.0", "cylindrical_z_mm = -26", "must differ from tapered_z_mm"},
+      {"pressure_angle_deg = 20.0", "pressure_angle_deg = 61", "in [0, 60]"},
+      {"inertia = \"lumped\"", "inertia = \"solid\"", "\"lumped\" or \"real\""},
+      {"inertia = \"lumped\"", "inertia = \"real\"", "centre_of_mass_mm is missing"},
+      {"mass_kg = 0.09", "mass_kg = -0.09", "must be >= 0"},
+      {"joint_mass_fraction = 0.5", "joint_mass_fraction = 1.5", "in [0, 1]"},
+      {"shaft_torque_factor = 0.99", "shaft_torque_factor = 0", "in (0, 1]"},
+      {"samples_per_revolution = 72", "samples_per_revolution = 0", "an integer >= 1"},
+      {"kind = \"ideal\"", "kind = \"curve\"", "file is missing"},
+      {"transition_deg = 20.0", "transition_deg = 181", "in [0, 180]"},
+      {"inner_land_mm = [17.2, 19.0]", "inner_land_mm = [19.0, 17.2]", "r1 < r2"},
+      {"outer_land_mm = [24.2, 26.0]", "outer_land_mm = [18, 26.0]", "r2 < r3"},
+      {"delivery_arc_deg = [189.0, 345.0]", "delivery_arc_deg = [0, 361]", "from + 360"},
+      {"delivery_arc_deg = [189.0, 345.0]", "delivery_arc_deg = 3", "pair"},
+      {"[gear]", "[geer]", "table [gear] is missing; is \"geer\" in line 13 meant?"},
+      {"[port_plate]", "[portplate]", "unknown table [portplate]"},
+      {"schema = 1", "schema = 2", "schema = 2"},
+      {"name = ", "nam = ", "name is missing"},
+      {"tilt_deg = 40.0", "tilt_deg = = 40", "x.toml:6:"}};
+  for (const BadCase& b : bad) {
+    const std::string text = message(with(default_text(), b.from, b.to));
+    EXPECT_THAT(text, HasSubstr(b.expected)) << b.to;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << b.to;
+  }
+}
+
+TEST(CaseFile, AxialInertiaIsBoundedByTwiceTheTransverse) {
+  std::ifstream in(reference_folder() / "asymmetric_ports" / "case.toml");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_THAT(message(with(text, "axial_inertia_kg_mm2 = 5.0", "axial_inertia_kg_mm2 = 48.1")),
+              HasSubstr("in [0, 48]"));
+  EXPECT_EQ(message(with(text, "axial_inertia_kg_mm2 = 5.0", "axial_inertia_kg_mm2 = 48")),
+            "accepted");
+}
+
+TEST(CaseFile, EachModelMayHaveItsOwnAssumptions) {
+  const std::string extra =
+      "\n[assumptions.multibody]\npiston_friction = false\ngear = \"imposed\"\n";
+  const Case c = parse_case(default_text() + extra, "x.toml");
+  EXPECT_TRUE(c.analytic == (Assumptions{true, PistonInertia::lumped, GearScene::mesh}));
+  EXPECT_TRUE(c.multibody == (Assumptions{false, PistonInertia::lumped, GearScene::imposed}));
+  EXPECT_THAT(message(default_text() + "\n[assumptions.simscape]\n"), HasSubstr("simscape"));
+  EXPECT_THAT(message(default_text() + "\n[assumptions.analytic]\ninertia = \"real\"\n"),
+              HasSubstr("needs centre_of_mass_mm"));
+}
+
+// ---- assembly ----------------------------------------------------------------------------------
+
+TEST(Assembly, MarginIsTheLargestDistanceOverTheTurn) {
+  RandomPump random(31);
+  for (int n = 0; n < 200; ++n) {
+    const Geometry g = random.pump().geometry;
+    double largest = 0;
+    for (int i = 0; i < 3600; ++i) {
+      const double t = 2 * kPi * i / 3600;
+      const double x = (g.bore_circle_radius - g.joint_circle_radius) * std::sin(t);
+      const double y = (g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt)) * std::cos(t) -
+                       g.axis_offset * std::sin(g.tilt);
+      largest = std::max(largest, std::hypot(x, y));
+    }
+    EXPECT_NEAR(assembly_margin(g).longest_distance, largest, 1e-7);
+    EXPECT_GE(assembly_margin(g).longest_distance, largest * (1 - 1e-14));
+  }
+}
+
+// ---- pressure ----------------------------------------------------------------------------------
+
+PressureSpec ideal(double width, double start = 180) {
+  PressureSpec spec;
+  spec.ports = {1e5, 2e7};
+  spec.transition_deg = width;
+  spec.delivery_start_deg = start;
+  return spec;
+}
+
+TEST(Pressure, IdealTraceFollowsItsDefinition) {
+  const PressureTrace trace(ideal(20));
+  EXPECT_DOUBLE_EQ(trace(180), (1e5 + 2e7) / 2);
+  EXPECT_DOUBLE_EQ(trace(170), 1e5);
+  EXPECT_DOUBLE_EQ(trace(190), 2e7);
+  EXPECT_DOUBLE_EQ(trace(270), 2e7);
+  EXPECT_DOUBLE_EQ(trace(0), (1e5 + 2e7) / 2);
+  EXPECT_DOUBLE_EQ(trace(90), 1e5);
+  const double t = 5.0 / 20;
+  EXPECT_NEAR(trace(175), 1e5 + (2e7 - 1e5) * t * t * (3 - 2 * t), 1e-7);
+  EXPECT_NEAR(trace(355) - 1e5, 2e7 - trace(175), 1e-7);
+  EXPECT_DOUBLE_EQ(trace(175), trace(175 - 720));
+  const std::vector<double> edges = {10, 170, 190, 350};
+  EXPECT_EQ(trace.edges_deg(), edges);
+}
+
+TEST(Pressure, StepTakesItsEdgeWithinRoundOff) {
+  const PressureTrace trace(ideal(0));
+  EXPECT_DOUBLE_EQ(trace(180), 2e7);
+  EXPECT_DOUBLE_EQ(trace(180 - 1e-10), 2e7);  // counts as on the edge
+  EXPECT_DOUBLE_EQ(trace(180 - 1e-8), 1e5);
+  EXPECT_DOUBLE_EQ(trace(360 - 1e-8), 2e7);
+  EXPECT_DOUBLE_EQ(trace(360), 1e5);
+  EXPECT_DOUBLE_EQ(trace(-1e-10), 1e5);
+}
+
+TEST(Pressure, SplineIsPeriodicSmoothAndOfFourthOrder) {
+  const auto error = [](int points) {
+    PressureSpec spec;
+    spec.kind = PressureKind::curve;
+    for (int i = 0; i < points; ++i) {
+      const double angle = 360.0 * i / points + 3;
+      spec.curve.theta_deg.push_back(angle);
+      spec.curve.pressure.push_back(std::sin(radians(angle)) + 0.3 * std::cos(radians(3 * angle)));
+    }
+    const PressureTrace trace(spec);
+    double worst = 0;
+    for (double x = -400; x < 800; x += 1.7)
+      worst = std::max(worst, std::abs(trace(x) - std::sin(radians(x)) - 0.3 * std::cos(radians(3 * x))));
+    return worst;
+  };
+  EXPECT_NEAR(std::log2(error(60) / error(120)), 4, 0.15);
+  EXPECT_LT(error(800), 1e-8);
+}
+
+TEST(Pressure, CurveIsRefusedWithTheReason) {
+  PressureSpec spec;
+  spec.kind = PressureKind::curve;
+  spec.file = "p.csv";
+  spec.curve = {{0, 100}, {1, 2}};
+  EXPECT_THROW(PressureTrace{spec}, InputError);
+  spec.curve = {{0, 100, 100}, {1, 2, 3}};
+  EXPECT_THROW(PressureTrace{spec}, InputError);
+  spec.curve = {{0, 100, 360}, {1, 2, 3}};
+  EXPECT_THROW(PressureTrace{spec}, InputError);
+  spec.curve = {{0, 100, 359.9}, {1, 2, 3}};
+  EXPECT_NO_THROW(PressureTrace{spec});
+}
+
+// ---- friction ----------------------------------------------------------------------------------
+
+TEST(Friction, OpposesMotionAndRestsAtRest) {
+  Friction f;
+  f.piston_coulomb = 25;
+  f.piston_viscous = 10;
+  f.regularization = 0.01;
+  EXPECT_DOUBLE_EQ(piston_friction_force(f, 0.01, 0), -(25 * std::tanh(1.0) + 0.1));
+  EXPECT_DOUBLE_EQ(piston_friction_force(f, -0.01, 0), 25 * std::tanh(1.0) + 0.1);
+  f.regularization = 0;
+  EXPECT_DOUBLE_EQ(piston_friction_force(f, 1e-3, 1e-12), -(25 + 0.01));
+  EXPECT_DOUBLE_EQ(piston_friction_force(f, 1e-13, 1e-12), -1e-12);
+}
+
+// ---- port plate: closed form against quadrature ------------------------------------------------
+
+TEST(PortPlateForce, ClosedFormEqualsQuadrature) {
+  RandomPump random(41);
+  for (int n = 0; n < 100; ++n) {
+    const double r1 = random.in(0, 0.02);
+    const double r2 = r1 + random.in(1e-4, 5e-3);
+    const double r3 = r2 + random.in(1e-4, 5e-3);
+    const double r4 = r3 + random.in(1e-4, 5e-3);
+    const double from = random.in(-400, 400);
+    const PortArc arc{from, from + random.in(1, 360)};
+    const PortPlate plate{r1, r2, r3, r4, arc, arc};
+    const analytic::LandForce closed = analytic::land_force(plate, arc);
+    const multibody::FilmLoad sum = multibody::film_load(plate, {0, 1e6});
+    EXPECT_NEAR(closed.force_z * 1e6 / sum.force_z, 1, 1e-13);
+    EXPECT_NEAR(closed.moment_x * 1e6, sum.moment_x, 1e-13 * std::abs(sum.force_z) * r4 + 1e-13);
+    EXPECT_NEAR(closed.moment_y * 1e6, sum.moment_y, 1e-13 * std::abs(sum.force_z) * r4 + 1e-13);
+  }
+}
+
+TEST(PortPlateForce, FullRingHasNoMoment) {
+  const PortPlate plate{0.01, 0.012, 0.02, 0.022, {0, 360}, {0, 360}};
+  const analytic::LandForce f = analytic::land_force(plate, plate.delivery);
+  // Cones of linear pressure: volume of a frustum difference.
+  const auto cone = [](double r) { return kPi * r * r * r / 3; };
+  const double expected = (cone(0.022) - cone(0.02)) / 0.002 - (cone(0.012) - cone(0.01)) / 0.002;
+  EXPECT_NEAR(f.force_z, -expected, 1e-15);
+  EXPECT_NEAR(f.moment_x, 0, 1e-18);
+  EXPECT_NEAR(f.moment_y, 0, 1e-18);
+}
+
+// ---- CSV, channels, table ----------------------------------------------------------------------
+
+TEST(Csv, RefusesWhatIsNotANumber) {
+  const Scratch scratch;
+  const auto why = [&](const std::string& text) {
+    try {
+      read_numeric_csv(scratch.file("a.csv", text));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(why("a,b\n1,2\n"), "accepted");
+  EXPECT_EQ(why("a,b\r\n 1 , 2e3 \r\n"), "accepted");
+  EXPECT_THAT(why("a,b\n1,x\n"), HasSubstr("a.csv:2: b = \"x\""));
+  EXPECT_THAT(why("a,b\n1,nan\n"), HasSubstr("finite"));
+  EXPECT_THAT(why("a,b\n1,2,3\n"), HasSubstr("3 fields, the header has 2"));
+  EXPECT_THAT(why("a,b\n1,\n"), HasSubstr("\"\""));
+  EXPECT_THAT(why(""), HasSubstr("is empty"));
+  EXPECT_THROW(read_numeric_csv(scratch.path() / "missing.csv"), InputError);
+  EXPECT_THROW(read_numeric_csv(scratch.path()), InputError);
+}
+
+TEST(Csv, NumbersReadBackToTheSameDouble) {
+  RandomPump random(51);
+  for (int i = 0; i < 1000; ++i) {
+    const double value = random.in(-1, 1) * std::pow(10, random.in(-30, 30));
+    EXPECT_EQ(std::strtod(number_text(value).c_str(), nullptr), value);
+  }
+  EXPECT_EQ(number_text(-0.0), "0");
+  EXPECT_EQ(number_text(not_computed()), "");
+}
+
+TEST(Channels, ColumnsAreTheFixedOnes) {
+  const ChannelLayout layout(2);
+  const std::vector<std::string> expected = {
+      "Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N", "Rc_1_x2_N", "Rc_1_y2_N", "Rs_2_x2_N", "Rs_2_y2_N",
+      "Rs_2_z2_N", "Rc_2_x2_N", "Rc_2_y2_N", "Fh_z2_N", "Th_x2_Nm", "Th_y2_Nm", "Rcn_x2_N",
+      "Rcn_y2_N", "Rcs_z4_N", "Rb1_x1_N", "Rb1_y1_N", "Rb1_z1_N", "Rb2_x1_N", "Rb2_y1_N",
+      "Td_z1_Nm", "xh_x2_mm", "yh_y2_mm"};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(layout.channels()[i].name, expected[i]);
+}
+
+// The index functions and the list of descriptions are written separately: they must agree.
+TEST(Channels, IndicesPointAtTheirDescriptions) {
+  for (const int n : {1, 5, 9}) {
+    const ChannelLayout at(n);
+    const auto& list = at.channels();
+    const int k = n - 1;
+    const std::string piston = std::to_string(n);
+    EXPECT_EQ(list[at.Rs(k, 2)].name, "Rs_" + piston + "_z2_N");
+    EXPECT_EQ(list[at.Rc(k, 1)].name, "Rc_" + piston + "_y2_N");
+    EXPECT_EQ(list[at.Th(1)].name, "Th_y2_Nm");
+    EXPECT_EQ(list[at.Rcn(1)].name, "Rcn_y2_N");
+    EXPECT_EQ(list[at.Rcs()].name, "Rcs_z4_N");
+    EXPECT_EQ(list[at.Rb1(2)].name, "Rb1_z1_N");
+    EXPECT_EQ(list[at.Rb2(1)].name, "Rb2_y1_N");
+    EXPECT_EQ(list[at.Td()].name, "Td_z1_Nm");
+    EXPECT_EQ(list[at.yh()].name, "yh_y2_mm");
+    EXPECT_EQ(list[at.Tcs()].name, "Tcs_z2_Nm");
+    EXPECT_EQ(list[at.pressure(k)].name, "p_" + piston + "_bar");
+    EXPECT_EQ(list[at.zB(k)].name, "zB_" + piston + "_z2_mm");
+    EXPECT_EQ(list[at.Rs3(k, 1)].name, "Rs_" + piston + "_y3_N");
+    EXPECT_EQ(list[at.Tc(k)].name, "Tc_" + piston + "_z2_Nm");
+    EXPECT_EQ(list[at.power_residual()].name, "power_residual_Nm");
+    EXPECT_EQ(list[at.axis_moment(k)].name, "axis_moment_" + piston + "_Nm");
+    EXPECT_EQ(at.size(), at.axis_moment(k) + 1);
+    EXPECT_EQ(at.reactions(), static_cast<std::size_t>(5 * n + 12));
+  }
+}
+
+TEST(Table, StrayNanIsAnErrorAndTheMarkerIsNot) {
+  const ChannelLayout layout(1);
+  Samples samples;
+  samples.theta_deg = {0, 90};
+  samples.chamber_pressure = {0, 0};
+  samples.pistons = 1;
+  const auto fill = [&](double value) {
+    return tabulate("test", layout, samples, [&](const Instant&, std::vector<double>& row) {
+      std::fill(row.begin(), row.end(), 1.0);
+      row[layout.Rcs()] = value;
+    });
+  };
+  EXPECT_FALSE(is_computed(fill(not_computed()).at(1, layout.Rcs())));
+  EXPECT_THROW(fill(std::sqrt(-1.0)), ComputationError);
+  EXPECT_THROW(fill(std::numeric_limits<double>::quiet_NaN()), ComputationError);
+  EXPECT_THROW(fill(std::numeric_limits<double>::infinity()), ComputationError);
+  EXPECT_THAT(to_csv(fill(not_computed())), HasSubstr(",1,,1,"));
+}
+
+TEST(Table, PeakIsThatOfTheVectorOverAllPistons) {
+  const ChannelLayout layout(2);
+  Samples samples;
+  samples.theta_deg = {0, 180};
+  samples.chamber_pressure = {0, 0, 0, 0};
+  samples.pistons = 2;
+  const ResultTable t =
+      tabulate("test", layout, samples, [&](const Instant& i, std::vector<double>& row) {
+        std::fill(row.begin(), row.end(), 0.0);
+        row[layout.Rs(1, 0)] = 3;
+        row[layout.Rs(1, 1)] = i.theta > 1 ? -4 : 0;
+      });
+  EXPECT_DOUBLE_EQ(t.peak("Rs"), 5);
+}
+
+TEST(Samples, FallBackwardsAndReduceExactly) {
+  Case c = reference_case("reversed");
+  c.operation.samples_per_revolution = 4;
+  const Samples s = sample_case(c, PressureTrace(c.pressure), 2, true);
+  const std::vector<double> expected = {0, -90, -180, -270, -360, -450, -540, -630};
+  EXPECT_EQ(s.theta_deg, expected);
+  Instant i;
+  s.instant(5, i);
+  EXPECT_DOUBLE_EQ(i.theta, -kPi / 2);
+}
+
+// ---- output ------------------------------------------------------------------------------------
+
+TEST(OutputFolder, LeavesNothingUnlessCommitted) {
+  const Scratch scratch;
+  const fs::path target = scratch.path() / "a" / "b";
+  {
+    OutputFolder folder(target);
+    folder.add("x.txt", "hello");
+    EXPECT_FALSE(fs::exists(target / "x.txt"));
+  }
+  EXPECT_FALSE(fs::exists(scratch.path() / "a"));
+  {
+    OutputFolder folder(target);
+    folder.add("x.txt", "hello");
+    folder.commit();
+  }
+  std::ifstream in(target / "x.txt");
+  std::string text;
+  in >> text;
+  EXPECT_EQ(text, "hello");
+  EXPECT_EQ(std::distance(fs::directory_iterator(target), fs::directory_iterator()), 1);
+}
+
+TEST(OutputFolder, NamesThePathItCannotWrite) {
+  const Scratch scratch;
+  scratch.file("taken", "x");
+  EXPECT_THROW(OutputFolder(scratch.path() / "taken"), InputError);
+  EXPECT_THROW(OutputFolder(scratch.path() / "taken" / "below"), InputError);
+}
+
+}  // namespace
+}  // namespace bentaxis::test

@@ -1,0 +1,172 @@
+// Pins the signs and frames of Simbody 3.7 that multibody/conventions.h wraps, against free-body
+// diagrams written here. Generic data: nothing is aligned with an axis by chance.
+#include "bentaxis/multibody/conventions.h"
+
+#include <SimTKsimbody.h>
+#include <gtest/gtest.h>
+
+#include "bentaxis/multibody/gear_mesh.h"
+
+namespace bentaxis::multibody {
+namespace {
+
+using namespace SimTK;
+
+struct World {
+  World() : matter(system), forces(system) {}
+  MultibodySystem system;
+  SimbodyMatterSubsystem matter;
+  GeneralForceSubsystem forces;
+};
+
+Body::Rigid some_body() {
+  return Body::Rigid(MassProperties(1.7, Vec3(0.1, -0.2, 0.3), Inertia(0.9, 1.1, 1.3)));
+}
+
+double distance(const Vec3& a, const Vec3& b) { return (a - b).norm(); }
+
+// A body welded to ground: the joint carries weight and applied force, with the sign of what
+// ground exerts on the body, at M.
+TEST(SimbodyConventions, JointForceIsWhatTheParentExertsOnTheBody) {
+  World w;
+  Force::UniformGravity(w.forces, w.matter, Vec3(0, -9, 0));
+  const Transform frame(Rotation(0.4, ZAxis), Vec3(0.3, 0.2, 0.1));
+  MobilizedBody::Weld body(w.matter.updGround(), frame, some_body(), Transform());
+  State state = w.system.realizeTopology();
+  w.system.realize(state, Stage::Acceleration);
+  Vector_<SpatialVec> forces;
+  joint_forces(state, w.matter, forces);
+  const SpatialVec& f = forces[body.getMobilizedBodyIndex()];
+  const Vec3 weight(0, -9 * 1.7, 0);
+  const Vec3 lever = body.getBodyRotation(state) * Vec3(0.1, -0.2, 0.3);
+  EXPECT_LT(distance(f[1], -weight), 1e-13);
+  EXPECT_LT(distance(f[0], -(lever % weight)), 1e-13);
+}
+
+// A mass held on a line by PointOnLine: the constraint carries what is across the line.
+TEST(SimbodyConventions, ConstraintForceOnTheFollowerBalancesItsLoad) {
+  World w;
+  MobilizedBody::Translation body(w.matter.updGround(), Transform(),
+                                  Body::Rigid(MassProperties(2, Vec3(0), Inertia(1))), Transform());
+  const UnitVec3 line(Vec3(1, 2, 3));
+  Constraint::PointOnLine constraint(w.matter.updGround(), line, Vec3(0), body, Vec3(0));
+  const Vec3 load(5, -7, 11);
+  Force::ConstantForce(w.forces, body, Vec3(0), load);
+  State state = w.system.realizeTopology();
+  w.system.realize(state, Stage::Acceleration);
+  const SpatialVec f = constraint_force_on(state, constraint, body);
+  const Vec3 along = dot(load, Vec3(line)) * Vec3(line);
+  EXPECT_LT(distance(f[1], -(load - along)), 1e-12);
+  // Newton's third law on the other side.
+  EXPECT_LT(distance(constraint_force_on(state, constraint, w.matter.getGround())[1], -f[1]), 1e-12);
+}
+
+// A speed held against a load torque: the drive applies the opposite torque.
+TEST(SimbodyConventions, SpeedAndAccelerationConstraintsApplyMinusTheirMultiplier) {
+  for (const bool speed : {true, false}) {
+    World w;
+    MobilizedBody::Pin wheel(w.matter.updGround(), Transform(),
+                             Body::Rigid(MassProperties(1, Vec3(0), Inertia(0.5))), Transform());
+    Force::MobilityConstantForce(w.forces, wheel, -3.0);
+    Constraint::ConstantSpeed hold_speed;
+    Constraint::ConstantAcceleration hold_rate;
+    if (speed)
+      hold_speed = Constraint::ConstantSpeed(wheel, 0);
+    else
+      hold_rate = Constraint::ConstantAcceleration(wheel, 4.0);
+    State state = w.system.realizeTopology();
+    w.system.realize(state, Stage::Acceleration);
+    const double torque = speed ? applied_generalized_force(state, hold_speed)
+                                : applied_generalized_force(state, hold_rate);
+    EXPECT_NEAR(torque, speed ? 3.0 : 3.0 + 0.5 * 4.0, 1e-13);
+  }
+}
+
+// findMotionForces has the opposite sign too.
+TEST(SimbodyConventions, MotionForcesAreMinusTheAppliedOnes) {
+  World w;
+  MobilizedBody::Pin wheel(w.matter.updGround(), Transform(),
+                           Body::Rigid(MassProperties(1, Vec3(0), Inertia(0.5))), Transform());
+  Motion::Steady motion(wheel, 2.0);
+  Force::MobilityConstantForce(w.forces, wheel, -3.0);
+  State state = w.system.realizeTopology();
+  w.system.realize(state, Stage::Time);
+  w.system.prescribeQ(state);
+  w.system.realize(state, Stage::Position);
+  w.system.prescribeU(state);
+  w.system.realize(state, Stage::Acceleration);
+  Vector torques;
+  w.matter.findMotionForces(state, torques);
+  EXPECT_NEAR(-torques[0], 3.0, 1e-13);
+}
+
+// Mobilizer reactions contain what a joint's own drive applies: a held pin reports the torque.
+TEST(SimbodyConventions, JointForceIncludesTheTorqueOfItsMotion) {
+  World w;
+  MobilizedBody::Pin wheel(w.matter.updGround(), Transform(),
+                           Body::Rigid(MassProperties(1, Vec3(0), Inertia(0.5))), Transform());
+  Motion::Steady motion(wheel, 0.0);
+  Force::ConstantTorque(w.forces, wheel, Vec3(1, 2, -3));
+  State state = w.system.realizeTopology();
+  w.system.realize(state, Stage::Acceleration);
+  Vector_<SpatialVec> forces;
+  joint_forces(state, w.matter, forces);
+  EXPECT_LT(distance(forces[1][0], Vec3(-1, -2, 3)), 1e-13);
+}
+
+// Two wheels on crossing axes, meshed: the tooth force turns the driven one against its load, with
+// the arm of the line about its axis, and its rate error vanishes at constant speed although the
+// line has a part along the centripetal acceleration.
+TEST(GearMesh, CarriesTheLoadOfTheDrivenWheelAndNoMore) {
+  World w;
+  const double tilt = 0.6;
+  const double radius = 0.05;
+  const double pressure_angle = 0.35;
+  const Rotation frame(-tilt, XAxis);
+  MobilizedBody::Pin shaft(w.matter.updGround(), Transform(),
+                           Body::Rigid(MassProperties(1, Vec3(0), Inertia(2e-3))), Transform());
+  MobilizedBody::Pin block(w.matter.updGround(), Transform(frame, Vec3(0)),
+                           Body::Rigid(MassProperties(1, Vec3(0), Inertia(3e-3))), Transform());
+  const double cone = Pi / 2 - tilt / 2;
+  const Vec3 point(0, radius, -radius / std::tan(cone));
+  const UnitVec3 line(Vec3(-std::cos(pressure_angle), std::sin(pressure_angle) * std::cos(cone),
+                           std::sin(pressure_angle) * std::sin(cone)));
+  GearMesh gear(w.matter, shaft, block, point, line, frame);
+  Constraint::ConstantSpeed drive(shaft, 100.0);
+  Force::MobilityConstantForce(w.forces, block, -8.0);
+  State state = w.system.realizeTopology();
+  shaft.setOneQ(state, 0, 1.1);
+  block.setOneQ(state, 0, 1.1);
+  shaft.setOneU(state, 0, 100);
+  block.setOneU(state, 0, 100);
+  w.system.realize(state, Stage::Acceleration);
+  EXPECT_LT(state.getQErr().normInf(), 1e-15);
+  EXPECT_LT(state.getUErr().normInf(), 1e-12);
+  EXPECT_LT(state.getUDot().normInf(), 1e-7);  // rad/s2; NoSlip1D would give thousands
+  const double arm = radius * std::cos(pressure_angle);
+  EXPECT_NEAR(gear.tooth_force(state), 8.0 / arm, 1e-9);
+  EXPECT_NEAR(applied_generalized_force(state, drive), 8.0, 1e-10);
+}
+
+// The slow free-body twin of Simbody agrees with the fast routine on a loop.
+TEST(SimbodyConventions, FreeBodyTwinGivesTheSameJointForces) {
+  World w;
+  Force::UniformGravity(w.forces, w.matter, Vec3(1, -9, 2));
+  MobilizedBody::Ball first(w.matter.updGround(), Transform(Vec3(0.1, 0.2, 0.3)), some_body(),
+                            Transform(Vec3(0.2, 0, -0.1)));
+  MobilizedBody::Pin second(first, Transform(Rotation(0.3, YAxis), Vec3(0.5, 0.1, 0)), some_body(),
+                            Transform(Vec3(0, 0.4, 0)));
+  Constraint::PointOnLine loop(w.matter.updGround(), UnitVec3(Vec3(1, 1, 0.5)), Vec3(0.3, 0.2, 0.7),
+                               second, Vec3(0.1, 0.2, 0.3));
+  State state = w.system.realizeTopology();
+  w.system.realize(state, Stage::Acceleration);
+  Vector_<SpatialVec> fast;
+  Vector_<SpatialVec> slow;
+  joint_forces(state, w.matter, fast);
+  w.matter.calcMobilizerReactionForcesUsingFreebodyMethod(state, slow);
+  for (int i = 1; i < w.matter.getNumBodies(); ++i)
+    EXPECT_LT((fast[i] - slow[i]).norm(), 1e-11 * slow[i].norm()) << i;
+}
+
+}  // namespace
+}  // namespace bentaxis::multibody

@@ -1,0 +1,143 @@
+// What the tests share: where the data are, tolerances, random pumps.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::test {
+
+inline std::filesystem::path reference_folder() {
+  return std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "high_precision";
+}
+
+/// Names of all high-precision cases.
+inline std::vector<std::string> reference_cases() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(reference_folder()))
+    if (entry.is_directory()) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+inline Case reference_case(const std::string& name) {
+  return read_case(reference_folder() / name / "case.toml");
+}
+
+/// Scales every tolerance: BENTAXIS_TOLERANCE_SCALE=0 makes all comparisons fail and so print their
+/// true residuals.
+inline double tolerance_scale() {
+  const char* text = std::getenv("BENTAXIS_TOLERANCE_SCALE");
+  return text == nullptr ? 1.0 : std::atof(text);
+}
+
+inline double scaled(double tolerance) { return tolerance * tolerance_scale(); }
+
+/// Largest difference of two tables over each group's peak in the first, reactions and derived
+/// channels alike; and where.
+struct Worst {
+  double over_peak = 0;
+  std::string channel;
+};
+inline Worst worst_difference(const ResultTable& first, const ResultTable& second,
+                              bool reactions_only = false) {
+  Worst worst;
+  for (std::size_t c = 0; c < first.columns(); ++c) {
+    const Channel& channel = first.channels[c];
+    if (channel.kind == ChannelKind::check) continue;
+    if (reactions_only && channel.kind != ChannelKind::reaction) continue;
+    const double peak = first.peak(channel.group);
+    for (std::size_t row = 0; row < first.rows(); ++row) {
+      const double a = first.at(row, c);
+      const double b = second.at(row, c);
+      if (is_computed(a) != is_computed(b)) return {1e300, channel.name + " computed by one only"};
+      if (!is_computed(a)) continue;
+      const double difference = std::abs(a - b) / (peak > 0 ? peak : 1);
+      if (difference > worst.over_peak) worst = {difference, channel.name};
+    }
+  }
+  return worst;
+}
+
+/// One turn of a case.
+inline Samples one_turn(const Case& the_case) {
+  return sample_case(the_case, PressureTrace(the_case.pressure));
+}
+
+/// A pump with generic, non-aligned data that can be assembled. Seeded: the same for the same seed.
+class RandomPump {
+ public:
+  explicit RandomPump(unsigned seed) : engine_(seed) {}
+
+  PumpParameters pump() {
+    for (;;) {
+      PumpParameters p;
+      Geometry& g = p.geometry;
+      g.pistons = std::uniform_int_distribution<int>(1, 11)(engine_);
+      g.tilt = in(0, 1.0);
+      g.joint_circle_radius = in(0.015, 0.05);
+      g.bore_circle_radius = g.joint_circle_radius * in(0.7, 1.1);
+      g.axis_offset = in(-0.006, 0.006);
+      g.piston_length = in(0.03, 0.09);
+      g.bore_diameter = in(0.008, 0.03);
+      p.gear.pitch_diameter = in(0.05, 0.15);
+      p.gear.pressure_angle = in(0, 0.5);
+      p.bearings.tapered_z = in(-0.05, 0.02);
+      p.bearings.cylindrical_z = p.bearings.tapered_z - in(0.02, 0.08);
+      p.piston.mass = in(0.02, 0.3);
+      p.piston.joint_mass_fraction = in(0, 0.95);
+      PistonMass::Real real;
+      real.centre_of_mass = in(0.2, 0.8) * g.piston_length;
+      real.transverse_inertia = in(0.02, 0.12) * p.piston.mass * g.piston_length * g.piston_length;
+      real.axial_inertia = in(0.1, 1.9) * real.transverse_inertia;
+      real.spin = in(-100, 100);
+      p.piston.real = real;
+      p.piston.inertia = in(0, 1) < 0.5 ? PistonInertia::real : PistonInertia::lumped;
+      p.shaft = {in(0.5, 4), in(-0.08, 0), in(1e-3, 4e-3)};
+      p.block = {in(0.5, 3), in(0.02, 0.06), in(0.03, 0.08), in(0, 4e-4), in(0, 500), in(1e-3, 3e-3)};
+      p.friction = {in(0, 60), in(0, 30), in(0.005, 0.05), in(0, 0.1), in(0, 0.05), in(0.8, 1)};
+      if (in(0, 1) < 0.7) {
+        const double r1 = in(0.01, 0.015);
+        PortPlate plate{r1, r1 + in(1e-3, 3e-3), r1 + in(5e-3, 8e-3), r1 + in(9e-3, 12e-3), {}, {}};
+        plate.delivery = {in(180, 200), in(330, 350)};
+        plate.suction = {in(0, 20), in(150, 170)};
+        p.port_plate = plate;
+      }
+      p.gravity = in(-20, 20);
+      if (assembly_margin(g).longest_distance < 0.8 * g.piston_length) return p;
+    }
+  }
+
+  /// An instant for that pump; `with_rate` gives a changing speed too.
+  Instant instant(const PumpParameters& p, bool with_rate) {
+    Instant i;
+    i.theta = in(-4, 7);
+    i.omega = in(-300, 300);
+    i.omega_dot = with_rate ? in(-2000, 2000) : 0;
+    i.ports = {in(-1e5, 1e6), in(0, 4e7)};
+    for (int k = 0; k < p.geometry.pistons; ++k) i.chamber_pressure.push_back(in(0, 4e7));
+    return i;
+  }
+
+  Assumptions assumptions(const PumpParameters& p) {
+    return {in(0, 1) < 0.7, p.piston.inertia, GearScene::mesh};
+  }
+
+  double in(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+}  // namespace bentaxis::test
