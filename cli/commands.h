@@ -1,42 +1,21 @@
-// The commands of the program, one per job.
+// The commands of the program, one per job and file.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "bentaxis/multibody/integrated.h"
-#include "bentaxis/pump/case.h"
+#include <CLI/CLI.hpp>
+#include <functional>
 
 namespace bentaxis::cli {
 
 /// Exit statuses (docs/command_line.md).
 enum ExitStatus { kDone = 0, kOutOfTolerance = 1, kBadInput = 2, kComputationFailed = 3 };
 
-enum class Way { driven, integrated };
-
-struct RunOptions {
-  std::string case_file, model, out = "out";
-  Way way = Way::driven;
-  std::string scene = "full";
-  std::string gear;  ///< "", "mesh" or "imposed"
-  multibody::IntegrationOptions integration;
+/// A command as the parser knows it, and what it does once its options are parsed.
+struct Command {
+  CLI::App* parser;
+  std::function<int()> run;  ///< returns the exit status
 };
-int run_command(const RunOptions& options);
 
-struct CompareOptions {
-  std::string case_file, out = "out";
-  std::string multibody_case;  ///< another case for the multibody model; empty = the same
-  double tolerance = 0;        ///< 0 = default for the way
-  Way way = Way::driven;
-  multibody::IntegrationOptions integration;
-  std::vector<double> accuracies;  ///< integrated: all are run, the last is reported in full
-  std::vector<std::string> analytic, multibody;  ///< KEY=VALUE assumptions
-};
-int compare_command(const CompareOptions& options);
-
-/// Applies KEY=VALUE (piston_friction=on|off, inertia=lumped|real, gear=mesh|imposed).
-/// @throws InputError
-void apply_assumption(const std::string& text, const PumpParameters& pump,
-                      Assumptions& assumptions);
+Command add_run_command(CLI::App& app);
+Command add_compare_command(CLI::App& app);
 
 }  // namespace bentaxis::cli

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
+#include <memory>
+#include <optional>
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
@@ -15,8 +17,10 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
 #include "bentaxis/pump/units.h"
+#include "assumptions.h"
 #include "commands.h"
 #include "console.h"
+#include "models.h"
 #include "pump_report.h"
 #include "versions.h"
 
@@ -27,6 +31,16 @@ constexpr double kDrivenTolerance = 1e-9;     // of peak; both models are exact 
 constexpr double kIntegratedFactor = 100;     // achieved error over Simbody's accuracy per step
 constexpr double kDrivenRestTolerance = 1e-10;  // of what no assumption explains, of peak
 
+struct Options {
+  std::string case_file, out = "out";
+  std::string multibody_case;  // another case for the multibody model; empty = the same
+  double tolerance = 0;        // 0 = default for the way
+  Way way = Way::driven;
+  multibody::IntegrationOptions integration;
+  std::vector<double> accuracies;  // integrated: all are run, the last is reported in full
+  std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
+};
+
 // One comparison with everything it needs.
 struct Study {
   Case analytic_case, multibody_case;
@@ -36,20 +50,13 @@ struct Study {
   ResultTable analytic, multibody;
 };
 
-// Runs the multibody model in the way asked for; integrated runs add their record.
-ResultTable run_multibody(const Study& study, const CompareOptions& options, double accuracy,
+ResultTable run_multibody(const Study& study, const Options& options, double accuracy,
                           multibody::IntegrationRecord* record) {
   const Case& the_case = study.multibody_case;
-  if (options.way == Way::driven)
-    return multibody::run_driven(the_case, the_case.multibody, study.multibody_samples,
-                                 progress_of("multibody"));
   multibody::IntegrationOptions integration = options.integration;
   integration.accuracy = accuracy;
-  auto run = multibody::run_integrated(the_case, the_case.multibody, study.multibody_samples,
-                                       study.multibody_pressure, integration,
-                                       progress_of("multibody, accuracy " + number_text(accuracy)));
-  if (record != nullptr) *record = run.record;
-  return std::move(run.table);
+  return run_model("multibody", the_case, the_case.multibody, study.multibody_samples,
+                   study.multibody_pressure, options.way, integration, record);
 }
 
 compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
@@ -87,7 +94,7 @@ double worst_of_group(const compare::Comparison& comparison, const std::string& 
 
 // Integrated runs at every accuracy asked for: achieved error, drift, work and cost. The last one's
 // table is the one compared.
-Json integrate_all(Study& study, const CompareOptions& options,
+Json integrate_all(Study& study, const Options& options,
                    const compare::Options& comparison_options) {
   Json rows = Json::array();
   Json facts = Json::array();
@@ -212,35 +219,7 @@ void check_same_run(const Case& first, const Case& second) {
   if (first.operation.revolutions != second.operation.revolutions) differs("revolutions");
 }
 
-}  // namespace
-
-void apply_assumption(const std::string& text, const PumpParameters& pump,
-                      Assumptions& assumptions) {
-  const auto equals = text.find('=');
-  const std::string key = text.substr(0, equals);
-  const std::string value = equals == std::string::npos ? "" : text.substr(equals + 1);
-  const auto pick = [&](const char* no, const char* yes) {
-    if (value != no && value != yes)
-      throw InputError("assumption \"" + text + "\": " + key + " must be " + no + " or " + yes);
-    return value == yes;
-  };
-  if (key == "piston_friction") {
-    assumptions.piston_friction = pick("off", "on");
-  } else if (key == "inertia") {
-    assumptions.inertia = pick("lumped", "real") ? PistonInertia::real : PistonInertia::lumped;
-    if (assumptions.inertia == PistonInertia::real && !pump.piston.real)
-      throw InputError("assumption \"" + text +
-                       "\": the case has no centre_of_mass_mm, transverse_inertia_kg_mm2 and "
-                       "axial_inertia_kg_mm2 in [piston]");
-  } else if (key == "gear") {
-    assumptions.gear = pick("mesh", "imposed") ? GearScene::imposed : GearScene::mesh;
-  } else {
-    throw InputError("assumption \"" + text +
-                     "\": must be piston_friction=on|off, inertia=lumped|real or gear=mesh|imposed");
-  }
-}
-
-int compare_command(const CompareOptions& options) {
+int compare(const Options& options) {
   Case first = read_case(options.case_file);
   Case second = options.multibody_case.empty() ? first : read_case(options.multibody_case);
   for (const auto& text : options.analytic) apply_assumption(text, first.pump, first.analytic);
@@ -249,14 +228,10 @@ int compare_command(const CompareOptions& options) {
   OutputFolder folder(options.out);
 
   const bool integrated = options.way == Way::integrated;
-  const auto sample = [&](const Case& c, const PressureTrace& pressure) {
-    return sample_case(c, pressure, integrated ? c.operation.revolutions : 1,
-                       integrated && c.operation.speed_rpm < 0);
-  };
   PressureTrace pressure(first.pressure);
   PressureTrace second_pressure(second.pressure);
-  Samples samples = sample(first, pressure);
-  Samples second_samples = sample(second, second_pressure);
+  Samples samples = samples_of(first, pressure, options.way);
+  Samples second_samples = samples_of(second, second_pressure, options.way);
   Study study{std::move(first),   std::move(second),         std::move(pressure),
               std::move(second_pressure), std::move(samples), std::move(second_samples), 0, {}, {}};
   const Case& the_case = study.analytic_case;
@@ -370,6 +345,44 @@ int compare_command(const CompareOptions& options) {
   std::printf("\n");
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return agrees ? kDone : kOutOfTolerance;
+}
+
+}  // namespace
+
+Command add_compare_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "compare", "Run both models and report where and by how much they differ");
+  add_case(*command, options->case_file);
+  add_out(*command, options->out, "report.html, report.json and the curves");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "largest difference over peak that counts as agreement")
+      ->check(CLI::PositiveNumber)
+      ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
+  add_way(*command, options->way);
+  add_integrator(*command, options->integration);
+  command
+      ->add_option("--accuracy", options->accuracies,
+                   "accuracies of an integrated run; all are tabled, the last is compared")
+      ->delimiter(',')
+      ->check(accuracy_range())
+      ->option_text("NUMBER[,NUMBER..] [1e-4,1e-6]");
+  command
+      ->add_option("--analytic", options->analytic,
+                   "assumption of the analytic model: piston_friction=on|off, "
+                   "inertia=lumped|real, gear=mesh|imposed; overrides the case file")
+      ->option_text("KEY=VALUE ..");
+  command->add_option("--multibody", options->multibody, "the same for the multibody model")
+      ->option_text("KEY=VALUE ..");
+  command
+      ->add_option("--multibody-case", options->multibody_case,
+                   "give the multibody model another case: what would a wrong input do?")
+      ->option_text("CASE");
+  return {command, [options] {
+            if (options->accuracies.empty()) options->accuracies = {1e-4, 1e-6};
+            return compare(*options);
+          }};
 }
 
 }  // namespace bentaxis::cli

@@ -4,14 +4,12 @@
 usage: command_line_test.py BENTAXIS REPO_ROOT [options of unittest]
 """
 
-import contextlib
 import csv
 import json
 import os
 import pathlib
 import re
 import resource
-import shutil
 import signal
 import subprocess
 import sys
@@ -170,7 +168,6 @@ class UsageTest(ProgramTest):
         self.assertEqual(self.run_program("--version").out, f"bentaxis {version}\n")
 
     def test_help_names_every_option_of_the_interface(self):
-        self.assertTrue(self.folder.exists())
         for command, options in (("run", "--model --out --way --scene --gear --integrator --accuracy"),
                                  ("compare", "--out --tolerance")):
             self.assert_mentions(self.run_program(command, "--help").out, *options.split())
@@ -205,7 +202,7 @@ class UsageTest(ProgramTest):
             ([*compare, "--multibody", "gear"], ["gear", "mesh", "imposed"]),
             ([*compare, "--multibody-case", "absent.toml"], ["absent.toml"]),
         ):
-            with self.subTest(arguments[:1] + arguments[4:]):
+            with self.subTest(arguments[:1] + arguments[4:]):  # without the path of the case
                 self.assert_mentions(self.refused(*arguments), *words)
 
     def test_second_case_must_be_the_same_run(self):
@@ -304,7 +301,8 @@ class RunTest(ProgramTest):
     def test_point_of_a_film_force_of_zero_is_empty(self):
         # Nothing presses the block along its axis.
         case = self.case(**{"pump.tilt_deg": 0.0, "pump.axis_offset_mm": 0.0, "pressure.delivery_bar": 0.0,
-                            "block.spring_force_N": 0.0, "piston.mass_kg": 0.0, "friction.piston_coulomb_N": 0.0})
+                            "block.spring_force_N": 0.0, "friction.piston_coulomb_N": 0.0,
+                            "friction.block_viscous_Nm_per_rpm": 0.0})
         self.run_program("run", case, "--model", "analytic", "--out", "out")
         self.assertEqual(set(self.column("out/analytic.csv", "Fh_z2_N")), {"0"})
         for name in ("xh_x2_mm", "yh_y2_mm"):
@@ -388,13 +386,12 @@ BAD_VALUES = (
     ("truth value for a number", {"shaft.mass_kg": True}, ["true", "number", ">= 0"]),
     ("number for a word", {"piston.inertia": 1}, ["1", '"lumped" or "real"']),
     ("unknown word", {"piston.inertia": '"spread"'}, ['"spread"', '"lumped" or "real"']),
-    ("pistons cannot reach", {"pump.piston_length_mm": 20.0}, ["20.0", "must be >"]),
+    ("pistons cannot reach", {"pump.piston_length_mm": 2.0}, ["2.0", "must be >"]),
     ("no pistons", {"pump.pistons": 0}, ["0", "in [1, 99]"]),
     ("too many pistons", {"pump.pistons": 100}, ["100", "in [1, 99]"]),
     ("not a number", {"pump.joint_circle_radius_mm": "nan"}, ["nan", "> 0"]),
     ("infinite", {"operation.speed_rpm": "inf"}, ["inf", "finite"]),
     ("infinite mass", {"piston.mass_kg": "-inf"}, ["-inf", ">= 0"]),
-    ("number too large for a double", {"operation.speed_rpm": "1e999"}, []),
     ("negative radius", {"pump.joint_circle_radius_mm": -24.92}, ["-24.92", "> 0"]),
     ("radius of zero", {"pump.bore_circle_radius_mm": 0}, ["0", "> 0"]),
     ("tilt of 90 degrees", {"pump.tilt_deg": 90.0}, ["90.0", "in [0, 90)"]),
@@ -500,7 +497,8 @@ class BadInputTest(ProgramTest):
 
     def test_syntax(self):
         for label, text in (("no value", "tilt_deg ="), ("no equals sign", "tilt_deg 40"), ("open text", 'type = "bent'),
-                            ("twice", "pistons = 5"), ("not UTF-8", "# \udcff")):
+                            ("twice", "pistons = 5"), ("too large for a double", "tilt_deg = 1e999"),
+                            ("not UTF-8", "# \udcff")):
             with self.subTest(label):
                 case = Case()
                 case.lines.insert(case.line_of("pump.pistons"), text)
@@ -615,7 +613,6 @@ class InterruptionTest(ProgramTest):
     def start_and_wait(self, *arguments):
         """Starts what takes long and waits until it computes."""
         process = self.start(*arguments)
-        self.addCleanup(contextlib.suppress(ProcessLookupError).__enter__)
         self.addCleanup(process.kill)
         out = self.folder / arguments[arguments.index("--out") + 1]
         until = time.monotonic() + 20
@@ -675,7 +672,7 @@ class TogetherTest(ProgramTest):
 # ---- Negative controls: a wrong input to one model is noticed -------------------------------------------
 
 # Cases in which every parameter has something to do. Pressure hides weights and inertia: light cases show them.
-RATED = {"pressure.suction_bar": 5.0, "friction.piston_viscous_N_s_per_m": 20.0}
+RATED = {"pressure.suction_bar": 5.0, "friction.piston_viscous_N_s_per_m": 20.0, "friction.regularization_m_per_s": 0.5}
 LIGHT = {"pressure.delivery_bar": 0.0, "operation.speed_rpm": 3000.0}
 REAL = {**LIGHT, "piston.inertia": '"real"', "piston.centre_of_mass_mm": 19.0, "piston.transverse_inertia_kg_mm2": 24.0,
         "piston.axial_inertia_kg_mm2": 5.0, "piston.spin_rpm": 900.0}

@@ -1,0 +1,15 @@
+// Assumptions of a model as given on the command line.
+#pragma once
+
+#include <string>
+
+#include "bentaxis/pump/parameters.h"
+
+namespace bentaxis::cli {
+
+/// Applies KEY=VALUE (piston_friction=on|off, inertia=lumped|real, gear=mesh|imposed).
+/// @throws InputError
+void apply_assumption(const std::string& text, const PumpParameters& pump,
+                      Assumptions& assumptions);
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,32 @@
+#include "models.h"
+
+#include <utility>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/multibody/model.h"
+#include "console.h"
+
+namespace bentaxis::cli {
+
+Samples samples_of(const Case& the_case, const PressureTrace& pressure, Way way) {
+  if (way == Way::driven) return sample_case(the_case, pressure);
+  return sample_case(the_case, pressure, the_case.operation.revolutions,
+                     the_case.operation.speed_rpm < 0);
+}
+
+ResultTable run_model(const std::string& model, const Case& the_case,
+                      const Assumptions& assumptions, const Samples& samples,
+                      const PressureTrace& pressure, Way way,
+                      const multibody::IntegrationOptions& integration,
+                      multibody::IntegrationRecord* record) {
+  const Progress progress = progress_of(model);
+  if (model == "analytic") return analytic::run(the_case, assumptions, samples, progress);
+  if (way == Way::driven)
+    return multibody::run_driven(the_case, assumptions, samples, progress);
+  auto run = multibody::run_integrated(the_case, assumptions, samples, pressure, integration,
+                                       progress);
+  if (record != nullptr) *record = run.record;
+  return std::move(run.table);
+}
+
+}  // namespace bentaxis::cli

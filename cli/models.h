@@ -1,0 +1,25 @@
+// Runs either model on a case: the one place where a model's name becomes a model.
+#pragma once
+
+#include <string>
+
+#include "bentaxis/multibody/integrated.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/result_table.h"
+#include "options.h"
+
+namespace bentaxis::cli {
+
+/// Samples of a run: one turn where driven, all revolutions (falling backwards) where integrated.
+Samples samples_of(const Case& the_case, const PressureTrace& pressure, Way way);
+
+/// Runs "analytic" or "multibody" under the given assumptions.
+/// @param integration  used where way is integrated (multibody only)
+/// @param record       filled by an integrated run, if not null
+ResultTable run_model(const std::string& model, const Case& the_case,
+                      const Assumptions& assumptions, const Samples& samples,
+                      const PressureTrace& pressure, Way way,
+                      const multibody::IntegrationOptions& integration,
+                      multibody::IntegrationRecord* record = nullptr);
+
+}  // namespace bentaxis::cli

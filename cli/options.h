@@ -1,0 +1,21 @@
+// Options that several commands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "bentaxis/multibody/integrated.h"
+
+namespace bentaxis::cli {
+
+/// How the multibody model is run.
+enum class Way { driven, integrated };
+
+void add_case(CLI::App& command, std::string& file);
+void add_out(CLI::App& command, std::string& folder, const std::string& what);
+void add_way(CLI::App& command, Way& way);
+void add_integrator(CLI::App& command, multibody::IntegrationOptions& options);
+/// Accuracies that Simbody's integrators accept.
+CLI::Range accuracy_range();
+
+}  // namespace bentaxis::cli
