@@ -25,8 +25,9 @@ void apply_assumption(const std::string& text, const PumpParameters& pump,
   } else if (key == "gear") {
     assumptions.gear = pick("mesh", "imposed") ? GearScene::imposed : GearScene::mesh;
   } else {
-    throw InputError("assumption \"" + text +
-                     "\": must be piston_friction=on|off, inertia=lumped|real or gear=mesh|imposed");
+    throw InputError(
+        "assumption \"" + text +
+        "\": must be piston_friction=on|off, inertia=lumped|real or gear=mesh|imposed");
   }
 }
 

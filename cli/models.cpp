@@ -21,10 +21,9 @@ ResultTable run_model(const std::string& model, const Case& the_case,
                       multibody::IntegrationRecord* record) {
   const Progress progress = progress_of(model);
   if (model == "analytic") return analytic::run(the_case, assumptions, samples, progress);
-  if (way == Way::driven)
-    return multibody::run_driven(the_case, assumptions, samples, progress);
-  auto run = multibody::run_integrated(the_case, assumptions, samples, pressure, integration,
-                                       progress);
+  if (way == Way::driven) return multibody::run_driven(the_case, assumptions, samples, progress);
+  auto run =
+      multibody::run_integrated(the_case, assumptions, samples, pressure, integration, progress);
   if (record != nullptr) *record = run.record;
   return std::move(run.table);
 }

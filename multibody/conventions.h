@@ -12,7 +12,8 @@ namespace bentaxis::multibody {
 
 /// Force (at the body's origin) and moment that a constraint exerts on one of its bodies.
 /// @param state  realized to Acceleration
-SimTK::SpatialVec constraint_force_on(const SimTK::State& state, const SimTK::Constraint& constraint,
+SimTK::SpatialVec constraint_force_on(const SimTK::State& state,
+                                      const SimTK::Constraint& constraint,
                                       const SimTK::MobilizedBody& body);
 
 /// Forces and moments of all mobilizers on their bodies at the outboard frame's origin M.

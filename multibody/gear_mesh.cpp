@@ -34,8 +34,8 @@ class GearMeshImplementation : public SimTK::Constraint::Custom::Implementation 
   void calcPositionErrors(const State&, const Array_<Transform, ConstrainedBodyIndex>& bodies,
                           const Array_<Real, ConstrainedQIndex>&,
                           Array_<Real>& error) const override {
-    const double phase = turn_angle(bodies[block_].R(), block_frame_) -
-                         turn_angle(bodies[shaft_].R(), shaft_frame_);
+    const double phase =
+        turn_angle(bodies[block_].R(), block_frame_) - turn_angle(bodies[shaft_].R(), shaft_frame_);
     error[0] = arm_ * std::remainder(phase, 2 * SimTK::Pi);
   }
 

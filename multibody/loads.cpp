@@ -28,8 +28,8 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
                           const PumpBodies& bodies, const LoadInputs& inputs)
       : pump_(pump), assumptions_(assumptions), bodies_(bodies), inputs_(inputs) {}
 
-  void calcForce(const State& state, SimTK::Vector_<SpatialVec>& forces,
-                 SimTK::Vector_<Vec3>&, SimTK::Vector&) const override {
+  void calcForce(const State& state, SimTK::Vector_<SpatialVec>& forces, SimTK::Vector_<Vec3>&,
+                 SimTK::Vector&) const override {
     const Vec3 z1(0, 0, 1);
     const Vec3 z2(bodies_.block_frame.z());
     const auto& shaft = bodies_.shaft;
@@ -41,13 +41,12 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
     const Vec3 ring(0, 0, pump_.geometry.piston_length);
     for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
       const auto& piston = bodies_.pistons[k];
-      const double velocity =
-          SimTK::dot(z2, piston.findStationVelocityInGround(state, ring));
+      const double velocity = SimTK::dot(z2, piston.findStationVelocityInGround(state, ring));
       const AxialLoad load =
           axial_load(pump_, assumptions_, pressure[k], velocity, inputs_.rest_speed);
       piston.applyForceToBodyPoint(state, ring, (load.pressure + load.friction) * z2, forces);
-      const Vec3 on_block = block.findStationAtGroundPoint(
-          state, piston.findStationLocationInGround(state, ring));
+      const Vec3 on_block =
+          block.findStationAtGroundPoint(state, piston.findStationLocationInGround(state, ring));
       block.applyForceToBodyPoint(
           state, on_block, (pump_.block.bottom_area * pressure[k] - load.friction) * z2, forces);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <SimTKsimbody.h>
+
 #include <functional>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct LoadInputs {
   PortPressures ports;
   /// Torque about z1 on the shaft at angle theta where the shaft runs free; empty where driven.
   std::function<double(double theta)> shaft_torque;
-  double rest_speed = 0;  ///< m/s, below which a piston counts as at rest in the sign law of friction
+  double rest_speed =
+      0;  ///< m/s, below which a piston counts as at rest in the sign law of friction
 };
 
 /// The bodies the loads act on; A and B of each piston at z = 0 and z = length of its frame.

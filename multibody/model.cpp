@@ -15,7 +15,8 @@ using SimTK::Stage;
 
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign)
-      : layout(pump.geometry.pistons), system(pump, assumptions, omega_sign, Drive::given_acceleration) {
+      : layout(pump.geometry.pistons),
+        system(pump, assumptions, omega_sign, Drive::given_acceleration) {
     system.inputs().chamber_pressure = [this](double, std::vector<double>& p) { p = pressure; };
   }
 
@@ -41,8 +42,8 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) {
   PumpSystem& system = self.system;
   if (instant.omega * self.sign < 0)
     throw InputError("multibody model: built for the other direction of rotation");
-  if (instant.omega_dot != 0 && !(system.pump().shaft.axial_inertia > 0 &&
-                                  system.pump().block.axial_inertia > 0))
+  if (instant.omega_dot != 0 &&
+      !(system.pump().shaft.axial_inertia > 0 && system.pump().block.axial_inertia > 0))
     throw InputError("multibody model: changing speed needs axial inertias above 0");
   self.pressure = instant.chamber_pressure;
   system.inputs().ports = instant.ports;
@@ -78,10 +79,10 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
                     (mesh ? "in mesh (tooth force along z4 at O4)"
                           : "replaced by a speed imposed on the block's joint")},
       {"bodies", std::to_string(n + 2) + " (shaft, block, " + std::to_string(n) + " pistons)"},
-      {"joints",
-       "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
-      {"constraints", std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
-                          (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
+      {"joints", "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
+      {"constraints",
+       std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
+           (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
 }
 
 Provenance Model::provenance() const {
@@ -90,8 +91,9 @@ Provenance Model::provenance() const {
   provenance.facts = scene_facts(self.system.pump(), self.system.assumptions());
   auto& facts = provenance.facts;
   facts.insert(facts.begin() + 1,
-               {"way", "driven: assembled at each angle by projection, accelerations and reactions "
-                       "solved, no time integration"});
+               {"way",
+                "driven: assembled at each angle by projection, accelerations and reactions "
+                "solved, no time integration"});
   facts.emplace_back("mobilities", std::to_string(self.rank.mobilities));
   facts.emplace_back("constraint equations", std::to_string(self.rank.equations));
   facts.emplace_back("rank of the constraint matrix", std::to_string(self.rank.rank));

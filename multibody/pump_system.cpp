@@ -108,8 +108,7 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
     first_ = owner_.forces_.allocateZ(state, Vector(2, Real(0)));
   }
   void realizeAcceleration(const State& state) const override {
-    const auto& forces =
-        owner_.system_.getRigidBodyForces(state, SimTK::Stage::Dynamics);
+    const auto& forces = owner_.system_.getRigidBodyForces(state, SimTK::Stage::Dynamics);
     double loads = 0;
     for (SimTK::MobilizedBodyIndex i(1); i < owner_.matter_.getNumBodies(); ++i) {
       const SpatialVec& v = owner_.matter_.getMobilizedBody(i).getBodyVelocity(state);
@@ -117,8 +116,7 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
     }
     double drives = 0;
     if (owner_.drive_ == Drive::constant_speed)
-      drives += owner_.drive_torque(state) *
-                owner_.shaft_.getBodyAngularVelocity(state)[2];
+      drives += owner_.drive_torque(state) * owner_.shaft_.getBodyAngularVelocity(state)[2];
     if (!owner_.has_gear())
       drives += owner_.imposed_block_torque(state) * owner_.block_.getOneU(state, 0);
     Vector& rate = owner_.forces_.updZDot(state);
@@ -136,13 +134,8 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
 
 PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega,
                        Drive drive)
-    : pump_(pump),
-      assumptions_(assumptions),
-      drive_(drive),
-      matter_(system_),
-      forces_(system_) {
-  if (drive == Drive::torque &&
-      !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
+    : pump_(pump), assumptions_(assumptions), drive_(drive), matter_(system_), forces_(system_) {
+  if (drive == Drive::torque && !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
     throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
   inputs_.rest_speed = piston_rest_speed(pump.geometry, omega);
   inputs_.chamber_pressure = [](double, std::vector<double>& p) {
@@ -213,8 +206,8 @@ void PumpSystem::add_shaft_and_block(double omega) {
     const double sign = omega < 0 ? -1 : 1;
     const double ap = pump_.gear.pressure_angle;
     const Vec3 mesh_point(0, radius, -radius / std::tan(cone) + g.axis_offset);
-    const Vec3 line = sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone),
-                                  std::sin(ap) * std::sin(cone));
+    const Vec3 line =
+        sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
     gear_ = std::make_unique<GearMesh>(matter_, shaft_, block_, mesh_point, UnitVec3(line),
                                        bodies_.block_frame);
   }
@@ -262,8 +255,7 @@ void PumpSystem::add_pistons() {
 
 void PumpSystem::guess_pistons() {
   // Parallel to the block axis: Newton's method then climbs to the positive root of (12).
-  const Rotation shaft_to_block =
-      ~Rotation(turning_.theta, SimTK::ZAxis) * bodies_.block_frame;
+  const Rotation shaft_to_block = ~Rotation(turning_.theta, SimTK::ZAxis) * bodies_.block_frame;
   for (const auto& piston : bodies_.pistons) piston.setQToFitRotation(assembly_, shaft_to_block);
 }
 

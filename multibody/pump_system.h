@@ -10,6 +10,7 @@
 #pragma once
 
 #include <SimTKsimbody.h>
+
 #include <memory>
 #include <optional>
 #include <vector>

@@ -31,8 +31,7 @@ BodyPower piston_power(const PumpSystem& pump, const MobilizedBody& piston, cons
   const auto add_mass = [&](double mass, double z) {
     const Vec3 station(0, 0, z);
     const Vec3 velocity = piston.findStationVelocityInGround(rate, station);
-    power.kinetic +=
-        mass * dot(piston.findStationAccelerationInGround(state, station), velocity);
+    power.kinetic += mass * dot(piston.findStationAccelerationInGround(state, station), velocity);
     power.weight += mass * dot(gravity, velocity);
   };
   if (pump.assumptions().inertia == PistonInertia::lumped) {
@@ -70,8 +69,8 @@ double moment_about_axis(const PumpSystem& pump, const MobilizedBody& piston,
 }  // namespace
 
 void read_channels(const PumpSystem& pump, const State& state, const WorkRate& rate,
-                   double omega_dot, const std::vector<double>& pressure,
-                   const ChannelLayout& at, std::vector<double>& values) {
+                   double omega_dot, const std::vector<double>& pressure, const ChannelLayout& at,
+                   std::vector<double>& values) {
   const PumpBodies& bodies = pump.bodies();
   const PumpParameters& p = pump.pump();
   const SimTK::Rotation& s2 = bodies.block_frame;
@@ -91,8 +90,8 @@ void read_channels(const PumpSystem& pump, const State& state, const WorkRate& r
     for (int axis = 0; axis < 2; ++axis) values[at.Rc(k, axis)] = rc[axis];
 
     const Vec3 ring_station(0, 0, p.geometry.piston_length);
-    const Vec3 ring = ~s2 * (piston.findStationLocationInGround(state, ring_station) -
-                             bodies.block_origin);
+    const Vec3 ring =
+        ~s2 * (piston.findStationLocationInGround(state, ring_station) - bodies.block_origin);
     values[at.pressure(k)] = pressure[k];
     values[at.zB(k)] = ring[2];
     const double share = ring[1] * rc[0] - ring[0] * rc[1];
@@ -146,10 +145,10 @@ void read_channels(const PumpSystem& pump, const State& state, const WorkRate& r
   const double net = pump.drive_torque(state);
   values[at.Td()] = net / p.friction.shaft_torque_factor;
 
-  values[at.power_residual()] =
-      net - (p.friction.shaft_viscous + p.friction.block_viscous) * omega -
-      (p.shaft.axial_inertia + p.block.axial_inertia) * omega_dot + work / rate.omega +
-      (pump.has_gear() ? 0 : values[at.Tcs()]);
+  values[at.power_residual()] = net -
+                                (p.friction.shaft_viscous + p.friction.block_viscous) * omega -
+                                (p.shaft.axial_inertia + p.block.axial_inertia) * omega_dot +
+                                work / rate.omega + (pump.has_gear() ? 0 : values[at.Tcs()]);
 }
 
 }  // namespace bentaxis::multibody

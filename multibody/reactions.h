@@ -2,6 +2,7 @@
 #pragma once
 
 #include <SimTKsimbody.h>
+
 #include <vector>
 
 #include "bentaxis/multibody/pump_system.h"

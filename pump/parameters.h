@@ -13,13 +13,13 @@ namespace bentaxis {
 /// piston joints, y1 up; S2 has its origin at (0, 0, axis_offset) in S1 and is bent by `tilt`
 /// about x towards +y1; z2 is the block axis (Roccatello & Nervegna 2009, Fig. 1, (7)).
 struct Geometry {
-  int pistons = 0;                   ///< N
-  double tilt = 0;                   ///< alpha, rad, between shaft and block axis
-  double joint_circle_radius = 0;    ///< R_a, m, of the spherical joints A_k about z1
-  double bore_circle_radius = 0;     ///< R_d, m, of the bores about z2
-  double axis_offset = 0;            ///< b, m, z1 of the block frame's origin O2
-  double piston_length = 0;          ///< b_1, m, from A to B
-  double bore_diameter = 0;          ///< D_pi, m
+  int pistons = 0;                 ///< N
+  double tilt = 0;                 ///< alpha, rad, between shaft and block axis
+  double joint_circle_radius = 0;  ///< R_a, m, of the spherical joints A_k about z1
+  double bore_circle_radius = 0;   ///< R_d, m, of the bores about z2
+  double axis_offset = 0;          ///< b, m, z1 of the block frame's origin O2
+  double piston_length = 0;        ///< b_1, m, from A to B
+  double bore_diameter = 0;        ///< D_pi, m
 };
 
 /// Bevel gear pair with equal tooth counts that carries the block round (19)-(23).
@@ -48,7 +48,7 @@ struct PistonMass {
     double spin = 0;                ///< w_s, rad/s, absolute, positive along A->B
   };
   PistonInertia inertia = PistonInertia::lumped;
-  double mass = 0;                  ///< m_pi, kg
+  double mass = 0;                   ///< m_pi, kg
   double joint_mass_fraction = 0.5;  ///< chi, share of the mass at A
   std::optional<Real> real;
 };
@@ -69,11 +69,11 @@ struct Block {
 };
 
 struct Friction {
-  double piston_coulomb = 0;      ///< F_c, N
-  double piston_viscous = 0;      ///< c_v, N s/m
-  double regularization = 0.01;   ///< v_reg, m/s; 0 gives the sign function
-  double block_viscous = 0;       ///< C_c, Nm s/rad
-  double shaft_viscous = 0;       ///< C_s, Nm s/rad
+  double piston_coulomb = 0;       ///< F_c, N
+  double piston_viscous = 0;       ///< c_v, N s/m
+  double regularization = 0.01;    ///< v_reg, m/s; 0 gives the sign function
+  double block_viscous = 0;        ///< C_c, Nm s/rad
+  double shaft_viscous = 0;        ///< C_s, Nm s/rad
   double shaft_torque_factor = 1;  ///< C_t of (38); 1 means no proportional loss
 };
 
