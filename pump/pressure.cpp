@@ -68,11 +68,14 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
       ports_(spec.ports),
       transition_deg_(spec.transition_deg),
       delivery_start_deg_(spec.delivery_start_deg) {
-  if (kind_ == PressureKind::curve) {
+  if (kind_ != PressureKind::ideal) {
     const auto& theta = spec.curve.theta_deg;
     const auto fail = [&](const std::string& why) {
       throw InputError(spec.file.string() + ": pressure curve: " + why);
     };
+    if (kind_ == PressureKind::hydraulic && theta.empty())
+      throw InputError(
+          "[pressure] kind = \"hydraulic\": this job needs the pressure to be computed first");
     if (theta.size() < 3) fail("at least 3 points needed, found " + std::to_string(theta.size()));
     for (std::size_t i = 1; i < theta.size(); ++i)
       if (!(theta[i] > theta[i - 1])) fail("angles must increase strictly");
