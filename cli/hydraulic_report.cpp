@@ -51,12 +51,7 @@ Json hydraulic_block(const Case& the_case, const hydraulics::SteadyState& state)
       {"text",
        "Chamber pressures by balance of mass (docs/hydraulics.md), as the periodic steady state. "
        "Both mechanical models get one and the same curve of it."},
-      {"facts",
-       {{"points of the curve", std::to_string(the_case.pressure.points)},
-        {"Newton steps", std::to_string(convergence.iterations)},
-        {"change of ln P from period to period", fmt::format("{:.1e}", convergence.residual)},
-        {"error of ln P allowed per step", fmt::format("{:g}", the_case.hydraulics->tolerance)},
-        {"steps of CVODES in all", std::to_string(convergence.steps)}}},
+      {"facts", facts},
       {"table", {{"columns", {"quantity", "value", "unit"}}, {"rows", rows}}}};
 }
 
