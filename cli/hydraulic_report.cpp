@@ -46,6 +46,15 @@ Json hydraulic_block(const Case& the_case, const hydraulics::SteadyState& state)
   for (const auto& line : hydraulics::lines(state))
     rows.push_back({line.name, line.value, line.unit});
   const auto& convergence = state.convergence;
+  Json facts = Json::array();
+  const auto fact = [&](const char* name, const std::string& value) {
+    facts.push_back(Json::array({name, value}));
+  };
+  fact("points of the curve", std::to_string(the_case.pressure.points));
+  fact("Newton steps", std::to_string(convergence.iterations));
+  fact("change of ln P from period to period", fmt::format("{:.1e}", convergence.residual));
+  fact("error of ln P allowed per step", fmt::format("{:g}", the_case.hydraulics->tolerance));
+  fact("steps of CVODES in all", std::to_string(convergence.steps));
   return {
       {"title", "Hydraulic model"},
       {"text",

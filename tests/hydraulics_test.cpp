@@ -254,13 +254,16 @@ TEST(Limit, IncompressibleFlowIsThatOfThePistons) {
     // of N; order N with 2/(N^2-1) for even N.
     const int lowest = pistons % 2 == 1 ? 2 * pistons : pistons;
     EXPECT_NEAR(amplitude(flow, lowest) / mean(flow), 2.0 / (lowest * lowest - 1), scaled(1e-4));
-    if (pistons % 2 == 1) EXPECT_LT(amplitude(flow, pistons) / mean(flow), scaled(1e-5));
+    if (pistons % 2 == 1) {
+      EXPECT_LT(amplitude(flow, pistons) / mean(flow), scaled(1e-5));
+    }
   }
 }
 
 TEST(Limit, CompressibilityIsWhatSpoilsTheKinematicFlow) {  // negative control of the above
   Case the_case = incompressible(5);
   the_case.hydraulics->bulk_modulus = 1.4e9;
+  the_case.hydraulics->dead_volume = 3e-6;
   EXPECT_LT(steady_state(the_case).summary.volumetric_efficiency, 0.999);
 }
 
@@ -302,8 +305,7 @@ TEST(Limit, MeanTorqueIsTheWorkOfPressureOverATurn) {
   Case the_case = rated();
   the_case.pressure.points = 7200;
   the_case.operation.samples_per_revolution = 3600;
-  the_case.pump.friction = {};
-  the_case.pump.piston.mass = 0;
+  the_case.pump.friction = {};  // inertia and weight do no work over a turn
   const SteadyState state = steady_state(the_case);
   give_to(the_case, state);
   const Samples samples = test::one_turn(the_case);
@@ -314,7 +316,6 @@ TEST(Limit, MeanTorqueIsTheWorkOfPressureOverATurn) {
   the_case.operation.samples_per_revolution = 360;
   // Both models integrate the same samples; 1 deg is too coarse for the rises, alike for both.
   const Samples coarse = test::one_turn(the_case);
-  the_case.pump.piston.mass = 1e-9;  // Simbody needs some inertia
   EXPECT_NEAR(
       mean(column(multibody::run_driven(the_case, the_case.multibody, coarse), "Td_z1_Nm")) /
           mean(column(analytic::run(the_case, the_case.analytic, coarse), "Td_z1_Nm")),
@@ -478,7 +479,12 @@ TEST(HardInput, NoChamberIsEverBelowAbsoluteZero) {
     EXPECT_GT(absolute, 0) << number;
     for (const double p : state.chamber.pressure)
       EXPECT_GE(p, -the_case.hydraulics->atmosphere) << number;
-    EXPECT_NEAR(state.summary.mass_in / state.summary.mass_out, 1, scaled(1e-7)) << number;
+    // Some of these fill hardly at all: the scale is a full chamber. Where air rules, K ~ P and the
+    // mass is known no better than ln P.
+    EXPECT_NEAR(state.summary.mass_in, state.summary.mass_out,
+                scaled(kStepsAddUp) * the_case.hydraulics->tolerance * the_case.hydraulics->density *
+                    state.summary.displacement)
+        << number;
     lowest = std::min(lowest, absolute);
     ++number;
   }
@@ -582,8 +588,9 @@ TEST(ShippedCases, PeakIsTheRatedPumpAtAnotherPressure) {
   const Case a = rated(), b = shipped("bap63_peak_hydraulic.toml");
   ASSERT_EQ(a.entries.size(), b.entries.size());
   for (std::size_t i = 0; i < a.entries.size(); ++i)
-    if (a.entries[i].key != "delivery_bar" && a.entries[i].key != "name")
+    if (a.entries[i].key != "delivery_bar" && a.entries[i].key != "name") {
       EXPECT_EQ(a.entries[i].value, b.entries[i].value) << a.entries[i].key;
+    }
 }
 
 TEST(ShippedCases, SplineOf800PointsHoldsTheTorque) {
