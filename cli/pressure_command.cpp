@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <tuple>
 
 #include "bentaxis/compare/comparison.h"
@@ -105,23 +108,43 @@ struct TorqueCurve {
   std::vector<double> bar, analytic, multibody, ideal, flow, efficiency;
 };
 
+// Points are independent: each thread takes the next one. Every thread has models of its own.
 TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& pressures) {
+  const std::size_t count = pressures.size();
   TorqueCurve curve;
-  const Progress progress = progress_of("torque curve");
-  for (const double bar : pressures) {
-    Case at = the_case;
-    at.pressure.ports.delivery = pascals(bar);
-    const Point point = run_point(std::move(at));
-    const auto& s = point.state().summary;
-    curve.bar.push_back(bar);
-    curve.analytic.push_back(mean(point.analytic, "Td_z1_Nm"));
-    curve.multibody.push_back(mean(point.multibody, "Td_z1_Nm"));
-    curve.ideal.push_back(s.displacement * (pascals(bar) - the_case.pressure.ports.suction) /
-                          (2 * kPi));
-    curve.flow.push_back(s.flow * 6e4);
-    curve.efficiency.push_back(100 * s.volumetric_efficiency);
-    progress(static_cast<double>(curve.bar.size()) / static_cast<double>(pressures.size()));
+  curve.bar = pressures;
+  for (auto* values :
+       {&curve.analytic, &curve.multibody, &curve.ideal, &curve.flow, &curve.efficiency})
+    values->resize(count);
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&](bool reports) {
+    const Progress progress = progress_of("torque curve");
+    for (std::size_t i = next++; i < count; i = next++) {
+      Case at = the_case;
+      at.pressure.ports.delivery = pascals(pressures[i]);
+      const Point point = run_point(std::move(at));
+      const auto& s = point.state().summary;
+      curve.analytic[i] = mean(point.analytic, "Td_z1_Nm");
+      curve.multibody[i] = mean(point.multibody, "Td_z1_Nm");
+      curve.ideal[i] =
+          s.displacement * (pascals(pressures[i]) - the_case.pressure.ports.suction) / (2 * kPi);
+      curve.flow[i] = s.flow * 6e4;
+      curve.efficiency[i] = 100 * s.volumetric_efficiency;
+      if (reports) progress(static_cast<double>(i + 1) / static_cast<double>(count));
+    }
+  };
+  const std::size_t threads =
+      std::min<std::size_t>({std::max(1U, std::thread::hardware_concurrency()), count, 8});
+  std::vector<std::future<void>> others;
+  for (std::size_t t = 1; t < threads; ++t)
+    others.push_back(std::async(std::launch::async, work, false));
+  try {
+    work(true);
+  } catch (...) {
+    next = count;  // the others finish their point and stop
+    throw;
   }
+  for (auto& other : others) other.get();
   return curve;
 }
 

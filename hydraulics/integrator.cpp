@@ -3,6 +3,7 @@
 #include <cvodes/cvodes.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
+#include <sundials/sundials_version.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
@@ -11,6 +12,7 @@
 #include <new>
 #include <string>
 
+#include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 
@@ -111,6 +113,11 @@ struct Integrator::Implementation {
     SUNContext_Free(&context);
   }
 };
+
+std::string sundials_version() {
+  char text[32] = "";
+  return SUNDIALSGetVersion(text, sizeof text) == 0 ? text : "unknown";
+}
 
 Integrator::Integrator(const Network& network) : network_(network) {}
 Integrator::~Integrator() = default;
