@@ -33,8 +33,8 @@ struct Case {
   Operation operation;
   PressureSpec pressure;
   std::optional<HydraulicData> hydraulics;  ///< present where pressure.kind is hydraulic
-  Assumptions analytic;   ///< what the analytic model assumes in this case
-  Assumptions multibody;  ///< what the multibody model assumes
+  Assumptions analytic;                     ///< what the analytic model assumes in this case
+  Assumptions multibody;                    ///< what the multibody model assumes
   std::vector<CaseEntry> entries;
 };
 

@@ -482,8 +482,8 @@ TEST(HardInput, NoChamberIsEverBelowAbsoluteZero) {
     // Some of these fill hardly at all: the scale is a full chamber. Where air rules, K ~ P and the
     // mass is known no better than ln P.
     EXPECT_NEAR(state.summary.mass_in, state.summary.mass_out,
-                scaled(kStepsAddUp) * the_case.hydraulics->tolerance * the_case.hydraulics->density *
-                    state.summary.displacement)
+                scaled(kStepsAddUp) * the_case.hydraulics->tolerance *
+                    the_case.hydraulics->density * state.summary.displacement)
         << number;
     lowest = std::min(lowest, absolute);
     ++number;
