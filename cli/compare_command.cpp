@@ -364,7 +364,7 @@ Command add_compare_command(CLI::App& app) {
   command
       ->add_option("--tolerance", options->tolerance,
                    "largest difference over peak that counts as agreement")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   add_way(*command, options->way);
   add_integrator(*command, options->integration);

@@ -417,6 +417,8 @@ class CaseReader {
       pressure.file = std::filesystem::path(file_).parent_path() / in.text("file");
       if (!std::filesystem::exists(pressure.file))
         in.fail("file", "no such file: " + pressure.file.string());
+      if (std::filesystem::is_directory(pressure.file))
+        in.fail("file", "is a folder: " + pressure.file.string());
       pressure.curve = read_pressure_curve(pressure.file);
       PressureTrace{pressure};  // refuses a curve that cannot be a periodic spline
     } else if (in.has("file")) {
