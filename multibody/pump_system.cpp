@@ -33,6 +33,8 @@ constexpr double kAssemblyTolerance = 1e-12;
 constexpr double kRankTolerance = 1e-11;
 // A step in theta up to which the last assembly is a better start than a fresh guess.
 constexpr double kNearby = 0.2;
+// Speed, rad/s, below which derivatives with respect to theta are not taken from those in time.
+constexpr double kSlowest = 1e-6;
 
 // Prescribes rotation about the joint's z axis, for a pin (1 coordinate) or a ball (quaternion).
 class TurningMotion : public SimTK::Motion::Custom::Implementation {
@@ -95,6 +97,11 @@ double nominal_inertia(double given) {
   return given > 0 ? given : kAny;
 }
 
+ComputationError no_assembly(double theta) {
+  return ComputationError("multibody model: no assembly found at theta = " +
+                          std::to_string(theta / kRadPerDegree) + " deg");
+}
+
 }  // namespace
 
 // Force element without force: integrates the power of loads and drives along with the motion.
@@ -108,8 +115,7 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
     first_ = owner_.forces_.allocateZ(state, Vector(2, Real(0)));
   }
   void realizeAcceleration(const State& state) const override {
-    const auto& forces =
-        owner_.system_.getRigidBodyForces(state, SimTK::Stage::Dynamics);
+    const auto& forces = owner_.system_.getRigidBodyForces(state, SimTK::Stage::Dynamics);
     double loads = 0;
     for (SimTK::MobilizedBodyIndex i(1); i < owner_.matter_.getNumBodies(); ++i) {
       const SpatialVec& v = owner_.matter_.getMobilizedBody(i).getBodyVelocity(state);
@@ -117,8 +123,7 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
     }
     double drives = 0;
     if (owner_.drive_ == Drive::constant_speed)
-      drives += owner_.drive_torque(state) *
-                owner_.shaft_.getBodyAngularVelocity(state)[2];
+      drives += owner_.drive_torque(state) * owner_.shaft_.getBodyAngularVelocity(state)[2];
     if (!owner_.has_gear())
       drives += owner_.imposed_block_torque(state) * owner_.block_.getOneU(state, 0);
     Vector& rate = owner_.forces_.updZDot(state);
@@ -136,13 +141,8 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
 
 PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega,
                        Drive drive)
-    : pump_(pump),
-      assumptions_(assumptions),
-      drive_(drive),
-      matter_(system_),
-      forces_(system_) {
-  if (drive == Drive::torque &&
-      !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
+    : pump_(pump), assumptions_(assumptions), drive_(drive), matter_(system_), forces_(system_) {
+  if (drive == Drive::torque && !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
     throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
   inputs_.rest_speed = piston_rest_speed(pump.geometry, omega);
   inputs_.chamber_pressure = [](double, std::vector<double>& p) {
@@ -151,8 +151,9 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   SimTK::Force::UniformGravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
   add_shaft_and_block(omega);
   add_pistons();
-  PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_);
-  if (drive_ != Drive::given_acceleration) {
+  PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_,
+            is_prescribed() ? LoadedBodies::pistons : LoadedBodies::all);
+  if (drive_ == Drive::constant_speed || drive_ == Drive::torque) {
     work_ = new WorkMeter(*this);
     SimTK::Force::Custom(forces_, work_);
   }
@@ -160,16 +161,21 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   system_.realizeTopology();
   assembly_ = system_.getDefaultState();
   dynamics_ = system_.getDefaultState();
-  // Assembly: shaft and block follow the prescribed turning, so what holds them is switched off.
-  cylindrical_.disable(assembly_);
-  if (drive_ == Drive::constant_speed) speed_.disable(assembly_);
-  if (drive_ == Drive::given_acceleration) acceleration_.disable(assembly_);
-  if (has_gear()) gear_->disable(assembly_);
-  // Dynamics: joints and constraints hold them; an imposed block keeps its motion.
-  shaft_motion_.disable(dynamics_);
-  if (has_gear()) block_motion_.disable(dynamics_);
+  if (!is_prescribed()) {
+    // Assembly: shaft and block follow the prescribed turning, so what holds them is switched off.
+    cylindrical_.constraint().disable(assembly_);
+    if (drive_ == Drive::constant_speed) speed_.disable(assembly_);
+    if (drive_ == Drive::given_acceleration) acceleration_.disable(assembly_);
+    if (has_gear()) gear_->disable(assembly_);
+    // Dynamics: joints and constraints hold them; an imposed block keeps its motion.
+    shaft_motion_.disable(dynamics_);
+    if (has_gear()) block_motion_.disable(dynamics_);
+  }
   system_.realize(assembly_, SimTK::Stage::Instance);
   system_.realize(dynamics_, SimTK::Stage::Instance);
+  solver_ = std::make_unique<PistonSolver>(
+      system_, matter_, shaft_, bodies_.pistons, bores_, pump_.geometry.piston_length,
+      pistons_free_to_spin_ ? pump_.piston.real->spin : 0, dynamics_);
 }
 
 void PumpSystem::add_shaft_and_block(double omega) {
@@ -178,6 +184,7 @@ void PumpSystem::add_shaft_and_block(double omega) {
   const Vec3 c2(0, 0, pump_.bearings.cylindrical_z);
   bodies_.block_frame = Rotation(-g.tilt, SimTK::XAxis);
   bodies_.block_origin = Vec3(0, 0, g.axis_offset);
+  bodies_.shaft_origin = c1;
 
   const double zs = pump_.shaft.centre_of_mass_z;
   const double shaft_inertia = nominal_inertia(pump_.shaft.axial_inertia);
@@ -197,9 +204,9 @@ void PumpSystem::add_shaft_and_block(double omega) {
   bodies_.block = block_;
   shaft_motion_ = SimTK::Motion::Custom(shaft_, new TurningMotion(turning_, true));
   block_motion_ = SimTK::Motion::Custom(block_, new TurningMotion(turning_, false));
+  if (is_prescribed()) return;
 
-  cylindrical_ =
-      SimTK::Constraint::PointOnLine(matter_.updGround(), UnitVec3(SimTK::ZAxis), c2, shaft_, c2);
+  cylindrical_ = InlineJoint(matter_.updGround(), UnitVec3(SimTK::ZAxis), c2, shaft_, c2);
   constexpr int kAboutZ = 2;
   if (drive_ == Drive::constant_speed)
     speed_ = SimTK::Constraint::ConstantSpeed(shaft_, SimTK::MobilizerUIndex(kAboutZ), omega);
@@ -213,8 +220,8 @@ void PumpSystem::add_shaft_and_block(double omega) {
     const double sign = omega < 0 ? -1 : 1;
     const double ap = pump_.gear.pressure_angle;
     const Vec3 mesh_point(0, radius, -radius / std::tan(cone) + g.axis_offset);
-    const Vec3 line = sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone),
-                                  std::sin(ap) * std::sin(cone));
+    const Vec3 line =
+        sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
     gear_ = std::make_unique<GearMesh>(matter_, shaft_, block_, mesh_point, UnitVec3(line),
                                        bodies_.block_frame);
   }
@@ -239,10 +246,7 @@ void PumpSystem::add_pistons() {
         real.axial_inertia);
     pistons_free_to_spin_ = real.axial_inertia > 0;
   }
-  if (!(properties.getInertia().getMoments()[0] > 0))
-    throw ComputationError(
-        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
-        "has no equation of motion in Simbody; the analytic model has no such limit");
+  piston_inertia_about_joint_ = properties.getInertia().getMoments()[0];
 
   for (int k = 0; k < g.pistons; ++k) {
     const Rotation phase(-2 * kPi * k / g.pistons, SimTK::ZAxis);
@@ -260,10 +264,17 @@ void PumpSystem::add_pistons() {
   }
 }
 
+void PumpSystem::require_piston_inertia() const {
+  if (!(piston_inertia_about_joint_ > 0))
+    throw ComputationError(
+        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
+        "has no equation of motion in Simbody's forward dynamics; use --reactions residual, or the "
+        "analytic model");
+}
+
 void PumpSystem::guess_pistons() {
   // Parallel to the block axis: Newton's method then climbs to the positive root of (12).
-  const Rotation shaft_to_block =
-      ~Rotation(turning_.theta, SimTK::ZAxis) * bodies_.block_frame;
+  const Rotation shaft_to_block = ~Rotation(turning_.theta, SimTK::ZAxis) * bodies_.block_frame;
   for (const auto& piston : bodies_.pistons) piston.setQToFitRotation(assembly_, shaft_to_block);
 }
 
@@ -307,9 +318,7 @@ void PumpSystem::assemble(double theta, double omega) {
     for (const auto& piston : bodies_.pistons)
       done = done && SimTK::dot(z2, Vec3(piston.getBodyRotation(assembly_).z())) > 0;
   }
-  if (!done)
-    throw ComputationError("multibody model: no assembly found at theta = " +
-                           std::to_string(theta / kRadPerDegree) + " deg");
+  if (!done) throw no_assembly(theta);
 
   system_.prescribeU(assembly_);
   system_.realize(assembly_, SimTK::Stage::Velocity);
@@ -345,6 +354,81 @@ void PumpSystem::copy_assembly_to_dynamics() {
   dynamics_.updU() = assembly_.getU();
 }
 
+bool PumpSystem::solve_placement() {
+  Vector& q = dynamics_.updQ();
+  const int shaft = shaft_.getFirstQIndex(dynamics_);
+  q[shaft] = std::cos(placed_theta_ / 2);
+  q[shaft + 1] = q[shaft + 2] = 0;
+  q[shaft + 3] = std::sin(placed_theta_ / 2);
+  q[block_.getFirstQIndex(dynamics_)] = placed_theta_;
+  if (!(solver_->solve_positions(dynamics_) <= kAssemblyTolerance)) return false;
+  const Vec3 z2(bodies_.block_frame.z());
+  for (const auto& piston : bodies_.pistons)
+    if (!(SimTK::dot(z2, Vec3(piston.getBodyRotation(dynamics_).z())) > 0)) return false;
+  return true;
+}
+
+void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t track) {
+  if (track >= tracks_.size()) tracks_.resize(track + 1);
+  placed_track_ = track;
+  placed_theta_ = theta;
+  placed_omega_ = omega;
+  placed_omega_dot_ = omega_dot;
+  bool done = false;
+  if (const auto& last = tracks_[track]) {
+    const double step = std::remainder(theta - last->theta, 2 * kPi);
+    if (std::abs(step) < kNearby) {
+      Vector& q = dynamics_.updQ();
+      for (int i = 0; i < q.size(); ++i)
+        q[i] = last->q[i] + step * (last->first[i] + step / 2 * last->second[i]);
+      matter_.normalizeQuaternions(dynamics_);
+      done = solve_placement();
+    }
+  }
+  if (!done) {
+    assemble(theta, omega);
+    copy_assembly_to_dynamics();
+    if (!solve_placement()) throw no_assembly(theta);
+  }
+  // What is prescribed in this state (both bodies, or an imposed block) moves with the rest.
+  turning_.theta = theta;
+  turning_.start = dynamics_.getTime();
+  turning_.omega = omega;
+  turning_.omega_dot = omega_dot;
+  Vector& u = dynamics_.updU();
+  u = 0;
+  u[shaft_.getFirstUIndex(dynamics_) + 2] = omega;
+  u[block_.getFirstUIndex(dynamics_)] = omega;
+  solver_->solve_speeds(dynamics_);
+}
+
+void PumpSystem::remember_placement(const Vector& qdotdot) {
+  auto& track = tracks_[placed_track_];
+  if (!track) track.emplace();
+  track->theta = placed_theta_;
+  track->q = dynamics_.getQ();
+  track->first.resize(track->q.size());
+  track->second.resize(track->q.size());
+  track->first = 0;
+  track->second = 0;
+  // Derivatives with respect to theta do not depend on the speed; at standstill there are none.
+  if (std::abs(placed_omega_) < kSlowest) return;
+  const Vector& qdot = dynamics_.getQDot();
+  for (int i = 0; i < qdot.size(); ++i) {
+    track->first[i] = qdot[i] / placed_omega_;
+    track->second[i] =
+        (qdotdot[i] - track->first[i] * placed_omega_dot_) / (placed_omega_ * placed_omega_);
+  }
+}
+
+void PumpSystem::constrained_accelerations(Vector& udot) {
+  udot.resize(dynamics_.getNU());
+  udot = 0;
+  udot[shaft_.getFirstUIndex(dynamics_) + 2] = placed_omega_dot_;
+  udot[block_.getFirstUIndex(dynamics_)] = placed_omega_dot_;
+  solver_->solve_accelerations(dynamics_, udot);
+}
+
 double PumpSystem::drive_torque(const State& state) const {
   switch (drive_) {
     case Drive::constant_speed:
@@ -352,6 +436,7 @@ double PumpSystem::drive_torque(const State& state) const {
     case Drive::given_acceleration:
       return applied_generalized_force(state, acceleration_);
     case Drive::torque:
+    case Drive::prescribed:
       break;
   }
   return 0;
