@@ -65,7 +65,7 @@ struct Model::Implementation {
   ResidualSolver residual;
   Reactions reactions;
   std::vector<double> pressure;
-  SimTK::Vector qdotdot;
+  std::vector<SimTK::Vec3> angular_accelerations;
   PumpSystem::Rank rank;
   double sign;
 };
@@ -110,13 +110,13 @@ void Model::Implementation::place_and_solve(double theta, const Instant& instant
     system.system().realize(state, Stage::Acceleration);
     check_rank();
     reactions_from_multipliers(system, state, reactions);
-    system.remember_placement(state.getQDotDot());
   } else {
     residual.solve(reactions);
     check_rank();
-    system.matter().calcQDotDot(state, residual.accelerations(), qdotdot);
-    system.remember_placement(qdotdot);
   }
+  angular_accelerations.clear();
+  for (const auto& on : reactions.pistons) angular_accelerations.push_back(on.acceleration[0]);
+  system.remember_placement(angular_accelerations);
 }
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values) {

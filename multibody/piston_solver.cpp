@@ -16,6 +16,8 @@ namespace {
 
 // Errors below this share of the piston's length are round-off of coordinates.
 constexpr double kRoundOff = 1e-15;
+// Turn of a piston, rad, that changes the matrix of its equations by round-off alone.
+constexpr double kSameMatrix = 2e-14;
 // Turn of a piston, rad, after which the matrix of its equations is found afresh: a matrix that is
 // off by this much still gains five digits a step.
 constexpr double kStale = 1e-5;
@@ -69,6 +71,7 @@ void PistonSolver::find_matrices(const State& state) {
       piston.matrix(1, j) = rates_[piston.row + 1];
     }
   }
+  turned_ = 0;
   for (Piston& piston : pistons_) {
     if (piston.nu == 3)
       piston.matrix[2] = ~axis_in_shaft(state, piston);
@@ -81,7 +84,7 @@ void PistonSolver::find_matrices(const State& state) {
 double PistonSolver::solve_positions(State& state) {
   double before = SimTK::Infinity;
   double worst = 0;
-  double turned = SimTK::Infinity;  // since the matrices were found
+  turned_ = SimTK::Infinity;
   for (int step = 0; step < kMostSteps; ++step) {
     system_.realize(state, Stage::Position);
     const Vector& error = state.getQErr();
@@ -91,10 +94,7 @@ double PistonSolver::solve_positions(State& state) {
     const bool stalled = worst < 1e3 * round_off_ && !(worst < before / 2);
     if (worst <= round_off_ || stalled || !std::isfinite(worst)) break;
     before = worst;
-    if (turned > kStale) {
-      find_matrices(state);
-      turned = 0;
-    }
+    if (turned_ > kStale) find_matrices(state);
     u_like_ = 0;
     double largest = 0;
     for (const Piston& piston : pistons_) {
@@ -102,7 +102,7 @@ double PistonSolver::solve_positions(State& state) {
       for (int j = 0; j < piston.nu; ++j) u_like_[piston.u + j] = change[j];
       largest = std::max(largest, change.norm());
     }
-    turned += largest;
+    turned_ += largest;
     matter_.multiplyByN(state, false, u_like_, q_like_);
     Vector& q = state.updQ();
     for (const Piston& piston : pistons_) {
@@ -116,7 +116,7 @@ double PistonSolver::solve_positions(State& state) {
 }
 
 void PistonSolver::solve_speeds(State& state) {
-  find_matrices(state);
+  if (turned_ > kSameMatrix) find_matrices(state);
   u_like_ = state.getU();
   for (const Piston& piston : pistons_)
     for (int j = 0; j < piston.nu; ++j) u_like_[piston.u + j] = 0;

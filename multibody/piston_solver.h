@@ -62,6 +62,7 @@ class PistonSolver {
   SimTK::MobilizedBody shaft_;
   std::vector<Piston> pistons_;
   double round_off_, spin_;
+  double turned_ = SimTK::Infinity;  // largest turn of a piston since the matrices were found, rad
   SimTK::Vector no_bias_, u_like_, q_like_, rates_;
 };
 

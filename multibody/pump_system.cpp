@@ -35,6 +35,9 @@ constexpr double kRankTolerance = 1e-11;
 constexpr double kNearby = 0.2;
 // Speed, rad/s, below which derivatives with respect to theta are not taken from those in time.
 constexpr double kSlowest = 1e-6;
+// Two placements closer than this (rad) are extrapolated together, up to so many of their steps.
+constexpr double kSmooth = 0.05;
+constexpr double kFarthest = 1.5;
 
 // Prescribes rotation about the joint's z axis, for a pin (1 coordinate) or a ball (quaternion).
 class TurningMotion : public SimTK::Motion::Custom::Implementation {
@@ -368,24 +371,51 @@ bool PumpSystem::solve_placement() {
   return true;
 }
 
+// From the last two placements of a track the polynomial that has their values and two derivatives
+// (degree 5), or from the last one alone its Taylor polynomial.
+bool PumpSystem::extrapolate(const Track& track, double theta) {
+  if (!track.last) return false;
+  const double ahead = std::remainder(theta - track.last->theta, 2 * kPi);
+  if (!(std::abs(ahead) < kNearby)) return false;
+  const double step =
+      track.before ? std::remainder(track.last->theta - track.before->theta, 2 * kPi) : 0;
+  // Close to the step between them: farther out a polynomial of this degree magnifies round-off.
+  const double t = step != 0 ? ahead / step : 0;
+  const bool both = std::abs(step) < kSmooth && t > 0 && t < kFarthest;
+  Vector& q = dynamics_.updQ();
+  for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
+    const Direction& last = track.last->pistons[k];
+    Vec3 axis = last.value + ahead * (last.first + ahead / 2 * last.second);
+    if (both) {
+      // Backward difference form: what Taylor's polynomial of degree 2 missed at `before`, as
+      // c3 x^3 + c4 x^4 + c5 x^5 with x in steps from `last`.
+      const Direction& before = track.before->pistons[k];
+      const Vec3 value =
+          before.value - (last.value - step * last.first + step * step / 2 * last.second);
+      const Vec3 first = step * (before.first - (last.first - step * last.second));
+      const Vec3 second = step * step * (before.second - last.second);
+      const Vec3 c3 = -10 * value - 4 * first - second / 2;
+      const Vec3 c4 = -15 * value - 7 * first - second;
+      const Vec3 c5 = -6 * value - 3 * first - second / 2;
+      axis += t * t * t * (c3 + t * (c4 + t * c5));
+    }
+    // The turn that takes z to the axis the shortest way; a turn about the piston's own axis
+    // changes nothing.
+    SimTK::Vec4 quaternion(axis.norm() + axis[2], -axis[1], axis[0], 0);
+    quaternion /= quaternion.norm();
+    const int first_q = bodies_.pistons[k].getFirstQIndex(dynamics_);
+    for (int i = 0; i < 4; ++i) q[first_q + i] = quaternion[i];
+  }
+  return true;
+}
+
 void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t track) {
   if (track >= tracks_.size()) tracks_.resize(track + 1);
   placed_track_ = track;
   placed_theta_ = theta;
   placed_omega_ = omega;
   placed_omega_dot_ = omega_dot;
-  bool done = false;
-  if (const auto& last = tracks_[track]) {
-    const double step = std::remainder(theta - last->theta, 2 * kPi);
-    if (std::abs(step) < kNearby) {
-      Vector& q = dynamics_.updQ();
-      for (int i = 0; i < q.size(); ++i)
-        q[i] = last->q[i] + step * (last->first[i] + step / 2 * last->second[i]);
-      matter_.normalizeQuaternions(dynamics_);
-      done = solve_placement();
-    }
-  }
-  if (!done) {
+  if (!(extrapolate(tracks_[track], theta) && solve_placement())) {
     assemble(theta, omega);
     copy_assembly_to_dynamics();
     if (!solve_placement()) throw no_assembly(theta);
@@ -402,23 +432,33 @@ void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t
   solver_->solve_speeds(dynamics_);
 }
 
-void PumpSystem::remember_placement(const Vector& qdotdot) {
-  auto& track = tracks_[placed_track_];
-  if (!track) track.emplace();
-  track->theta = placed_theta_;
-  track->q = dynamics_.getQ();
-  track->first.resize(track->q.size());
-  track->second.resize(track->q.size());
-  track->first = 0;
-  track->second = 0;
-  // Derivatives with respect to theta do not depend on the speed; at standstill there are none.
-  if (std::abs(placed_omega_) < kSlowest) return;
-  const Vector& qdot = dynamics_.getQDot();
-  for (int i = 0; i < qdot.size(); ++i) {
-    track->first[i] = qdot[i] / placed_omega_;
-    track->second[i] =
-        (qdotdot[i] - track->first[i] * placed_omega_dot_) / (placed_omega_ * placed_omega_);
+void PumpSystem::remember_placement(const std::vector<Vec3>& angular_acceleration) {
+  Track& track = tracks_[placed_track_];
+  std::swap(track.before, track.last);
+  if (!track.last) track.last.emplace();
+  track.last->theta = placed_theta_;
+  track.last->pistons.resize(bodies_.pistons.size());
+  const Rotation& shaft = shaft_.getBodyRotation(dynamics_);
+  const Vec3& shaft_rate = shaft_.getBodyAngularVelocity(dynamics_);
+  const Vec3 shaft_acceleration(0, 0, placed_omega_dot_);
+  const double omega = placed_omega_;
+  for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
+    const auto& piston = bodies_.pistons[k];
+    Direction& direction = track.last->pistons[k];
+    const Vec3 axis(piston.getBodyRotation(dynamics_).z());
+    direction.value = ~shaft * axis;
+    direction.first = direction.second = Vec3(0);
+    // Derivatives with respect to theta do not depend on the speed; at standstill there are none.
+    if (std::abs(omega) < kSlowest) continue;
+    const Vec3& rate = piston.getBodyAngularVelocity(dynamics_);
+    const Vec3 relative = rate - shaft_rate;
+    const Vec3 first = relative % axis;
+    const Vec3 second = (angular_acceleration[k] - shaft_acceleration) % axis +
+                        relative % (rate % axis) - shaft_rate % first;
+    direction.first = ~shaft * first / omega;
+    direction.second = (~shaft * second - placed_omega_dot_ * direction.first) / (omega * omega);
   }
+  if (std::abs(omega) < kSlowest) track.before.reset();
 }
 
 void PumpSystem::constrained_accelerations(Vector& udot) {

@@ -65,8 +65,8 @@ class PumpSystem {
   /// @param track  which of several interleaved sequences of angles this one continues
   /// @throws ComputationError where no assembly is found.
   void place(double theta, double omega, double omega_dot, std::size_t track = 0);
-  /// Keeps what place() extrapolates from. State placed; `qdotdot` belongs to it.
-  void remember_placement(const SimTK::Vector& qdotdot);
+  /// Keeps what place() extrapolates from. @param angular_acceleration  of each piston, in Ground
+  void remember_placement(const std::vector<SimTK::Vec3>& angular_acceleration);
 
   /// Accelerations of all mobilities as the constraint equations have them at the last placement.
   void constrained_accelerations(SimTK::Vector& udot);
@@ -149,12 +149,20 @@ class PumpSystem {
   double piston_inertia_about_joint_ = 0;
   std::optional<double> assembled_theta_;
   std::unique_ptr<PistonSolver> solver_;
-  // A placement with its derivatives with respect to theta.
+  // Directions of the pistons in the shaft's frame at a placement, with their derivatives with
+  // respect to theta.
+  struct Direction {
+    SimTK::Vec3 value, first, second;
+  };
   struct Placement {
     double theta = 0;
-    SimTK::Vector q, first, second;
+    std::vector<Direction> pistons;
   };
-  std::vector<std::optional<Placement>> tracks_;
+  struct Track {
+    std::optional<Placement> last, before;
+  };
+  bool extrapolate(const Track& track, double theta);
+  std::vector<Track> tracks_;
   double placed_theta_ = 0, placed_omega_ = 0, placed_omega_dot_ = 0;
   std::size_t placed_track_ = 0;
 };

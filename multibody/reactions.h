@@ -39,8 +39,6 @@ class ResidualSolver {
   explicit ResidualSolver(PumpSystem& pump) : pump_(pump) {}
   /// Realizes the dynamics state to Dynamics and finds accelerations too.
   void solve(Reactions& reactions);
-  /// Accelerations of all mobilities found by the last solve().
-  const SimTK::Vector& accelerations() const { return udot_; }
 
  private:
   void solve_block_and_shaft(Reactions& reactions);
