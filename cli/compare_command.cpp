@@ -1,10 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fmt/format.h>
 #include <memory>
 #include <optional>
 
+#include "assumptions.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/compare/comparison.h"
@@ -17,7 +19,6 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
 #include "bentaxis/pump/units.h"
-#include "assumptions.h"
 #include "commands.h"
 #include "console.h"
 #include "models.h"
@@ -27,8 +28,8 @@
 namespace bentaxis::cli {
 namespace {
 
-constexpr double kDrivenTolerance = 1e-9;     // of peak; both models are exact to round-off
-constexpr double kIntegratedFactor = 100;     // achieved error over Simbody's accuracy per step
+constexpr double kDrivenTolerance = 1e-9;       // of peak; both models are exact to round-off
+constexpr double kIntegratedFactor = 100;       // achieved error over Simbody's accuracy per step
 constexpr double kDrivenRestTolerance = 1e-10;  // of what no assumption explains, of peak
 
 struct Options {
@@ -181,8 +182,8 @@ SplitResult split_assumptions(const Study& study, const compare::ZeroScales& sca
       if ((mask & (1U << i)) != 0) changes[i](assumptions, to);
     return analytic::run(study.analytic_case, assumptions, study.samples);
   };
-  result.split = compare::split_difference(study.analytic, study.multibody, names, variant, scales,
-                                           tolerance);
+  result.split =
+      compare::split_difference(study.analytic, study.multibody, names, variant, scales, tolerance);
   return result;
 }
 
@@ -232,8 +233,15 @@ int compare(const Options& options) {
   PressureTrace second_pressure(second.pressure);
   Samples samples = samples_of(first, pressure, options.way);
   Samples second_samples = samples_of(second, second_pressure, options.way);
-  Study study{std::move(first),   std::move(second),         std::move(pressure),
-              std::move(second_pressure), std::move(samples), std::move(second_samples), 0, {}, {}};
+  Study study{std::move(first),
+              std::move(second),
+              std::move(pressure),
+              std::move(second_pressure),
+              std::move(samples),
+              std::move(second_samples),
+              0,
+              {},
+              {}};
   const Case& the_case = study.analytic_case;
   const int n = the_case.pump.geometry.pistons;
 
@@ -265,8 +273,7 @@ int compare(const Options& options) {
       integrated ? study.tolerance : std::min(study.tolerance, kDrivenRestTolerance));
   const bool checks_hold =
       std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.holds(); });
-  const bool agrees =
-      checks_hold && (split.split ? split.split->explained() : comparison.agrees());
+  const bool agrees = checks_hold && (split.split ? split.split->explained() : comparison.agrees());
 
   // Fig. 32 with and without the block's viscous torque.
   std::vector<ResultTable> without_viscous;
@@ -281,8 +288,8 @@ int compare(const Options& options) {
                                                     progress_of("multibody, Cc = 0")));
   }
 
-  const auto limits = analytic::check_validity(the_case, the_case.analytic, study.samples,
-                                               study.analytic);
+  const auto limits =
+      analytic::check_validity(the_case, the_case.analytic, study.samples, study.analytic);
   const auto* worst = comparison.worst();
   Json report = {
       {"schema", 1},
@@ -303,16 +310,16 @@ int compare(const Options& options) {
                                    : Json()}}},
       {"meaning",
        "Two models that agree have solved the same equations correctly: that is verification. It "
-       "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
+       "says nothing about what both leave out or share (tables below). Whether a real pump "
+       "behaves "
        "so is validation, and needs measurements."},
       {"warnings", warnings_section(limits)},
       {"common", common_section(the_case)},
       {"validity", validity_section(limits)},
-      {"models", Json::array({compare::model_section(study.analytic,
-                                                     assumption_lines(the_case.analytic)),
-                              compare::model_section(
-                                  study.multibody,
-                                  assumption_lines(study.multibody_case.multibody))})},
+      {"models",
+       Json::array({compare::model_section(study.analytic, assumption_lines(the_case.analytic)),
+                    compare::model_section(study.multibody,
+                                           assumption_lines(study.multibody_case.multibody))})},
       {"channels", compare::channel_rows(comparison)},
       {"checks", compare::check_rows(checks)},
       {"assumptions", nullptr},
@@ -327,8 +334,7 @@ int compare(const Options& options) {
 
   const Json curves = compare::curve_section(study.analytic, study.multibody);
   folder.add("report.html", compare::render_page(the_case.name, report, curves));
-  folder.add("report.json",
-             report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  folder.add("report.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   folder.add("analytic.csv", to_csv(study.analytic));
   folder.add("multibody.csv", to_csv(study.multibody));
   const auto paths = folder.commit();
@@ -351,8 +357,8 @@ int compare(const Options& options) {
 
 Command add_compare_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "compare", "Run both models and report where and by how much they differ");
+  CLI::App* command =
+      app.add_subcommand("compare", "Run both models and report where and by how much they differ");
   add_case(*command, options->case_file);
   add_out(*command, options->out, "report.html, report.json and the curves");
   command
@@ -371,7 +377,8 @@ Command add_compare_command(CLI::App& app) {
   command
       ->add_option("--analytic", options->analytic,
                    "assumption of the analytic model: piston_friction=on|off, "
-                   "inertia=lumped|real, gear=mesh|imposed; overrides the case file")
+                   "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed; overrides the "
+                   "case file")
       ->option_text("KEY=VALUE ..");
   command->add_option("--multibody", options->multibody, "the same for the multibody model")
       ->option_text("KEY=VALUE ..");

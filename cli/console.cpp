@@ -1,10 +1,11 @@
 #include "console.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
-#include <unistd.h>
 
 #include "bentaxis/pump/error.h"
 

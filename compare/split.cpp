@@ -55,8 +55,7 @@ Split split_difference(const ResultTable& first, const ResultTable& second,
           if ((mask & (1U << i)) != 0) continue;
           const double step =
               variants[mask | (1U << i)].at(row, column) - variants[mask].at(row, column);
-          if (is_computed(step))
-            part += weight(static_cast<unsigned>(std::popcount(mask))) * step;
+          if (is_computed(step)) part += weight(static_cast<unsigned>(std::popcount(mask))) * step;
         }
         result.contributions[i].largest = std::max(result.contributions[i].largest, std::abs(part));
         result.contributions[i].mean += part / static_cast<double>(first.rows());

@@ -100,6 +100,24 @@ double nominal_inertia(double given) {
   return given > 0 ? given : kAny;
 }
 
+// A point mass on a piston's axis, from A.
+struct PointMass {
+  double mass = 0;
+  double z = 0;
+};
+
+// Masses at A, at the centre of mass and at B with the real piston's mass, centre and transverse
+// inertia: the middle one is what the outer two, with their common centre there, leave over.
+std::vector<PointMass> three_point_masses(const PistonMass& piston, double length) {
+  const auto& real = *piston.real;
+  const double from_a = real.centre_of_mass;
+  const double outer =
+      real.transverse_inertia > 0 ? real.transverse_inertia / (from_a * (length - from_a)) : 0;
+  return {{outer * (length - from_a) / length, 0},
+          {piston.mass - outer, from_a},
+          {outer * from_a / length, length}};
+}
+
 ComputationError no_assembly(double theta) {
   return ComputationError("multibody model: no assembly found at theta = " +
                           std::to_string(theta / kRadPerDegree) + " deg");
@@ -240,8 +258,19 @@ void PumpSystem::add_pistons() {
     properties = symmetric_body(mass.mass, (1 - mass.joint_mass_fraction) * length,
                                 at_ring * length * length, 0);
     pistons_free_to_spin_ = false;
+  } else if (const std::string why = piston_inertia_refusal(assumptions_.inertia, pump_);
+             !why.empty()) {
+    throw InputError(to_string(assumptions_.inertia) + " pistons: " + why);
+  } else if (assumptions_.inertia == PistonInertia::dynamically_equivalent) {
+    double about_joint = 0;
+    double moment = 0;
+    for (const PointMass& point : three_point_masses(mass, length)) {
+      moment += point.mass * point.z;
+      about_joint += point.mass * point.z * point.z;
+    }
+    properties = symmetric_body(mass.mass, mass.mass > 0 ? moment / mass.mass : 0, about_joint, 0);
+    pistons_free_to_spin_ = false;
   } else {
-    if (!mass.real) throw InputError("real pistons asked for, but the case has no data of them");
     const auto& real = *mass.real;
     properties = symmetric_body(
         mass.mass, real.centre_of_mass,

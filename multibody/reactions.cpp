@@ -37,8 +37,9 @@ double piston_power(const PumpSystem& pump, const MobilizedBody& piston, const S
     add_mass((1 - p.piston.joint_mass_fraction) * p.piston.mass, p.geometry.piston_length);
   } else {
     add_mass(p.piston.mass, p.piston.real->centre_of_mass);
+    const bool rigid = pump.assumptions().inertia == PistonInertia::real;
     const double it = p.piston.real->transverse_inertia;
-    const double ia = p.piston.real->axial_inertia;
+    const double ia = rigid ? p.piston.real->axial_inertia : 0;
     const auto inertia_times = [&](const Vec3& v) {
       return Vec3(it * v + (ia - it) * dot(axis, v) * axis);
     };

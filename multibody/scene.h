@@ -20,6 +20,12 @@ enum class Method {
                 ///< no inertia, so it serves massless pistons too
 };
 
+/// What to build and how to find reactions there.
+struct SceneChoice {
+  Scene scene = Scene::full;
+  Method method = Method::multipliers;
+};
+
 /// Names as on the command line, in the order of the enumerations.
 const std::vector<std::string>& scene_names();
 const std::vector<std::string>& method_names();

@@ -1,3 +1,5 @@
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -7,7 +9,6 @@
 #include <optional>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/csv.h"
@@ -144,7 +145,8 @@ class TableReader {
   std::pair<double, double> pair(const std::string& key, Range range) {
     const toml::node* node = find(key, "a pair of numbers [a, b]", false);
     const toml::array* array = node->as_array();
-    if (array == nullptr || array->size() != 2) fail(*node, key, "must be a pair of numbers [a, b]");
+    if (array == nullptr || array->size() != 2)
+      fail(*node, key, "must be a pair of numbers [a, b]");
     const std::pair<double, double> values{number_of((*array)[0], key, range, false),
                                            number_of((*array)[1], key, range, false)};
     record(key, quoted(*node));
@@ -158,9 +160,10 @@ class TableReader {
       const std::string word(key.str());
       if (known_.count(word) > 0) continue;
       const bool is_table = node.is_table();
-      std::string message = is_table && name_.empty() ? "unknown table [" + word + "]"
-                                                      : "unknown key \"" + word + "\"" +
-                                                            (name_.empty() ? "" : " in [" + name_ + "]");
+      std::string message =
+          is_table && name_.empty()
+              ? "unknown table [" + word + "]"
+              : "unknown key \"" + word + "\"" + (name_.empty() ? "" : " in [" + name_ + "]");
       const auto nearest =
           std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
             return edit_distance(word, a) < edit_distance(word, b);
@@ -169,9 +172,9 @@ class TableReader {
         message += "; did you mean \"" + *nearest + "\"?";
       else if (!known_.empty())
         message += "; allowed: " + list_of_keys();
-      throw InputError(place(node.source().begin.line > 0 ? static_cast<int>(node.source().begin.line)
-                                                          : line_) +
-                       message);
+      throw InputError(
+          place(node.source().begin.line > 0 ? static_cast<int>(node.source().begin.line) : line_) +
+          message);
     }
   }
 
@@ -187,8 +190,8 @@ class TableReader {
     for (const auto& [found, node] : *table_) {
       const std::string word(found.str());
       if (known_.count(word) == 0 && edit_distance(word, key) <= 3)
-        return "; is \"" + word + "\" in line " +
-               std::to_string(node.source().begin.line) + " meant?";
+        return "; is \"" + word + "\" in line " + std::to_string(node.source().begin.line) +
+               " meant?";
     }
     return "";
   }
@@ -215,7 +218,8 @@ class TableReader {
     known_.insert(key);
     const toml::node* node = table_ == nullptr ? nullptr : table_->get(key);
     if (node == nullptr && !optional)
-      throw InputError(place(line_) + label(key) + " is missing: must be " + wanted + misspelt(key));
+      throw InputError(place(line_) + label(key) + " is missing: must be " + wanted +
+                       misspelt(key));
     return node;
   }
 
@@ -310,8 +314,7 @@ class CaseReader {
       in.fail("piston_length_mm",
               "must be > " + short_text(margin.longest_distance * 1e3) +
                   ": the pump cannot be assembled at theta = " + short_text(margin.theta_deg) +
-                  " deg, where " +
-                  short_text((margin.longest_distance - g.piston_length) * 1e3) +
+                  " deg, where " + short_text((margin.longest_distance - g.piston_length) * 1e3) +
                   " mm are missing (set by joint_circle_radius_mm, bore_circle_radius_mm, "
                   "axis_offset_mm, tilt_deg)");
   }
@@ -333,8 +336,8 @@ class CaseReader {
 
   void read_piston(TableReader in) {
     PistonMass& piston = result_.pump.piston;
-    const bool real = in.choice("inertia", {"lumped", "real"}) == 1;
-    piston.inertia = real ? PistonInertia::real : PistonInertia::lumped;
+    piston.inertia = static_cast<PistonInertia>(in.choice("inertia", piston_inertia_names()));
+    const bool real = piston.inertia != PistonInertia::lumped;
     piston.mass = in.number("mass_kg", kNotNegative);
     piston.joint_mass_fraction = in.number("joint_mass_fraction", {0, 1}, 0.5);
     // Data of the real piston may stand in a lumped case; they are read where they are complete.
@@ -357,6 +360,8 @@ class CaseReader {
       in.number("spin_rpm", kAny, 0.0);
     }
     in.finish();
+    if (const std::string why = piston_inertia_refusal(piston.inertia, result_.pump); !why.empty())
+      in.fail("inertia", why);
   }
 
   void read_shaft(TableReader in) {
@@ -451,22 +456,18 @@ class CaseReader {
     if (!top.has("assumptions")) return;
     TableReader both = section(root_.get("assumptions"), "assumptions");
     const toml::table& models = *root_.get_as<toml::table>("assumptions");
-    for (auto [name, target] : {std::pair{"analytic", &result_.analytic},
-                                std::pair{"multibody", &result_.multibody}}) {
+    for (auto [name, target] :
+         {std::pair{"analytic", &result_.analytic}, std::pair{"multibody", &result_.multibody}}) {
       if (!both.has(name)) continue;
       TableReader in = section(models.get(name), std::string("assumptions.") + name);
       target->piston_friction = in.flag("piston_friction", true);
-      target->inertia =
-          in.choice("inertia", {"lumped", "real"},
-                    fallback.inertia == PistonInertia::real ? 1 : 0) == 1
-              ? PistonInertia::real
-              : PistonInertia::lumped;
+      target->inertia = static_cast<PistonInertia>(
+          in.choice("inertia", piston_inertia_names(), static_cast<std::size_t>(fallback.inertia)));
       target->gear =
           in.choice("gear", {"mesh", "imposed"}, 0) == 1 ? GearScene::imposed : GearScene::mesh;
-      if (target->inertia == PistonInertia::real && !result_.pump.piston.real)
-        in.fail("inertia",
-                "needs centre_of_mass_mm, transverse_inertia_kg_mm2, axial_inertia_kg_mm2 in "
-                "[piston]");
+      if (const std::string why = piston_inertia_refusal(target->inertia, result_.pump);
+          !why.empty())
+        in.fail("inertia", why);
       in.finish();
     }
     both.finish();

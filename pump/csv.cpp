@@ -2,10 +2,11 @@
 
 // Single-threaded reading keeps the library free of threads it does not need.
 #define CSV_IO_NO_THREAD
+#include <libfccp/csv.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <libfccp/csv.h>
 #include <string_view>
 
 #include "bentaxis/pump/error.h"

@@ -1,10 +1,11 @@
 #include "bentaxis/pump/files.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <unistd.h>
 
 #include "bentaxis/pump/error.h"
 

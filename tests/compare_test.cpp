@@ -1,9 +1,8 @@
 // The comparison: made-up tables with known answers; no model is run here.
-#include "bentaxis/compare/comparison.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bentaxis/compare/comparison.h"
 #include "bentaxis/compare/page.h"
 #include "bentaxis/compare/report.h"
 #include "bentaxis/compare/split.h"
@@ -40,13 +39,15 @@ ResultTable table(const std::string& name, const std::vector<Channel>& channels,
   return t;
 }
 
-double wave(double deg, int order, double phase = 0) { return std::cos(order * radians(deg) - phase); }
+double wave(double deg, int order, double phase = 0) {
+  return std::cos(order * radians(deg) - phase);
+}
 
 TEST(Comparison, MeasuresADifferenceOfKnownShape) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto a = table("a", channels, {[](double t) { return 100 * wave(t, 5); }});
-  const auto b = table("b", channels,
-                       {[](double t) { return 100 * wave(t, 5) + 1 + 2 * wave(t, 10, 0.5); }});
+  const auto b =
+      table("b", channels, {[](double t) { return 100 * wave(t, 5) + 1 + 2 * wave(t, 10, 0.5); }});
   Options options;
   options.orders = {5, 10};
   options.tolerance = 1e-3;
@@ -117,9 +118,10 @@ TEST(Comparison, WhatOneTableLacksIsNotComputedAndNotAgreeing) {
 }
 
 TEST(Checks, AreJudgedTogetherOverThePistons) {
-  const std::vector<Channel> channels = {
-      channel("m_1_Nm", "m", "Nm", ChannelKind::check), channel("m_2_Nm", "m", "Nm", ChannelKind::check)};
-  auto t = table("a", channels, {[](double) { return 1e-9; }, [](double d) { return d == 90 ? -2e-6 : 0; }});
+  const std::vector<Channel> channels = {channel("m_1_Nm", "m", "Nm", ChannelKind::check),
+                                         channel("m_2_Nm", "m", "Nm", ChannelKind::check)};
+  auto t = table("a", channels,
+                 {[](double) { return 1e-9; }, [](double d) { return d == 90 ? -2e-6 : 0; }});
   for (auto& c : t.channels) c.meaning = "moment";
   const auto checks = judge_checks(t, {{"Nm", 100.0}}, 1e-9);
   ASSERT_EQ(checks.size(), 1U);

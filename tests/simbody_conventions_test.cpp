@@ -1,10 +1,9 @@
 // Pins the signs and frames of Simbody 3.7 that multibody/conventions.h wraps, against free-body
 // diagrams written here. Generic data: nothing is aligned with an axis by chance.
-#include "bentaxis/multibody/conventions.h"
-
 #include <SimTKsimbody.h>
 #include <gtest/gtest.h>
 
+#include "bentaxis/multibody/conventions.h"
 #include "bentaxis/multibody/gear_mesh.h"
 
 namespace bentaxis::multibody {
@@ -58,7 +57,8 @@ TEST(SimbodyConventions, ConstraintForceOnTheFollowerBalancesItsLoad) {
   const Vec3 along = dot(load, Vec3(line)) * Vec3(line);
   EXPECT_LT(distance(f[1], -(load - along)), 1e-12);
   // Newton's third law on the other side.
-  EXPECT_LT(distance(constraint_force_on(state, constraint, w.matter.getGround())[1], -f[1]), 1e-12);
+  EXPECT_LT(distance(constraint_force_on(state, constraint, w.matter.getGround())[1], -f[1]),
+            1e-12);
 }
 
 // A speed held against a load torque: the drive applies the opposite torque.
