@@ -193,17 +193,13 @@ std::string headline(const compare::Comparison& comparison, const SplitResult& s
       worst == nullptr ? ""
                        : fmt::format("{} at {:g} deg: {:.1e} of its peak", worst->channel.name,
                                      worst->theta_of_largest_deg, worst->largest_over_peak());
-  if (split.split) {
-    double rest = 0;
-    for (const auto& channel : split.split->channels)
-      if (channel.computed) rest = std::max(rest, channel.rest_over_peak());
+  if (split.split)
     return fmt::format(
         "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak is "
         "left (tolerance {:g}).",
         agrees ? "Explained." : "Not explained.", where,
-        agrees ? "After accounting for each assumption" : "Each assumption accounted for", rest,
-        split.split->tolerance);
-  }
+        agrees ? "After accounting for each assumption" : "Each assumption accounted for",
+        split.split->largest_rest(), split.split->tolerance);
   return fmt::format("{} Largest difference {} (tolerance {:g}).",
                      agrees ? "The two models agree." : "The two models differ.", where,
                      comparison.tolerance);
@@ -261,8 +257,7 @@ int compare(const Options& options) {
   else
     study.multibody = run_multibody(study, options, 0, nullptr);
 
-  const auto comparison =
-      compare::compare_tables(study.analytic, study.multibody, comparison_options);
+  auto comparison = compare::compare_tables(study.analytic, study.multibody, comparison_options);
   std::vector<compare::Check> checks =
       compare::judge_checks(study.analytic, comparison_options.zero_scales, study.tolerance);
   for (auto& check :
@@ -271,6 +266,7 @@ int compare(const Options& options) {
   const SplitResult split = split_assumptions(
       study, comparison_options.zero_scales,
       integrated ? study.tolerance : std::min(study.tolerance, kDrivenRestTolerance));
+  if (split.split) compare::mark_explained(comparison, *split.split);
   const bool checks_hold =
       std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.holds(); });
   const bool agrees = checks_hold && (split.split ? split.split->explained() : comparison.agrees());
@@ -325,12 +321,16 @@ int compare(const Options& options) {
       {"assumptions", nullptr},
       {"runs", runs},
       {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
-  if (split.split)
+  if (split.split) {
+    report["verdict"]["word"] = agrees ? "Explained" : "Not explained";
+    report["verdict"]["rest_over_peak"] = split.split->largest_rest();
+    report["verdict"]["rest_tolerance"] = split.split->tolerance;
     report["assumptions"] = compare::split_section(
         *split.split, split.rows,
         "The models were asked to assume different things. Each assumption's contribution is its "
         "effect in the analytic model, averaged over the orders in which the assumptions can be "
         "taken over; what is left is a difference between the models themselves.");
+  }
 
   const Json curves = compare::curve_section(study.analytic, study.multibody);
   folder.add("report.html", compare::render_page(the_case.name, report, curves));

@@ -75,6 +75,8 @@ const char* to_string(Verdict verdict) {
       return "agrees";
     case Verdict::differs:
       return "differs";
+    case Verdict::explained:
+      return "explained";
     case Verdict::not_computed:
       break;
   }

@@ -11,6 +11,20 @@
 namespace bentaxis::compare {
 namespace {
 
+const char* to_string(ChannelKind kind) {
+  switch (kind) {
+    case ChannelKind::reaction:
+      return "reaction";
+    case ChannelKind::derived:
+      return "derived";
+    case ChannelKind::input:
+      return "input";
+    case ChannelKind::check:
+      break;
+  }
+  return "check";
+}
+
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json rounded(double value) {
@@ -43,9 +57,7 @@ Json channel_rows(const Comparison& comparison) {
                 {"point", channel.point},
                 {"unit", channel.unit},
                 {"group", channel.group},
-                {"kind", channel.kind == ChannelKind::reaction  ? "reaction"
-                         : channel.kind == ChannelKind::derived ? "derived"
-                                                                : "input"},
+                {"kind", to_string(channel.kind)},
                 {"compared", c.judged},
                 {"peak", c.peak},
                 {"verdict", to_string(c.verdict)},
@@ -114,6 +126,8 @@ Json split_section(const Split& split, const std::vector<AssumptionRow>& rows,
                        {"mean", channel.contributions[i].mean}});
     section["channels"].push_back(
         {{"name", channel.channel.name},
+         {"group", channel.channel.group},
+         {"kind", to_string(channel.channel.kind)},
          {"unit", channel.channel.unit},
          {"peak", channel.peak},
          {"max_abs", channel.largest_difference},

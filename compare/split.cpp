@@ -12,6 +12,24 @@ bool Split::explained() const {
   });
 }
 
+double Split::largest_rest() const {
+  double rest = 0;
+  for (const ChannelSplit& channel : channels)
+    if (channel.computed) rest = std::max(rest, channel.rest_over_peak());
+  return rest;
+}
+
+void mark_explained(Comparison& comparison, const Split& split) {
+  for (ChannelComparison& channel : comparison.channels) {
+    if (channel.verdict != Verdict::differs) continue;
+    const auto part =
+        std::find_if(split.channels.begin(), split.channels.end(),
+                     [&](const ChannelSplit& s) { return s.channel.name == channel.channel.name; });
+    if (part != split.channels.end() && part->computed && part->rest_over_peak() <= split.tolerance)
+      channel.verdict = Verdict::explained;
+  }
+}
+
 Split split_difference(const ResultTable& first, const ResultTable& second,
                        const std::vector<std::string>& assumptions,
                        const std::function<ResultTable(unsigned mask)>& variant,

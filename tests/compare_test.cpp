@@ -151,6 +151,22 @@ TEST(Split, AddsUpAndSharesInteractionsEvenly) {
   EXPECT_FALSE(split_difference(first, second, {"p", "q"}, variant, {}, 1e-9).explained());
 }
 
+TEST(Split, MarksOnlyExplainedChannels) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
+  const auto model = [&](double p, double extra) {
+    return table("m", channels,
+                 {[=](double) { return 10 + p; }, [=](double) { return 5 + extra; }});
+  };
+  const auto second = model(1, 0.1);
+  const Split split = split_difference(
+      model(0, 0), second, {"p"}, [&](unsigned) { return model(1, 0); }, {}, 1e-9);
+  Comparison c = compare_tables(model(0, 0), second, {});
+  mark_explained(c, split);
+  EXPECT_EQ(c.channels[0].verdict, Verdict::explained);
+  EXPECT_EQ(c.channels[1].verdict, Verdict::differs);  // no assumption accounts for it
+  EXPECT_NEAR(split.largest_rest(), 0.02, 1e-12);
+}
+
 TEST(Page, HoldsTheDataAndNeedsNoNetwork) {
   const Json report = {{"title", "</script><b>x"}};
   const std::string page = render_page("<T>", report, {{"theta_deg", {0, 1}}});
