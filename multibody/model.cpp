@@ -183,8 +183,7 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
            (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
 }
 
-SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene,
-                     Method) {
+SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {
   const PumpSystem system(built_pump(pump, scene), assumptions, 1, drive_of(scene));
   const SimTK::State& state = system.dynamics();
   SceneSize size;

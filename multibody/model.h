@@ -60,8 +60,7 @@ struct SceneSize {
   int mobilities = 0;
   int equations = 0;  ///< constraint equations solved at an instant
 };
-SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene,
-                     Method method);
+SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene);
 
 /// One turn of a case under the given assumptions, as a table. In the one-piston scene piston 1
 /// stands for all where the samples allow it (they divide by N, and every piston sees at its angle
