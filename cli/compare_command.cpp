@@ -377,7 +377,8 @@ Command add_compare_command(CLI::App& app) {
   command
       ->add_option("--analytic", options->analytic,
                    "assumption of the analytic model: piston_friction=on|off, "
-                   "inertia=lumped|real, gear=mesh|imposed; overrides the case file")
+                   "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed; overrides the "
+                   "case file")
       ->option_text("KEY=VALUE ..");
   command->add_option("--multibody", options->multibody, "the same for the multibody model")
       ->option_text("KEY=VALUE ..");

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bentaxis/multibody/integrated.h"
+#include "bentaxis/multibody/scene.h"
 
 namespace bentaxis::cli {
 
@@ -17,6 +18,8 @@ void add_way(CLI::App& command, Way& way);
 void add_integrator(CLI::App& command, multibody::IntegrationOptions& options);
 /// A finite number in [low, high].
 CLI::Validator number_in(double low, double high);
+/// --scene and --reactions.
+void add_scene(CLI::App& command, multibody::SceneChoice& choice);
 /// Accuracies that Simbody's integrators accept.
 CLI::Validator accuracy_range();
 /// A finite number above 0.

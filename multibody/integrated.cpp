@@ -93,6 +93,7 @@ class Runner {
                                                   the_case.pump.geometry.joint_circle_radius);
     const double end = samples.theta_deg.empty() ? 0 : std::abs(samples.theta_deg.back());
     edges_ = edge_distances(the_case, assumptions, pressure, end);
+    system_.require_piston_inertia();
     system_.assemble(0, samples.omega);
     system_.copy_assembly_to_dynamics();
     start_ = system_.dynamics().getTime();
