@@ -57,14 +57,31 @@ Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
     centre_share_ = 1 - pump.piston.joint_mass_fraction;
     inertia_ = mass_ * centre_share_;
     spin_momentum_ = 0;
+  } else if (const std::string why = piston_inertia_refusal(assumptions.inertia, pump);
+             !why.empty()) {
+    throw InputError(to_string(assumptions.inertia) + " pistons: " + why);
+  } else if (assumptions.inertia == PistonInertia::dynamically_equivalent) {
+    // Point masses at A and B that have the transverse inertia about the centre of mass between
+    // them, and the rest there.
+    const PistonMass::Real& real = *pump.piston.real;
+    const double centre = real.centre_of_mass;
+    const bool spread = real.transverse_inertia > 0;
+    const double at_joint = spread ? real.transverse_inertia / (length * centre) : 0;
+    const double at_ring = spread ? real.transverse_inertia / (length * (length - centre)) : 0;
+    const double at_centre = mass_ - at_joint - at_ring;
+    const double share = centre / length;
+    static_moment_ = at_ring + at_centre * share;
+    centre_share_ = mass_ > 0 ? static_moment_ / mass_ : share;
+    inertia_ = at_ring + at_centre * share * share;
+    spin_momentum_ = 0;
   } else {
-    if (!pump.piston.real) throw InputError("real pistons asked for, but the case has no data");
     const PistonMass::Real& real = *pump.piston.real;
     centre_share_ = real.centre_of_mass / length;
     inertia_ = mass_ * centre_share_ * centre_share_ + real.transverse_inertia / (length * length);
     spin_momentum_ = real.axial_inertia * real.spin / length;
   }
-  static_moment_ = mass_ * centre_share_;
+  if (assumptions.inertia != PistonInertia::dynamically_equivalent)
+    static_moment_ = mass_ * centre_share_;
 
   if (pump.port_plate) {
     land_delivery_ = land_force(*pump.port_plate, pump.port_plate->delivery);

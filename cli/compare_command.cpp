@@ -380,7 +380,7 @@ Command add_compare_command(CLI::App& app) {
   command
       ->add_option("--tolerance", options->tolerance,
                    "largest difference over peak that counts as agreement")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   add_way(*command, options->way);
   add_integrator(*command, options->integration);
@@ -393,7 +393,8 @@ Command add_compare_command(CLI::App& app) {
   command
       ->add_option("--analytic", options->analytic,
                    "assumption of the analytic model: piston_friction=on|off, "
-                   "inertia=lumped|real, gear=mesh|imposed; overrides the case file")
+                   "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed; overrides the "
+                   "case file")
       ->option_text("KEY=VALUE ..");
   command->add_option("--multibody", options->multibody, "the same for the multibody model")
       ->option_text("KEY=VALUE ..");

@@ -101,7 +101,9 @@ double turn_angle(const Rotation& body_in_ground, const Rotation& frame) {
 GearMesh::GearMesh(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& shaft,
                    SimTK::MobilizedBody& block, const Vec3& point, const SimTK::UnitVec3& line,
                    const Rotation& block_frame)
-    : Custom(new GearMeshImplementation(matter, shaft, block, point, Vec3(line), block_frame)) {}
+    : Custom(new GearMeshImplementation(matter, shaft, block, point, Vec3(line), block_frame)),
+      point_(point),
+      line_(line) {}
 
 double GearMesh::tooth_force(const State& state) const {
   return -getMultipliersAsVector(state)[0];  // a multiplier is minus the applied force

@@ -81,8 +81,7 @@ class Runner {
  public:
   Runner(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
          const PressureTrace& pressure, const IntegrationOptions& options, Drive drive)
-      : case_(the_case),
-        samples_(samples),
+      : samples_(samples),
         pressure_(pressure),
         system_(the_case.pump, assumptions, samples.omega, drive),
         direction_(samples.omega < 0 ? -1 : 1) {
@@ -94,6 +93,7 @@ class Runner {
                                                   the_case.pump.geometry.joint_circle_radius);
     const double end = samples.theta_deg.empty() ? 0 : std::abs(samples.theta_deg.back());
     edges_ = edge_distances(the_case, assumptions, pressure, end);
+    system_.require_piston_inertia();
     system_.assemble(0, samples.omega);
     system_.copy_assembly_to_dynamics();
     start_ = system_.dynamics().getTime();
@@ -196,7 +196,6 @@ class Runner {
     keep(record_.worst_speed, shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
   }
 
-  const Case& case_;
   const Samples& samples_;
   const PressureTrace& pressure_;
   PumpSystem system_;

@@ -30,7 +30,11 @@ struct PumpBodies {
   std::vector<SimTK::MobilizedBody> pistons;
   SimTK::Rotation block_frame;  ///< S2 in Ground
   SimTK::Vec3 block_origin;     ///< O2 in Ground
+  SimTK::Vec3 shaft_origin;     ///< C1 in Ground
 };
+
+/// Which bodies are loaded: where shaft and block are prescribed, loads on them change nothing.
+enum class LoadedBodies { all, pistons };
 
 /// Adds pressure on pistons and block, friction, spring, port-plate film and viscous torques.
 /// Weight is not among them (Simbody's own gravity element).
@@ -38,7 +42,8 @@ struct PumpBodies {
 class PumpLoads : public SimTK::Force::Custom {
  public:
   PumpLoads(SimTK::GeneralForceSubsystem& forces, const PumpParameters& pump,
-            const Assumptions& assumptions, const PumpBodies& bodies, const LoadInputs& inputs);
+            const Assumptions& assumptions, const PumpBodies& bodies, const LoadInputs& inputs,
+            LoadedBodies loaded);
 };
 
 /// Axial force on a piston along z2 at B: pressure and friction, N.

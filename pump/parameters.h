@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace bentaxis {
 
@@ -37,7 +38,15 @@ struct Bearings {
 enum class PistonInertia {
   lumped,  ///< two point masses, chi m at A and (1 - chi) m at B (27), (28)
   real,    ///< rigid, axisymmetric, spinning about its own axis at constant rate (appendix)
+  dynamically_equivalent,  ///< three point masses at A, at the centre of mass and at B that have
+                           ///< the real piston's mass, centre and transverse inertia; no spin
 };
+
+/// Names as in a case file, in the order of the enumeration.
+inline const std::vector<std::string>& piston_inertia_names() {
+  static const std::vector<std::string> names = {"lumped", "real", "dynamically_equivalent"};
+  return names;
+}
 
 /// Mass properties of one piston. Each kind's own data is present when the case file gives it.
 struct PistonMass {
@@ -122,11 +131,16 @@ inline bool operator==(const Assumptions& a, const Assumptions& b) {
 }
 
 inline std::string to_string(PistonInertia inertia) {
-  return inertia == PistonInertia::lumped ? "lumped" : "real";
+  return piston_inertia_names()[static_cast<std::size_t>(inertia)];
 }
 inline std::string to_string(GearScene gear) {
   return gear == GearScene::mesh ? "mesh" : "imposed";
 }
+
+/// Why this piston cannot be treated as `inertia` asks, as the end of a message; empty where it
+/// can. Real and dynamically equivalent pistons need their data; three point masses with a
+/// transverse inertia need the centre of mass strictly between A and B.
+std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& pump);
 
 /// Applies the law of piston friction Fpf = -(Fc tanh(v/v_reg) + cv v), N, along z2 at B.
 /// With v_reg = 0 the tanh is sign(v), and |v| <= `rest_speed` counts as rest.

@@ -31,7 +31,7 @@ class Case:
     """The text of a case file, edited key by key. "pump.tilt_deg" is a key of a table, "name" one of none."""
 
     def __init__(self, **changes):
-        self.lines = (REPO / "cases" / "bap63_rated.toml").read_text().splitlines()
+        self.lines = (REPO / "reference_data" / "high_precision" / "bap63_rated" / "case.toml").read_text().splitlines()
         self.set({"operation.samples_per_revolution": 36})
         self.set(changes)
 

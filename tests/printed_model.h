@@ -113,7 +113,7 @@ class PrintedModel {
         const V e_acc = (acc_b - acc_a) / g.piston_length;
         force += fg;
         moment += centre.cross(fg) - real.transverse_inertia * e.cross(e_acc) -
-                  real.axial_inertia * real.spin * e_rate;
+                  (a_.inertia == PistonInertia::real ? real.axial_inertia * real.spin : 0) * e_rate;
       }
       // Five unknowns, six equations of which one is an identity: least squares by QR.
       Eigen::Matrix<double, 6, 5> m = Eigen::Matrix<double, 6, 5>::Zero();
