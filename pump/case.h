@@ -7,6 +7,7 @@
 
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/pump/pressure.h"
+#include "bentaxis/pump/toml_reader.h"
 
 namespace bentaxis {
 
@@ -17,12 +18,7 @@ struct Operation {
 };
 
 /// One key of the case file as read, for reports.
-struct CaseEntry {
-  std::string table;  ///< "pump"; "" for the top level
-  std::string key;
-  std::string value;
-  bool defaulted = false;
-};
+using CaseEntry = TomlEntry;
 
 struct Case {
   std::filesystem::path file;
