@@ -59,13 +59,6 @@ ResultTable run_multibody(const Study& study, const Options& options, double acc
                    study.multibody_pressure, options.way, integration, record);
 }
 
-compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
-  const LoadScale scale = load_scale(the_case, samples);
-  const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
-                                 the_case.pump.geometry.bore_circle_radius);
-  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
-}
-
 // The analytic torque as a function of the shaft angle, for the torque-driven run.
 std::function<double(double)> analytic_torque(const Study& study, const Assumptions& assumptions) {
   auto model = std::make_shared<analytic::Model>(study.analytic_case.pump, assumptions);
