@@ -21,6 +21,7 @@
 #include "commands.h"
 #include "console.h"
 #include "models.h"
+#include "published_section.h"
 #include "pump_report.h"
 #include "versions.h"
 
@@ -274,6 +275,9 @@ int compare(const Options& options) {
                                                     progress_of("multibody, Cc = 0")));
   }
 
+  const auto published =
+      published_section({&the_case, the_case.analytic, &study.analytic},
+                        {&study.multibody_case, study.multibody_case.multibody, &study.multibody});
   const auto limits = analytic::check_validity(the_case, the_case.analytic, study.samples,
                                                study.analytic);
   const auto* worst = comparison.worst();
@@ -309,6 +313,7 @@ int compare(const Options& options) {
       {"channels", compare::channel_rows(comparison)},
       {"checks", compare::check_rows(checks)},
       {"assumptions", nullptr},
+      {"published", published ? published->json : Json()},
       {"runs", runs},
       {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
   if (split.split)
@@ -335,6 +340,7 @@ int compare(const Options& options) {
   for (const auto& warning : report["warnings"])
     std::printf("warning: %s: %s\n", warning["name"].get<std::string>().c_str(),
                 warning["text"].get<std::string>().c_str());
+  if (published) std::printf("published numbers: %s\n", published->summary.text().c_str());
   std::printf("\n");
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return agrees ? kDone : kOutOfTolerance;

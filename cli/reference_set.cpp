@@ -2,23 +2,20 @@
 
 #include <algorithm>
 
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/pressure.h"
 #include "models.h"
 
 namespace bentaxis::cli {
 namespace fs = std::filesystem;
 
-fs::path default_reference_folder() {
+std::optional<fs::path> default_reference_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const fs::path installed =
-      (program.parent_path() / BENTAXIS_DATA_FROM_BINARY / "reference_data").lexically_normal();
-  if (!error && fs::is_directory(installed)) return installed;
-  const fs::path in_tree = fs::path(BENTAXIS_SOURCE_DIR) / "reference_data";
-  if (fs::is_directory(in_tree)) return in_tree;
-  throw InputError("no reference data: neither " + installed.string() + " nor " + in_tree.string() +
-                   " is a folder; name one");
+  for (const fs::path& folder :
+       {program.parent_path() / BENTAXIS_DATA_FROM_BINARY / "reference_data",
+        fs::path(BENTAXIS_SOURCE_DIR) / "reference_data"})
+    if (fs::is_directory(folder)) return folder.lexically_normal();
+  return std::nullopt;
 }
 
 std::vector<ReferencePlace> references_below(const fs::path& root) {

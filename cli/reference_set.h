@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +13,9 @@
 
 namespace bentaxis::cli {
 
-/// The set that was installed with this program, else the one of its source tree.
-/// @throws InputError where there is neither.
-std::filesystem::path default_reference_folder();
+/// The set that was installed with this program, else the one of its source tree; nothing where
+/// there is neither.
+std::optional<std::filesystem::path> default_reference_folder();
 
 /// All references at or below a folder, as folder and name. The name is the path below `root`, or
 /// the folder's own name where root is itself a reference.

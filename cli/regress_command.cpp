@@ -293,12 +293,11 @@ std::string summary(const std::vector<Outcome>& outcomes) {
     else
       ++agree;
   }
-  std::string text = fmt::format("{} cases agree, {} differ", agree, differ);
+  std::string text = fmt::format("{} agree, {} differ", agree, differ);
   if (unusable > 0) text += fmt::format(", {} cannot be used", unusable);
   if (failed > 0) text += fmt::format(", {} could not be computed", failed);
   text += fmt::format("; {} groups of channels compared", groups);
-  if (published > 0)
-    text += fmt::format("; {} set of published numbers read, not judged here", published);
+  if (published > 0) text += "; published numbers were read and are judged by compare";
   return text + ".";
 }
 
@@ -432,8 +431,10 @@ void write(const std::string& file, const std::string& content) {
 }
 
 int regress(const Options& options) {
-  const fs::path root =
-      options.folder.empty() ? default_reference_folder() : fs::path(options.folder);
+  const auto shipped = default_reference_folder();
+  if (options.folder.empty() && !shipped)
+    throw InputError("no reference data are installed with this program: name a folder");
+  const fs::path root = options.folder.empty() ? *shipped : fs::path(options.folder);
   std::vector<ReferencePlace> places = references_below(root);
   const std::size_t all = places.size();
   std::erase_if(places, [&](const auto& place) {

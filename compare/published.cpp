@@ -54,6 +54,7 @@ PublishedNumber read_number(TableReader in, const Published& published) {
   n.unit = in.text("unit", "");
   n.note = in.text("note", "");
   n.not_comparable = in.text("not_comparable", "");
+  n.repeats = in.flag("repeats", false);
   n.measure = static_cast<Measure>(in.choice("measure", kMeasures));
   if (n.measure == Measure::fact) {
     n.fact = in.text("fact");
@@ -285,8 +286,8 @@ PublishedSection judge_published(
       if (v.name == n.variant) variant = &v;
     std::string why = n.not_comparable;
     // A case at another condition is not run under the variants of this one.
+    FactRanges kept = condition == nullptr ? FactRanges() : condition->facts;
     if (why.empty() && condition != nullptr && variant != nullptr) {
-      FactRanges kept = condition->facts;
       for (const auto& [name, value] : variant->set) kept.erase(name);
       for (const auto& one : runs_of(""))
         if (const std::string reason = unmet(kept, one.facts); !reason.empty()) why = reason;
@@ -301,7 +302,7 @@ PublishedSection judge_published(
       row[models[m]] = nullptr;
       if (!why.empty()) continue;
       const PublishedRun& one = runs_of(n.variant)[m];
-      std::string reason = condition == nullptr ? "" : unmet(condition->facts, one.facts);
+      std::string reason = unmet(kept, one.facts);
       if (reason.empty()) {
         if (const auto value = value_of(n, one)) {
           row[models[m]] = value->json();
@@ -320,6 +321,7 @@ PublishedSection judge_published(
     if (!any && !why.empty()) where += ". Not comparable: " + why;
     row["where"] = where;
     rows.push_back(std::move(row));
+    if (n.repeats) continue;
     summary.predicted += n.predicted();
     (n.predicted() ? summary.predicted_comparable : summary.other_comparable) += any;
     (n.predicted() ? summary.predicted_inside : summary.other_inside) += any && inside;

@@ -55,6 +55,7 @@ struct PublishedNumber {
   std::string unit;
   std::string note;
   std::string not_comparable;  ///< why no result can be held to it, or ""
+  bool repeats = false;        ///< says what another row says: not counted
   Measure measure = Measure::mean;
   std::vector<std::string> channels;  ///< several: the magnitude of the vector
   std::string fact;                   ///< of Measure::fact

@@ -262,7 +262,7 @@ class Hints {
       square += theirs[i] * theirs[i];
     }
     const double factor = square > 0 ? product / square : 0;
-    if (rms(theirs, ours, factor) <= enough)
+    if (std::abs(factor - 1) > kExplained && rms(theirs, ours, factor) <= enough)
       return std::abs(factor + 1) < kExplained
                  ? std::string("the reference has the opposite sign")
                  : fmt::format("the result is {:.7g} times the reference", factor);

@@ -636,14 +636,19 @@ function roundTicks(low, high, most) {
   return ticks;
 }
 
-function figures({ figures }, data) {
-  if (!list(figures).length || !data.order.length) return null;
+// A figure may bring curves of its own, at angles of its own.
+const dataOf = (figure, report, data) => !figure.curves ? data
+  : { ...prepare(report, figure.curves), mounts: data.mounts, redraws: data.redraws };
+
+function figures(report, data) {
+  const figures = list(report.figures).filter(f => f.curves || data.order.length);
+  if (!figures.length) return null;
   return el("div", {},
     el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; double-click to see "
       + "all again. Point at a curve to read the values in the table above it."),
     figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
       f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
-      f.kind === "piston_bars" ? barsFigure(f, data) : curvesFigure(f, data))));
+      (f.kind === "piston_bars" ? barsFigure : curvesFigure)(f, dataOf(f, report, data)))));
 }
 
 // ---- The page --------------------------------------------------------------------------------------
