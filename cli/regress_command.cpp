@@ -351,6 +351,17 @@ compare::TestSuite suite_of(const Outcome& outcome) {
   return suite;
 }
 
+// A table with some of its columns.
+ResultTable columns_of(const ResultTable& table, const std::vector<std::string>& names) {
+  ResultTable out;
+  out.name = table.name;
+  out.theta_deg = table.theta_deg;
+  for (const auto& name : names) out.channels.push_back(table.channels[table.find(name)]);
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (const auto& name : names) out.values.push_back(table.at(row, table.find(name)));
+  return out;
+}
+
 Json figures_of(const std::vector<Outcome>& outcomes) {
   Json figures = Json::array();
   for (const auto* line : sorted_lines(outcomes)) {
@@ -358,10 +369,14 @@ Json figures_of(const std::vector<Outcome>& outcomes) {
     const auto outcome = std::find_if(outcomes.begin(), outcomes.end(),
                                       [&](const Outcome& o) { return o.name == line->reference; });
     const auto& [reference, result] = outcome->tables.at(line->model);
-    Json channels = Json::array();
+    std::vector<const ReferenceChannel*> worst;
     for (const auto& channel : line->channels)
-      if (channel.finding == Finding::differs && channels.size() < kMostCurves)
-        channels.push_back(channel.comparison.channel.name);
+      if (channel.finding == Finding::differs) worst.push_back(&channel);
+    std::stable_sort(worst.begin(), worst.end(),
+                     [](const auto* a, const auto* b) { return severity(*a) > severity(*b); });
+    std::vector<std::string> channels;
+    for (const auto* channel : worst)
+      if (channels.size() < kMostCurves) channels.push_back(channel->comparison.channel.name);
     if (channels.empty()) continue;
     figures.push_back(
         {{"id", fmt::format("fail-{}", figures.size() + 1)},
@@ -370,7 +385,8 @@ Json figures_of(const std::vector<Outcome>& outcomes) {
          {"unit", line->worst()->comparison.channel.unit},
          {"channels", channels},
          {"note", describe(*line)},
-         {"curves", compare::curve_section(reference, result)}});
+         {"curves",
+          compare::curve_section(columns_of(reference, channels), columns_of(result, channels))}});
   }
   return figures;
 }
