@@ -307,7 +307,7 @@ bool update_golden(const ReferenceDescription& description) {
   std::string report, within;
   for (const auto& curve : description.curves) {
     if (curve.models.size() != 1 || !curve.columns.empty() ||
-        curve.file.parent_path() != description.folder.lexically_normal())
+        !fs::equivalent(fs::absolute(curve.file).parent_path(), description.folder))
       throw InputError(
           curve.file.string() +
           ": a golden curve belongs to one model, has our columns and lies in its folder");
@@ -329,10 +329,9 @@ bool update_golden(const ReferenceDescription& description) {
       const auto judgement = compare::judge(description, {stored}, table, run.zero_scales);
       what = changes(judgement);
       // A new column is worth a new file, round-off is not.
-      agrees = judgement.agrees() && std::none_of(judgement.channels.begin(),
-                                                  judgement.channels.end(), [](const auto& c) {
-                                                    return c.finding == compare::Finding::missing;
-                                                  });
+      agrees = judgement.agrees() &&
+               std::none_of(judgement.channels.begin(), judgement.channels.end(),
+                            [](const auto& c) { return c.finding == compare::Finding::missing; });
     } catch (const InputError& error) {
       what = fmt::format("    the stored curve cannot be read: {}\n", error.what());
     }

@@ -486,7 +486,7 @@ ReferenceDescription read_description(const fs::path& folder, const std::string&
   d.name = name;
   in.integer("schema", 1, 1);
   d.kind = static_cast<ReferenceKind>(in.choice("kind", kKinds));
-  const std::string above = fs::absolute(folder).lexically_normal().parent_path().filename();
+  const std::string above = fs::canonical(folder).parent_path().filename();
   const auto place = std::find(kFolders.begin(), kFolders.end(), above);
   if (place != kFolders.end() && !above.empty() &&
       place - kFolders.begin() != static_cast<std::ptrdiff_t>(d.kind))

@@ -16,7 +16,7 @@ import unittest
 import xml.etree.ElementTree
 
 import command_line_test as base
-from command_line_test import BAD_INPUT, DONE, OUT_OF_TOLERANCE, Case, ProgramTest
+from command_line_test import BAD_INPUT, COMPUTATION_FAILED, DONE, OUT_OF_TOLERANCE, Case, ProgramTest
 
 KINDS = ("high_precision", "published", "golden")
 
@@ -263,6 +263,14 @@ class NegativeControlTest(RegressTest):
             c = folder / "case.toml"
             c.write_text(c.read_text().replace("pistons = 5", "pistons = 0"))
         self.spoilt(change, BAD_INPUT, "case.toml", "pistons")
+
+    def test_computation_that_fails(self):
+        self.case()
+        self.run_program("reference", "golden", "case.toml", "--out", "golden/a")
+        self.case(**{"piston.mass_kg": 0.0})  # refused by the multibody model
+        out = self.regress("golden", "--junit", "j.xml", status=COMPUTATION_FAILED)
+        self.assert_mentions(out, "multibody", "mass", "1 could not be computed")
+        self.assertIn("error", self.junit(self.folder / "j.xml").values())
 
     def test_other_cases_go_on_after_a_bad_one(self):
         self.copy_of("high_precision", "all")
