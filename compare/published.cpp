@@ -128,7 +128,7 @@ struct Value {
   Json json() const {
     const auto short_number = [](double v) { return std::strtod(number_of(v).c_str(), nullptr); };
     if (low == high) return short_number(low);
-    return number_of(low) + " to " + number_of(high);
+    return fmt::format("{:.5g} to {:.5g}", low, high);
   }
 };
 
@@ -292,12 +292,18 @@ PublishedSection judge_published(
       for (const auto& one : runs_of(""))
         if (const std::string reason = unmet(kept, one.facts); !reason.empty()) why = reason;
     }
-    std::string quantity = n.quantity;
-    if (condition != nullptr) quantity += "; " + condition->text;
-    if (variant != nullptr) quantity += "; " + variant->text;
-    Json row = {{"quantity", quantity}, {"paper", printed(n)},      {"unit", n.unit},
-                {"status", n.status},   {"condition", n.condition}, {"variant", n.variant}};
+    std::string at = condition == nullptr ? "" : condition->text;
+    if (variant != nullptr) at += (at.empty() ? "" : "; ") + variant->text;
+    Json row = {{"quantity", n.quantity},
+                {"paper", printed(n)},
+                {"unit", n.unit},
+                {"status", n.status},
+                {"at", at},
+                {"condition", n.condition},
+                {"variant", n.variant},
+                {"counted", n.predicted() && !n.repeats}};
     bool any = false, inside = true;
+    std::string reasons;
     for (std::size_t m = 0; m < models.size(); ++m) {
       row[models[m]] = nullptr;
       if (!why.empty()) continue;
@@ -312,12 +318,14 @@ PublishedSection judge_published(
         }
         reason = "not computed";
       }
-      row["reason"] = models[m] + ": " + reason;
+      if (reasons.find(reason) == std::string::npos)
+        reasons += (reasons.empty() ? "" : "; ") + reason;
     }
-    if (!any && why.empty() && row.contains("reason")) why = row["reason"].get<std::string>();
+    if (!any && why.empty()) why = reasons;
     row["verdict"] = !any ? "not comparable" : inside ? "inside" : "outside";
     std::string where = n.where;
     if (!n.note.empty()) where += ". " + n.note;
+    if (n.repeats) where += ". Repeats another row: not counted";
     if (!any && !why.empty()) where += ". Not comparable: " + why;
     row["where"] = where;
     rows.push_back(std::move(row));

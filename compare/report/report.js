@@ -172,6 +172,7 @@ const published = ({ published }, data) => !published || !list(published.rows).l
   published.text ? el("p", {}, published.text) : null,
   table([
     { head: "Quantity", main: true, cell: r => r.quantity },
+    ...(published.rows.some(r => r.at) ? [{ head: "At", cell: r => r.at || DASH }] : []),
     { head: "Paper", cell: r => number(r.paper) },
     ...data.pair.map((name, i) => ({ head: name, num: true, cell: r => unit(number(data.ofTable(r, i)), r.unit) })),
     { head: "Verdict", cell: r => chip(r.verdict) },
