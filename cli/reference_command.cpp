@@ -63,8 +63,8 @@ std::string toml_text(const std::string& text) {
 // Lower-case words of a column name: "Joint 1.FX [kN]" -> joint 1 fx kn.
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words(1);
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const auto c = static_cast<unsigned char>(name[i]);
+  for (const char letter : name) {
+    const auto c = static_cast<unsigned char>(letter);
     if (std::isalnum(c) == 0) {
       if (!words.back().empty()) words.emplace_back();
     } else {

@@ -224,9 +224,9 @@ std::optional<Value> value_of(const PublishedNumber& n, const PublishedRun& run)
 
 bool Published::describes(const Facts& facts) const { return unmet(identity, facts).empty(); }
 
-Published read_published(const std::filesystem::path& path) {
-  const TomlFile file = TomlFile::read(path, "file of printed numbers");
-  TableReader in = file.root();
+Published read_published(const std::filesystem::path& file) {
+  const TomlFile toml = TomlFile::read(file, "file of printed numbers");
+  TableReader in = toml.root();
   Published published;
   in.integer("schema", 1, 1);
   published.name = in.text("pump");
