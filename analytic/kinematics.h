@@ -45,8 +45,8 @@ class Kinematics {
  private:
   double joint_radius_, length_squared_;
   double sin_tilt_, cos_tilt_;
-  double radius_difference_;  // Rd - Ra: amplitude of the x2 distance from A to the bore axis
-  double radius_projected_;   // Rd - Ra cos(alpha): of the y2 distance
+  double radius_difference_;    // Rd - Ra: amplitude of the x2 distance from A to the bore axis
+  double radius_projected_;     // Rd - Ra cos(alpha): of the y2 distance
   double offset_y_, offset_z_;  // O1 from O2 in S2
 };
 

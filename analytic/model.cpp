@@ -20,12 +20,12 @@ double direction(double omega) { return omega < 0 ? -1 : 1; }
 
 struct Model::PistonLoad {
   Vector3d joint_acceleration, axis_acceleration;  // of A, and second time derivative of AB
-  double axial = 0;     // Fp + Fpf, N along z2 at B
-  double friction = 0;  // Fpf
+  double axial = 0;                                // Fp + Fpf, N along z2 at B
+  double friction = 0;                             // Fpf
 };
 
 struct Model::Sums {
-  Vector2d bore_force = Vector2d::Zero();   // sum of Rc
+  Vector2d bore_force = Vector2d::Zero();    // sum of Rc
   Vector3d block_moment = Vector3d::Zero();  // of -Rc, -Fpf and Ftp about O2 (57)
   double block_axial = 0;                    // of -Fpf and Ftp (56)
   Vector3d joint_force = Vector3d::Zero();   // sum of Rs, in S1
@@ -57,14 +57,31 @@ Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
     centre_share_ = 1 - pump.piston.joint_mass_fraction;
     inertia_ = mass_ * centre_share_;
     spin_momentum_ = 0;
+  } else if (const std::string why = piston_inertia_refusal(assumptions.inertia, pump);
+             !why.empty()) {
+    throw InputError(to_string(assumptions.inertia) + " pistons: " + why);
+  } else if (assumptions.inertia == PistonInertia::dynamically_equivalent) {
+    // Point masses at A and B that have the transverse inertia about the centre of mass between
+    // them, and the rest there.
+    const PistonMass::Real& real = *pump.piston.real;
+    const double centre = real.centre_of_mass;
+    const bool spread = real.transverse_inertia > 0;
+    const double at_joint = spread ? real.transverse_inertia / (length * centre) : 0;
+    const double at_ring = spread ? real.transverse_inertia / (length * (length - centre)) : 0;
+    const double at_centre = mass_ - at_joint - at_ring;
+    const double share = centre / length;
+    static_moment_ = at_ring + at_centre * share;
+    centre_share_ = mass_ > 0 ? static_moment_ / mass_ : share;
+    inertia_ = at_ring + at_centre * share * share;
+    spin_momentum_ = 0;
   } else {
-    if (!pump.piston.real) throw InputError("real pistons asked for, but the case has no data");
     const PistonMass::Real& real = *pump.piston.real;
     centre_share_ = real.centre_of_mass / length;
     inertia_ = mass_ * centre_share_ * centre_share_ + real.transverse_inertia / (length * length);
     spin_momentum_ = real.axial_inertia * real.spin / length;
   }
-  static_moment_ = mass_ * centre_share_;
+  if (assumptions.inertia != PistonInertia::dynamically_equivalent)
+    static_moment_ = mass_ * centre_share_;
 
   if (pump.port_plate) {
     land_delivery_ = land_force(*pump.port_plate, pump.port_plate->delivery);
@@ -94,7 +111,7 @@ Model::PistonLoad Model::piston_load(const PistonKinematics& state, const Instan
   const double velocity = (state.joint.first.z() + state.axis.first.z()) * instant.omega;
   load.friction = piston_friction_force(friction_, velocity,
                                         piston_rest_speed(pump_.geometry, instant.omega));  // (25)
-  load.axial = load.friction - piston_area_ * instant.chamber_pressure[k];                   // (24)
+  load.axial = load.friction - piston_area_ * instant.chamber_pressure[k];                  // (24)
   return load;
 }
 
@@ -104,8 +121,9 @@ void Model::solve_piston(const PistonKinematics& state, const PistonLoad& load,
   const Vector3d& axis = state.axis.value;
   const Vector3d free_fall = Vector3d(0, gravity_y_, gravity_z_) - load.joint_acceleration;
   // Weight, inertia and gyroscopic moment about A (26)-(28), appendix.
-  const Vector3d moment = axis.cross(static_moment_ * free_fall - inertia_ * load.axis_acceleration) -
-                          spin_momentum_ * instant.omega * state.axis.first;
+  const Vector3d moment =
+      axis.cross(static_moment_ * free_fall - inertia_ * load.axis_acceleration) -
+      spin_momentum_ * instant.omega * state.axis.first;
   // Moment equilibrium about A gives Rc (32), force equilibrium gives Rs (31).
   bore_force = {(axis.x() * load.axial - moment.y()) / axis.z(),
                 (axis.y() * load.axial + moment.x()) / axis.z()};
@@ -202,9 +220,9 @@ void Model::reactions(const Instant& instant, std::vector<double>& values) const
     const double axial = pump_.block.bottom_area * instant.chamber_pressure[k] - load.friction;
     sums.bore_force += rc;
     sums.block_axial += axial;
-    sums.block_moment += Vector3d(ring.z() * rc.y() + ring.y() * axial,
-                                  -ring.z() * rc.x() - ring.x() * axial,
-                                  ring.y() * rc.x() - ring.x() * rc.y());
+    sums.block_moment +=
+        Vector3d(ring.z() * rc.y() + ring.y() * axial, -ring.z() * rc.x() - ring.x() * axial,
+                 ring.y() * rc.x() - ring.x() * rc.y());
     const Vector3d rs1 = kinematics_.to_s1(rs);
     const double ra = pump_.geometry.joint_circle_radius;
     sums.joint_force += rs1;
@@ -244,8 +262,7 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
 
     values[at.pressure(k)] = instant.chamber_pressure[k];
     values[at.zB(k)] = ring.z();
-    const Vector3d rs3 =
-        kinematics_.s3_in_s1(state.axis.value).transpose() * kinematics_.to_s1(rs);
+    const Vector3d rs3 = kinematics_.s3_in_s1(state.axis.value).transpose() * kinematics_.to_s1(rs);
     for (int axis = 0; axis < 3; ++axis) values[at.Rs3(k, axis)] = rs3[axis];
     const double share = ring.y() * rc.x() - ring.x() * rc.y();
     values[at.Tc(k)] = share;
@@ -261,11 +278,10 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
     // Moments of everything on the piston about A, from the forces found; (32) was solved for x2
     // and y2 only, so the part about the piston's own axis is a check.
     const Vector3d& axis = state.axis.value;
-    const Vector3d moment =
-        axis.cross(rc + Vector3d(0, 0, load.axial)) +
-        axis.cross(static_moment_ * (gravity - load.joint_acceleration) -
-                   inertia_ * load.axis_acceleration) -
-        spin_momentum_ * omega * state.axis.first;
+    const Vector3d moment = axis.cross(rc + Vector3d(0, 0, load.axial)) +
+                            axis.cross(static_moment_ * (gravity - load.joint_acceleration) -
+                                       inertia_ * load.axis_acceleration) -
+                            spin_momentum_ * omega * state.axis.first;
     values[at.axis_moment(k)] = axis.dot(moment) / length;
   }
   values[at.Tcs()] = carry;
@@ -293,8 +309,7 @@ Model::FrictionPower Model::friction_power(const Instant& instant, double drive_
     piston_angle(std::sin(instant.theta), std::cos(instant.theta), k, s, c);
     const PistonKinematics state = kinematics_.piston(s, c);
     const double velocity = (state.joint.first.z() + state.axis.first.z()) * omega;
-    power.pistons =
-        std::max(power.pistons, piston_load(state, instant, k).friction * velocity);
+    power.pistons = std::max(power.pistons, piston_load(state, instant, k).friction * velocity);
   }
   return power;
 }
@@ -311,7 +326,8 @@ ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samp
   table.provenance.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   table.provenance.facts = {
-      {"method", "closed form: equilibrium of pistons (31)-(33), block (56), (57), shaft (42), (43)"},
+      {"method",
+       "closed form: equilibrium of pistons (31)-(33), block (56), (57), shaft (42), (43)"},
       {"bodies", std::to_string(n + 2) + " (shaft, block, " + std::to_string(n) + " pistons)"},
       {"equations",
        std::to_string(5 * n + 12) + " (5 per piston, 6 block, 6 shaft), solved body by body"},

@@ -1,6 +1,10 @@
 #include "options.h"
 
+#include <cmath>
+#include <functional>
 #include <map>
+
+#include "bentaxis/pump/csv.h"
 
 namespace bentaxis::cli {
 
@@ -23,18 +27,61 @@ void add_way(CLI::App& command, Way& way) {
       ->option_text("driven|integrated [driven]");
 }
 
-void add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
-  std::map<std::string, multibody::Integrator> names;
+namespace {
+
+// An option whose values are an enumeration's names in its order.
+template <class Enumeration>
+void add_choice(CLI::App& command, const std::string& name, Enumeration& value,
+                const std::vector<std::string>& words, const std::string& what) {
+  std::map<std::string, Enumeration> names;
   std::string list;
-  for (std::size_t i = 0; i < multibody::integrator_names().size(); ++i) {
-    names[multibody::integrator_names()[i]] = static_cast<multibody::Integrator>(i);
-    list += (i == 0 ? "" : "|") + multibody::integrator_names()[i];
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    names[words[i]] = static_cast<Enumeration>(i);
+    list += (i == 0 ? "" : "|") + words[i];
   }
-  command.add_option("--integrator", options.integrator, "time integrator of an integrated run")
+  command.add_option(name, value, what)
       ->transform(CLI::CheckedTransformer(names))
-      ->option_text(list + " [rk-merson]");
+      ->option_text(list + " [" + words[static_cast<std::size_t>(value)] + "]");
 }
 
-CLI::Range accuracy_range() { return {1e-12, 0.1, "in [1e-12, 0.1]"}; }
+}  // namespace
+
+void add_scene(CLI::App& command, multibody::SceneChoice& choice) {
+  add_choice(command, "--scene", choice.scene, multibody::scene_names(),
+             "multibody, driven: what is built; what a scene does not compute stays empty");
+  add_choice(command, "--reactions", choice.method, multibody::method_names(),
+             "multibody, driven: by forward dynamics and its multipliers, or by inverse dynamics "
+             "(faster; serves massless pistons too)");
+}
+
+void add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
+  add_choice(command, "--integrator", options.integrator, multibody::integrator_names(),
+             "time integrator of an integrated run");
+}
+
+namespace {
+
+CLI::Validator number_that(const std::string& range, const std::function<bool(double)>& allowed) {
+  return {[=](const std::string& text) {
+            double value = 0;
+            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value))
+              return std::string();
+            return text + ": must be " + range;
+          },
+          ""};
+}
+
+}  // namespace
+
+CLI::Validator number_in(double low, double high) {
+  return number_that("in [" + number_text(low) + ", " + number_text(high) + "]",
+                     [=](double value) { return value >= low && value <= high; });
+}
+
+CLI::Validator accuracy_range() { return number_in(1e-12, 0.1); }
+
+CLI::Validator positive_number() {
+  return number_that("a finite number > 0", [](double value) { return value > 0; });
+}
 
 }  // namespace bentaxis::cli

@@ -12,7 +12,7 @@ namespace {
 struct Options {
   std::string case_file, model, out = "out";
   Way way = Way::driven;
-  std::string scene = "full";
+  multibody::SceneChoice scene;
   std::string gear;  ///< "", "mesh" or "imposed"
   multibody::IntegrationOptions integration;
 };
@@ -27,7 +27,7 @@ int run(const Options& options) {
     assumptions.gear = options.gear == "imposed" ? GearScene::imposed : GearScene::mesh;
   const ResultTable table =
       run_model(options.model, the_case, assumptions, samples_of(the_case, pressure, way), pressure,
-                way, options.integration);
+                way, options.integration, nullptr, options.scene);
   folder.add(options.model + ".csv", to_csv(table));
   for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
   return kDone;
@@ -45,9 +45,7 @@ Command add_run_command(CLI::App& app) {
       ->option_text("analytic|multibody");
   add_out(*command, options->out, "the curves");
   add_way(*command, options->way);
-  command->add_option("--scene", options->scene, "multibody: what is built")
-      ->check(CLI::IsMember({"full"}))
-      ->option_text("full [full]");
+  add_scene(*command, options->scene);
   command
       ->add_option("--gear", options->gear,
                    "tooth force between shaft and block, or block speed imposed; overrides the "

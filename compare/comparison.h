@@ -13,6 +13,7 @@ namespace bentaxis::compare {
 enum class Verdict {
   agrees,  ///< largest difference within tolerance x peak
   differs,
+  explained,     ///< differs, and differing assumptions account for it
   not_computed,  ///< at least one table has no value of this channel
 };
 

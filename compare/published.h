@@ -99,8 +99,9 @@ struct PublishedSummary {
   std::string text() const;
 };
 
-/// The report's section: {"text", "rows": [{quantity, at, paper, analytic, multibody, unit, verdict,
-/// status, where}]}; a model's column carries its name, `at` is condition and variant in words.
+/// The report's section: {"text", "rows": [{quantity, at, paper, analytic, multibody, unit,
+/// verdict, status, where}]}; a model's column carries its name, `at` is condition and variant in
+/// words.
 /// @param run  (model, variant) -> its result; variant "" is the case as it was run
 struct PublishedSection {
   nlohmann::json json;

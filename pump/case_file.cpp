@@ -89,8 +89,8 @@ class CaseReader {
 
   void read_piston(TableReader in) {
     PistonMass& piston = result_.pump.piston;
-    const bool real = in.choice("inertia", {"lumped", "real"}) == 1;
-    piston.inertia = real ? PistonInertia::real : PistonInertia::lumped;
+    piston.inertia = static_cast<PistonInertia>(in.choice("inertia", piston_inertia_names()));
+    const bool real = piston.inertia != PistonInertia::lumped;
     piston.mass = in.number("mass_kg", kNotNegative);
     piston.joint_mass_fraction = in.number("joint_mass_fraction", {0, 1}, 0.5);
     // Data of the real piston may stand in a lumped case; they are read where they are complete.
@@ -113,6 +113,8 @@ class CaseReader {
       in.number("spin_rpm", kAny, 0.0);
     }
     in.finish();
+    if (const std::string why = piston_inertia_refusal(piston.inertia, result_.pump); !why.empty())
+      in.fail("inertia", why);
   }
 
   void read_shaft(TableReader in) {
@@ -170,6 +172,8 @@ class CaseReader {
       pressure.file = std::filesystem::path(file_).parent_path() / in.text("file");
       if (!std::filesystem::exists(pressure.file))
         in.fail("file", "no such file: " + pressure.file.string());
+      if (std::filesystem::is_directory(pressure.file))
+        in.fail("file", "is a folder: " + pressure.file.string());
       pressure.curve = read_pressure_curve(pressure.file);
       PressureTrace{pressure};  // refuses a curve that cannot be a periodic spline
     } else if (in.has("file")) {
@@ -211,16 +215,13 @@ class CaseReader {
       if (!both.has(name)) continue;
       TableReader in = both.table(name);
       target->piston_friction = in.flag("piston_friction", true);
-      target->inertia = in.choice("inertia", {"lumped", "real"},
-                                  fallback.inertia == PistonInertia::real ? 1 : 0) == 1
-                            ? PistonInertia::real
-                            : PistonInertia::lumped;
+      target->inertia = static_cast<PistonInertia>(
+          in.choice("inertia", piston_inertia_names(), static_cast<std::size_t>(fallback.inertia)));
       target->gear =
           in.choice("gear", {"mesh", "imposed"}, 0) == 1 ? GearScene::imposed : GearScene::mesh;
-      if (target->inertia == PistonInertia::real && !result_.pump.piston.real)
-        in.fail("inertia",
-                "needs centre_of_mass_mm, transverse_inertia_kg_mm2, axial_inertia_kg_mm2 in "
-                "[piston]");
+      if (const std::string why = piston_inertia_refusal(target->inertia, result_.pump);
+          !why.empty())
+        in.fail("inertia", why);
       in.finish();
     }
     both.finish();

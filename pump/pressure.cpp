@@ -74,9 +74,19 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file) {
   if (table.header != wanted)
     throw InputError(file.string() + ":1: header must be theta_deg,pressure_bar");
   PressureCurve curve;
-  for (const auto& row : table.rows) {
-    curve.theta_deg.push_back(row[0]);
-    curve.pressure.push_back(pascals(row[1]));
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const double theta = table.rows[i][0];
+    const auto refuse = [&](const std::string& range) {
+      throw InputError(file.string() + ":" + std::to_string(table.lines[i]) +
+                       ": theta_deg = " + number_text(theta) + ": must be " + range);
+    };
+    if (i > 0 && !(theta > curve.theta_deg.back()))
+      refuse("> " + number_text(curve.theta_deg.back()) + " (angles increase strictly)");
+    if (i > 0 && !(theta - curve.theta_deg.front() < 360))
+      refuse("< " + number_text(curve.theta_deg.front() + 360) +
+             " (a turn after the first; the end point is not repeated)");
+    curve.theta_deg.push_back(theta);
+    curve.pressure.push_back(pascals(table.rows[i][1]));
   }
   return curve;
 }

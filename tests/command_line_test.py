@@ -31,7 +31,7 @@ class Case:
     """The text of a case file, edited key by key. "pump.tilt_deg" is a key of a table, "name" one of none."""
 
     def __init__(self, **changes):
-        self.lines = (REPO / "cases" / "bap63_rated.toml").read_text().splitlines()
+        self.lines = (REPO / "reference_data" / "high_precision" / "bap63_rated" / "case.toml").read_text().splitlines()
         self.set({"operation.samples_per_revolution": 36})
         self.set(changes)
 
@@ -303,7 +303,7 @@ class RunTest(ProgramTest):
         case = self.case(**{"pump.tilt_deg": 0.0, "pump.axis_offset_mm": 0.0, "pressure.delivery_bar": 0.0,
                             "block.spring_force_N": 0.0, "friction.piston_coulomb_N": 0.0,
                             "friction.block_viscous_Nm_per_rpm": 0.0})
-        self.run_program("run", case, "--model", "analytic", "--out", "out")
+        self.run_program("run", case, "--model", "analytic", "--gear", "imposed", "--out", "out")
         self.assertEqual(set(self.column("out/analytic.csv", "Fh_z2_N")), {"0"})
         for name in ("xh_x2_mm", "yh_y2_mm"):
             self.assertEqual(set(self.column("out/analytic.csv", name)), {""})
@@ -561,7 +561,7 @@ class OutputTest(ProgramTest):
     def test_folder_cannot_be_made(self):
         (self.folder / "file").write_text("mine")
         case = self.case()
-        for out in ("file", "file/below", "/proc/bentaxis", "/dev/null"):
+        for out in ("file", "file/below", "/proc/bentaxis", "/dev/null", ""):
             for command in self.COMMANDS:
                 with self.subTest(out=out, command=command):
                     self.assert_mentions(self.refused(*command, case, "--out", out), out, "cannot be written")
@@ -638,6 +638,14 @@ class InterruptionTest(ProgramTest):
                     self.assertLess(time.monotonic() - sent, 5)
                     self.assertEqual((process.out, process.err.count("\n")), ("", 1), process.err)
                     self.assertEqual(self.contents(), before)
+
+    def test_other_signals_that_end_a_run(self):
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number):
+                process = self.start_and_wait("run", self.long_case(), "--model", "multibody", "--out", "new/folder")
+                process.send_signal(number)
+                self.finish(process, INTERRUPTED)
+                self.assertEqual(self.contents().keys(), {"long.toml"})
 
     def test_interrupted_run_keeps_what_others_put_into_its_folder(self):
         process = self.start_and_wait("run", self.long_case(), "--model", "multibody", "--out", "out")

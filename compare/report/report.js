@@ -108,13 +108,18 @@ function verdictBanner({ verdict, meaning }, data) {
     if (worst.max_over_peak != null) tiles.push(["worst difference", ratio(worst.max_over_peak) + " of peak"]);
     if (worst.channel) tiles.push(["found in", el("span", {}, el("code", {}, worst.channel),
       worst.theta_deg == null ? null : " at " + degrees(worst.theta_deg))]);
-    if (verdict.tolerance != null) tiles.push(["tolerance", small(verdict.tolerance) + " of peak"]);
-    if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
+    if (verdict.rest_over_peak != null) {  // unequal assumptions: the rest is what is judged
+      tiles.push(["left unexplained", ratio(verdict.rest_over_peak) + " of peak"]);
+      tiles.push(["tolerance of the rest", small(verdict.rest_tolerance) + " of peak"]);
+    } else {
+      if (verdict.tolerance != null) tiles.push(["tolerance", small(verdict.tolerance) + " of peak"]);
+      if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
+    }
   }
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
   return el("div", {},
     el("div.banner." + tone, { role: "status" },
-      el("p.word", {}, { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
+      el("p.word", {}, verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
       el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
       facts(tiles, ".tiles")),
     meaning ? el("p.meaning", {}, meaning) : null);
@@ -149,7 +154,14 @@ function assumptionSplit({ assumptions }, data) {
       ...data.pair.map((name, i) => ({ head: name, cell: r => number(data.ofTable(r, i)) })),
       { head: "Equal", cell: r => (data.ofTable(r, 0) === data.ofTable(r, 1) ? "yes" : el("span.chip.warn", {}, "no")) },
     ], assumptions.rows),
-    !list(assumptions.channels).length ? null : table([
+    !list(assumptions.channels).length ? null : el("div", {},
+      el("p.hint", {}, "The channel of each reaction with the largest difference:"),
+      splitTable(worstOfGroups(assumptions.channels)),
+      el("details.others", {}, el("summary", {}, `All channels (${assumptions.channels.length})`),
+        splitTable(assumptions.channels))));
+
+  function splitTable(channels) {
+    return table([
       { head: "Channel", main: true, cell: r => el("code", {}, r.name) },
       { head: "Peak", num: true, cell: r => unit(number(r.peak), r.unit) },
       { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), r.unit) },
@@ -159,7 +171,18 @@ function assumptionSplit({ assumptions }, data) {
       { head: "Rest", num: true, cell: r => el("span", {}, unit(small(r.rest), r.unit),
           r.rest_over_peak == null ? null : el("small", {}, ratio(r.rest_over_peak) + " of peak")) },
       { head: "Verdict", cell: r => chip(r.verdict) },
-    ], assumptions.channels));
+    ], channels);
+  }
+}
+
+// The channel with the largest difference of each group, in the order of the groups.
+function worstOfGroups(channels) {
+  const worst = new Map();
+  for (const channel of channels) {
+    const key = channel.group + "|" + channel.kind;
+    if (!worst.has(key) || channel.over_peak > worst.get(key).over_peak) worst.set(key, channel);
+  }
+  return [...worst.values()];
 }
 
 const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(run => el("div.block", {},
