@@ -265,16 +265,14 @@ PublishedSection judge_published(
     const std::function<PublishedRun(const std::string&, const PublishedVariant&)>& run) {
   PublishedSection section;
   PublishedSummary& summary = section.summary;
-  std::map<std::string, std::vector<PublishedRun>> runs;  // by variant
-  const auto runs_of = [&](const std::string& name) -> const std::vector<PublishedRun>& {
-    auto it = runs.find(name);
+  std::map<std::pair<std::string, std::string>, PublishedRun> runs;  // by model and variant
+  const auto run_of = [&](const std::string& model, const std::string& name) -> PublishedRun& {
+    auto it = runs.find({model, name});
     if (it != runs.end()) return it->second;
     PublishedVariant variant;
     for (const auto& v : published.variants)
       if (v.name == name) variant = v;
-    std::vector<PublishedRun> list;
-    for (const auto& model : models) list.push_back(run(model, variant));
-    return runs.emplace(name, std::move(list)).first->second;
+    return runs.emplace(std::pair(model, name), run(model, variant)).first->second;
   };
   Json rows = Json::array();
   for (const auto& n : published.numbers) {
@@ -285,13 +283,10 @@ PublishedSection judge_published(
     for (const auto& v : published.variants)
       if (v.name == n.variant) variant = &v;
     std::string why = n.not_comparable;
-    // A case at another condition is not run under the variants of this one.
-    FactRanges kept = condition == nullptr ? FactRanges() : condition->facts;
-    if (why.empty() && condition != nullptr && variant != nullptr) {
-      for (const auto& [name, value] : variant->set) kept.erase(name);
-      for (const auto& one : runs_of(""))
-        if (const std::string reason = unmet(kept, one.facts); !reason.empty()) why = reason;
-    }
+    // What a variant sets is not asked of the case.
+    FactRanges wanted = condition == nullptr ? FactRanges() : condition->facts;
+    if (variant != nullptr)
+      for (const auto& [name, value] : variant->set) wanted.erase(name);
     std::string at = condition == nullptr ? "" : condition->text;
     if (variant != nullptr) at += (at.empty() ? "" : "; ") + variant->text;
     Json row = {{"quantity", n.quantity},
@@ -307,10 +302,10 @@ PublishedSection judge_published(
     for (std::size_t m = 0; m < models.size(); ++m) {
       row[models[m]] = nullptr;
       if (!why.empty()) continue;
-      const PublishedRun& one = runs_of(n.variant)[m];
-      std::string reason = unmet(kept, one.facts);
+      // A case at another condition is not run under the variants of this one.
+      std::string reason = unmet(wanted, run_of(models[m], "").facts);
       if (reason.empty()) {
-        if (const auto value = value_of(n, one)) {
+        if (const auto value = value_of(n, run_of(models[m], n.variant))) {
           row[models[m]] = value->json();
           any = true;
           inside = inside && value->low >= n.low && value->high <= n.high;

@@ -154,8 +154,8 @@ Turn one_turn(const std::string& file, const AngleMap& map, const NumericTable& 
     std::reverse(points.begin(), points.end());
   for (std::size_t i = 1; i < points.size(); ++i)
     if (!(points[i].first > points[i - 1].first))
-      fail("angles in column " + map.column + " must increase or decrease strictly; row " +
-           std::to_string(points[i].second + 1) + " does not");
+      throw InputError(file + ":" + std::to_string(data.lines[points[i].second]) +
+                       ": angles in column " + map.column + " must increase or decrease strictly");
   if (map.turn_from_deg) {
     const double from = *map.turn_from_deg;
     if (points.front().first > from + kSameAngle || points.back().first < from + 360 - kLargestGap)
