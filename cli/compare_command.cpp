@@ -24,6 +24,7 @@
 #include "hydraulic_case.h"
 #include "hydraulic_report.h"
 #include "models.h"
+#include "published_section.h"
 #include "pump_report.h"
 #include "versions.h"
 
@@ -60,13 +61,6 @@ ResultTable run_multibody(const Study& study, const Options& options, double acc
   integration.accuracy = accuracy;
   return run_model("multibody", the_case, the_case.multibody, study.multibody_samples,
                    study.multibody_pressure, options.way, integration, record);
-}
-
-compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
-  const LoadScale scale = load_scale(the_case, samples);
-  const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
-                                 the_case.pump.geometry.bore_circle_radius);
-  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
 }
 
 // The analytic torque as a function of the shaft angle, for the torque-driven run.
@@ -294,6 +288,9 @@ int compare(const Options& options) {
                                                     progress_of("multibody, Cc = 0")));
   }
 
+  const auto published =
+      published_section({&the_case, the_case.analytic, &study.analytic},
+                        {&study.multibody_case, study.multibody_case.multibody, &study.multibody});
   const auto limits =
       analytic::check_validity(the_case, the_case.analytic, study.samples, study.analytic);
   const auto* worst = comparison.worst();
@@ -329,6 +326,7 @@ int compare(const Options& options) {
       {"channels", compare::channel_rows(comparison)},
       {"checks", compare::check_rows(checks)},
       {"assumptions", nullptr},
+      {"published", published ? published->json : Json()},
       {"runs", runs},
       {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
   if (ready.hydraulics) {
@@ -364,6 +362,7 @@ int compare(const Options& options) {
   for (const auto& warning : report["warnings"])
     std::printf("warning: %s: %s\n", warning["name"].get<std::string>().c_str(),
                 warning["text"].get<std::string>().c_str());
+  if (published) std::printf("published numbers: %s\n", published->summary.text().c_str());
   std::printf("\n");
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return agrees ? kDone : kOutOfTolerance;

@@ -1,5 +1,6 @@
 #include "models.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "bentaxis/analytic/model.h"
@@ -13,6 +14,13 @@ Samples samples_of(const Case& the_case, const PressureTrace& pressure, Way way)
   if (way == Way::driven) return sample_case(the_case, pressure);
   return sample_case(the_case, pressure, the_case.operation.revolutions,
                      the_case.operation.speed_rpm < 0);
+}
+
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
+  const LoadScale scale = load_scale(the_case, samples);
+  const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
+                                 the_case.pump.geometry.bore_circle_radius);
+  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
 }
 
 ResultTable run_model(const std::string& model, const Case& the_case,

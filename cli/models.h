@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/result_table.h"
@@ -12,6 +13,9 @@ namespace bentaxis::cli {
 
 /// Samples of a run: one turn where driven, all revolutions (falling backwards) where integrated.
 Samples samples_of(const Case& the_case, const PressureTrace& pressure, Way way);
+
+/// What channels are held to whose peak is zero, per unit: the largest applied load of the case.
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples);
 
 /// Runs "analytic" or "multibody" under the given assumptions.
 /// @param integration  used where way is integrated (multibody only)

@@ -13,8 +13,6 @@ namespace {
 
 // A peak below this share of the load scale is the round-off of loads that cancel, not a signal.
 constexpr double kZeroPeak = 1e-12;
-// A double holds no more digits.
-constexpr double kMostDigits = 16;
 
 // Samples per turn if the table covers whole turns evenly, else 0.
 std::size_t samples_per_turn(const std::vector<double>& theta) {
@@ -39,7 +37,7 @@ std::complex<double> fourier(const ResultTable& table, std::size_t column, int o
 // Statistics of a channel that both tables have; leaves the verdict "not computed" where no angle
 // has both values or one table misses some that the other has.
 void compare_channel(const ResultTable& first, std::size_t a, const ResultTable& second,
-                     std::size_t b, ChannelComparison& result) {
+                     std::size_t b, const Options& options, ChannelComparison& result) {
   std::size_t both = 0;
   double square = 0;
   for (std::size_t row = 0; row < first.rows(); ++row) {
@@ -48,7 +46,12 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
     if (is_computed(x) != is_computed(y)) return;
     if (!is_computed(x)) continue;
     ++both;
-    const double difference = y - x;
+    double difference = y - x;
+    if (options.band) {
+      const double low = options.band->low->at(row, a);
+      const double high = options.band->high->at(row, a);
+      difference = y < low ? y - low : y > high ? y - high : 0;
+    }
     square += difference * difference;
     result.mean[0] += x;
     result.mean[1] += y;
@@ -63,8 +66,9 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
   result.rms = std::sqrt(square / count);
   for (double* value : {&result.mean[0], &result.mean[1], &result.mean_difference}) *value /= count;
   const double relative = result.largest_over_peak();
-  result.digits = relative > 0 ? std::clamp(-std::log10(relative), 0.0, kMostDigits) : kMostDigits;
-  result.verdict = relative <= result.tolerance ? Verdict::agrees : Verdict::differs;
+  result.digits = relative > 0 ? std::clamp(-std::log10(relative), 0.0, options.most_digits)
+                               : options.most_digits;
+  result.verdict = result.largest <= result.allowed ? Verdict::agrees : Verdict::differs;
 }
 
 }  // namespace
@@ -139,8 +143,11 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
     if (scale == scales.end())
       scale = scales.emplace(channel.group, scale_of(first, channel, options.zero_scales)).first;
     result.peak = scale->second;
+    const auto absolute = options.absolute.find(channel.unit);
+    result.allowed = options.tolerance * result.peak +
+                     (absolute == options.absolute.end() ? 0 : absolute->second);
     const std::size_t b = second.find(channel.name);
-    if (b < second.columns()) compare_channel(first, a, second, b, result);
+    if (b < second.columns()) compare_channel(first, a, second, b, options, result);
     if (result.verdict != Verdict::not_computed) {
       for (const int order : options.orders) {
         if (per_turn <= static_cast<std::size_t>(2 * order)) continue;  // would alias

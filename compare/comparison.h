@@ -38,8 +38,9 @@ struct ChannelComparison {
   double mean[2] = {0, 0};
   double mean_difference = 0;
   std::vector<Harmonic> harmonics;
-  double digits = 0;  ///< of agreement: -log10(largest / peak), at most 16
-  double tolerance = 0;
+  double digits = 0;     ///< of agreement: -log10(largest / peak), at most Options::most_digits
+  double tolerance = 0;  ///< over peak
+  double allowed = 0;    ///< absolute + tolerance x peak, channel's unit
 
   double largest_over_peak() const { return peak > 0 ? largest / peak : (largest > 0 ? 1e300 : 0); }
   double rms_over_peak() const { return peak > 0 ? rms / peak : (rms > 0 ? 1e300 : 0); }
@@ -48,10 +49,19 @@ struct ChannelComparison {
 /// Scale per unit ("N", "Nm", ...) for groups whose peak is zero to round-off.
 using ZeroScales = std::map<std::string, double>;
 
+/// Limits of a curve that is known only to lie between them: tables of the same shape as the first.
+struct Band {
+  const ResultTable* low = nullptr;
+  const ResultTable* high = nullptr;
+};
+
 struct Options {
-  double tolerance = 1e-9;  ///< of peak
-  std::vector<int> orders;  ///< harmonics to report
+  double tolerance = 1e-9;                 ///< of peak
+  std::map<std::string, double> absolute;  ///< allowed on top, per unit
+  std::vector<int> orders;                 ///< harmonics to report
   ZeroScales zero_scales;
+  double most_digits = 16;   ///< of agreement that can be claimed: those of the poorer table
+  std::optional<Band> band;  ///< a difference is then the distance from the band
 };
 
 struct Comparison {

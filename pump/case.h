@@ -9,6 +9,7 @@
 #include "bentaxis/pump/hydraulic_data.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/pump/pressure.h"
+#include "bentaxis/pump/toml_reader.h"
 
 namespace bentaxis {
 
@@ -19,12 +20,7 @@ struct Operation {
 };
 
 /// One key of the case file as read, for reports.
-struct CaseEntry {
-  std::string table;  ///< "pump"; "" for the top level
-  std::string key;
-  std::string value;
-  bool defaulted = false;
-};
+using CaseEntry = TomlEntry;
 
 struct Case {
   std::filesystem::path file;

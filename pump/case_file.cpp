@@ -1,44 +1,20 @@
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <limits>
-#include <map>
 #include <optional>
-#include <set>
 #include <sstream>
 
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/toml_reader.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// Allowed values of a number, with the text an engineer sees when it is left.
-struct Range {
-  double low = -kInfinity, high = kInfinity;
-  bool low_open = false, high_open = false;
-
-  bool contains(double value) const {
-    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-  }
-  std::string text() const {
-    if (low == -kInfinity && high == kInfinity) return "a finite number";
-    if (high == kInfinity) return (low_open ? "> " : ">= ") + number_text(low);
-    return "in " + std::string(low_open ? "(" : "[") + number_text(low) + ", " + number_text(high) +
-           (high_open ? ")" : "]");
-  }
-};
-constexpr Range kAny{};
-constexpr Range kPositive{0, kInfinity, true};
-constexpr Range kNotNegative{0, kInfinity};
 
 // A computed number for a message, to six digits.
 std::string short_text(double value) {
@@ -47,223 +23,14 @@ std::string short_text(double value) {
   return out.str();
 }
 
-std::string quoted(const toml::node& node) {
-  std::ostringstream out;
-  out << toml::default_formatter(node, toml::format_flags::none);
-  std::string text = out.str();
-  if (const auto newline = text.find('\n'); newline != std::string::npos) text.resize(newline);
-  return text;
-}
-
-// Number of single-character edits between two words: to suggest the key that was meant.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row.back();
-}
-
-// One table of the file. Remembers which keys were asked for, so that the rest are errors.
-class TableReader {
- public:
-  TableReader(std::string file, std::string name, const toml::table* table, int line,
-              std::vector<CaseEntry>& entries)
-      : file_(std::move(file)),
-        name_(std::move(name)),
-        table_(table),
-        line_(line),
-        entries_(entries) {}
-
-  bool has(const std::string& key) {
-    known_.insert(key);
-    return table_ != nullptr && table_->contains(key);
-  }
-
-  double number(const std::string& key, Range range, std::optional<double> fallback = {}) {
-    const toml::node* node = find(key, range.text(), fallback.has_value());
-    if (node == nullptr) return defaulted(key, *fallback);
-    return number_of(*node, key, range);
-  }
-
-  int integer(const std::string& key, int low, int high, std::optional<int> fallback = {}) {
-    const Range range{static_cast<double>(low), static_cast<double>(high)};
-    const std::string wanted =
-        "an integer " +
-        (high == std::numeric_limits<int>::max() ? ">= " + number_text(low) : range.text());
-    const toml::node* node = find(key, wanted, fallback.has_value());
-    if (node == nullptr) return static_cast<int>(defaulted(key, *fallback));
-    if (!node->is_integer()) fail(*node, key, "must be " + wanted);
-    const auto value = node->as_integer()->get();
-    if (value < low || value > high) fail(*node, key, "must be " + wanted);
-    record(key, quoted(*node));
-    return static_cast<int>(value);
-  }
-
-  std::string text(const std::string& key, std::optional<std::string> fallback = {}) {
-    const toml::node* node = find(key, "a text", fallback.has_value());
-    if (node == nullptr) {
-      record(key, *fallback, true);
-      return *fallback;
-    }
-    if (!node->is_string()) fail(*node, key, "must be a text in quotes");
-    record(key, node->as_string()->get());
-    return node->as_string()->get();
-  }
-
-  bool flag(const std::string& key, bool fallback) {
-    const toml::node* node = find(key, "true or false", true);
-    if (node == nullptr) return fallback;
-    if (!node->is_boolean()) fail(*node, key, "must be true or false");
-    record(key, quoted(*node));
-    return node->as_boolean()->get();
-  }
-
-  // One of a few words; returns its index.
-  std::size_t choice(const std::string& key, const std::vector<std::string>& words,
-                     std::optional<std::size_t> fallback = {}) {
-    std::string wanted;
-    for (const auto& word : words) wanted += (wanted.empty() ? "\"" : " or \"") + word + "\"";
-    const toml::node* node = find(key, wanted, fallback.has_value());
-    if (node == nullptr) {
-      record(key, words[*fallback], true);
-      return *fallback;
-    }
-    const auto* value = node->as_string();
-    const auto it = value == nullptr ? words.end() : std::find(words.begin(), words.end(), **value);
-    if (it == words.end()) fail(*node, key, "must be " + wanted);
-    record(key, **value);
-    return static_cast<std::size_t>(it - words.begin());
-  }
-
-  std::pair<double, double> pair(const std::string& key, Range range) {
-    const toml::node* node = find(key, "a pair of numbers [a, b]", false);
-    const toml::array* array = node->as_array();
-    if (array == nullptr || array->size() != 2)
-      fail(*node, key, "must be a pair of numbers [a, b]");
-    const std::pair<double, double> values{number_of((*array)[0], key, range, false),
-                                           number_of((*array)[1], key, range, false)};
-    record(key, quoted(*node));
-    return values;
-  }
-
-  // Every key that is there must have been asked for.
-  void finish() const {
-    if (table_ == nullptr) return;
-    for (const auto& [key, node] : *table_) {
-      const std::string word(key.str());
-      if (known_.count(word) > 0) continue;
-      const bool is_table = node.is_table();
-      std::string message =
-          is_table && name_.empty()
-              ? "unknown table [" + word + "]"
-              : "unknown key \"" + word + "\"" + (name_.empty() ? "" : " in [" + name_ + "]");
-      const auto nearest =
-          std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
-            return edit_distance(word, a) < edit_distance(word, b);
-          });
-      if (nearest != known_.end() && edit_distance(word, *nearest) <= 3)
-        message += "; did you mean \"" + *nearest + "\"?";
-      else if (!known_.empty())
-        message += "; allowed: " + list_of_keys();
-      throw InputError(
-          place(node.source().begin.line > 0 ? static_cast<int>(node.source().begin.line) : line_) +
-          message);
-    }
-  }
-
-  [[noreturn]] void fail(const std::string& key, const std::string& why) const {
-    const toml::node* node = table_ == nullptr ? nullptr : table_->get(key);
-    if (node != nullptr) fail(*node, key, why);
-    throw InputError(place(line_) + label(key) + ": " + why);
-  }
-
-  // A key of the table that was probably meant to be `key`.
-  std::string misspelt(const std::string& key) const {
-    if (table_ == nullptr) return "";
-    for (const auto& [found, node] : *table_) {
-      const std::string word(found.str());
-      if (known_.count(word) == 0 && edit_distance(word, key) <= 3)
-        return "; is \"" + word + "\" in line " + std::to_string(node.source().begin.line) +
-               " meant?";
-    }
-    return "";
-  }
-
- private:
-  std::string place(int line) const {
-    return file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": ";
-  }
-  std::string label(const std::string& key) const {
-    return (name_.empty() ? "" : "[" + name_ + "] ") + key;
-  }
-  std::string list_of_keys() const {
-    std::string keys;
-    for (const auto& key : known_) keys += (keys.empty() ? "" : ", ") + key;
-    return keys;
-  }
-  [[noreturn]] void fail(const toml::node& node, const std::string& key,
-                         const std::string& why) const {
-    throw InputError(place(static_cast<int>(node.source().begin.line)) + label(key) + " = " +
-                     quoted(node) + ": " + why);
-  }
-
-  const toml::node* find(const std::string& key, const std::string& wanted, bool optional) {
-    known_.insert(key);
-    const toml::node* node = table_ == nullptr ? nullptr : table_->get(key);
-    if (node == nullptr && !optional)
-      throw InputError(place(line_) + label(key) + " is missing: must be " + wanted +
-                       misspelt(key));
-    return node;
-  }
-
-  double number_of(const toml::node& node, const std::string& key, Range range,
-                   bool recorded = true) {
-    double value = 0;
-    if (node.is_integer()) {
-      value = static_cast<double>(node.as_integer()->get());
-    } else if (node.is_floating_point()) {
-      value = node.as_floating_point()->get();
-    } else {
-      fail(node, key, "must be a number, " + range.text());
-    }
-    if (!std::isfinite(value)) fail(node, key, "must be a finite number, " + range.text());
-    if (!range.contains(value)) fail(node, key, "must be " + range.text());
-    if (recorded) record(key, quoted(node));
-    return value;
-  }
-
-  double defaulted(const std::string& key, double value) {
-    record(key, number_text(value), true);
-    return value;
-  }
-  void record(const std::string& key, std::string value, bool by_default = false) {
-    entries_.push_back({name_, key, std::move(value), by_default});
-  }
-
-  std::string file_, name_;
-  const toml::table* table_;
-  int line_;
-  std::vector<CaseEntry>& entries_;
-  std::set<std::string> known_;
-};
-
 class CaseReader {
  public:
-  CaseReader(const toml::table& root, const std::filesystem::path& file)
-      : root_(root), file_(file.string()) {
-    result_.file = file;
+  explicit CaseReader(const TomlFile& file) : toml_(file), file_(file.file().string()) {
+    result_.file = file.file();
   }
 
   Case read() {
-    TableReader top(file_, "", &root_, 0, result_.entries);
+    TableReader top = toml_.root(&result_.entries);
     top.integer("schema", 1, 1);
     result_.name = top.text("name");
     // Reading in the order of the schema keeps the first error the one nearest to the top.
@@ -285,20 +52,9 @@ class CaseReader {
   }
 
  private:
+  // A table that may be left out is then read as an empty one: every key takes its default.
   TableReader table(TableReader& parent, const std::string& key, bool required = true) {
-    if (!parent.has(key)) {
-      if (required)
-        throw InputError(file_ + ": table [" + key + "] is missing" + parent.misspelt(key));
-      return {file_, key, nullptr, 0, result_.entries};
-    }
-    return section(root_.get(key), key);
-  }
-  TableReader section(const toml::node* node, const std::string& name) {
-    const auto line = static_cast<int>(node->source().begin.line);
-    if (!node->is_table())
-      throw InputError(file_ + ":" + std::to_string(line) + ": " + name + " = " + quoted(*node) +
-                       ": must be a table [" + name + "]");
-    return {file_, name, node->as_table(), line, result_.entries};
+    return required ? parent.table(key) : parent.optional_table(key);
   }
 
   void read_pump(TableReader in) {
@@ -523,12 +279,11 @@ class CaseReader {
     const auto fallback = Assumptions{true, result_.pump.piston.inertia, GearScene::mesh};
     result_.analytic = result_.multibody = fallback;
     if (!top.has("assumptions")) return;
-    TableReader both = section(root_.get("assumptions"), "assumptions");
-    const toml::table& models = *root_.get_as<toml::table>("assumptions");
+    TableReader both = top.table("assumptions");
     for (auto [name, target] :
          {std::pair{"analytic", &result_.analytic}, std::pair{"multibody", &result_.multibody}}) {
       if (!both.has(name)) continue;
-      TableReader in = section(models.get(name), std::string("assumptions.") + name);
+      TableReader in = both.table(name);
       target->piston_friction = in.flag("piston_friction", true);
       target->inertia = static_cast<PistonInertia>(
           in.choice("inertia", piston_inertia_names(), static_cast<std::size_t>(fallback.inertia)));
@@ -542,7 +297,7 @@ class CaseReader {
     both.finish();
   }
 
-  const toml::table& root_;
+  const TomlFile& toml_;
   std::string file_;
   Case result_;
 };
@@ -550,25 +305,11 @@ class CaseReader {
 }  // namespace
 
 Case parse_case(const std::string& text, const std::filesystem::path& file) {
-  toml::table root;
-  try {
-    root = toml::parse(text, file.string());
-  } catch (const toml::parse_error& error) {
-    std::string what(error.description());
-    std::replace(what.begin(), what.end(), '\n', ' ');
-    throw InputError(file.string() + ":" + std::to_string(error.source().begin.line) + ": " + what);
-  }
-  return CaseReader(root, file).read();
+  return CaseReader(TomlFile(text, file)).read();
 }
 
 Case read_case(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file))
-    throw InputError(file.string() + ": is a folder, not a case file");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse_case(text.str(), file);
+  return CaseReader(TomlFile::read(file, "case file")).read();
 }
 
 }  // namespace bentaxis

@@ -1,6 +1,5 @@
 #include "bentaxis/pump/pressure.h"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
@@ -14,54 +13,9 @@ namespace {
 // An angle this close to an edge counts as on it, degrees.
 constexpr double kEdgeTolerance = 1e-9;
 
-double wrap_degrees(double angle) {
-  double wrapped = std::fmod(angle, 360.0);
-  if (wrapped < 0) wrapped += 360.0;
-  return wrapped >= 360.0 ? 0.0 : wrapped;
-}
-
 double smooth_step(double t) { return t * t * (3 - 2 * t); }
 
 }  // namespace
-
-// Periodic cubic spline by its second derivatives at the points (cyclic tridiagonal system).
-struct PressureTrace::Spline {
-  std::vector<double> x, y, curvature;  // x has one more entry: the first point a turn later
-
-  explicit Spline(const PressureCurve& curve) : x(curve.theta_deg), y(curve.pressure) {
-    const auto n = static_cast<int>(x.size());
-    x.push_back(x.front() + 360.0);
-    y.push_back(y.front());
-    Eigen::SparseMatrix<double> system(n, n);
-    Eigen::VectorXd right(n);
-    std::vector<Eigen::Triplet<double>> entries;
-    const auto step = [&](int i) { return x[i + 1] - x[i]; };
-    const auto slope = [&](int i) { return (y[i + 1] - y[i]) / step(i); };
-    for (int i = 0; i < n; ++i) {
-      const int before = (i + n - 1) % n;
-      entries.emplace_back(i, before, step(before));
-      entries.emplace_back(i, i, 2 * (step(before) + step(i)));
-      entries.emplace_back(i, (i + 1) % n, step(i));
-      right[i] = 6 * (slope(i) - slope(before));
-    }
-    system.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(system);
-    const Eigen::VectorXd solution = solver.solve(right);
-    curvature.assign(solution.begin(), solution.end());
-    curvature.push_back(curvature.front());
-  }
-
-  double operator()(double angle) const {
-    const double at = x.front() + wrap_degrees(angle - x.front());
-    const auto upper = std::upper_bound(x.begin() + 1, x.end() - 1, at);
-    const auto i = static_cast<std::size_t>(upper - x.begin()) - 1;
-    const double h = x[i + 1] - x[i];
-    const double a = (x[i + 1] - at) / h;
-    const double b = (at - x[i]) / h;
-    return a * y[i] + b * y[i + 1] +
-           (a * (a * a - 1) * curvature[i] + b * (b * b - 1) * curvature[i + 1]) * h * h / 6;
-  }
-};
 
 PressureTrace::PressureTrace(const PressureSpec& spec)
     : kind_(spec.kind),
@@ -69,19 +23,14 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
       transition_deg_(spec.transition_deg),
       delivery_start_deg_(spec.delivery_start_deg) {
   if (kind_ != PressureKind::ideal) {
-    const auto& theta = spec.curve.theta_deg;
-    const auto fail = [&](const std::string& why) {
-      throw InputError(spec.file.string() + ": pressure curve: " + why);
-    };
-    if (kind_ == PressureKind::hydraulic && theta.empty())
+    if (kind_ == PressureKind::hydraulic && spec.curve.theta_deg.empty())
       throw InputError(
           "[pressure] kind = \"hydraulic\": this job needs the pressure to be computed first");
-    if (theta.size() < 3) fail("at least 3 points needed, found " + std::to_string(theta.size()));
-    for (std::size_t i = 1; i < theta.size(); ++i)
-      if (!(theta[i] > theta[i - 1])) fail("angles must increase strictly");
-    if (!(theta.back() - theta.front() < 360))
-      fail("last angle minus first must be below 360 deg (the end point is not repeated)");
-    spline_ = std::make_unique<Spline>(spec.curve);
+    try {
+      spline_ = std::make_unique<PeriodicSpline>(spec.curve.theta_deg, spec.curve.pressure);
+    } catch (const InputError& error) {
+      throw InputError(spec.file.string() + ": pressure curve: " + error.what());
+    }
     return;
   }
   const double half = transition_deg_ / 2;
@@ -94,10 +43,6 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
   std::sort(edges_deg_.begin(), edges_deg_.end());
   edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end()), edges_deg_.end());
 }
-
-PressureTrace::~PressureTrace() = default;
-PressureTrace::PressureTrace(PressureTrace&&) noexcept = default;
-PressureTrace& PressureTrace::operator=(PressureTrace&&) noexcept = default;
 
 double PressureTrace::operator()(double theta_k_deg) const {
   return spline_ ? (*spline_)(theta_k_deg) : ideal(theta_k_deg);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/periodic_spline.h"
+
 namespace bentaxis {
 
 /// Pressures of the two ports, Pa gauge.
@@ -44,9 +46,6 @@ class PressureTrace {
   /// @throws InputError if a curve has fewer than 3 points (or was not computed yet), or its angles
   /// are not as required.
   explicit PressureTrace(const PressureSpec& spec);
-  ~PressureTrace();
-  PressureTrace(PressureTrace&&) noexcept;
-  PressureTrace& operator=(PressureTrace&&) noexcept;
 
   /// Gauge pressure, Pa, in a chamber at angle theta_k (any real number of degrees).
   double operator()(double theta_k_deg) const;
@@ -55,13 +54,12 @@ class PressureTrace {
   const std::vector<double>& edges_deg() const { return edges_deg_; }
 
  private:
-  struct Spline;
   double ideal(double theta_k_deg) const;
 
   PressureKind kind_;
   PortPressures ports_;
   double transition_deg_, delivery_start_deg_;
-  std::unique_ptr<Spline> spline_;
+  std::unique_ptr<PeriodicSpline> spline_;
   std::vector<double> edges_deg_;
 };
 

@@ -1,6 +1,8 @@
 // Conversions at the border. Inside the program everything is SI: m, kg, s, N, Nm, Pa, rad.
 #pragma once
 
+#include <cmath>
+
 namespace bentaxis {
 
 inline constexpr double kPi = 3.14159265358979323846264338327950288;
@@ -14,5 +16,12 @@ inline double square_metres(double square_millimetres) { return square_millimetr
 inline double pascals(double bar) { return bar * kPascalPerBar; }
 inline double radians(double degrees) { return degrees * kRadPerDegree; }
 inline double rad_per_second(double rpm) { return rpm * kRadPerSecondPerRpm; }
+
+/// The same direction in [0, 360) degrees.
+inline double wrap_degrees(double angle) {
+  double wrapped = std::fmod(angle, 360.0);
+  if (wrapped < 0) wrapped += 360.0;
+  return wrapped >= 360.0 ? 0.0 : wrapped;
+}
 
 }  // namespace bentaxis

@@ -195,6 +195,7 @@ const published = ({ published }, data) => !published || !list(published.rows).l
   published.text ? el("p", {}, published.text) : null,
   table([
     { head: "Quantity", main: true, cell: r => r.quantity },
+    ...(published.rows.some(r => r.at) ? [{ head: "At", cell: r => r.at || DASH }] : []),
     { head: "Paper", cell: r => number(r.paper) },
     ...data.pair.map((name, i) => ({ head: name, num: true, cell: r => unit(number(data.ofTable(r, i)), r.unit) })),
     { head: "Verdict", cell: r => chip(r.verdict) },
@@ -673,14 +674,19 @@ function roundTicks(low, high, most) {
   return ticks;
 }
 
-function figures({ figures }, data) {
-  if (!list(figures).length || !data.order.length) return null;
+// A figure may bring curves of its own, at angles of its own.
+const dataOf = (figure, report, data) => !figure.curves ? data
+  : { ...prepare(report, figure.curves), mounts: data.mounts, redraws: data.redraws };
+
+function figures(report, data) {
+  const figures = list(report.figures).filter(f => f.curves || data.order.length);
+  if (!figures.length) return null;
   return el("div", {},
     el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; double-click to see "
       + "all again. Point at a curve to read the values in the table above it."),
     figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
       f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
-      f.kind === "piston_bars" ? barsFigure(f, data) : curvesFigure(f, data))));
+      (f.kind === "piston_bars" ? barsFigure : curvesFigure)(f, dataOf(f, report, data)))));
 }
 
 // ---- The page --------------------------------------------------------------------------------------

@@ -1,0 +1,28 @@
+// How a case stands against printed numbers of its pump, for the report of compare.
+#pragma once
+
+#include <optional>
+
+#include "bentaxis/compare/published.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/result_table.h"
+
+namespace bentaxis::cli {
+
+/// Facts of a case under a model's assumptions, by the names that files of printed numbers use.
+compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions);
+
+/// A model's case and the result already computed from it.
+struct PublishedInput {
+  const Case* the_case;
+  Assumptions assumptions;
+  const ResultTable* table;
+};
+
+/// The section for the first pump of the shipped published data that both cases are one of, by
+/// their facts; nothing where there is none. Recomputes the variants that the publication compares,
+/// driven.
+std::optional<compare::PublishedSection> published_section(const PublishedInput& analytic,
+                                                           const PublishedInput& multibody);
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,52 @@
+#include "reference_set.h"
+
+#include <algorithm>
+
+#include "bentaxis/pump/pressure.h"
+#include "models.h"
+
+namespace bentaxis::cli {
+namespace fs = std::filesystem;
+
+std::optional<fs::path> default_reference_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  for (const fs::path& folder :
+       {program.parent_path() / BENTAXIS_DATA_FROM_BINARY / "reference_data",
+        fs::path(BENTAXIS_SOURCE_DIR) / "reference_data"})
+    if (fs::is_directory(folder)) return folder.lexically_normal();
+  return std::nullopt;
+}
+
+std::vector<ReferencePlace> references_below(const fs::path& root) {
+  std::vector<ReferencePlace> places;
+  for (const auto& folder : compare::find_references(root)) {
+    fs::path name = folder.lexically_relative(root);
+    if (name == ".") name = fs::absolute(folder / ".").lexically_normal().parent_path().filename();
+    places.push_back({folder, name.generic_string()});
+  }
+  return places;
+}
+
+std::vector<fs::path> files_of(const Case& the_case) {
+  if (the_case.pressure.kind != PressureKind::curve) return {};
+  return {the_case.pressure.file};
+}
+
+Case case_for(const compare::ReferenceDescription& description, const std::string& model) {
+  Case the_case =
+      read_case(model == "multibody" ? description.multibody_case_file : description.case_file);
+  if (description.samples_per_revolution)
+    the_case.operation.samples_per_revolution = *description.samples_per_revolution;
+  return the_case;
+}
+
+ReferenceRun run_for_reference(const std::string& model, const Case& the_case) {
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples = samples_of(the_case, pressure, Way::driven);
+  const Assumptions& assumptions = model == "analytic" ? the_case.analytic : the_case.multibody;
+  return {run_model(model, the_case, assumptions, samples, pressure, Way::driven, {}),
+          zero_scales(the_case, samples)};
+}
+
+}  // namespace bentaxis::cli

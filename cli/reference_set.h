@@ -1,0 +1,41 @@
+// Reference data as the commands use them: where the shipped set is, and how a model is run on a
+// reference's case.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bentaxis/compare/reference.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/result_table.h"
+
+namespace bentaxis::cli {
+
+/// The set that was installed with this program, else the one of its source tree; nothing where
+/// there is neither.
+std::optional<std::filesystem::path> default_reference_folder();
+
+/// All references at or below a folder, as folder and name. The name is the path below `root`, or
+/// the folder's own name where root is itself a reference.
+struct ReferencePlace {
+  std::filesystem::path folder;
+  std::string name;
+};
+std::vector<ReferencePlace> references_below(const std::filesystem::path& root);
+
+/// Files that the cases of a reference use beside the case files themselves.
+std::vector<std::filesystem::path> files_of(const Case& the_case);
+
+/// The case a model is given: the description's, with its number of samples.
+Case case_for(const compare::ReferenceDescription& description, const std::string& model);
+
+/// Runs a model over one turn of a case, driven.
+struct ReferenceRun {
+  ResultTable table;
+  compare::ZeroScales zero_scales;
+};
+ReferenceRun run_for_reference(const std::string& model, const Case& the_case);
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,343 @@
+#include "bentaxis/compare/published.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <tuple>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/toml_reader.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::compare {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+const std::vector<std::string> kStatuses = {"used to infer the geometry", "calibrated",
+                                            "predicted"};
+const std::vector<std::string> kMeasures = {"fact",  "mean", "minimum",      "maximum",   "largest",
+                                            "range", "at",   "sign_changes", "main_order"};
+
+FactRanges read_ranges(TableReader in) {
+  FactRanges ranges;
+  for (const auto& key : in.keys()) {
+    ranges[key] = in.pair(key, kAny);
+    if (!(ranges[key].first <= ranges[key].second))
+      in.fail(key, "must be [low, high], low <= high");
+  }
+  in.finish();
+  return ranges;
+}
+
+template <class Item>
+void must_be_known(const TableReader& in, const std::string& key, const std::string& name,
+                   const std::vector<Item>& items) {
+  if (name.empty()) return;
+  if (std::none_of(items.begin(), items.end(), [&](const Item& item) { return item.name == name; }))
+    in.fail(key, "is not defined in this file");
+}
+
+PublishedNumber read_number(TableReader in, const Published& published) {
+  PublishedNumber n;
+  n.quantity = in.text("quantity");
+  n.where = in.text("where");
+  n.status = kStatuses[in.choice("status", kStatuses)];
+  n.condition = in.text("condition", "");
+  must_be_known(in, "condition", n.condition, published.conditions);
+  n.variant = in.text("variant", "");
+  must_be_known(in, "variant", n.variant, published.variants);
+  n.unit = in.text("unit", "");
+  n.note = in.text("note", "");
+  n.not_comparable = in.text("not_comparable", "");
+  n.repeats = in.flag("repeats", false);
+  n.measure = static_cast<Measure>(in.choice("measure", kMeasures));
+  if (n.measure == Measure::fact) {
+    n.fact = in.text("fact");
+  } else {
+    n.channels = in.texts("channels");
+    if (n.channels.empty()) in.fail("channels", "at least one column must be named");
+  }
+  if (n.measure == Measure::at) n.at_deg = in.number("at_deg", {0, 360, false, true});
+  if (in.has("over_deg")) {
+    std::tie(n.from_deg, n.to_deg) = in.pair("over_deg", {0, 360});
+    if (!(n.from_deg < n.to_deg)) in.fail("over_deg", "must be [from, to] with from < to");
+  }
+  n.factor = in.number("factor", kAny, 1.0);
+  n.times = in.text("times", "");
+  n.low = -kInfinity;
+  n.high = kInfinity;
+  if (in.has("value")) {
+    n.value = in.number("value", kAny);
+    n.tolerance = in.number("tolerance", kNotNegative);
+    in.text("tolerance_reason");
+    n.low = *n.value - n.tolerance;
+    n.high = *n.value + n.tolerance;
+  } else if (in.has("window")) {
+    std::tie(n.low, n.high) = in.pair("window", kAny);
+    if (!(n.low < n.high)) in.fail("window", "must be [low, high] with low < high");
+  } else if (in.has("above")) {
+    n.low = in.number("above", kAny);
+  } else if (in.has("below")) {
+    n.high = in.number("below", kAny);
+  } else {
+    in.fail("value", "one of value, window, above, below must be given");
+  }
+  in.finish();
+  return n;
+}
+
+std::string number_of(double value) { return fmt::format("{:.6g}", value); }
+
+std::string with_unit(const std::string& text, const std::string& unit) {
+  return unit.empty() ? text : text + " " + unit;
+}
+
+std::string printed(const PublishedNumber& n) {
+  if (n.value) {
+    std::string text = number_of(*n.value);
+    if (n.tolerance > 0) text += " ± " + number_of(n.tolerance);
+    return with_unit(text, n.unit);
+  }
+  if (n.high == kInfinity) return "above " + with_unit(number_of(n.low), n.unit);
+  if (n.low == -kInfinity) return "below " + with_unit(number_of(n.high), n.unit);
+  return "window " + with_unit(number_of(n.low) + " to " + number_of(n.high), n.unit);
+}
+
+// The facts that a range does not hold for, in words; "" where all hold.
+std::string unmet(const FactRanges& ranges, const Facts& facts) {
+  for (const auto& [name, range] : ranges) {
+    const auto it = facts.find(name);
+    if (it == facts.end()) return name + " is unknown";
+    if (!(it->second >= range.first && it->second <= range.second))
+      return fmt::format("{} is {:g}, there {}", name, it->second,
+                         range.first == range.second
+                             ? number_of(range.first)
+                             : number_of(range.first) + " to " + number_of(range.second));
+  }
+  return "";
+}
+
+// The compared number or numbers of one model: [low, high], equal where it is one.
+struct Value {
+  double low = 0, high = 0;
+  Json json() const {
+    const auto short_number = [](double v) { return std::strtod(number_of(v).c_str(), nullptr); };
+    if (low == high) return short_number(low);
+    return fmt::format("{:.5g} to {:.5g}", low, high);
+  }
+};
+
+std::optional<Value> value_of(const PublishedNumber& n, const PublishedRun& run) {
+  const auto fact = [&](const std::string& name) -> std::optional<double> {
+    const auto it = run.facts.find(name);
+    return it == run.facts.end() ? std::nullopt : std::optional(it->second);
+  };
+  double factor = n.factor;
+  if (!n.times.empty()) {
+    if (!fact(n.times)) return std::nullopt;
+    factor *= *fact(n.times);
+  }
+  if (n.measure == Measure::fact) {
+    const auto value = fact(n.fact);
+    if (!value) return std::nullopt;
+    return Value{factor * *value, factor * *value};
+  }
+  if (run.table == nullptr) return std::nullopt;
+  const ResultTable& table = *run.table;
+  std::vector<double> theta, curve;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double angle = wrap_degrees(table.theta_deg[row]);
+    if (angle < n.from_deg || angle > n.to_deg) continue;
+    double square = 0, value = 0;
+    for (const auto& name : n.channels) {
+      const std::size_t column = table.find(name);
+      value = column < table.columns() ? table.at(row, column) : not_computed();
+      if (!is_computed(value)) return std::nullopt;
+      square += value * value;
+    }
+    theta.push_back(angle);
+    curve.push_back(factor * (n.channels.size() > 1 ? std::sqrt(square) : value));
+  }
+  if (curve.empty()) return std::nullopt;
+  const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
+  const auto one = [](double v) { return Value{v, v}; };
+  switch (n.measure) {
+    case Measure::fact:
+      break;
+    case Measure::mean: {
+      double sum = 0;
+      for (const double v : curve) sum += v;
+      return one(sum / static_cast<double>(curve.size()));
+    }
+    case Measure::minimum:
+      return one(*low);
+    case Measure::maximum:
+      return one(*high);
+    case Measure::largest:
+      return one(std::max(std::abs(*low), std::abs(*high)));
+    case Measure::range:
+      return Value{*low, *high};
+    case Measure::at: {
+      // Straight line between the samples around the angle; the sample itself where it is one.
+      std::vector<std::pair<double, double>> points;
+      for (std::size_t i = 0; i < theta.size(); ++i) points.emplace_back(theta[i], curve[i]);
+      std::sort(points.begin(), points.end());
+      points.emplace_back(points.front().first + 360, points.front().second);
+      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const auto& [a, u] = points[i];
+        const auto& [b, v] = points[i + 1];
+        if (n.at_deg >= a && n.at_deg <= b && b > a)
+          return one(u + (v - u) * (n.at_deg - a) / (b - a));
+      }
+      return std::nullopt;
+    }
+    case Measure::sign_changes: {
+      int changes = 0;
+      for (std::size_t i = 0; i < curve.size(); ++i)
+        changes += (curve[i] < 0) != (curve[(i + 1) % curve.size()] < 0);
+      return one(changes);
+    }
+    case Measure::main_order: {
+      int best = 0;
+      double largest = -1;
+      for (int order = 1; 2 * order < static_cast<int>(curve.size()); ++order) {
+        std::complex<double> sum = 0;
+        for (std::size_t i = 0; i < curve.size(); ++i)
+          sum += curve[i] * std::polar(1.0, order * radians(theta[i]));
+        if (std::abs(sum) > largest) {
+          largest = std::abs(sum);
+          best = order;
+        }
+      }
+      return one(best);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool Published::describes(const Facts& facts) const { return unmet(identity, facts).empty(); }
+
+Published read_published(const std::filesystem::path& file) {
+  const TomlFile toml = TomlFile::read(file, "file of printed numbers");
+  TableReader in = toml.root();
+  Published published;
+  in.integer("schema", 1, 1);
+  published.name = in.text("pump");
+  published.identity = read_ranges(in.table("identity"));
+  for (TableReader& item : in.tables("condition")) {
+    PublishedCondition condition{item.text("name"), item.text("text"),
+                                 read_ranges(item.table("facts"))};
+    item.finish();
+    published.conditions.push_back(std::move(condition));
+  }
+  for (TableReader& item : in.tables("variant")) {
+    PublishedVariant variant{item.text("name"), item.text("text"), {}};
+    TableReader set = item.table("set");
+    for (const auto& key : set.keys()) variant.set[key] = set.number(key, kAny);
+    item.finish();
+    published.variants.push_back(std::move(variant));
+  }
+  for (TableReader& item : in.tables("number"))
+    published.numbers.push_back(read_number(std::move(item), published));
+  if (published.numbers.empty()) in.fail("number", "at least one [[number]] is needed");
+  in.finish();
+  return published;
+}
+
+std::string PublishedSummary::text() const {
+  return fmt::format(
+      "Only predicted rows are validation: {} of {} can be compared in this case, {} of them "
+      "inside. "
+      "{} further rows were used to infer the geometry or calibrated ({} inside): their agreement "
+      "shows nothing.",
+      predicted_comparable, predicted, predicted_inside, other_comparable, other_inside);
+}
+
+PublishedSection judge_published(
+    const Published& published, const std::vector<std::string>& models,
+    const std::function<PublishedRun(const std::string&, const PublishedVariant&)>& run) {
+  PublishedSection section;
+  PublishedSummary& summary = section.summary;
+  std::map<std::pair<std::string, std::string>, PublishedRun> runs;  // by model and variant
+  const auto run_of = [&](const std::string& model, const std::string& name) -> PublishedRun& {
+    auto it = runs.find({model, name});
+    if (it != runs.end()) return it->second;
+    PublishedVariant variant;
+    for (const auto& v : published.variants)
+      if (v.name == name) variant = v;
+    return runs.emplace(std::pair(model, name), run(model, variant)).first->second;
+  };
+  Json rows = Json::array();
+  for (const auto& n : published.numbers) {
+    const PublishedCondition* condition = nullptr;
+    for (const auto& c : published.conditions)
+      if (c.name == n.condition) condition = &c;
+    const PublishedVariant* variant = nullptr;
+    for (const auto& v : published.variants)
+      if (v.name == n.variant) variant = &v;
+    std::string why = n.not_comparable;
+    // What a variant sets is not asked of the case.
+    FactRanges wanted = condition == nullptr ? FactRanges() : condition->facts;
+    if (variant != nullptr)
+      for (const auto& [name, value] : variant->set) wanted.erase(name);
+    std::string at = condition == nullptr ? "" : condition->text;
+    if (variant != nullptr) at += (at.empty() ? "" : "; ") + variant->text;
+    Json row = {{"quantity", n.quantity},
+                {"paper", printed(n)},
+                {"unit", n.unit},
+                {"status", n.status},
+                {"at", at},
+                {"condition", n.condition},
+                {"variant", n.variant},
+                {"counted", n.predicted() && !n.repeats}};
+    bool any = false, inside = true;
+    std::string reasons;
+    for (std::size_t m = 0; m < models.size(); ++m) {
+      row[models[m]] = nullptr;
+      if (!why.empty()) continue;
+      // A case at another condition is not run under the variants of this one.
+      std::string reason = unmet(wanted, run_of(models[m], "").facts);
+      if (reason.empty()) {
+        if (const auto value = value_of(n, run_of(models[m], n.variant))) {
+          row[models[m]] = value->json();
+          any = true;
+          inside = inside && value->low >= n.low && value->high <= n.high;
+          continue;
+        }
+        reason = "not computed";
+      }
+      if (reasons.find(reason) == std::string::npos)
+        reasons += (reasons.empty() ? "" : "; ") + reason;
+    }
+    if (!any && why.empty()) why = reasons;
+    row["verdict"] = !any ? "not comparable" : inside ? "inside" : "outside";
+    std::string where = n.where;
+    if (!n.note.empty()) where += ". " + n.note;
+    if (n.repeats) where += ". Repeats another row: not counted";
+    if (!any && !why.empty()) where += ". Not comparable: " + why;
+    row["where"] = where;
+    rows.push_back(std::move(row));
+    if (n.repeats) continue;
+    summary.predicted += n.predicted();
+    (n.predicted() ? summary.predicted_comparable : summary.other_comparable) += any;
+    (n.predicted() ? summary.predicted_inside : summary.other_inside) += any && inside;
+  }
+  section.json = {
+      {"text", summary.text() +
+                   " A window is the range of a figure's axis, which the curve must not "
+                   "leave; it is not the curve."},
+      {"rows", rows},
+      {"predicted", summary.predicted},
+      {"predicted_comparable", summary.predicted_comparable},
+      {"predicted_inside", summary.predicted_inside}};
+  return section;
+}
+
+}  // namespace bentaxis::compare

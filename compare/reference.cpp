@@ -1,0 +1,702 @@
+#include "bentaxis/compare/reference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/periodic_spline.h"
+#include "bentaxis/pump/toml_reader.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::compare {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kDescriptionName = "description.toml";
+// Angles this close are the same: a thousandth of the round-off of an angle written in 9 digits.
+constexpr double kSameAngle = 1e-9;
+// A spline across a wider gap would invent the curve there.
+constexpr double kLargestGap = 30;
+// A hint is given where it explains all but this share of the difference...
+constexpr double kExplained = 0.01;
+// ...or of a shifted curve this share: the spline between its points is not exact.
+constexpr double kExplainedByShift = 0.25;
+// Hints look at no more angles than this.
+constexpr std::size_t kHintRows = 90;
+
+const std::vector<std::string> kKinds = {"high-precision", "published", "golden", "external"};
+const std::vector<std::string> kFolders = {"high_precision", "published", "golden", ""};
+const std::vector<std::string> kModels = {"analytic", "multibody"};
+
+// Units a foreign column may have: the channel unit it is a multiple of, and its SI value.
+struct Unit {
+  const char* family;
+  double si;
+};
+const std::map<std::string, Unit>& units() {
+  constexpr double kPoundForce = 4.4482216152605;
+  constexpr double kInch = 0.0254;
+  static const std::map<std::string, Unit> all = {{"N", {"N", 1}},
+                                                  {"kN", {"N", 1e3}},
+                                                  {"MN", {"N", 1e6}},
+                                                  {"lbf", {"N", kPoundForce}},
+                                                  {"Nm", {"Nm", 1}},
+                                                  {"kNm", {"Nm", 1e3}},
+                                                  {"Nmm", {"Nm", 1e-3}},
+                                                  {"lbf in", {"Nm", kPoundForce * kInch}},
+                                                  {"m", {"mm", 1}},
+                                                  {"mm", {"mm", 1e-3}},
+                                                  {"um", {"mm", 1e-6}},
+                                                  {"in", {"mm", kInch}},
+                                                  {"Pa", {"bar", 1}},
+                                                  {"kPa", {"bar", 1e3}},
+                                                  {"MPa", {"bar", 1e6}},
+                                                  {"bar", {"bar", 1e5}},
+                                                  {"psi", {"bar", 6894.757293168361}}};
+  return all;
+}
+
+ColumnMap read_column(TableReader in) {
+  ColumnMap map;
+  map.theirs = in.text("theirs");
+  map.ours = in.text("ours");
+  const std::string unit = in.text("unit", "");
+  if (!unit.empty()) {
+    const auto it = units().find(unit);
+    if (it == units().end()) {
+      std::string known;
+      for (const auto& [name, value] : units()) known += (known.empty() ? "" : ", ") + name;
+      in.fail("unit", "must be one of " + known);
+    }
+    // The suffix of a channel's name is its unit.
+    const std::string suffix = map.ours.substr(map.ours.rfind('_') + 1);
+    if (suffix != it->second.family)
+      in.fail("unit", "cannot become " + suffix + ", the unit of " + map.ours);
+    map.unit_in_si = it->second.si;
+  }
+  const int sign = in.integer("sign", -1, 1, 1);
+  if (sign == 0) in.fail("sign", "must be 1 or -1");
+  map.factor = sign * in.number("factor", kPositive, 1.0);
+  in.finish();
+  return map;
+}
+
+AngleMap read_angle(TableReader in) {
+  AngleMap map;
+  map.column = in.text("column", "theta_deg");
+  const std::size_t unit = in.choice("unit", {"deg", "rad", "turn", "s"}, 0);
+  map.degrees_per_unit = unit == 1 ? 1 / kRadPerDegree : unit == 2 ? 360 : 1;
+  map.is_time = unit == 3;
+  const int sign = in.integer("sign", -1, 1, 1);
+  if (sign == 0) in.fail("sign", "must be 1 or -1");
+  map.sign = sign;
+  map.offset_deg = in.number("offset_deg", kAny, 0.0);
+  if (in.has("turn_from_deg")) map.turn_from_deg = in.number("turn_from_deg", kAny);
+  in.finish();
+  return map;
+}
+
+fs::path existing(TableReader& in, const std::string& key, const fs::path& folder,
+                  const std::string& name) {
+  fs::path path = (folder / name).lexically_normal();
+  if (!fs::is_regular_file(path)) in.fail(key, "no such file: " + path.string());
+  return path;
+}
+
+CurveDescription read_curve(TableReader in, const fs::path& folder) {
+  CurveDescription curve;
+  curve.file = existing(in, "file", folder, in.text("file"));
+  curve.points = in.integer("points", 3, std::numeric_limits<int>::max());
+  curve.models = in.texts("models");
+  for (const auto& model : curve.models)
+    if (std::find(kModels.begin(), kModels.end(), model) == kModels.end())
+      in.fail("models", "must be \"analytic\", \"multibody\" or both");
+  if (curve.models.empty()) curve.models = kModels;
+  curve.angle = read_angle(in.optional_table("angle"));
+  for (TableReader& column : in.tables("column")) curve.columns.push_back(read_column(column));
+  curve.ignored = in.texts("ignore");
+  in.finish();
+  return curve;
+}
+
+bool ends_its_last_line(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in || in.tellg() <= 0) return false;
+  in.seekg(-1, std::ios::end);
+  return in.get() == '\n';
+}
+
+// Rows of a file in the order of the shaft angle, each with its angle; one turn, not repeated.
+struct Turn {
+  std::vector<double> theta_deg;
+  std::vector<std::size_t> rows;
+  std::optional<std::pair<std::size_t, std::size_t>> repeated;  // first row, the same a turn later
+};
+
+Turn one_turn(const std::string& file, const AngleMap& map, const NumericTable& data,
+              std::size_t column, double degrees_per_second) {
+  const auto fail = [&](const std::string& why) { throw InputError(file + ": " + why); };
+  std::vector<std::pair<double, std::size_t>> points;
+  const double scale = map.sign * (map.is_time ? degrees_per_second : map.degrees_per_unit);
+  for (std::size_t row = 0; row < data.rows.size(); ++row)
+    points.emplace_back(scale * data.rows[row][column] + map.offset_deg, row);
+  if (scale == 0)
+    fail("column " + map.column + " is a time, but the shaft of the case stands still");
+  if (points.size() > 1 && points.back().first < points.front().first)
+    std::reverse(points.begin(), points.end());
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (!(points[i].first > points[i - 1].first))
+      throw InputError(file + ":" + std::to_string(data.lines[points[i].second]) +
+                       ": angles in column " + map.column + " must increase or decrease strictly");
+  if (map.turn_from_deg) {
+    const double from = *map.turn_from_deg;
+    if (points.front().first > from + kSameAngle || points.back().first < from + 360 - kLargestGap)
+      fail("turn_from_deg = " + number_text(from) + ": the record covers " +
+           number_text(points.front().first) + ".." + number_text(points.back().first) + " deg");
+    std::erase_if(points, [&](const auto& p) {
+      return p.first < from - kSameAngle || p.first > from + 360 + kSameAngle;
+    });
+  }
+  Turn turn;
+  const double span = points.back().first - points.front().first;
+  if (span > 360 + kSameAngle)
+    fail("covers " + number_text(span) +
+         " deg: more than a turn; choose one by turn_from_deg in [curve.angle]");
+  if (span > 360 - kSameAngle) {
+    turn.repeated = {points.front().second, points.back().second};
+    points.pop_back();
+  }
+  for (auto& [angle, row] : points) angle = wrap_degrees(angle);
+  for (auto& [angle, row] : points)  // a hair below a whole turn is the turn
+    if (angle > 360 - kSameAngle) angle = 0;
+  std::sort(points.begin(), points.end());
+  for (const auto& [angle, row] : points) {
+    turn.theta_deg.push_back(angle);
+    turn.rows.push_back(row);
+  }
+  return turn;
+}
+
+// Index of an angle among rising ones, or their number.
+std::size_t find_angle(const std::vector<double>& theta, double angle) {
+  const auto it = std::lower_bound(theta.begin(), theta.end(), angle - kSameAngle);
+  if (it != theta.end() && *it <= angle + kSameAngle)
+    return static_cast<std::size_t>(it - theta.begin());
+  return theta.size();
+}
+
+// The turn's angle of a sample.
+double reduced(double theta_deg) {
+  const double angle = wrap_degrees(theta_deg);
+  return angle > 360 - kSameAngle ? 0 : angle;
+}
+
+std::vector<double> column_of(const ResultTable& table, std::size_t column) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.at(row, column));
+  return values;
+}
+
+// A value on the straight line between two points.
+struct Between {
+  std::size_t first, next;
+  double share;
+};
+
+// Where a curve is looked at to find what it spans over [at - half, at + half]: its points there
+// and the straight lines to the ends.
+std::vector<Between> points_near(const std::vector<double>& theta, double at, double half) {
+  std::vector<Between> points;
+  const std::size_t n = theta.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    const double step = wrap_degrees(theta[next] - theta[i]);
+    for (const double end : {at - half, at + half}) {
+      const double past = wrap_degrees(end - theta[i]);
+      if (past <= step && step > 0) points.push_back({i, next, past / step});
+    }
+    const double past = wrap_degrees(theta[i] - at);
+    if (std::min(past, 360 - past) <= half) points.push_back({i, i, 0});
+  }
+  return points;
+}
+
+// What a differing curve looks like, tried on some of its angles.
+class Hints {
+ public:
+  Hints(const ResultTable& reference, const ResultTable& result)
+      : reference_(reference), result_(result) {
+    const std::size_t stride = 1 + (result.rows() - 1) / kHintRows;
+    for (std::size_t row = 0; row < result.rows(); row += stride) rows_.push_back(row);
+  }
+
+  std::string of(const ChannelComparison& channel) const {
+    const std::size_t a = reference_.find(channel.channel.name);
+    const std::size_t b = result_.find(channel.channel.name);
+    std::vector<double> theirs, ours;
+    for (const auto row : rows_) {
+      if (!is_computed(reference_.at(row, a)) || !is_computed(result_.at(row, b))) return "";
+      theirs.push_back(reference_.at(row, a));
+      ours.push_back(result_.at(row, b));
+    }
+    const double original = rms(theirs, ours, 1);
+    const double enough = std::max(kExplained * original, channel.allowed);
+    for (std::size_t other = 0; other < reference_.columns(); ++other) {
+      if (other == a || reference_.channels[other].unit != channel.channel.unit) continue;
+      std::vector<double> candidate;
+      for (const auto row : rows_) candidate.push_back(reference_.at(row, other));
+      if (rms(candidate, ours, 1) <= enough)
+        return "the reference has this curve as " + reference_.channels[other].name;
+    }
+    double product = 0, square = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      product += theirs[i] * ours[i];
+      square += theirs[i] * theirs[i];
+    }
+    const double factor = square > 0 ? product / square : 0;
+    if (std::abs(factor - 1) > kExplained && rms(theirs, ours, factor) <= enough)
+      return std::abs(factor + 1) < kExplained
+                 ? std::string("the reference has the opposite sign")
+                 : fmt::format("the result is {:.7g} times the reference", factor);
+    const double shift = best_shift(a, ours);
+    if (shift != 0 && shifted_rms(a, ours, shift) <= kExplainedByShift * original)
+      return fmt::format("the result is the reference shifted by about {:+.2f} deg", shift);
+    return "";
+  }
+
+ private:
+  static double rms(const std::vector<double>& theirs, const std::vector<double>& ours,
+                    double factor) {
+    double sum = 0;
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      const double difference = ours[i] - factor * theirs[i];
+      sum += difference * difference;
+    }
+    return std::sqrt(sum / static_cast<double>(ours.size()));
+  }
+  // The reference moved by `shift` degrees towards larger angles, against ours.
+  double shifted_rms(std::size_t column, const std::vector<double>& ours, double shift) const {
+    std::vector<double> moved;
+    for (const auto row : rows_) moved.push_back(spline(column)(result_.theta_deg[row] - shift));
+    return rms(moved, ours, 1);
+  }
+  double best_shift(std::size_t column, const std::vector<double>& ours) const {
+    if (reference_.rows() < 3) return 0;
+    double best = 0, least = shifted_rms(column, ours, 0);
+    const auto search = [&](double from, double to, double step) {
+      for (double shift = from; shift <= to; shift += step)
+        if (const double value = shifted_rms(column, ours, shift); value < least) {
+          least = value;
+          best = shift;
+        }
+    };
+    search(-180, 180, 1);
+    search(best - 1, best + 1, 0.1);
+    search(best - 0.1, best + 0.1, 0.01);
+    return best;
+  }
+  const PeriodicSpline& spline(std::size_t column) const {
+    auto it = splines_.find(column);
+    if (it == splines_.end()) {
+      // Falling angles of a turn run backwards are put in order.
+      std::map<double, double> points;
+      for (std::size_t row = 0; row < reference_.rows(); ++row)
+        points[reduced(reference_.theta_deg[row])] = reference_.at(row, column);
+      std::vector<double> x, y;
+      for (const auto& [angle, value] : points) {
+        x.push_back(angle);
+        y.push_back(value);
+      }
+      it = splines_.emplace(column, PeriodicSpline(x, y)).first;
+    }
+    return it->second;
+  }
+
+  const ResultTable& reference_;
+  const ResultTable& result_;
+  std::vector<std::size_t> rows_;
+  mutable std::map<std::size_t, PeriodicSpline> splines_;
+};
+
+// How well a spline through every other point meets the points between; the spline through all of
+// them is better by the factor of a curve with a kinked slope, 4. Over the peak.
+double resampling_error(const ReferenceCurve& curve, std::size_t column, double peak) {
+  std::vector<double> x, y;
+  for (std::size_t row = 0; row < curve.table.rows(); row += 2) {
+    x.push_back(curve.table.theta_deg[row]);
+    y.push_back(curve.table.at(row, column));
+  }
+  if (x.size() < 3 || peak == 0) return 0;
+  const PeriodicSpline half(x, y);
+  double worst = 0;
+  for (std::size_t row = 1; row < curve.table.rows(); row += 2)
+    worst =
+        std::max(worst, std::abs(half(curve.table.theta_deg[row]) - curve.table.at(row, column)));
+  return worst / 4 / peak;
+}
+
+// The reference at the angles of the result, with the band of the tube.
+struct Resampled {
+  ResultTable middle, low, high;
+  bool exact = true;
+  double error = 0;
+};
+
+Resampled resample(const ReferenceDescription& description, const ReferenceCurve& curve,
+                   const std::vector<double>& theta_deg) {
+  Resampled out;
+  ResultTable& table = out.middle;
+  table.name = "reference";
+  table.channels = curve.table.channels;
+  table.theta_deg = theta_deg;
+  table.values.assign(table.rows() * table.columns(), not_computed());
+  const auto& theta = curve.table.theta_deg;
+  std::vector<std::size_t> at;
+  std::vector<std::vector<Between>> near;
+  for (const double angle : theta_deg) at.push_back(find_angle(theta, reduced(angle)));
+  out.exact = std::all_of(at.begin(), at.end(), [&](std::size_t i) { return i < theta.size(); });
+  const bool tube = description.tube_deg > 0;
+  if (!out.exact || tube)
+    for (std::size_t i = 0; i < theta.size(); ++i) {
+      const double gap =
+          i + 1 < theta.size() ? theta[i + 1] - theta[i] : theta.front() + 360 - theta.back();
+      if (gap > kLargestGap)
+        throw InputError(curve.file.string() + ": has no points between " + number_text(theta[i]) +
+                         " and " + number_text(theta[i] + gap) +
+                         " deg (shaft angle): must cover the turn with gaps of at most " +
+                         number_text(kLargestGap) + " deg to be resampled");
+    }
+  if (tube)
+    for (const double angle : theta_deg)
+      near.push_back(points_near(theta, reduced(angle), description.tube_deg));
+  out.low = out.high = table;
+  for (std::size_t column = 0; column < table.columns(); ++column) {
+    const std::vector<double> values = column_of(curve.table, column);
+    const auto known = std::count_if(values.begin(), values.end(), is_computed);
+    if (known == 0) continue;
+    const bool gaps = known < static_cast<std::ptrdiff_t>(values.size());
+    if (gaps && (!out.exact || tube))
+      throw InputError(curve.file.string() + ": column of " + table.channels[column].name +
+                       " has empty fields and cannot be resampled");
+    std::optional<PeriodicSpline> spline;
+    if (!out.exact) {
+      spline.emplace(theta, values);
+      out.error =
+          std::max(out.error,
+                   resampling_error(curve, column, curve.table.peak(table.channels[column].group)));
+    }
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const std::size_t index = row * table.columns() + column;
+      table.values[index] = at[row] < theta.size() ? values[at[row]] : (*spline)(theta_deg[row]);
+      if (!tube) continue;
+      double low = table.values[index], high = low;
+      for (const auto& point : near[row]) {
+        const double value =
+            values[point.first] + point.share * (values[point.next] - values[point.first]);
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+      out.low.values[index] = low;
+      out.high.values[index] = high;
+    }
+  }
+  return out;
+}
+
+// Puts the columns of `more` beside those of `table`; both have the same angles.
+void append_columns(ResultTable& table, const ResultTable& more) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < more.rows(); ++row) {
+    for (std::size_t c = 0; c < table.columns(); ++c) values.push_back(table.at(row, c));
+    for (std::size_t c = 0; c < more.columns(); ++c) values.push_back(more.at(row, c));
+  }
+  table.values = std::move(values);
+  table.channels.insert(table.channels.end(), more.channels.begin(), more.channels.end());
+  table.theta_deg = more.theta_deg;
+}
+
+}  // namespace
+
+std::string to_string(ReferenceKind kind) { return kKinds[static_cast<std::size_t>(kind)]; }
+
+const char* to_string(Finding finding) {
+  switch (finding) {
+    case Finding::agrees:
+      return "agrees";
+    case Finding::differs:
+      return "differs";
+    case Finding::missing:
+      return "missing";
+    case Finding::incomplete:
+      return "incomplete";
+    case Finding::absent:
+      break;
+  }
+  return "not computed";
+}
+
+bool Judgement::agrees() const {
+  bool compared = false;
+  for (const auto& channel : channels) {
+    if (channel.failed()) return false;
+    compared = compared || channel.finding == Finding::agrees;
+  }
+  return compared;
+}
+
+std::vector<fs::path> find_references(const fs::path& root) {
+  if (!fs::is_directory(root))
+    throw InputError(root.string() + ": is not a folder with reference data");
+  std::vector<fs::path> found;
+  const std::function<void(const fs::path&)> visit = [&](const fs::path& folder) {
+    if (fs::is_regular_file(folder / kDescriptionName)) {
+      found.push_back(folder);
+      return;
+    }
+    std::vector<fs::path> entries;
+    for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
+    std::sort(entries.begin(), entries.end());
+    for (const auto& entry : entries) {
+      if (entry.filename() == "README.md" || entry.filename() == "generator") continue;
+      if (!fs::is_directory(entry))
+        throw InputError(entry.string() + ": is used by nothing: " + folder.string() + " has no " +
+                         kDescriptionName);
+      visit(entry);
+    }
+  };
+  visit(root);
+  if (found.empty())
+    throw InputError(root.string() + ": holds no reference data (no " + kDescriptionName + ")");
+  return found;
+}
+
+ReferenceDescription read_description(const fs::path& folder, const std::string& name) {
+  const TomlFile file = TomlFile::read(folder / kDescriptionName, "description");
+  TableReader in = file.root();
+  ReferenceDescription d;
+  d.folder = folder;
+  d.name = name;
+  in.integer("schema", 1, 1);
+  d.kind = static_cast<ReferenceKind>(in.choice("kind", kKinds));
+  const std::string above = fs::canonical(folder).parent_path().filename();
+  const auto place = std::find(kFolders.begin(), kFolders.end(), above);
+  if (place != kFolders.end() && !above.empty() &&
+      place - kFolders.begin() != static_cast<std::ptrdiff_t>(d.kind))
+    in.fail("kind", "must be \"" + kKinds[static_cast<std::size_t>(place - kFolders.begin())] +
+                        "\" in a folder below " + above);
+  d.source = in.text("source");
+  d.how_made = in.text("how_made");
+  d.who_may_change = in.text("who_may_change");
+  in.text("exercises", "");
+  in.text("frames_and_units", "");
+  for (const auto& document : in.texts("documents"))
+    d.documents.push_back(existing(in, "documents", folder, document));
+  if (d.kind == ReferenceKind::published) {
+    d.numbers = existing(in, "numbers", folder, in.text("numbers"));
+    in.finish();
+    return d;
+  }
+  d.digits = in.integer("digits", 1, 1000);
+  d.case_file = existing(in, "case", folder, in.text("case"));
+  d.multibody_case_file = d.case_file;
+  if (in.has("multibody_case"))
+    d.multibody_case_file = existing(in, "multibody_case", folder, in.text("multibody_case"));
+  if (in.has("samples_per_revolution"))
+    d.samples_per_revolution =
+        in.integer("samples_per_revolution", 3, std::numeric_limits<int>::max());
+  TableReader tolerance = in.table("tolerance");
+  d.relative = tolerance.number("relative", {0, 1});
+  d.absolute["N"] = tolerance.number("absolute_N", kNotNegative, 0.0);
+  d.absolute["Nm"] = tolerance.number("absolute_Nm", kNotNegative, 0.0);
+  d.absolute["mm"] = tolerance.number("absolute_mm", kNotNegative, 0.0);
+  d.absolute["bar"] = tolerance.number("absolute_bar", kNotNegative, 0.0);
+  d.tube_deg = tolerance.number("tube_deg", {0, 45}, 0.0);
+  tolerance.finish();
+  for (TableReader& curve : in.tables("curve")) d.curves.push_back(read_curve(curve, folder));
+  if (d.curves.empty()) in.fail("curve", "at least one [[curve]] is needed");
+  in.finish();
+  return d;
+}
+
+void check_files(const ReferenceDescription& description, const std::vector<fs::path>& used) {
+  std::set<fs::path> known = {description.folder / kDescriptionName, description.case_file,
+                              description.multibody_case_file, description.numbers};
+  known.insert(description.documents.begin(), description.documents.end());
+  known.insert(used.begin(), used.end());
+  for (const auto& curve : description.curves) known.insert(curve.file);
+  std::set<fs::path> normal;
+  for (const auto& path : known)
+    if (!path.empty()) normal.insert(fs::absolute(path).lexically_normal());
+  std::set<fs::path> there;
+  for (const auto& entry : fs::recursive_directory_iterator(description.folder))
+    if (!entry.is_directory()) there.insert(entry.path());
+  for (const auto& path : there)
+    if (normal.count(fs::absolute(path).lexically_normal()) == 0)
+      throw InputError(path.string() + ": is used by nothing: name it in " +
+                       (description.folder / kDescriptionName).string() + " or take it away");
+}
+
+ReferenceCurve read_reference_curve(const ReferenceDescription& description,
+                                    const CurveDescription& curve,
+                                    const std::vector<Channel>& channels,
+                                    double degrees_per_second) {
+  const std::string file = curve.file.string();
+  const auto fail = [&](const std::string& why) { throw InputError(file + ": " + why); };
+  const NumericTable data = read_numeric_csv(curve.file, true);
+  if (description.kind != ReferenceKind::external && !ends_its_last_line(curve.file))
+    fail("the last line is not ended: the file is truncated");
+  if (data.rows.size() != static_cast<std::size_t>(curve.points))
+    fail("has " + std::to_string(data.rows.size()) +
+         " rows of numbers, its description says points = " + std::to_string(curve.points) +
+         (data.rows.size() < static_cast<std::size_t>(curve.points) ? ": truncated?" : ""));
+  const auto column_index = [&](const std::string& name) {
+    const auto it = std::find(data.header.begin(), data.header.end(), name);
+    if (it == data.header.end()) {
+      std::string all;
+      for (const auto& column : data.header) all += (all.empty() ? "" : ", ") + column;
+      if (all.size() > 200) all = all.substr(0, 200) + " ..";
+      fail("has no column \"" + name + "\"; its columns are " + all);
+    }
+    if (std::find(it + 1, data.header.end(), name) != data.header.end())
+      fail("has two columns \"" + name + "\"");
+    return static_cast<std::size_t>(it - data.header.begin());
+  };
+  const std::size_t angle = column_index(curve.angle.column);
+  for (std::size_t row = 0; row < data.rows.size(); ++row)
+    if (!is_computed(data.rows[row][angle]))
+      fail("row " + std::to_string(row + 1) + " has no value in " + curve.angle.column);
+
+  // Every column is the angle, mapped, one of ours by its name, or ignored by name.
+  struct Source {
+    std::size_t column;
+    double factor;
+  };
+  ReferenceCurve out;
+  out.file = curve.file;
+  out.rows = data.rows.size();
+  ResultTable& table = out.table;
+  table.name = "reference";
+  std::vector<Source> sources;
+  std::set<std::size_t> taken = {angle};
+  const auto take = [&](std::size_t column, const std::string& ours, double unit, double factor) {
+    const auto channel = std::find_if(channels.begin(), channels.end(),
+                                      [&](const Channel& c) { return c.name == ours; });
+    if (channel == channels.end())
+      fail("column \"" + data.header[column] + "\" is mapped to \"" + ours +
+           "\", which is no column of a result");
+    if (table.find(ours) < table.columns()) fail("two columns stand for " + ours);
+    table.channels.push_back(*channel);
+    sources.push_back({column, factor * (unit == 0 ? 1 : unit / channel->unit_in_si)});
+    taken.insert(column);
+  };
+  for (const ColumnMap& map : curve.columns) {
+    const std::size_t column = column_index(map.theirs);
+    if (taken.count(column) > 0) fail("column \"" + map.theirs + "\" is used twice");
+    take(column, map.ours, map.unit_in_si, map.factor);
+  }
+  for (const auto& name : curve.ignored) taken.insert(column_index(name));
+  for (std::size_t column = 0; column < data.header.size(); ++column) {
+    if (taken.count(column) > 0) continue;
+    const std::string& name = data.header[column];
+    if (std::none_of(channels.begin(), channels.end(),
+                     [&](const auto& c) { return c.name == name; }))
+      fail("column \"" + name +
+           "\" is used by nothing: map it in [[curve.column]] or name it in ignore");
+    take(column_index(name), name, 0, 1);
+  }
+
+  const Turn turn = one_turn(file, curve.angle, data, angle, degrees_per_second);
+  table.theta_deg = turn.theta_deg;
+  for (const auto row : turn.rows)
+    for (const auto& source : sources) {
+      const double value = data.rows[row][source.column];
+      table.values.push_back(is_computed(value) ? source.factor * value : value);
+    }
+  if (turn.repeated) {
+    for (std::size_t c = 0; c < table.columns(); ++c) {
+      const double start = data.rows[turn.repeated->first][sources[c].column] * sources[c].factor;
+      const double again = data.rows[turn.repeated->second][sources[c].column] * sources[c].factor;
+      const auto absolute = description.absolute.find(table.channels[c].unit);
+      const double allowed = description.relative * table.peak(table.channels[c].group) +
+                             (absolute == description.absolute.end() ? 0 : absolute->second);
+      if (is_computed(start) && is_computed(again) && std::abs(again - start) > allowed)
+        fail("column \"" + data.header[sources[c].column] +
+             "\" ends the turn at another value than it starts with: the record is not periodic");
+    }
+  }
+  return out;
+}
+
+Judgement judge(const ReferenceDescription& description, const std::vector<ReferenceCurve>& curves,
+                const ResultTable& result, const ZeroScales& zero_scales) {
+  Resampled reference;
+  for (const ReferenceCurve& curve : curves) {
+    const Resampled one = resample(description, curve, result.theta_deg);
+    for (const Channel& channel : one.middle.channels)
+      if (reference.middle.find(channel.name) < reference.middle.columns())
+        throw InputError(curve.file.string() + ": holds " + channel.name +
+                         ", as does another curve for the same model");
+    append_columns(reference.middle, one.middle);
+    append_columns(reference.low, one.low);
+    append_columns(reference.high, one.high);
+    reference.exact = reference.exact && one.exact;
+    reference.error = std::max(reference.error, one.error);
+  }
+  reference.middle.name = "reference";
+  Options options;
+  options.tolerance = description.relative;
+  options.absolute = description.absolute;
+  options.zero_scales = zero_scales;
+  options.most_digits = std::min(options.most_digits, static_cast<double>(description.digits));
+  if (description.tube_deg > 0) options.band = Band{&reference.low, &reference.high};
+  const Comparison comparison = compare_tables(reference.middle, result, options);
+  const Hints hints(reference.middle, result);
+
+  Judgement judgement;
+  judgement.resampled = !reference.exact;
+  judgement.resampling_error = reference.error;
+  const auto computed = [](const ResultTable& table, std::size_t column) {
+    for (std::size_t row = 0; column < table.columns() && row < table.rows(); ++row)
+      if (is_computed(table.at(row, column))) return true;
+    return false;
+  };
+  for (std::size_t column = 0; column < result.columns(); ++column) {
+    const Channel& channel = result.channels[column];
+    const std::size_t stored = reference.middle.find(channel.name);
+    const bool there = computed(reference.middle, stored);
+    if (channel.kind == ChannelKind::check || (channel.kind == ChannelKind::input && !there))
+      continue;
+    ReferenceChannel entry;
+    if (const auto* found = comparison.find(channel.name)) entry.comparison = *found;
+    entry.comparison.channel = channel;
+    if (!there) {
+      const bool wanted = description.must_be_complete() && channel.kind == ChannelKind::reaction &&
+                          computed(result, column);
+      entry.finding = !computed(result, column) ? Finding::absent
+                      : wanted                  ? Finding::incomplete
+                                                : Finding::missing;
+      if (wanted) entry.hint = "the reference lacks it";
+    } else if (entry.comparison.verdict == Verdict::not_computed) {
+      entry.finding = Finding::incomplete;
+      entry.hint = computed(result, column) ? "one of both has gaps where the other has values"
+                                            : "the model did not compute it";
+    } else {
+      const bool agrees = entry.comparison.verdict == Verdict::agrees;
+      entry.finding = agrees ? Finding::agrees : Finding::differs;
+      if (!agrees) entry.hint = hints.of(entry.comparison);
+    }
+    judgement.channels.push_back(std::move(entry));
+  }
+  judgement.reference = std::move(reference.middle);
+  return judgement;
+}
+
+}  // namespace bentaxis::compare

@@ -1,0 +1,440 @@
+// Reference data: reading, mapping, resampling and judging of stored curves, and printed numbers.
+// Made-up tables with known answers; no model is run here.
+#include "bentaxis/compare/reference.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "bentaxis/compare/junit.h"
+#include "bentaxis/compare/published.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/periodic_spline.h"
+#include "bentaxis/pump/toml_reader.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+using namespace compare;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+// What a curve in 17 digits loses by a unit conversion: a few units of round-off.
+constexpr double kConversion = 1e-15;
+
+Channel channel(const std::string& name, const std::string& group, const std::string& unit) {
+  Channel c;
+  c.name = name;
+  c.quantity = c.group = group;
+  c.unit = unit;
+  c.unit_in_si = unit == "mm" ? 1e-3 : unit == "bar" ? 1e5 : 1;
+  return c;
+}
+
+const std::vector<Channel> kChannels = {channel("X_x_N", "X", "N"), channel("X_y_N", "X", "N"),
+                                        channel("T_Nm", "T", "Nm")};
+
+double wave(double deg, int order, double phase_deg = 0) {
+  return std::cos(order * radians(deg - phase_deg));
+}
+double x_of(double deg) { return 100 * wave(deg, 3) + 20 * wave(deg, 1, 30); }
+double y_of(double deg) { return 80 * wave(deg, 2, 17) + 10; }
+double t_of(double deg) { return 50 + 5 * wave(deg, 5); }
+
+ResultTable result(int samples) {
+  ResultTable t;
+  t.name = "model";
+  t.channels = kChannels;
+  for (int i = 0; i < samples; ++i) {
+    const double deg = 360.0 * i / samples;
+    t.theta_deg.push_back(deg);
+    for (const double value : {x_of(deg), y_of(deg), t_of(deg)}) t.values.push_back(value);
+  }
+  return t;
+}
+
+std::string thrown(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+class ReferenceFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("bentaxis_reference_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    write("case.toml", "");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  // A description with one curve file; `more` belongs to the curve.
+  ReferenceDescription description(int points, const std::string& more = "",
+                                   const std::string& tolerance = "relative = 1e-9",
+                                   const std::string& kind = "external") const {
+    write("description.toml", "schema = 1\nkind = \"" + kind +
+                                  "\"\ncase = \"case.toml\"\nsource = \"s\"\nhow_made = \"h\"\n"
+                                  "who_may_change = \"w\"\ndigits = 12\n[tolerance]\n" +
+                                  tolerance + "\n[[curve]]\nfile = \"curve.csv\"\npoints = " +
+                                  std::to_string(points) + "\n" + more);
+    return read_description(folder_, "r");
+  }
+  ReferenceCurve curve(const ReferenceDescription& d) const {
+    return read_reference_curve(d, d.curves.at(0), kChannels, 9000);
+  }
+  static Finding finding(const Judgement& judgement, const std::string& name) {
+    for (const auto& c : judgement.channels)
+      if (c.comparison.channel.name == name) return c.finding;
+    throw std::logic_error(name);
+  }
+  static std::string hint(const Judgement& judgement, const std::string& name) {
+    for (const auto& c : judgement.channels)
+      if (c.comparison.channel.name == name) return c.hint;
+    throw std::logic_error(name);
+  }
+
+  // A curve file of all three channels as functions of its own angle.
+  void write_curve(int rows, const std::function<std::array<double, 4>(double)>& row,
+                   const std::string& header = "theta_deg,X_x_N,X_y_N,T_Nm") const {
+    std::string text = header + "\n";
+    for (int i = 0; i < rows; ++i) {
+      const auto values = row(360.0 * i / rows);
+      for (std::size_t c = 0; c < values.size(); ++c) {
+        if (c > 0) text += ',';
+        append_number(text, values[c]);
+      }
+      text += '\n';
+    }
+    write("curve.csv", text);
+  }
+  void write_plain(int rows) const {
+    write_curve(rows, [](double a) -> std::array<double, 4> {
+      return {a, x_of(a), y_of(a), t_of(a)};
+    });
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ReferenceFolder, EqualAnglesAreComparedWithoutASpline) {
+  write_plain(36);
+  const auto d = description(36);
+  const Judgement j = judge(d, {curve(d)}, result(36), {});
+  EXPECT_TRUE(j.agrees());
+  EXPECT_FALSE(j.resampled);
+  for (const auto& c : j.channels) {
+    EXPECT_EQ(c.comparison.largest, 0) << c.comparison.channel.name;
+    EXPECT_EQ(c.comparison.digits, 12) << "capped by the digits of the reference";
+  }
+}
+
+TEST_F(ReferenceFolder, ColumnsUnitsSignAndAngleAreMapped) {
+  // Their angle runs backwards in radians from a quarter turn: theta = -angle + 90.
+  write_curve(
+      36,
+      [](double a) -> std::array<double, 4> {
+        const double deg = 90 - a;
+        return {radians(a), -x_of(deg) / 1e3, y_of(deg) * 2, t_of(deg) * 1e3};
+      },
+      "phi,fx,fy,torque");
+  const auto d =
+      description(36,
+                  "[curve.angle]\ncolumn = \"phi\"\nunit = \"rad\"\nsign = -1\noffset_deg = 90\n"
+                  "[[curve.column]]\ntheirs = \"fx\"\nours = \"X_x_N\"\nunit = \"kN\"\nsign = -1\n"
+                  "[[curve.column]]\ntheirs = \"fy\"\nours = \"X_y_N\"\nfactor = 0.5\n"
+                  "[[curve.column]]\ntheirs = \"torque\"\nours = \"T_Nm\"\nunit = \"Nmm\"\n",
+                  "relative = 1e-12");
+  const ReferenceCurve c = curve(d);
+  for (std::size_t row = 0; row < c.table.rows(); ++row) {
+    const double deg = c.table.theta_deg[row];
+    EXPECT_NEAR(c.table.at(row, 0), x_of(deg), 120 * 1e2 * kConversion);
+    EXPECT_NEAR(c.table.at(row, 1), y_of(deg), 90 * 1e2 * kConversion);
+    EXPECT_NEAR(c.table.at(row, 2), t_of(deg), 55 * 1e2 * kConversion);
+  }
+  EXPECT_TRUE(judge(d, {c}, result(36), {}).agrees());
+}
+
+TEST_F(ReferenceFolder, OtherAnglesAreResampledBySplineOfFourthOrder) {
+  std::vector<double> errors;
+  for (const int rows : {50, 100, 200}) {
+    write_plain(rows);
+    const auto d = description(rows, "", "relative = 1");
+    const Judgement j = judge(d, {curve(d)}, result(36), {});
+    EXPECT_TRUE(j.resampled);
+    double worst = 0;
+    for (const auto& c : j.channels) worst = std::max(worst, c.comparison.largest_over_peak());
+    EXPECT_GT(j.resampling_error, worst / 2)
+        << "the estimate is no promise, but no small one either";
+    errors.push_back(worst);
+  }
+  // Halving the step of a smooth curve divides the error by 16.
+  EXPECT_NEAR(std::log2(errors[1] / errors[2]), 4, 0.3);
+}
+
+TEST_F(ReferenceFolder, ToleranceIsAbsolutePlusRelativeToThePeakOfTheVector) {
+  write_curve(36, [](double a) -> std::array<double, 4> {
+    return {a, x_of(a), y_of(a) + 1, t_of(a)};
+  });
+  const double peak = result(36).peak("X");
+  EXPECT_GT(peak, 120);
+  const auto with = [&](const std::string& tolerance) {
+    const auto d = description(36, "", tolerance);
+    return finding(judge(d, {curve(d)}, result(36), {}), "X_y_N");
+  };
+  EXPECT_EQ(with("relative = 1e-3"), Finding::differs);
+  EXPECT_EQ(with("relative = 1e-3\nabsolute_N = 1"), Finding::agrees);
+  EXPECT_EQ(with("relative = 1e-3\nabsolute_Nm = 1"), Finding::differs);
+  EXPECT_EQ(with("relative = 0.01"), Finding::agrees);
+}
+
+TEST_F(ReferenceFolder, ZeroReactionIsHeldToTheLoadScale) {
+  write_curve(36, [](double a) -> std::array<double, 4> { return {a, 0, 0, t_of(a)}; });
+  const auto d = description(36, "", "relative = 1e-3");
+  ResultTable small = result(36);
+  for (std::size_t row = 0; row < small.rows(); ++row)
+    for (std::size_t c = 0; c < 2; ++c) small.values[row * 3 + c] = 1e-6;
+  EXPECT_FALSE(judge(d, {curve(d)}, small, {}).agrees());
+  EXPECT_TRUE(judge(d, {curve(d)}, small, {{"N", 1e4}}).agrees());
+}
+
+TEST_F(ReferenceFolder, TubeAllowsWhatTheReferenceSpansAroundTheAngle) {
+  write_curve(360, [](double a) -> std::array<double, 4> {
+    return {a, a < 180.2 ? 0.0 : 100.0, y_of(a), t_of(a)};
+  });
+  ResultTable step = result(360);
+  for (std::size_t row = 0; row < step.rows(); ++row)
+    step.values[row * 3] = step.theta_deg[row] < 181.2 ? 0 : 100;  // one sample later
+  const auto with = [&](const std::string& tolerance) {
+    const auto d = description(360, "", tolerance);
+    return finding(judge(d, {curve(d)}, step, {}), "X_x_N");
+  };
+  EXPECT_EQ(with("relative = 1e-3"), Finding::differs);
+  EXPECT_EQ(with("relative = 1e-3\ntube_deg = 1"), Finding::agrees);
+  step.values[3 * 10] = 5;  // far from the edge nothing is forgiven
+  EXPECT_EQ(with("relative = 1e-3\ntube_deg = 1"), Finding::differs);
+}
+
+TEST_F(ReferenceFolder, MissingIsNeitherAgreeingNorDiffering) {
+  std::string text = "theta_deg,T_Nm\n";
+  for (int i = 0; i < 36; ++i)
+    text += std::to_string(10 * i) + "," + number_text(t_of(10.0 * i)) + "\n";
+  write("curve.csv", text);
+  const auto d = description(36);
+  const Judgement j = judge(d, {curve(d)}, result(36), {});
+  EXPECT_EQ(finding(j, "X_x_N"), Finding::missing);
+  EXPECT_EQ(finding(j, "T_Nm"), Finding::agrees);
+  EXPECT_TRUE(j.agrees());
+  // What claims to be complete must be.
+  const auto golden = description(36, "", "relative = 1e-9", "golden");
+  const Judgement strict = judge(golden, {curve(golden)}, result(36), {});
+  EXPECT_EQ(finding(strict, "X_x_N"), Finding::incomplete);
+  EXPECT_FALSE(strict.agrees());
+  // Nothing compared is no agreement.
+  ResultTable other = result(36);
+  for (auto& c : other.channels) c.name = "other_" + c.name;
+  EXPECT_FALSE(judge(d, {curve(d)}, other, {}).agrees());
+}
+
+TEST_F(ReferenceFolder, HintsNameWhatHappened) {
+  const auto judged = [&](const std::function<std::array<double, 4>(double)>& row) {
+    write_curve(72, row);
+    const auto d = description(72);
+    return judge(d, {curve(d)}, result(72), {});
+  };
+  using Row = std::array<double, 4>;
+  auto j = judged([](double a) -> Row { return {a, -x_of(a), y_of(a), t_of(a)}; });
+  EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("opposite sign"));
+  j = judged([](double a) -> Row { return {a, y_of(a), x_of(a), t_of(a)}; });
+  EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("as X_y_N"));
+  EXPECT_THAT(hint(j, "X_y_N"), HasSubstr("as X_x_N"));
+  j = judged([](double a) -> Row { return {a, x_of(a), y_of(a), 1e-3 * t_of(a)}; });
+  EXPECT_THAT(hint(j, "T_Nm"), HasSubstr("1000 times"));
+  j = judged([](double a) -> Row { return {a, x_of(a + 0.5), y_of(a), t_of(a)}; });
+  EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("shifted by about +0.50 deg"));
+  j = judged([](double a) -> Row { return {a, x_of(a) + wave(a, 7), y_of(a), t_of(a)}; });
+  EXPECT_EQ(hint(j, "X_x_N"), "");
+}
+
+TEST_F(ReferenceFolder, RefusesWhatCannotBeMeant) {
+  write_plain(36);
+  const auto refusal = [&](int points, const std::string& more) {
+    return thrown([&] { curve(description(points, more)); });
+  };
+  EXPECT_EQ(refusal(36, ""), "nothing");
+  EXPECT_THAT(refusal(37, ""), HasSubstr("has 36 rows"));
+  EXPECT_THAT(refusal(36, "[curve.angle]\ncolumn = \"angle\"\n"), HasSubstr("no column \"angle\""));
+  EXPECT_THAT(refusal(36, "[[curve.column]]\ntheirs = \"X_x_N\"\nours = \"Y\"\n"),
+              HasSubstr("\"Y\", which is no column of a result"));
+  EXPECT_THAT(refusal(36, "[[curve.column]]\ntheirs = \"X_x_N\"\nours = \"T_Nm\"\n"),
+              HasSubstr("two columns stand for T_Nm"));
+  EXPECT_THAT(refusal(36, "[[curve.column]]\ntheirs = \"X_x_N\"\nours = \"X_x_N\"\nsign = 0\n"),
+              HasSubstr("sign"));
+  EXPECT_THAT(
+      refusal(36, "[[curve.column]]\ntheirs = \"X_x_N\"\nours = \"X_x_N\"\nunit = \"Nm\"\n"),
+      HasSubstr("cannot become N"));
+  EXPECT_THAT(refusal(36, "models = [\"other\"]\n"), HasSubstr("models"));
+  write_curve(36, [](double a) -> std::array<double, 4> { return {2 * a, 1, 2, 3}; });
+  EXPECT_THAT(refusal(36, ""), HasSubstr("more than a turn"));
+  EXPECT_EQ(refusal(36, "[curve.angle]\nturn_from_deg = 180\n"), "nothing");
+  EXPECT_THAT(refusal(36, "[curve.angle]\nturn_from_deg = 500\n"), HasSubstr("covers"));
+  write_curve(36, [](double a) -> std::array<double, 4> { return {a < 100 ? a : 90, 1, 2, 3}; });
+  EXPECT_THAT(refusal(36, ""), HasSubstr("strictly"));
+}
+
+TEST_F(ReferenceFolder, FolderIsTheManifest) {
+  write_plain(36);
+  const auto d = description(36);
+  EXPECT_NO_THROW(check_files(d, {}));
+  write("pressure.csv", "x\n");
+  EXPECT_THAT(thrown([&] { check_files(d, {}); }), HasSubstr("pressure.csv: is used by nothing"));
+  EXPECT_NO_THROW(check_files(d, {folder_ / "pressure.csv"}));
+}
+
+TEST(PeriodicSplineTest, MeetsItsPointsAndIsPeriodic) {
+  const std::vector<double> x = {5, 40, 170, 200, 330}, y = {1, -2, 3, 0, 7};
+  const PeriodicSpline spline(x, y);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_NEAR(spline(x[i]), y[i], 1e-14);
+    EXPECT_NEAR(spline(x[i] - 720), y[i], 1e-12);
+  }
+  EXPECT_NEAR(spline(5 - 1e-7), spline(5 + 1e-7), 1e-6);
+  EXPECT_THROW(PeriodicSpline({0, 1}, {0, 0}), InputError);
+  EXPECT_THROW(PeriodicSpline({0, 1, 1}, {0, 0, 0}), InputError);
+  EXPECT_THROW(PeriodicSpline({0, 100, 360}, {0, 0, 0}), InputError);
+}
+
+TEST(Junit, HoldsTextThatIsNoMarkup) {
+  TestSuite suite{"a<b>&\"c\"", 0.5, {{"k", "v\x01"}}, {}};
+  suite.cases = {{"one", "c", 0.1, TestOutcome::passed, "", "fine"},
+                 {"two", "c", 0.1, TestOutcome::failed, "why <", "a\nb"},
+                 {"three", "c", 0.1, TestOutcome::error, "what", ""},
+                 {"four", "c", 0.1, TestOutcome::skipped, "", ""}};
+  const std::string xml = junit_xml("all", {suite});
+  EXPECT_THAT(xml, HasSubstr("a&lt;b>&amp;&quot;c&quot;"));
+  EXPECT_THAT(xml, HasSubstr("tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\""));
+  EXPECT_EQ(xml.find('\x01'), std::string::npos);
+}
+
+// ---- Printed numbers
+// -----------------------------------------------------------------------------
+
+class PublishedNumbers : public ReferenceFolder {
+ protected:
+  // Rows of the section for one number.
+  nlohmann::json row(const std::string& number, const Facts& facts = {{"speed_rpm", 1500}}) {
+    write("numbers.toml",
+          "schema = 1\npump = \"P\"\n[identity]\nspeed_rpm = [0, 2000]\n"
+          "[[condition]]\nname = \"rated\"\ntext = \"at 1500\"\nfacts = { speed_rpm = [1500, 1500] "
+          "}\n"
+          "[[variant]]\nname = \"v\"\ntext = \"without\"\nset = { friction = 0 }\n"
+          "[[number]]\nquantity = \"q\"\nwhere = \"Fig. 1\"\n" +
+              number);
+    published_ = read_published(folder_ / "numbers.toml");
+    section_ = judge_published(published_, {"model"},
+                               [&](const std::string&, const PublishedVariant& variant) {
+                                 ran_.push_back(variant.name);
+                                 Facts all = facts;
+                                 for (const auto& [name, value] : variant.set) all[name] = value;
+                                 return PublishedRun{&table_, all};
+                               });
+    return section_.json["rows"][0];
+  }
+
+  ResultTable table_ = result(360);
+  Published published_;
+  PublishedSection section_;
+  std::vector<std::string> ran_;
+};
+
+TEST_F(PublishedNumbers, MeasuresOfACurve) {
+  const std::string t =
+      "status = \"predicted\"\nchannels = [\"T_Nm\"]\nwindow = [40, 60]\nmeasure = ";
+  EXPECT_NEAR(row(t + "\"mean\"\n")["model"].get<double>(), 50, 1e-12);
+  EXPECT_NEAR(row(t + "\"maximum\"\n")["model"].get<double>(), 55, 1e-12);
+  EXPECT_NEAR(row(t + "\"minimum\"\n")["model"].get<double>(), 45, 1e-12);
+  EXPECT_EQ(row(t + "\"range\"\n")["model"], "45 to 55");
+  EXPECT_NEAR(row(t + "\"at\"\nat_deg = 36\n")["model"].get<double>(), 45, 1e-12);
+  EXPECT_EQ(row(t + "\"main_order\"\n")["model"], 5);
+  EXPECT_EQ(row(t + "\"sign_changes\"\n")["model"], 0);
+  EXPECT_NEAR(row(t + "\"maximum\"\nover_deg = [30, 42]\n")["model"].get<double>(),
+              50 - 5 * std::sqrt(0.75), 1e-4);
+  EXPECT_NEAR(row(t + "\"mean\"\nfactor = -2\ntimes = \"speed_rpm\"\n")["model"].get<double>(),
+              -150000, 1e-6);
+  // Several channels: the magnitude of the vector.
+  const double magnitude = std::hypot(x_of(0), y_of(0));
+  EXPECT_NEAR(row("status = \"predicted\"\nmeasure = \"at\"\nat_deg = 0\nabove = 0\n"
+                  "channels = [\"X_x_N\", \"X_y_N\"]\n")["model"]
+                  .get<double>(),
+              magnitude, 1e-3);
+}
+
+TEST_F(PublishedNumbers, VerdictAndCount) {
+  const std::string t = "measure = \"range\"\nchannels = [\"T_Nm\"]\n";
+  EXPECT_EQ(row(t + "status = \"predicted\"\nwindow = [45, 56]\n")["verdict"], "inside");
+  EXPECT_EQ(section_.summary.predicted_inside, 1);
+  EXPECT_EQ(row(t + "status = \"predicted\"\nwindow = [46, 56]\n")["verdict"], "outside");
+  EXPECT_EQ(section_.summary.predicted_inside, 0);
+  EXPECT_EQ(section_.summary.predicted_comparable, 1);
+  EXPECT_EQ(row(t + "status = \"calibrated\"\nwindow = [45, 56]\n")["verdict"], "inside");
+  EXPECT_EQ(section_.summary.predicted, 0) << "only predicted rows are validation";
+  row(t + "status = \"predicted\"\nwindow = [45, 56]\nrepeats = true\n");
+  EXPECT_EQ(section_.summary.predicted, 0);
+  EXPECT_EQ(
+      row(t + "status = \"predicted\"\nwindow = [45, 56]\nnot_comparable = \"why\"\n")["verdict"],
+      "not comparable");
+  EXPECT_EQ(row("measure = \"mean\"\nchannels = [\"none\"]\nstatus = \"predicted\"\nabove = 0\n")
+                ["verdict"],
+            "not comparable");
+}
+
+TEST_F(PublishedNumbers, ConditionsDecideAndNothingIsRunInVain) {
+  const std::string t =
+      "status = \"predicted\"\nmeasure = \"mean\"\nchannels = [\"T_Nm\"]\nabove = 0\n"
+      "condition = \"rated\"\n";
+  EXPECT_EQ(row(t)["verdict"], "inside");
+  const auto other = row(t, {{"speed_rpm", 1000}});
+  EXPECT_EQ(other["verdict"], "not comparable");
+  EXPECT_THAT(other["where"].get<std::string>(), HasSubstr("speed_rpm is 1000, there 1500"));
+  ran_.clear();
+  row(t + "variant = \"v\"\n", {{"speed_rpm", 1000}});
+  EXPECT_THAT(ran_, testing::Each(""));
+  row(t + "variant = \"v\"\n");
+  EXPECT_THAT(ran_, testing::Contains("v"));
+  EXPECT_TRUE(published_.describes({{"speed_rpm", 1}}));
+  EXPECT_FALSE(published_.describes({{"speed_rpm", 2001}}));
+  EXPECT_FALSE(published_.describes({}));
+}
+
+TEST_F(PublishedNumbers, RefusesWhatIsIncomplete) {
+  const auto refusal = [&](const std::string& number) { return thrown([&] { row(number); }); };
+  const std::string t = "measure = \"mean\"\nchannels = [\"T_Nm\"]\n";
+  EXPECT_THAT(refusal(t + "status = \"guessed\"\nabove = 0\n"), HasSubstr("status"));
+  EXPECT_THAT(refusal(t + "status = \"predicted\"\n"), HasSubstr("value, window, above, below"));
+  EXPECT_THAT(refusal(t + "status = \"predicted\"\nvalue = 1\n"), HasSubstr("tolerance"));
+  EXPECT_THAT(refusal(t + "status = \"predicted\"\nvalue = 1\ntolerance = 1\n"),
+              HasSubstr("tolerance_reason"));
+  EXPECT_THAT(refusal(t + "status = \"predicted\"\nabove = 0\ncondition = \"x\"\n"),
+              HasSubstr("not defined"));
+  EXPECT_THAT(refusal("measure = \"fact\"\nstatus = \"predicted\"\nabove = 0\n"),
+              HasSubstr("fact"));
+}
+
+TEST(ShippedPublishedData, CanBeRead) {
+  const fs::path folder = fs::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "published" / "bap63";
+  const Published published = read_published(folder / "numbers.toml");
+  EXPECT_GT(published.numbers.size(), 30U);
+  const auto description = read_description(folder, "bap63");
+  EXPECT_EQ(description.kind, ReferenceKind::published);
+  check_files(description, {});
+}
+
+}  // namespace
+}  // namespace bentaxis::test
