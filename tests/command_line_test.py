@@ -404,7 +404,7 @@ BAD_VALUES = (
     ("no samples", {"operation.samples_per_revolution": 0}, ["0", ">= 1"]),
     ("negative revolutions", {"operation.revolutions": -1}, ["-1", ">= 1"]),
     ("transition", {"pressure.transition_deg": 181.0}, ["181.0", "in [0, 180]"]),
-    ("kind of pressure not there yet", {"pressure.kind": '"hydraulic"'}, ['"hydraulic"', '"ideal"', '"curve"']),
+    ("kind of pressure", {"pressure.kind": '"measured"'}, ['"measured"', '"ideal"', '"curve"', '"hydraulic"']),
     ("kind of pump", {"pump.type": '"axial"'}, ['"axial"', '"bent_axis_bevel"']),
     ("schema", {"schema": 2}, ["2", "[1, 1]"]),
     ("land", {"port_plate.inner_land_mm": [19.0, 17.2]}, ["19.0", "r1 < r2"]),
