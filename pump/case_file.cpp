@@ -173,7 +173,7 @@ class CaseReader {
     const bool hydraulic = pressure.kind == PressureKind::hydraulic;
     pressure.ports.suction = pascals(in.number("suction_bar", kAny));
     pressure.ports.delivery =
-        pascals(in.number("delivery_bar", hydraulic ? Range{0, 10000} : kAny));
+        pascals(in.number("delivery_bar", hydraulic ? NumberRange{0, 10000} : kAny));
     // Keys of the other kinds may be present and are then unused.
     if (hydraulic || in.has("points")) pressure.points = in.integer("points", 16, 100000, 800);
     const bool ideal = pressure.kind == PressureKind::ideal;
@@ -260,7 +260,8 @@ class CaseReader {
     // 1 l/min = 1e-3/60 m3/s
     data.leakage =
         in.number("leakage_l_per_min_per_bar", kNotNegative, 0.002) / 6e4 / kPascalPerBar;
-    const Range absolute{-data.atmosphere / kPascalPerBar, kInfinity, true};
+    const NumberRange absolute{-data.atmosphere / kPascalPerBar,
+                               std::numeric_limits<double>::infinity(), true};
     data.case_pressure = pascals(in.number("case_bar", absolute, 0.0));
     data.dead_volume = in.number("dead_volume_cm3", kPositive, 3.0) / 1e6;
     data.delivery_volume = in.number("delivery_volume_l", kPositive, 0.5) / 1e3;

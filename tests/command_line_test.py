@@ -718,7 +718,7 @@ class PressureTest(ProgramTest):
     def test_number_outside_its_window(self):
         case = self.hydraulic(**{"friction.shaft_torque_factor": 0.95})
         result = self.run_program("pressure", case, "--out", "out", "--published",
-                                  REPO / "reference_data/published/bap63_rated.toml", status=OUT_OF_TOLERANCE)
+                                  REPO / "cases/published/bap63_rated.toml", status=OUT_OF_TOLERANCE)
         self.assertIn("OUTSIDE", result.out)
 
     def test_torque_curve(self):
