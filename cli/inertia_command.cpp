@@ -42,7 +42,7 @@ struct Options {
 struct Study {
   std::vector<InertiaRun> one_piston;  // by speed: without load, loaded
   std::vector<InertiaRun> full;
-  study::ErrorCauses causes;
+  study::ErrorCauses causes, multibody_causes;
   std::vector<study::Lumping> lumpings, over_fraction;
   study::ThreeMasses masses;
   study::ErrorMap map;
@@ -173,10 +173,11 @@ Json cause_figures(const Study& s, Curves& curves) {
   for (const auto& [id, symbol, parts] :
        {std::tuple{"causes_rs", "Rs", kRs}, std::tuple{"causes_rc", "Rc", kRc}}) {
     std::vector<std::string> names;
-    for (const ResultTable* table :
-         {&s.causes.all, &s.causes.centre, &s.causes.transverse, &s.causes.spin}) {
-      names.push_back(fmt::format("|error of {}| by {}", symbol, table->name));
-      curves.add(names.back(), magnitude(*table, parts));
+    for (const auto part : {&study::ErrorCauses::all, &study::ErrorCauses::centre,
+                            &study::ErrorCauses::transverse, &study::ErrorCauses::spin}) {
+      names.push_back(fmt::format("|error of {}| by {}", symbol, (s.causes.*part).name));
+      curves.add(names.back(), magnitude(s.causes.*part, parts),
+                 magnitude(s.multibody_causes.*part, parts));
     }
     figures.push_back(figure(
         id,
@@ -287,7 +288,7 @@ double cost_of(const Study& s, const std::string& scene, const std::string& meth
 Json sections(const Case& the_case, const Study& s, double models, double scenes) {
   Json list = Json::array();
   const auto add = [&](const std::string& title, const std::string& text, const Json& table,
-                       const Json& facts = Json::array()) {
+                       const compare::Lines& facts = {}) {
     list.push_back({{"title", title}, {"text", text}, {"facts", facts}, {"table", table}});
   };
   add("Error of lumping on a piston's reactions",
@@ -317,7 +318,7 @@ Json sections(const Case& the_case, const Study& s, double models, double scenes
         {lumping.name,
          is_computed(lumping.joint_mass_fraction) ? Json(lumping.joint_mass_fraction) : Json(),
          lumping.error_rs, lumping.error_rc});
-  Json facts = Json::array();
+  compare::Lines facts;
   if (s.masses.exists)
     facts = {{"mass at A", fmt::format("{:.5g} kg", s.masses.at_joint)},
              {"mass at the centre", fmt::format("{:.5g} kg", s.masses.at_centre)},
@@ -536,7 +537,8 @@ Study compute(const Case& the_case, const Options& options) {
       s.full.push_back(study::run_both_pistons(the_case, speed, loaded, multibody::Scene::full,
                                                progress_of("full pump, " + what)));
     }
-  s.causes = study::causes_of_error(the_case, s.fastest);
+  s.causes = study::causes_of_error(the_case, s.fastest, study::By::analytic);
+  s.multibody_causes = study::causes_of_error(the_case, s.fastest, study::By::multibody);
   s.lumpings = study::lumpings(the_case, s.fastest);
   s.over_fraction = study::lumping_over_fraction(the_case, s.fastest, 51);
   s.masses = study::three_masses(the_case.pump);

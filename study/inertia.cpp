@@ -39,6 +39,12 @@ ResultTable analytic_run(const Case& the_case, PistonInertia inertia) {
   return analytic::run(the_case, with(the_case.analytic, inertia), turn_of(the_case));
 }
 
+// The smallest scene that has Rs and Rc, by the method that needs no inertia.
+ResultTable one_piston_run(const Case& the_case, PistonInertia inertia) {
+  return multibody::run_driven(the_case, with(the_case.multibody, inertia), turn_of(the_case), {},
+                               multibody::Scene::piston, multibody::Method::residual);
+}
+
 // A real piston with the moments of the lumped one.
 PistonMass::Real real_data_of_lumped(const PumpParameters& pump) {
   const double chi = pump.piston.joint_mass_fraction;
@@ -198,14 +204,17 @@ std::vector<LumpingError> lumping_errors(const InertiaRun& run, const InertiaRun
   return errors;
 }
 
-ErrorCauses causes_of_error(const Case& the_case, double speed_rpm) {
+ErrorCauses causes_of_error(const Case& the_case, double speed_rpm, By model) {
   require_real_piston(the_case);
   const Case bare = at_speed(without_loads(the_case), speed_rpm);
   const PistonMass::Real real = *bare.pump.piston.real;
   const PistonMass::Real lumped = real_data_of_lumped(bare.pump);
-  const ResultTable from = analytic_run(bare, PistonInertia::lumped);
+  const auto run = [&](const Case& at, PistonInertia inertia) {
+    return model == By::analytic ? analytic_run(at, inertia) : one_piston_run(at, inertia);
+  };
+  const ResultTable from = run(bare, PistonInertia::lumped);
   const auto part = [&](const PistonMass::Real& changed, const std::string& name) {
-    return difference(from, analytic_run(with_real(bare, changed), PistonInertia::real), name);
+    return difference(from, run(with_real(bare, changed), PistonInertia::real), name);
   };
   PistonMass::Real centre = lumped;
   centre.centre_of_mass = real.centre_of_mass;
@@ -325,12 +334,7 @@ ErrorMap error_map(const Case& the_case, MapAxis axis, std::vector<double> speed
 std::vector<Approach> approach_to_lumped(const Case& the_case, double speed_rpm) {
   require_real_piston(the_case);
   const Case bare = at_speed(without_loads(the_case), speed_rpm);
-  const Samples samples = turn_of(bare);
-  const auto run = [&](const Case& at, PistonInertia inertia) {
-    return multibody::run_driven(at, with(at.multibody, inertia), samples, {},
-                                 multibody::Scene::piston, multibody::Method::residual);
-  };
-  const ResultTable lumped = run(bare, PistonInertia::lumped);
+  const ResultTable lumped = one_piston_run(bare, PistonInertia::lumped);
   const PistonMass::Real real = *bare.pump.piston.real;
   const PistonMass::Real limit = real_data_of_lumped(bare.pump);
   std::vector<Approach> result;
@@ -339,7 +343,7 @@ std::vector<Approach> approach_to_lumped(const Case& the_case, double speed_rpm)
     const PistonMass::Real mixed{between(real.centre_of_mass, limit.centre_of_mass),
                                  between(real.transverse_inertia, limit.transverse_inertia),
                                  t * real.axial_inertia, real.spin};
-    const ResultTable table = run(with_real(bare, mixed), PistonInertia::real);
+    const ResultTable table = one_piston_run(with_real(bare, mixed), PistonInertia::real);
     result.push_back(
         {t, peak_difference(table, lumped, "Rs"), peak_difference(table, lumped, "Rc")});
   }

@@ -59,11 +59,12 @@ double largest_over_peak(const ResultTable& first, const ResultTable& second, do
 /// piston to the real one the centre of mass, the transverse inertia and the spin change; reactions
 /// are linear in m s_G, It + m s_G^2 and Ia w_s, so the three parts add up exactly.
 struct ErrorCauses {
-  ResultTable centre, transverse, spin;  ///< lumped - real, analytic, this cause alone
+  ResultTable centre, transverse, spin;  ///< lumped - real, this cause alone
   ResultTable all;
   double rest = 0;  ///< largest of all - (centre + transverse + spin), N
 };
-ErrorCauses causes_of_error(const Case& the_case, double speed_rpm);
+enum class By { analytic, multibody };
+ErrorCauses causes_of_error(const Case& the_case, double speed_rpm, By model);
 
 /// Error left by a way of lumping, without load, largest over the turn, N.
 struct Lumping {

@@ -676,7 +676,7 @@ function plotAxis(spec, values, first, last) {
     return { place, name, low, high, log, ticks: ticks.map((v, i) => ({ v, label: labels[i] })) };
   }
   const decades = Math.log10(high / low);
-  const digits = decades > 6 ? [1] : decades > 2 ? [1] : decades > 1 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 8];
+  const digits = decades > 2 ? [1] : decades > 1 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 8];
   const every = Math.max(1, Math.ceil(decades / 8));
   const ticks = [];
   for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); ++power)
@@ -793,8 +793,8 @@ function mapFigure(figure, data) {
     drawAxes(root, x, y, area);
     for (const level of list(figure.contours)) {
       const pieces = contour(px, py, z, log(level));
-      for (const [[x1, y1], [x2, y2]] of pieces)
-        for (const layer of ["contour-ground", "contour"]) root.append(svg("line", { x1, y1, x2, y2, class: layer }));
+      for (const layer of ["contour-ground", "contour"])
+        for (const [[x1, y1], [x2, y2]] of pieces) root.append(svg("line", { x1, y1, x2, y2, class: layer }));
       if (!pieces.length) continue;
       const [x1, y1] = pieces[Math.floor(pieces.length / 2)][0];
       plotText(root, x1, y1 - 6, text(level), { class: "contour-label" });
