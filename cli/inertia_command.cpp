@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "bentaxis/compare/page.h"
 #include "bentaxis/compare/report.h"
@@ -47,7 +48,7 @@ struct Study {
   study::ThreeMasses masses;
   study::ErrorMap map;
   std::vector<study::Approach> approach;
-  study::SpinRun spin;
+  std::optional<study::SpinRun> spin;
   std::vector<study::SceneCost> costs;
   double fastest = 0;
 };
@@ -340,10 +341,11 @@ Json sections(const Case& the_case, const Study& s, double models, double scenes
   add("Simbody: from the real piston to the lumped one",
       "Centre of mass, transverse and axial inertia go to those of the two masses with t.",
       {{"columns", {"t", "difference of Rs, N", "difference of Rc, N"}}, {"rows", rows}},
-      {{"spin at the start", fmt::format("{:g} rpm", s.spin.spin_rpm)},
-       {"largest change over a turn integrated",
-        fmt::format("{:.1e} rad/s (accuracy {:g} per step)", s.spin.worst_change,
-                    s.spin.accuracy)}});
+      s.spin ? compare::Lines{{"spin at the start", fmt::format("{:g} rpm", s.spin->spin_rpm)},
+                              {"largest change over a turn integrated",
+                               fmt::format("{:.1e} rad/s (accuracy {:g} per step)",
+                                           s.spin->worst_change, s.spin->accuracy)}}
+             : compare::Lines{{"spin", "none: the piston has no axial inertia"}});
 
   rows = Json::array();
   const double full = cost_of(s, "full", "multipliers");
@@ -555,8 +557,10 @@ Study compute(const Case& the_case, const Options& options) {
       ratios(options.map_factors[0], options.map_factors[1], options.map_size), progress_of("map"));
   s.approach = study::approach_to_lumped(the_case, s.fastest);
   const double own_spin = the_case.pump.piston.real->spin / kRadPerSecondPerRpm;
-  s.spin = study::spin_run(the_case, s.fastest, own_spin != 0 ? own_spin : kSpinForRun,
-                           progress_of("integrated, spinning pistons"));
+  // Without axial inertia a piston has no freedom to spin.
+  if (the_case.pump.piston.real->axial_inertia > 0)
+    s.spin = study::spin_run(the_case, s.fastest, own_spin != 0 ? own_spin : kSpinForRun,
+                             progress_of("integrated, spinning pistons"));
   s.costs = study::scene_costs(the_case);
   return s;
 }

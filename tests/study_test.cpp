@@ -172,7 +172,7 @@ TEST(InertiaStudy, RealPistonTendsToTheLumpedOneAsItsInertiaDoes) {
 
 TEST(InertiaStudy, SpinStaysWhileThePumpIsIntegrated) {
   const auto spin = study::spin_run(shipped_case(), 2350, 600);
-  EXPECT_LT(spin.worst_change, 1e-5);  // rad/s of 63; measured 5e-8
+  EXPECT_LT(spin.worst_change, 1e-5);  // rad/s of 63: 3e-6 measured at accuracy 1e-7
 }
 
 TEST(InertiaStudy, MapGrowsWithSpeedAndMassAndLeavesOutWhatCannotBeAssembled) {
