@@ -354,7 +354,7 @@ Json sections(const Case& the_case, const Study& s, double models, double scenes
                     cost.microseconds_per_angle,
                     is_computed(full) ? Json(full / cost.microseconds_per_angle) : Json()});
   add("What each scene costs",
-      "Real pistons, one core, measured in this run (fastest of three turns). Curves of this "
+      "Real pistons, processor time measured in this run (fastest of three turns). Curves of this "
       "report "
       "are of the one-piston scene, tables of bearings of the full one.",
       {{"columns",

@@ -1,8 +1,8 @@
 #include "bentaxis/study/inertia.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <utility>
 
 #include "bentaxis/analytic/model.h"
@@ -369,7 +369,6 @@ SpinRun spin_run(const Case& the_case, double speed_rpm, double spin_rpm,
 
 std::vector<SceneCost> scene_costs(const Case& the_case) {
   require_real_piston(the_case);
-  using Clock = std::chrono::steady_clock;
   const Assumptions assumptions = with(the_case.multibody, PistonInertia::real);
   const Samples samples = turn_of(the_case);
   std::vector<SceneCost> costs;
@@ -383,7 +382,7 @@ std::vector<SceneCost> scene_costs(const Case& the_case) {
       Instant instant;
       double best = 1e300;
       for (int turn = 0; turn < kTimingTurns; ++turn) {
-        const auto start = Clock::now();
+        const std::clock_t start = std::clock();
         for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
           samples.instant(row, instant);
           if (scene == multibody::Scene::piston)
@@ -391,7 +390,7 @@ std::vector<SceneCost> scene_costs(const Case& the_case) {
           else
             model.evaluate(instant, values);
         }
-        best = std::min(best, std::chrono::duration<double>(Clock::now() - start).count());
+        best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
       }
       const multibody::SceneSize size = multibody::scene_size(the_case.pump, assumptions, scene);
       costs.push_back({multibody::scene_names()[s], multibody::method_names()[m], size.bodies,

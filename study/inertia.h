@@ -121,7 +121,7 @@ struct SpinRun {
 SpinRun spin_run(const Case& the_case, double speed_rpm, double spin_rpm,
                  const Progress& progress = {});
 
-/// Size of a scene and what an angle costs in it, measured over a turn.
+/// Size of a scene and what an angle costs in it: processor time, measured over a turn.
 struct SceneCost {
   std::string scene, method;
   int bodies = 0, mobilities = 0, equations = 0;
