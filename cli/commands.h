@@ -18,5 +18,6 @@ struct Command {
 Command add_run_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);
 Command add_inertia_command(CLI::App& app);
+Command add_pressure_command(CLI::App& app);
 
 }  // namespace bentaxis::cli

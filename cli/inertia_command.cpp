@@ -15,6 +15,7 @@
 #include "bentaxis/study/inertia.h"
 #include "commands.h"
 #include "console.h"
+#include "hydraulic_case.h"
 #include "options.h"
 #include "pump_report.h"
 #include "versions.h"
@@ -526,19 +527,22 @@ void check_range(const std::vector<double>& range, const std::string& option) {
     throw InputError(option + ": must be FROM,TO with 0 < FROM < TO");
 }
 
-Study compute(const Case& the_case, const Options& options) {
+// `the_case` has its chamber pressure; `as_read` may need it computed for each speed.
+Study compute(const Case& as_read, const Case& the_case, const Options& options) {
   Study s;
   for (const double speed : options.speeds) study::at_speed(the_case, speed);  // refuses early
   s.fastest = *std::max_element(options.speeds.begin(), options.speeds.end(),
                                 [](double a, double b) { return std::abs(a) < std::abs(b); });
-  for (const double speed : options.speeds)
+  for (const double speed : options.speeds) {
+    const Case at = with_pressure(study::at_speed(as_read, speed)).the_case;
     for (const bool loaded : {false, true}) {
       const std::string what = rpm(speed) + ", " + load_name(loaded);
-      s.one_piston.push_back(study::run_both_pistons(
-          the_case, speed, loaded, multibody::Scene::piston, progress_of("one piston, " + what)));
-      s.full.push_back(study::run_both_pistons(the_case, speed, loaded, multibody::Scene::full,
+      s.one_piston.push_back(study::run_both_pistons(at, speed, loaded, multibody::Scene::piston,
+                                                     progress_of("one piston, " + what)));
+      s.full.push_back(study::run_both_pistons(at, speed, loaded, multibody::Scene::full,
                                                progress_of("full pump, " + what)));
     }
+  }
   s.causes = study::causes_of_error(the_case, s.fastest, study::By::analytic);
   s.multibody_causes = study::causes_of_error(the_case, s.fastest, study::By::multibody);
   s.lumpings = study::lumpings(the_case, s.fastest);
@@ -567,9 +571,10 @@ Study compute(const Case& the_case, const Options& options) {
 
 int run(const Options& options) {
   check_range(options.map_factors, "--map-factors");
-  const Case the_case = read_case(options.case_file);
+  const Case as_read = read_case(options.case_file);
   OutputFolder folder(options.out);
-  const Study s = compute(the_case, options);
+  const Case the_case = with_pressure(as_read).the_case;
+  const Study s = compute(as_read, the_case, options);
 
   double models = 0;
   double scenes = 0;

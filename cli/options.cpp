@@ -1,6 +1,10 @@
 #include "options.h"
 
+#include <cmath>
+#include <functional>
 #include <map>
+
+#include "bentaxis/pump/csv.h"
 
 namespace bentaxis::cli {
 
@@ -55,6 +59,29 @@ void add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
              "time integrator of an integrated run");
 }
 
-CLI::Range accuracy_range() { return {1e-12, 0.1, "in [1e-12, 0.1]"}; }
+namespace {
+
+CLI::Validator number_that(const std::string& range, const std::function<bool(double)>& allowed) {
+  return {[=](const std::string& text) {
+            double value = 0;
+            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value))
+              return std::string();
+            return text + ": must be " + range;
+          },
+          ""};
+}
+
+}  // namespace
+
+CLI::Validator number_in(double low, double high) {
+  return number_that("in [" + number_text(low) + ", " + number_text(high) + "]",
+                     [=](double value) { return value >= low && value <= high; });
+}
+
+CLI::Validator accuracy_range() { return number_in(1e-12, 0.1); }
+
+CLI::Validator positive_number() {
+  return number_that("a finite number > 0", [](double value) { return value > 0; });
+}
 
 }  // namespace bentaxis::cli

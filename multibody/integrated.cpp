@@ -81,8 +81,7 @@ class Runner {
  public:
   Runner(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
          const PressureTrace& pressure, const IntegrationOptions& options, Drive drive)
-      : case_(the_case),
-        samples_(samples),
+      : samples_(samples),
         pressure_(pressure),
         system_(the_case.pump, assumptions, samples.omega, drive),
         direction_(samples.omega < 0 ? -1 : 1) {
@@ -198,11 +197,10 @@ class Runner {
       for (const auto& piston : system_.bodies().pistons)
         keep(record_.worst_spin, SimTK::dot(piston.getBodyAngularVelocity(state),
                                             SimTK::Vec3(piston.getBodyRotation(state).z())) -
-                                     case_.pump.piston.real->spin);
+                                     system_.pump().piston.real->spin);
     keep(record_.worst_speed, shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
   }
 
-  const Case& case_;
   const Samples& samples_;
   const PressureTrace& pressure_;
   PumpSystem system_;

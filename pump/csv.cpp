@@ -66,6 +66,7 @@ NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empt
         row.push_back(value);
       }
       table.rows.push_back(std::move(row));
+      table.lines.push_back(reader.get_file_line());
     }
   } catch (const io::error::base& error) {
     std::string what = error.what();

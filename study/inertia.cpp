@@ -41,7 +41,7 @@ ResultTable analytic_run(const Case& the_case, PistonInertia inertia) {
 
 // The smallest scene that has Rs and Rc, by the method that needs no inertia.
 ResultTable one_piston_run(const Case& the_case, PistonInertia inertia) {
-  return multibody::run_driven(the_case, with(the_case.multibody, inertia), turn_of(the_case), {},
+  return multibody::run_driven(the_case, with(the_case.analytic, inertia), turn_of(the_case), {},
                                multibody::Scene::piston, multibody::Method::residual);
 }
 
@@ -142,7 +142,7 @@ InertiaRun run_both_pistons(const Case& the_case, double speed_rpm, bool loaded,
   run.speed_rpm = speed_rpm;
   run.loaded = loaded;
   const auto multibody_run = [&](PistonInertia inertia) {
-    const Assumptions assumptions = with(at.multibody, inertia);
+    const Assumptions assumptions = with(at.analytic, inertia);
     try {
       return multibody::run_driven(at, assumptions, samples, progress, scene);
     } catch (const ComputationError&) {
@@ -361,15 +361,14 @@ SpinRun spin_run(const Case& the_case, double speed_rpm, double spin_rpm,
   const Samples samples = sample_case(spinning, pressure, 1, speed_rpm < 0);
   multibody::IntegrationOptions options;
   options.accuracy = kSpinAccuracy;
-  const auto run =
-      multibody::run_integrated(spinning, with(spinning.multibody, PistonInertia::real), samples,
-                                pressure, options, progress);
+  const auto run = multibody::run_integrated(spinning, with(spinning.analytic, PistonInertia::real),
+                                             samples, pressure, options, progress);
   return {spin_rpm, run.record.worst_spin, options.accuracy};
 }
 
 std::vector<SceneCost> scene_costs(const Case& the_case) {
   require_real_piston(the_case);
-  const Assumptions assumptions = with(the_case.multibody, PistonInertia::real);
+  const Assumptions assumptions = with(the_case.analytic, PistonInertia::real);
   const Samples samples = turn_of(the_case);
   std::vector<SceneCost> costs;
   for (std::size_t m = 0; m < multibody::method_names().size(); ++m) {

@@ -20,7 +20,8 @@ using PartProgress = std::function<Progress(const std::string& part)>;
 Case without_loads(Case the_case);
 Case at_speed(Case the_case, double speed_rpm);
 
-/// One run of both kinds of piston by both models.
+/// One run of both kinds of piston by both models, which assume the same otherwise: what the case
+/// gives the analytic model.
 struct InertiaRun {
   double speed_rpm = 0;
   bool loaded = false;
