@@ -94,7 +94,7 @@ double worst_of_group(const compare::Comparison& comparison, const std::string& 
 Json integrate_all(Study& study, const Options& options,
                    const compare::Options& comparison_options) {
   Json rows = Json::array();
-  Json facts = Json::array();
+  compare::Lines facts;  // a list of pairs would become a JSON object
   const auto torque = analytic_torque(study, study.multibody_case.multibody);
   for (const double accuracy : options.accuracies) {
     multibody::IntegrationRecord record;

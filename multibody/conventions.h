@@ -41,6 +41,10 @@ class InlineJoint {
 
   const SimTK::Constraint::PointOnLine& constraint() const { return constraint_; }
 
+  /// The two axes, in the base's frame: equation i is the follower point's distance along axis i.
+  const SimTK::Vec3& axis_x() const { return x_; }
+  const SimTK::Vec3& axis_y() const { return y_; }
+
   /// First of its two rows among the position errors and multipliers of a state.
   /// @param state  realized to Instance
   int first_row(const SimTK::State& state) const;

@@ -193,6 +193,11 @@ class Runner {
     const double angle = turn_angle(shaft.getBodyRotation(state), SimTK::Rotation());
     keep(record_.worst_shaft_angle,
          std::remainder(angle - radians(std::fmod(samples_.theta_deg[row], 360.0)), 2 * kPi));
+    if (system_.pistons_free_to_spin())
+      for (const auto& piston : system_.bodies().pistons)
+        keep(record_.worst_spin, SimTK::dot(piston.getBodyAngularVelocity(state),
+                                            SimTK::Vec3(piston.getBodyRotation(state).z())) -
+                                     system_.pump().piston.real->spin);
     keep(record_.worst_speed, shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
   }
 

@@ -36,6 +36,7 @@ struct IntegrationRecord {
   double worst_gear_phase = 0;       ///< rad, block minus shaft
   double worst_shaft_angle = 0;      ///< rad, shaft minus omega t
   double worst_speed = 0;            ///< relative to omega
+  double worst_spin = 0;             ///< rad/s, change of a real piston's spin about its axis
   double work_of_loads = 0;          ///< J, pressure, friction, weight, viscous
   double work_of_drives = 0;         ///< J, drive (and imposed block motion)
   double kinetic_energy_gained = 0;  ///< J

@@ -7,6 +7,7 @@ namespace bentaxis::multibody {
 
 using SimTK::dot;
 using SimTK::Mat33;
+using SimTK::Rotation;
 using SimTK::Stage;
 using SimTK::State;
 using SimTK::Vec3;
@@ -27,26 +28,27 @@ constexpr int kMostSteps = 30;
 
 PistonSolver::PistonSolver(const SimTK::MultibodySystem& system,
                            const SimTK::SimbodyMatterSubsystem& matter,
-                           const SimTK::MobilizedBody& shaft,
+                           const SimTK::MobilizedBody& shaft, const SimTK::MobilizedBody& block,
                            const std::vector<SimTK::MobilizedBody>& pistons,
                            const std::vector<InlineJoint>& bores, double piston_length, double spin,
                            const State& state)
     : system_(system),
       matter_(matter),
       shaft_(shaft),
+      block_(block),
+      length_(piston_length),
       round_off_(kRoundOff * piston_length),
       spin_(spin) {
   for (std::size_t k = 0; k < pistons.size(); ++k) {
     Piston piston;
     piston.body = pistons[k];
+    piston.bore = bores[k];
     piston.row = bores[k].first_row(state);
     piston.u = piston.body.getFirstUIndex(state);
     piston.nu = piston.body.getNumU(state);
     piston.q = piston.body.getFirstQIndex(state);
     pistons_.push_back(piston);
   }
-  u_like_.resize(state.getNU());
-  q_like_.resize(state.getNQ());
 }
 
 Vec3 PistonSolver::axis_in_shaft(const State& state, const Piston& piston) const {
@@ -56,23 +58,19 @@ Vec3 PistonSolver::axis_in_shaft(const State& state, const Piston& piston) const
 // Row i, column j: rate of equation i per unit of speed of mobility j. The third row is the speed
 // about the piston's own axis where that is free, and an empty equation where it is not.
 void PistonSolver::find_matrices(const State& state) {
-  if (no_bias_.size() == 0) matter_.calcBiasForMultiplyByPq(state, no_bias_);
-  const int most = std::max_element(pistons_.begin(), pistons_.end(), [](auto& a, auto& b) {
-                     return a.nu < b.nu;
-                   })->nu;
-  for (Piston& piston : pistons_) piston.matrix = Mat33(0);
-  for (int j = 0; j < most; ++j) {
-    u_like_ = 0;
-    for (const Piston& piston : pistons_) u_like_[piston.u + j] = 1;
-    matter_.multiplyByN(state, false, u_like_, q_like_);
-    matter_.multiplyByPq(state, q_like_, no_bias_, rates_);
-    for (Piston& piston : pistons_) {
-      piston.matrix(0, j) = rates_[piston.row];
-      piston.matrix(1, j) = rates_[piston.row + 1];
-    }
-  }
+  const Rotation& block = block_.getBodyRotation(state);
   turned_ = 0;
   for (Piston& piston : pistons_) {
+    const Vec3 ring = length_ * Vec3(piston.body.getBodyRotation(state).z());
+    const Vec3 x = block * piston.bore.axis_x();
+    const Vec3 y = block * piston.bore.axis_y();
+    piston.matrix = Mat33(0);
+    for (int j = 0; j < piston.nu; ++j) {
+      const SimTK::SpatialVec partial = piston.body.getHCol(state, SimTK::MobilizerUIndex(j));
+      const Vec3 at_ring = partial[1] + partial[0] % ring;
+      piston.matrix(0, j) = dot(x, at_ring);
+      piston.matrix(1, j) = dot(y, at_ring);
+    }
     if (piston.nu == 3)
       piston.matrix[2] = ~axis_in_shaft(state, piston);
     else
@@ -95,44 +93,58 @@ double PistonSolver::solve_positions(State& state) {
     if (worst <= round_off_ || stalled || !std::isfinite(worst)) break;
     before = worst;
     if (turned_ > kStale) find_matrices(state);
-    u_like_ = 0;
     double largest = 0;
+    changes_.clear();
     for (const Piston& piston : pistons_) {
       const Vec3 change = piston.inverse * Vec3(-error[piston.row], -error[piston.row + 1], 0);
-      for (int j = 0; j < piston.nu; ++j) u_like_[piston.u + j] = change[j];
       largest = std::max(largest, change.norm());
+      // The turn of the piston in its joint that these changes of its speeds stand for.
+      Vec3 turn(0);
+      for (int j = 0; j < piston.nu; ++j)
+        turn += change[j] * piston.body.getHCol(state, SimTK::MobilizerUIndex(j))[0];
+      changes_.push_back(~shaft_.getBodyRotation(state) * turn);
     }
     turned_ += largest;
-    matter_.multiplyByN(state, false, u_like_, q_like_);
     Vector& q = state.updQ();
-    for (const Piston& piston : pistons_) {
-      SimTK::Vec4 quaternion;
-      for (int i = 0; i < 4; ++i) quaternion[i] = q[piston.q + i] + q_like_[piston.q + i];
+    for (std::size_t k = 0; k < pistons_.size(); ++k) {
+      // q' = (0, w) q / 2 with w in the joint's fixed frame.
+      double* at = &q[pistons_[k].q];
+      const Vec3 w = changes_[k] / 2;
+      const Vec3 v(at[1], at[2], at[3]);
+      const Vec3 vector = v + at[0] * w + w % v;
+      SimTK::Vec4 quaternion(at[0] - dot(w, v), vector[0], vector[1], vector[2]);
       quaternion /= quaternion.norm();
-      for (int i = 0; i < 4; ++i) q[piston.q + i] = quaternion[i];
+      for (int i = 0; i < 4; ++i) at[i] = quaternion[i];
     }
   }
   return worst;
 }
 
-void PistonSolver::solve_speeds(State& state) {
+double PistonSolver::solve_speeds(State& state) {
   if (turned_ > kSameMatrix) find_matrices(state);
-  u_like_ = state.getU();
-  for (const Piston& piston : pistons_)
-    for (int j = 0; j < piston.nu; ++j) u_like_[piston.u + j] = 0;
-  const int first = shaft_.getFirstUIndex(state);
-  const Vec3 shaft_rate(u_like_[first], u_like_[first + 1], u_like_[first + 2]);
-  matter_.multiplyByN(state, false, u_like_, q_like_);
-  matter_.multiplyByPq(state, q_like_, no_bias_, rates_);
+  const Rotation& block = block_.getBodyRotation(state);
+  const Vec3& block_origin = block_.getBodyOriginLocation(state);
   Vector& u = state.updU();
+  const int first = shaft_.getFirstUIndex(state);
+  const Vec3 shaft_rate(u[first], u[first + 1], u[first + 2]);
+  const Vec3 block_rate = u[block_.getFirstUIndex(state)] * Vec3(block.z());
   for (const Piston& piston : pistons_) {
+    // B as if it stood still in the shaft, against the material of the block that it passes.
+    const SimTK::Transform& place = piston.body.getBodyTransform(state);
+    const Vec3 ring = place.p() + length_ * Vec3(place.z());
+    const Vec3 passing = shaft_rate % ring - block_rate % (ring - block_origin);
     // Absolute speed about the axis: the shaft's share and the joint's make up the spin.
-    const double own =
-        piston.nu == 3 ? spin_ - dot(Vec3(piston.body.getBodyRotation(state).z()), shaft_rate) : 0;
-    const Vec3 speed = piston.inverse * Vec3(-rates_[piston.row], -rates_[piston.row + 1], own);
+    const double own = piston.nu == 3 ? spin_ - dot(Vec3(place.z()), shaft_rate) : 0;
+    const Vec3 speed = piston.inverse * Vec3(-dot(block * piston.bore.axis_x(), passing),
+                                             -dot(block * piston.bore.axis_y(), passing), own);
     for (int j = 0; j < piston.nu; ++j) u[piston.u + j] = speed[j];
   }
   system_.realize(state, Stage::Velocity);
+  const Vector& error = state.getUErr();
+  double worst = 0;
+  for (const Piston& piston : pistons_)
+    worst = std::max({worst, std::abs(error[piston.row]), std::abs(error[piston.row + 1])});
+  return worst;
 }
 
 void PistonSolver::solve_accelerations(const State& state, Vector& udot) {

@@ -1,9 +1,9 @@
 // Positions, speeds and accelerations of the pistons from Simbody's constraint equations.
 //
 // With shaft and block given, each piston has its own two equations (B on its bore axis): Simbody's
-// general projection, which solves all of them together, is not needed. The equations and their
-// errors are Simbody's; their matrix is read off it one mobility of all pistons at a time, since
-// pistons do not share equations.
+// general projection, which solves all of them together, is not needed. Errors of position, speed
+// and acceleration are Simbody's; the matrix of a piston's equations is put together from its
+// joint's partial velocities, and a wrong one would show in those errors.
 #pragma once
 
 #include <SimTKsimbody.h>
@@ -21,7 +21,8 @@ class PistonSolver {
   /// @param spin   absolute speed of each piston about its own axis, rad/s, used where the joint
   ///               leaves it free (three mobilities)
   PistonSolver(const SimTK::MultibodySystem& system, const SimTK::SimbodyMatterSubsystem& matter,
-               const SimTK::MobilizedBody& shaft, const std::vector<SimTK::MobilizedBody>& pistons,
+               const SimTK::MobilizedBody& shaft, const SimTK::MobilizedBody& block,
+               const std::vector<SimTK::MobilizedBody>& pistons,
                const std::vector<InlineJoint>& bores, double piston_length, double spin,
                const SimTK::State& state);
 
@@ -32,7 +33,8 @@ class PistonSolver {
 
   /// Speeds that keep the equations with shaft and block as they turn in the state. Leaves the
   /// state realized to Velocity.
-  void solve_speeds(SimTK::State& state);
+  /// @return largest error of the rate of an equation that is left, m/s
+  double solve_speeds(SimTK::State& state);
 
   /// Accelerations that keep the equations (and the spin), where those of all other mobilities are
   /// given in `udot`. State realized to Velocity by solve_speeds().
@@ -48,6 +50,7 @@ class PistonSolver {
  private:
   struct Piston {
     SimTK::MobilizedBody body;
+    InlineJoint bore;
     int row = 0;                   // first of its equations
     int u = 0, nu = 0;             // mobilities
     int q = 0;                     // its quaternion
@@ -59,11 +62,12 @@ class PistonSolver {
 
   const SimTK::MultibodySystem& system_;
   const SimTK::SimbodyMatterSubsystem& matter_;
-  SimTK::MobilizedBody shaft_;
+  SimTK::MobilizedBody shaft_, block_;
   std::vector<Piston> pistons_;
-  double round_off_, spin_;
+  double length_, round_off_, spin_;
   double turned_ = SimTK::Infinity;  // largest turn of a piston since the matrices were found, rad
-  SimTK::Vector no_bias_, u_like_, q_like_, rates_;
+  SimTK::Vector rates_;
+  std::vector<SimTK::Vec3> changes_;
 };
 
 }  // namespace bentaxis::multibody

@@ -195,7 +195,7 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   system_.realize(assembly_, SimTK::Stage::Instance);
   system_.realize(dynamics_, SimTK::Stage::Instance);
   solver_ = std::make_unique<PistonSolver>(
-      system_, matter_, shaft_, bodies_.pistons, bores_, pump_.geometry.piston_length,
+      system_, matter_, shaft_, block_, bodies_.pistons, bores_, pump_.geometry.piston_length,
       pistons_free_to_spin_ ? pump_.piston.real->spin : 0, dynamics_);
 }
 
@@ -458,7 +458,12 @@ void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t
   u = 0;
   u[shaft_.getFirstUIndex(dynamics_) + 2] = omega;
   u[block_.getFirstUIndex(dynamics_)] = omega;
-  solver_->solve_speeds(dynamics_);
+  const double rate_error = solver_->solve_speeds(dynamics_);
+  if (!(rate_error <= kAssemblyTolerance * std::max(1.0, std::abs(omega))))
+    throw ComputationError(
+        "multibody model: no speeds found that keep the pistons in their bores at "
+        "theta = " +
+        std::to_string(theta / kRadPerDegree) + " deg");
 }
 
 void PumpSystem::remember_placement(const std::vector<Vec3>& angular_acceleration) {

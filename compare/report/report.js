@@ -674,19 +674,177 @@ function roundTicks(low, high, most) {
   return ticks;
 }
 
+// ---- Figures: any quantity over any other, and maps over two -----------------------------------------
+
+// One axis of a plot: {label, unit, log, from, to}. Place of a value between two pixels, and ticks.
+function plotAxis(spec, values, first, last) {
+  const log = Boolean(spec.log);
+  const usable = values.filter(v => typeof v === "number" && (!log || v > 0));
+  let low = spec.from ?? Math.min(...usable), high = spec.to ?? Math.max(...usable);
+  if (!usable.length) [low, high] = log ? [0.1, 1] : [0, 1];
+  if (low === high) [low, high] = log ? [low / 2, high * 2] : [low - 1, high + 1];
+  const scale = log ? Math.log10 : v => v;
+  const place = v => first + (last - first) * (scale(v) - scale(low)) / (scale(high) - scale(low));
+  const name = spec.label + (spec.unit ? ` (${spec.unit})` : "");
+  if (!log) {
+    const ticks = roundTicks(low, high, 8), labels = tickLabels(ticks);
+    return { place, name, low, high, log, ticks: ticks.map((v, i) => ({ v, label: labels[i] })) };
+  }
+  const decades = Math.log10(high / low);
+  const digits = decades > 2 ? [1] : decades > 1 ? [1, 2, 5] : [1, 1.5, 2, 3, 4, 5, 6, 8];
+  const every = Math.max(1, Math.ceil(decades / 8));
+  const ticks = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); ++power)
+    for (const digit of power % every === 0 ? digits : []) {
+      const v = Number((digit * 10 ** power).toPrecision(6));
+      if (v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9)) ticks.push({ v, label: number(v, 3) });
+    }
+  return { place, name, low, high, log, ticks };
+}
+
+const plotText = (root, x, y, content, more) =>
+  root.append(svg("text", { x, y, "text-anchor": "middle", ...more }, content));
+
+function drawAxes(root, x, y, [left, right, top, bottom]) {
+  for (const t of x.ticks) {
+    root.append(svg("line", { x1: x.place(t.v), x2: x.place(t.v), y1: top, y2: bottom, class: "grid" }));
+    plotText(root, x.place(t.v), bottom + 18, t.label);
+  }
+  for (const t of y.ticks) {
+    root.append(svg("line", { x1: left, x2: right, y1: y.place(t.v), y2: y.place(t.v), class: "grid" }));
+    plotText(root, left - 8, y.place(t.v) + 4, t.label, { "text-anchor": "end" });
+  }
+  plotText(root, (left + right) / 2, bottom + 38, x.name, { class: "axis" });
+  const middle = (top + bottom) / 2;
+  plotText(root, 14, middle, y.name, { class: "axis", transform: `rotate(-90 14 ${middle})` });
+}
+
+// A box whose drawing follows its width.
+function drawnBox(figure, data, draw) {
+  const box = el("div.bars");
+  const redraw = () => box.replaceChildren(draw(box.clientWidth || 700));
+  data.mounts.push(() => { redraw(); new ResizeObserver(redraw).observe(box); });
+  data.redraws.push(redraw);
+  return box;
+}
+
+// {x: axis, y: axis, series: [{label, x: [..], y: [..]}]}
+function xyFigure(figure, data) {
+  const all = list(figure.series).map((s, i) => ({ ...s, colour: COLOURS[i % COLOURS.length],
+    dash: DASHES[Math.floor(i / COLOURS.length) % DASHES.length] }));
+  const draw = width => {
+    const area = [80, width - 24, 12, 316];
+    const x = plotAxis(figure.x, all.flatMap(s => s.x), area[0], area[1]);
+    const y = plotAxis(figure.y, all.flatMap(s => s.y), area[3], area[2]);
+    const root = svg("svg", { width, height: 366, role: "img", "aria-label": figure.title + "; the values are in the tables" });
+    drawAxes(root, x, y, area);
+    for (const s of all) {
+      const points = s.x.map((v, i) => [v, s.y[i]]).filter(([u, v]) => typeof u === "number" && typeof v === "number"
+        && (!x.log || u > 0) && (!y.log || v > 0)).map(([u, v]) => [x.place(u), y.place(v)]);
+      root.append(svg("polyline", { points: points.map(p => p.join(",")).join(" "), fill: "none", stroke: s.colour,
+        "stroke-width": 1.9, "stroke-dasharray": s.dash ? s.dash.join(" ") : "none" }));
+      if (points.length <= 60) points.forEach(([u, v], i) => {
+        const dot = svg("circle", { cx: u, cy: v, r: 3, fill: s.colour });
+        dot.append(svg("title", {}, `${s.label}: ${number(s.y[i])} at ${number(s.x[i])}`));
+        root.append(dot);
+      });
+    }
+    return root;
+  };
+  const key = el("p.key", {}, all.map(s => el("span", {}, swatch(s.colour, 3, s.dash), s.label)));
+  return [key, drawnBox(figure, data, draw), figure.note ? el("p.note", {}, figure.note) : null];
+}
+
+// Pieces of the line z = level over a grid, by marching squares, in the plot's own coordinates.
+// Where a corner has no value there is no line.
+function contour(xs, ys, z, level) {
+  const pieces = [];
+  for (let i = 0; i + 1 < ys.length; ++i) for (let j = 0; j + 1 < xs.length; ++j) {
+    const corners = [[j, i], [j + 1, i], [j + 1, i + 1], [j, i + 1]];
+    if (corners.some(([a, b]) => typeof z[b][a] !== "number")) continue;
+    const cuts = [];
+    corners.forEach(([a, b], k) => {
+      const [c, d] = corners[(k + 1) % 4], from = z[b][a], to = z[d][c];
+      if ((from < level) === (to < level)) return;
+      const t = (level - from) / (to - from);
+      cuts.push([xs[a] + t * (xs[c] - xs[a]), ys[b] + t * (ys[d] - ys[b])]);
+    });
+    for (let k = 0; k + 1 < cuts.length; k += 2) pieces.push([cuts[k], cuts[k + 1]]);
+  }
+  return pieces;
+}
+
+// Light to dark by t in [0, 1]: the order of the values survives a print without colour.
+const SHADES = [[247, 250, 252], [190, 214, 235], [107, 164, 207], [33, 103, 166], [8, 40, 88]];
+function shade(t) {
+  const at = Math.min(Math.max(t, 0), 1) * (SHADES.length - 1), k = Math.min(Math.floor(at), SHADES.length - 2);
+  return `rgb(${SHADES[k].map((v, i) => Math.round(v + (at - k) * (SHADES[k + 1][i] - v))).join(",")})`;
+}
+
+// {x: axis with values, y: axis with values, z: {label, unit}, values: rows by y, contours: levels,
+//  points: [{label, x, y}]}. Shades and contours go by the logarithm of z.
+function mapFigure(figure, data) {
+  const xs = figure.x.values, ys = figure.y.values, log = v => (v > 0 ? Math.log10(v) : null);
+  const z = figure.values.map(row => row.map(v => (typeof v === "number" ? log(v) : null)));
+  const known = z.flat().filter(v => v != null);
+  if (!known.length) return [el("p.empty", {}, "There is nothing to draw: no value was computed.")];
+  const low = known.reduce((a, b) => Math.min(a, b)), high = known.reduce((a, b) => Math.max(a, b));
+  const text = v => unit(number(v, 3), figure.z.unit);
+  const draw = width => {
+    const area = [80, width - 24, 12, 372], [left, right, top, bottom] = area;
+    const root = svg("svg", { width, height: 422, role: "img", "aria-label": figure.title + ", map with contours" });
+    const x = plotAxis(figure.x, xs, left, right), y = plotAxis(figure.y, ys, bottom, top);
+    const px = xs.map(x.place), py = ys.map(y.place);
+    const edge = (p, k, a, b) => (k < 0 ? a : k + 1 >= p.length ? b : (p[k] + p[k + 1]) / 2);
+    z.forEach((row, i) => row.forEach((v, j) => {
+      const [x1, x2] = [edge(px, j - 1, left, right), edge(px, j, left, right)];
+      const [y1, y2] = [edge(py, i, bottom, top), edge(py, i - 1, bottom, top)];
+      const cell = svg("rect", { x: x1, y: y1, width: x2 - x1 + 0.6, height: y2 - y1 + 0.6, class: "cell",
+        fill: v == null ? "#ffffff" : shade((v - low) / (high - low || 1)) });
+      cell.append(svg("title", {}, `${figure.x.label} ${unit(number(xs[j], 4), figure.x.unit)}, `
+        + `${figure.y.label} ${unit(number(ys[i], 3), figure.y.unit)}: ${v == null ? "not computed" : text(figure.values[i][j])}`));
+      root.append(cell);
+    }));
+    drawAxes(root, x, y, area);
+    for (const level of list(figure.contours)) {
+      const pieces = contour(px, py, z, log(level));
+      for (const layer of ["contour-ground", "contour"])
+        for (const [[x1, y1], [x2, y2]] of pieces) root.append(svg("line", { x1, y1, x2, y2, class: layer }));
+      if (!pieces.length) continue;
+      const [x1, y1] = pieces[Math.floor(pieces.length / 2)][0];
+      plotText(root, x1, y1 - 6, text(level), { class: "contour-label" });
+    }
+    for (const p of list(figure.points)) {
+      if (p.x < xs[0] || p.x > xs[xs.length - 1] || p.y < ys[0] || p.y > ys[ys.length - 1]) continue;
+      root.append(svg("circle", { cx: x.place(p.x), cy: y.place(p.y), r: 4.5, class: "mark" }));
+      plotText(root, x.place(p.x), y.place(p.y) - 9, p.label, { class: "contour-label" });
+    }
+    return root;
+  };
+  const steps = [0, 0.25, 0.5, 0.75, 1];
+  const key = el("p.key", {}, figure.z.label + ": ", steps.map(t => {
+    const box = svg("svg", { width: 22, height: 12, "aria-hidden": "true", class: "swatch" });
+    box.append(svg("rect", { width: 22, height: 12, fill: shade(t) }));
+    return el("span", {}, box, text(10 ** (low + t * (high - low))));
+  }));
+  return [key, drawnBox(figure, data, draw), figure.note ? el("p.note", {}, figure.note) : null];
+}
+
+const DRAWN = { piston_bars: barsFigure, xy: xyFigure, map: mapFigure };
+
 // A figure may bring curves of its own, at angles of its own.
 const dataOf = (figure, report, data) => !figure.curves ? data
   : { ...prepare(report, figure.curves), mounts: data.mounts, redraws: data.redraws };
 
 function figures(report, data) {
-  const figures = list(report.figures).filter(f => f.curves || data.order.length);
+  const figures = list(report.figures).filter(f => f.curves || f.kind === "xy" || f.kind === "map" || data.order.length);
   if (!figures.length) return null;
   return el("div", {},
     el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; double-click to see "
       + "all again. Point at a curve to read the values in the table above it."),
     figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
       f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
-      (f.kind === "piston_bars" ? barsFigure : curvesFigure)(f, dataOf(f, report, data)))));
+      (DRAWN[f.kind] || curvesFigure)(f, dataOf(f, report, data)))));
 }
 
 // ---- The page --------------------------------------------------------------------------------------

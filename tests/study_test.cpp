@@ -1,0 +1,208 @@
+// The inertia study: what lumping does, against the paper's appendix and against scaling laws.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/study/inertia.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+using multibody::Scene;
+using study::InertiaRun;
+
+Case shipped_case() {
+  Case the_case =
+      read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_rated.toml");
+  the_case.pump.piston.real = PistonMass::Real{0.019, 24e-6, 5e-6, 0};
+  the_case.operation.samples_per_revolution = 120;
+  return the_case;
+}
+
+// Smallest and largest magnitude of a vector of piston 1 over the turn, and its mean.
+struct Magnitude {
+  double low = 1e300, high = 0, mean = 0;
+};
+Magnitude magnitude(const ResultTable& table, const std::string& symbol) {
+  Magnitude result;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    double square = 0;
+    for (const char* axis : {"x2", "y2", "z2"}) {
+      const std::size_t column = table.find(symbol + "_1_" + axis + "_N");
+      if (column < table.columns()) square += std::pow(table.at(row, column), 2);
+    }
+    const double value = std::sqrt(square);
+    result.low = std::min(result.low, value);
+    result.high = std::max(result.high, value);
+    result.mean += value / static_cast<double>(table.rows());
+  }
+  return result;
+}
+
+// Appendix, Fig. 36 and 37: axes 10..70 N for Rc and 20..110 N for Rs; two masses above the real
+// piston for Rc and below it for Rs.
+TEST(InertiaStudy, CurvesLieInThePapersWindowsInThePapersOrder) {
+  for (const double speed : {1500.0, 2350.0}) {
+    const InertiaRun run = study::run_both_pistons(shipped_case(), speed, false, Scene::piston);
+    for (const auto& [lumped, real] : {std::pair{&run.analytic_lumped, &run.analytic_real},
+                                       std::pair{&run.multibody_lumped, &run.multibody_real}}) {
+      for (const ResultTable* table : {lumped, real}) {
+        EXPECT_GT(magnitude(*table, "Rc").low, 10);
+        EXPECT_LT(magnitude(*table, "Rc").high, 70);
+        EXPECT_GT(magnitude(*table, "Rs").low, 20);
+        EXPECT_LT(magnitude(*table, "Rs").high, 110);
+      }
+      EXPECT_GT(magnitude(*lumped, "Rc").mean, magnitude(*real, "Rc").mean);
+      EXPECT_LT(magnitude(*lumped, "Rs").mean, magnitude(*real, "Rs").mean);
+    }
+  }
+}
+
+// Inertia alone: omega^2, to round-off of the largest force (and the spin scaled likewise).
+TEST(InertiaStudy, InertiaReactionsScaleWithTheSquareOfTheSpeed) {
+  Case slow_case = shipped_case();
+  slow_case.pump.piston.real->spin = 30;
+  Case fast_case = slow_case;
+  fast_case.pump.piston.real->spin *= 2350.0 / 1500.0;
+  const InertiaRun slow = study::run_both_pistons(slow_case, 1500, false, Scene::full);
+  const InertiaRun fast = study::run_both_pistons(fast_case, 2350, false, Scene::full);
+  const double ratio = std::pow(2350.0 / 1500.0, 2);
+  EXPECT_NEAR(ratio, 2.4544, 5e-5);
+  const auto check = [&](const ResultTable& a, const ResultTable& b, double tolerance) {
+    const double peak = b.peak("Rs");
+    for (std::size_t c = 0; c < a.columns(); ++c) {
+      if (a.channels[c].kind != ChannelKind::reaction) continue;
+      for (std::size_t row = 0; row < a.rows(); ++row)
+        ASSERT_NEAR(ratio * a.at(row, c), b.at(row, c), scaled(tolerance) * peak)
+            << a.channels[c].name;
+    }
+  };
+  check(slow.analytic_lumped, fast.analytic_lumped, 2e-14);
+  check(slow.analytic_real, fast.analytic_real, 2e-14);
+  check(slow.multibody_lumped, fast.multibody_lumped, 1e-12);
+  check(slow.multibody_real, fast.multibody_real, 1e-12);
+}
+
+TEST(InertiaStudy, OnePistonSceneHasTheNumbersOfTheFullPump) {
+  for (const bool loaded : {false, true}) {
+    const InertiaRun one = study::run_both_pistons(shipped_case(), 2350, loaded, Scene::piston);
+    const InertiaRun full = study::run_both_pistons(shipped_case(), 2350, loaded, Scene::full);
+    for (const auto table : {&InertiaRun::multibody_lumped, &InertiaRun::multibody_real})
+      EXPECT_LE(study::largest_over_peak(full.*table, one.*table, 0, 1), scaled(1e-11));
+  }
+}
+
+// Load does not change what lumping changes, but for the weight.
+TEST(InertiaStudy, ErrorDoesNotDependOnPressureAndFriction) {
+  Case the_case = shipped_case();
+  the_case.pump.gravity = 0;
+  const auto errors = [&](bool loaded) {
+    const InertiaRun run = study::run_both_pistons(the_case, 2350, loaded, Scene::full);
+    return study::lumping_errors(run, run);
+  };
+  const auto bare = errors(false);
+  const auto loaded = errors(true);
+  ASSERT_EQ(bare.size(), loaded.size());
+  const double scale = 45000;  // N, largest loaded reaction: its round-off is in the difference
+  for (std::size_t i = 0; i < bare.size(); ++i) {
+    EXPECT_NEAR(bare[i].analytic, loaded[i].analytic, scaled(1e-14) * scale) << bare[i].group;
+    EXPECT_NEAR(bare[i].analytic, bare[i].multibody, scaled(1e-12) * scale) << bare[i].group;
+  }
+}
+
+TEST(InertiaStudy, CausesOfErrorAddUp) {
+  Case the_case = shipped_case();
+  the_case.pump.piston.real->spin = 100;
+  for (const auto by : {study::By::analytic, study::By::multibody}) {
+    const auto causes = study::causes_of_error(the_case, 2350, by);
+    EXPECT_LE(causes.rest, scaled(1e-11));  // N of 110
+    EXPECT_GT(causes.centre.peak("Rs"), 1);
+    EXPECT_GT(causes.transverse.peak("Rs"), 0.1);
+    EXPECT_GT(causes.spin.peak("Rs"), 0.01);
+  }
+}
+
+TEST(InertiaStudy, KeepingTheCentreIsNearlyTheBestLumpingAndThreeMassesAreExact) {
+  const auto list = study::lumpings(shipped_case(), 2350);
+  ASSERT_EQ(list.size(), 5U);
+  EXPECT_NEAR(list[1].joint_mass_fraction, 1 - 19.0 / 46.0, 1e-15);
+  EXPECT_LT(list[1].error_rs, list[0].error_rs / 5);
+  EXPECT_LE(list[2].error_rs, list[1].error_rs);
+  EXPECT_LE(list[3].error_rc, list[1].error_rc);
+  EXPECT_NEAR(list[2].joint_mass_fraction, list[1].joint_mass_fraction, 1e-3);
+  EXPECT_LE(list[4].error_rs, scaled(1e-12));
+  EXPECT_LE(list[4].error_rc, scaled(1e-12));
+  // What keeping the centre leaves is the transverse inertia alone: It - m s_G (b1 - s_G).
+  Case the_case = shipped_case();
+  the_case.pump.piston.joint_mass_fraction = list[1].joint_mass_fraction;
+  const auto causes = study::causes_of_error(the_case, 2350, study::By::analytic);
+  EXPECT_LE(causes.centre.peak("Rs"), scaled(1e-11));
+  EXPECT_NEAR(causes.transverse.peak("Rs"), list[1].error_rs, scaled(1e-10));
+}
+
+TEST(InertiaStudy, ThreeMassesHaveTheMomentsOfTheRealPiston) {
+  Case the_case = shipped_case();
+  const auto masses = study::three_masses(the_case.pump);
+  ASSERT_TRUE(masses.exists);
+  EXPECT_TRUE(masses.positive);
+  const double b1 = the_case.pump.geometry.piston_length;
+  const double centre = 0.019;
+  EXPECT_NEAR(masses.at_joint + masses.at_centre + masses.at_ring, 0.09, 1e-17);
+  EXPECT_NEAR(masses.at_centre * centre + masses.at_ring * b1, 0.09 * centre, 1e-17);
+  EXPECT_NEAR(masses.at_joint * centre * centre + masses.at_ring * std::pow(b1 - centre, 2), 24e-6,
+              1e-19);
+  // A ring-shaped piston has more transverse inertia than two masses at the ends could give.
+  the_case.pump.piston.real->transverse_inertia = 60e-6;
+  EXPECT_FALSE(study::three_masses(the_case.pump).positive);
+  the_case.pump.piston.real->centre_of_mass = 0;
+  EXPECT_FALSE(study::three_masses(the_case.pump).exists);
+}
+
+TEST(InertiaStudy, RealPistonTendsToTheLumpedOneAsItsInertiaDoes) {
+  const auto steps = study::approach_to_lumped(shipped_case(), 2350);
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    // First order in t once the quadratic part (m s_G^2) is small.
+    EXPECT_NEAR(steps[i].error_rs / steps[i].t, steps.back().error_rs / steps.back().t,
+                0.2 * steps[i].t * steps[0].error_rs + 1e-5 * steps[0].error_rs);
+  }
+  EXPECT_LT(steps.back().error_rs, 2e-6 * steps[0].error_rs);
+}
+
+TEST(InertiaStudy, SpinStaysWhileThePumpIsIntegrated) {
+  const auto spin = study::spin_run(shipped_case(), 2350, 600);
+  EXPECT_LT(spin.worst_change, 1e-5);  // rad/s of 63: 3e-6 measured at accuracy 1e-7
+}
+
+TEST(InertiaStudy, MapGrowsWithSpeedAndMassAndLeavesOutWhatCannotBeAssembled) {
+  const auto map = study::error_map(shipped_case(), study::MapAxis::mass, {1000, 2000}, {1, 2});
+  EXPECT_NEAR(map.rc[0][1] / map.rc[0][0], 4, 0.5);  // the loaded reaction grows a little too
+  EXPECT_NEAR(map.rc[1][0] / map.rc[0][0], 2, 0.2);
+  const auto lengths = study::error_map(shipped_case(), study::MapAxis::length, {1000}, {0.05, 1});
+  EXPECT_FALSE(is_computed(lengths.rs[0][0]));
+  EXPECT_TRUE(is_computed(lengths.rs[1][0]));
+}
+
+TEST(InertiaStudy, RefusesStandstillAndPistonsWithoutData) {
+  Case the_case = shipped_case();
+  EXPECT_THROW(study::run_both_pistons(the_case, 0, false, Scene::piston), InputError);
+  the_case.pump.piston.real.reset();
+  EXPECT_THROW(study::run_both_pistons(the_case, 1500, false, Scene::piston), InputError);
+}
+
+// A massless piston: nothing is left of the inertia forces, by any model.
+TEST(InertiaStudy, MasslessPistonHasNoReactionsWithoutLoad) {
+  Case the_case = shipped_case();
+  the_case.pump.piston.mass = 0;
+  the_case.pump.piston.real = PistonMass::Real{0.019, 0, 0, 0};
+  const InertiaRun run = study::run_both_pistons(the_case, 2350, false, Scene::piston);
+  for (const ResultTable* table :
+       {&run.analytic_lumped, &run.analytic_real, &run.multibody_lumped, &run.multibody_real}) {
+    EXPECT_LE(table->peak("Rs"), scaled(1e-15));
+    EXPECT_LE(table->peak("Rc"), scaled(1e-15));
+  }
+}
+
+}  // namespace
+}  // namespace bentaxis::test
