@@ -705,7 +705,7 @@ class PressureTest(ProgramTest):
     def test_shipped_cases_against_the_published_numbers(self):
         for name in self.CASES:
             result = self.run_program("pressure", REPO / "cases" / f"{name}_hydraulic.toml", "--out", name,
-                                      "--published", REPO / "reference_data" / "published" / f"{name}.toml")
+                                      "--published", REPO / "cases" / "published" / f"{name}.toml")
             rows = json.loads((self.folder / name / "pressure.json").read_text())["published"]["rows"]
             self.assertEqual({row["verdict"] for row in rows}, {"inside"})
             self.assertLessEqual({row["status"] for row in rows}, {"used to infer", "calibrated", "predicted"})
