@@ -21,6 +21,8 @@
 #include "bentaxis/pump/units.h"
 #include "commands.h"
 #include "console.h"
+#include "hydraulic_case.h"
+#include "hydraulic_report.h"
 #include "models.h"
 #include "published_section.h"
 #include "pump_report.h"
@@ -217,6 +219,14 @@ int compare(const Options& options) {
   for (const auto& text : options.multibody) apply_assumption(text, second.pump, second.multibody);
   check_same_run(first, second);
   OutputFolder folder(options.out);
+  // The same case is solved once: both models get the very same curve.
+  const bool same_case = options.multibody_case.empty();
+  ReadyCase ready = with_pressure(std::move(first));
+  first = std::move(ready.the_case);
+  if (same_case)
+    second.pressure = first.pressure;
+  else
+    second = with_pressure(std::move(second)).the_case;
 
   const bool integrated = options.way == Way::integrated;
   PressureTrace pressure(first.pressure);
@@ -319,6 +329,12 @@ int compare(const Options& options) {
       {"published", published ? published->json : Json()},
       {"runs", runs},
       {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
+  if (ready.hydraulics) {
+    report["runs"].push_back(hydraulic_block(the_case, *ready.hydraulics));
+    for (Json& figure : hydraulic_figures(the_case, *ready.hydraulics))
+      report["figures"].push_back(std::move(figure));
+    folder.add("pressure.csv", to_csv(ready.hydraulics->table));
+  }
   if (split.split) {
     report["verdict"]["word"] = agrees ? "Explained" : "Not explained";
     report["verdict"]["rest_over_peak"] = split.split->largest_rest();

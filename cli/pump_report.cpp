@@ -49,16 +49,19 @@ Json derived_section(const Case& the_case) {
 }
 
 Json common_section(const Case& the_case) {
-  const bool curve = the_case.pressure.kind == PressureKind::curve;
+  const std::string once = ", evaluated once per sample and given to both models";
+  std::string trace = "ideal trace" + once;
+  if (the_case.pressure.kind == PressureKind::curve)
+    trace = "periodic cubic spline through " + the_case.pressure.file.filename().string() + once;
+  if (the_case.pressure.kind == PressureKind::hydraulic)
+    trace = fmt::format("hydraulic model, periodic cubic spline through {} points{}",
+                        the_case.pressure.points, once);
   Json rows = Json::array();
   const auto add = [&](const std::string& input, const std::string& value,
                        const std::string& caught_by) {
     rows.push_back({{"input", input}, {"value", value}, {"caught_by", caught_by}});
   };
-  add("chamber pressure",
-      curve ? "periodic cubic spline through " + the_case.pressure.file.filename().string() +
-                  ", evaluated once per sample and given to both models"
-            : "ideal trace, evaluated once per sample and given to both models",
+  add("chamber pressure", trace,
       "high-precision curves (computed with their own trace); mean torque of a frictionless pump = "
       "displacement x pressure / 2 pi");
   add("geometry, masses, loads of the case file", "read and converted to SI once",

@@ -1,9 +1,11 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "bentaxis/pump/files.h"
 #include "commands.h"
+#include "hydraulic_case.h"
 #include "models.h"
 
 namespace bentaxis::cli {
@@ -18,8 +20,9 @@ struct Options {
 };
 
 int run(const Options& options) {
-  const Case the_case = read_case(options.case_file);
+  Case the_case = read_case(options.case_file);
   OutputFolder folder(options.out);
+  the_case = with_pressure(std::move(the_case)).the_case;
   const PressureTrace pressure(the_case.pressure);
   const Way way = options.model == "multibody" ? options.way : Way::driven;
   Assumptions assumptions = options.model == "analytic" ? the_case.analytic : the_case.multibody;

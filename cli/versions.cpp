@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <fstream>
 
+#include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
 
 namespace bentaxis::cli {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -40,6 +41,8 @@ class CaseReader {
     read_operation(table(top, "operation"));
     read_pressure(table(top, "pressure"));
     if (top.has("port_plate")) read_port_plate(table(top, "port_plate"));
+    if (result_.pressure.kind == PressureKind::hydraulic || top.has("hydraulics"))
+      read_hydraulics(table(top, "hydraulics"));
     read_assumptions(top);
     top.finish();
     return std::move(result_);
@@ -160,12 +163,18 @@ class CaseReader {
 
   void read_pressure(TableReader in) {
     PressureSpec& pressure = result_.pressure;
-    const bool curve = in.choice("kind", {"ideal", "curve"}) == 1;
-    pressure.kind = curve ? PressureKind::curve : PressureKind::ideal;
+    pressure.kind =
+        std::array{PressureKind::ideal, PressureKind::curve,
+                   PressureKind::hydraulic}[in.choice("kind", {"ideal", "curve", "hydraulic"})];
+    const bool curve = pressure.kind == PressureKind::curve;
+    const bool hydraulic = pressure.kind == PressureKind::hydraulic;
     pressure.ports.suction = pascals(in.number("suction_bar", kAny));
-    pressure.ports.delivery = pascals(in.number("delivery_bar", kAny));
-    // Keys of the other kind may be present and are then unused.
-    const std::optional<double> unused = curve ? std::optional<double>(0.0) : std::nullopt;
+    pressure.ports.delivery =
+        pascals(in.number("delivery_bar", hydraulic ? NumberRange{0, 10000} : kAny));
+    // Keys of the other kinds may be present and are then unused.
+    if (hydraulic || in.has("points")) pressure.points = in.integer("points", 16, 100000, 800);
+    const bool ideal = pressure.kind == PressureKind::ideal;
+    const std::optional<double> unused = ideal ? std::nullopt : std::optional<double>(0.0);
     pressure.transition_deg = in.number("transition_deg", {0, 180}, unused);
     pressure.delivery_start_deg = in.number("delivery_start_deg", kAny, 180.0);
     if (curve) {
@@ -202,6 +211,65 @@ class CaseReader {
     plate.suction = arc("suction_arc_deg");
     in.finish();
     result_.pump.port_plate = plate;
+  }
+
+  // After [port_plate], whose arcs and lands are the defaults of the ports here.
+  void read_hydraulics(TableReader in) {
+    HydraulicData data;
+    const auto& plate = result_.pump.port_plate;
+    data.density = in.number("density_kg_per_m3", {100, 5000}, 850.0);
+    data.bulk_modulus = in.number("bulk_modulus_MPa", {10, 1e9}, 1400.0) * 1e6;
+    data.air_share = in.number("air_percent", {0, 50, true}, 0.5) / 100;
+    data.air_exponent = in.number("air_exponent", {1, 1.67}, 1.4);
+    data.atmosphere = pascals(in.number("atmosphere_bar", {0.1, 10}, 1.01325));
+    const auto port = [&](const std::string& name, std::optional<PortArc> arc) {
+      PlatePort result;
+      const std::string key = name + "_arc_deg";
+      if (in.has(key) || !arc) {
+        const auto [from, to] = in.pair(key, kAny);
+        if (!(from < to && to <= from + 360))
+          in.fail(key, "must be [from, to] with from < to <= from + 360");
+        arc = PortArc{from, to};
+      }
+      result.arc = *arc;
+      result.notch.length_deg = in.number(name + "_notch_deg", {0, 90}, 0.0);
+      result.notch.area = square_metres(in.number(name + "_notch_area_mm2", kNotNegative, 0.0));
+      return result;
+    };
+    data.delivery = port("delivery", plate ? std::optional(plate->delivery) : std::nullopt);
+    data.suction = port("suction", plate ? std::optional(plate->suction) : std::nullopt);
+    data.kidney_width_deg = in.number("kidney_width_deg", {0, 180, true});
+    data.kidney_height =
+        metres(in.number("kidney_height_mm", kPositive,
+                         plate ? std::optional((plate->r3 - plate->r2) * 1e3) : std::nullopt));
+    data.kidney_rounding_deg = in.number("kidney_rounding_deg", {0, data.kidney_width_deg},
+                                         std::min(5.0, data.kidney_width_deg));
+    data.notch_law = in.choice("notch_law", {"quadratic", "linear"}, 0) == 0 ? NotchLaw::quadratic
+                                                                             : NotchLaw::linear;
+    for (const auto& [name, side] :
+         {std::pair{"delivery", &data.delivery}, std::pair{"suction", &data.suction}})
+      if (side->arc.to_deg - side->arc.from_deg + side->notch.length_deg + data.kidney_width_deg >
+          360)
+        in.fail("kidney_width_deg",
+                std::string("with the ") + name + " port's arc and notch must not exceed 360 deg");
+    data.discharge_coefficient = in.number("discharge_coefficient", {0, 2, true}, 0.67);
+    data.transition_pressure = pascals(in.number("transition_pressure_bar", kPositive, 0.1));
+    // 1 l/min = 1e-3/60 m3/s
+    data.leakage =
+        in.number("leakage_l_per_min_per_bar", kNotNegative, 0.002) / 6e4 / kPascalPerBar;
+    const NumberRange absolute{-data.atmosphere / kPascalPerBar,
+                               std::numeric_limits<double>::infinity(), true};
+    data.case_pressure = pascals(in.number("case_bar", absolute, 0.0));
+    data.dead_volume = in.number("dead_volume_cm3", kPositive, 3.0) / 1e6;
+    data.delivery_volume = in.number("delivery_volume_l", kPositive, 0.5) / 1e3;
+    data.tolerance = in.number("tolerance", {1e-12, 1e-4}, 1e-10);
+    in.finish();
+    if (result_.pressure.kind != PressureKind::hydraulic) return;  // present and unused
+    if (!absolute.contains(result_.pressure.ports.suction / kPascalPerBar))
+      in.fail("atmosphere_bar",
+              "must exceed -suction_bar of [pressure]: no absolute pressure is "
+              "below zero");
+    result_.hydraulics = data;
   }
 
   // [assumptions.analytic] and [assumptions.multibody]: what a model leaves out or does otherwise.

@@ -22,7 +22,10 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
       ports_(spec.ports),
       transition_deg_(spec.transition_deg),
       delivery_start_deg_(spec.delivery_start_deg) {
-  if (kind_ == PressureKind::curve) {
+  if (kind_ != PressureKind::ideal) {
+    if (kind_ == PressureKind::hydraulic && spec.curve.theta_deg.empty())
+      throw InputError(
+          "[pressure] kind = \"hydraulic\": this job needs the pressure to be computed first");
     try {
       spline_ = std::make_unique<PeriodicSpline>(spec.curve.theta_deg, spec.curve.pressure);
     } catch (const InputError& error) {

@@ -677,6 +677,104 @@ class TogetherTest(ProgramTest):
             self.assertEqual(len(self.column(f"out/{model}.csv", "theta_deg")), 36)
 
 
+class PressureTest(ProgramTest):
+    """bentaxis pressure, and what run and compare make of a hydraulic case."""
+
+    CASES = ("bap63_rated", "bap63_peak")
+
+    def hydraulic(self, name="case.toml", of="bap63_rated", **changes):
+        case = Case()
+        case.lines = (REPO / "cases" / f"{of}_hydraulic.toml").read_text().splitlines()
+        return case.set({"operation.samples_per_revolution": 72, **changes}).write(self.folder / name)
+
+    def test_files_and_numbers(self):
+        result = self.run_program("pressure", self.hydraulic(), "--out", "out", "--transient", 2)
+        self.assertEqual({p.name for p in self.folder.glob("out/*")},
+                         {"pressure.html", "pressure.json", "pressure.csv", "transient.csv"})
+        self.assertEqual(len(self.column("out/pressure.csv", "p_1_bar")), 800)
+        delivery = [float(v) for v in self.column("out/pressure.csv", "p_delivery_bar")]
+        self.assertAlmostEqual(sum(delivery) / len(delivery), 275, delta=0.01)
+        report = json.loads((self.folder / "out/pressure.json").read_text())
+        self.assertLessEqual({"Fig. 10, 17", "Fig. 25", "Fig. 17"}, {f["paper"] for f in report["figures"]})
+        facts = {row[0]: row[1] for row in report["runs"][0]["table"]["rows"]}
+        self.assertAlmostEqual(facts["mean delivery pressure"], 275, delta=1e-4)
+        self.assertIn("volumetric efficiency", result.out)
+        # 72 samples a turn are few, but the means of both models are those of the same samples
+        self.assertRegex(result.out, r"mean drive torque, multibody +29\d")
+
+    def test_shipped_cases_against_the_published_numbers(self):
+        for name in self.CASES:
+            result = self.run_program("pressure", REPO / "cases" / f"{name}_hydraulic.toml", "--out", name,
+                                      "--published", REPO / "reference_data" / "published" / "bap63" / f"{name}.toml")
+            rows = json.loads((self.folder / name / "pressure.json").read_text())["published"]["rows"]
+            self.assertEqual({row["verdict"] for row in rows}, {"inside"})
+            self.assertLessEqual({row["status"] for row in rows}, {"used to infer", "calibrated", "predicted"})
+            self.assertNotIn("OUTSIDE", result.out)
+        needs = [float(x) for x in re.findall(r"needs a mean delivery pressure of ([0-9.]+) bar", result.out)]
+        self.assertEqual(len(needs), 3)
+        for pressure in needs:
+            self.assertTrue(370 < pressure < 385.8, needs)
+
+    def test_number_outside_its_window(self):
+        case = self.hydraulic(**{"friction.shaft_torque_factor": 0.95})
+        result = self.run_program("pressure", case, "--out", "out", "--published",
+                                  REPO / "reference_data/published/bap63/bap63_rated.toml", status=OUT_OF_TOLERANCE)
+        self.assertIn("OUTSIDE", result.out)
+
+    def test_torque_curve(self):
+        self.run_program("pressure", self.hydraulic(), "--out", "out", "--delivery-bar", "0:350:25")
+        pressures = [float(v) for v in self.column("out/torque_curve.csv", "delivery_bar")]
+        self.assertEqual(pressures, [25.0 * i for i in range(15)])
+        torque = [float(v) for v in self.column("out/torque_curve.csv", "mean_Td_analytic_Nm")]
+        other = [float(v) for v in self.column("out/torque_curve.csv", "mean_Td_multibody_Nm")]
+        flow = [float(v) for v in self.column("out/torque_curve.csv", "flow_l_per_min")]
+        self.assertEqual((torque, flow), (sorted(torque), sorted(flow, reverse=True)))
+        for a, b in zip(torque, other):
+            self.assertAlmostEqual(a, b, delta=1e-9 * torque[-1])
+
+    def test_overlay(self):
+        self.run_program("pressure", self.hydraulic(), "--overlay", self.hydraulic("peak.toml", "bap63_peak"),
+                         "--out", "out")
+        figures = {f["paper"]: f for f in json.loads((self.folder / "out/pressure.json").read_text())["figures"]}
+        for number in range(19, 25):
+            figure = figures[f"Fig. {number}"]
+            self.assertEqual(len(figure["x"]["values"]), 3 * 72)
+            self.assertTrue(all(len(s["values"]) == 3 * 72 for s in figure["series"]))
+
+    def test_both_models_get_the_same_curve(self):
+        case = self.hydraulic()
+        self.run_program("compare", case, "--out", "out")
+        self.assertEqual({p.name for p in self.folder.glob("out/*")}, REPORT_FILES | {"pressure.csv"})
+        for k in range(1, 6):
+            self.assertEqual(self.column("out/analytic.csv", f"p_{k}_bar"), self.column("out/multibody.csv", f"p_{k}_bar"))
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertIn("Hydraulic model", [run["title"] for run in report["runs"]])
+        self.run_program("run", case, "--model", "multibody", "--out", "run")
+        self.assertEqual((self.folder / "run/multibody.csv").read_text(), (self.folder / "out/multibody.csv").read_text())
+
+    def test_refused(self):
+        for changes, words in (
+                ({"operation.speed_rpm": 0.0}, ("speed_rpm", "standstill")),
+                ({"operation.speed_rpm": -1500.0}, ("speed_rpm", "motoring")),
+                ({"pump.tilt_deg": 0.0}, ("tilt_deg", "stroke")),
+                ({"pressure.delivery_bar": -1.0}, ("delivery_bar", "[0,")),
+                ({"pressure.suction_bar": -2.0}, ("suction_bar", "absolute")),
+                ({"pressure.points": 4}, ("points", "[16,")),
+                ({"hydraulics.air_percent": 0.0}, ("air_percent", "(0,")),
+                ({"hydraulics.bulk_modulus_GPa": 1.4}, ("bulk_modulus_GPa", "bulk_modulus_MPa")),
+                ({"hydraulics.kidney_width_deg": None}, ("kidney_width_deg", "missing")),
+                ({"hydraulics.notch_law": '"cubic"'}, ("notch_law", "quadratic"))):
+            with self.subTest(changes):
+                line = self.refused("pressure", self.hydraulic(**changes), "--out", "out")
+                self.assert_mentions(line, "case.toml", *words)
+        self.assert_mentions(self.refused("pressure", self.case("ideal.toml")), "ideal.toml", "hydraulic")
+        case = self.hydraulic()
+        for text, word in ("1:2", "FROM:TO:STEP"), ("a:2:1", "FROM:TO:STEP"), ("5:1:1", "FROM <= TO"), ("0:1:0", "STEP > 0"):
+            self.assert_mentions(self.refused("pressure", case, "--delivery-bar", text), text, word)
+        slow = self.hydraulic("slow.toml", **{"operation.speed_rpm": 5.0})
+        self.assert_mentions(self.refused("pressure", slow, status=COMPUTATION_FAILED), "hydraulics", "periodic")
+
+
 # ---- Negative controls: a wrong input to one model is noticed -------------------------------------------
 
 # Cases in which every parameter has something to do. Pressure hides weights and inertia: light cases show them.

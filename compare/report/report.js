@@ -412,6 +412,10 @@ function valueTicks(low, high, pixels, options, graph) {
   return ticks.map((t, i) => ({ v: t.v, label: labels[i] }));
 }
 
+function valueAxisTicks(low, high, pixels, options, graph) {
+  return valueTicks(low, high, pixels, options, graph).filter(t => t.v >= low && t.v <= high);
+}
+
 // One dygraph. lines: {values, colour, width, dash, silent}; bands are filled behind the curves.
 function plot(box, data, lines, bands, yLabel) {
   const names = lines.map((_, i) => String(i));
@@ -429,8 +433,8 @@ function plot(box, data, lines, bands, yLabel) {
   const { touchstart, touchmove, touchend, ...mouse } = Dygraph.defaultInteractionModel;
   return new Dygraph(box, rows, {
     labels: ["theta", ...names], series, legend: "never", interactionModel: mouse,
-    xlabel: "shaft angle (deg)", ylabel: yLabel, labelsDiv: el("div"),
-    axes: { x: { ticker: angleTicks, axisLabelWidth: 44 },
+    xlabel: data.axis.label, ylabel: yLabel, labelsDiv: el("div"),
+    axes: { x: { ticker: data.axis.angle ? angleTicks : valueAxisTicks, axisLabelWidth: 44 },
             y: { ticker: valueTicks, axisLabelWidth: 74, pixelsPerLabel: 26 } },
     axisLabelFontSize: 13, xLabelHeight: 20, yLabelWidth: 22, rightGap: 22, yRangePad: 8,
     gridLineColor: "#e1e6ec", gridLineWidth: 1, axisLineColor: "#67727e",
@@ -482,7 +486,14 @@ function lineOf(values, colour, t, alone) {
   return { values, colour: colour + (pale ? "66" : ""), width: pale ? 4.5 : 1.9, dash: DASHES[t % DASHES.length] };
 }
 
-function curvesFigure(figure, data) {
+// A figure may bring its own axis and curves: {x: {label, angle, values}, series: [{label, values}]}. It is
+// then drawn from these alone; `angle` says that the axis is one of shaft angles.
+const withOwnAxis = (figure, data) => (!figure.x ? data : {
+  ...data, tables: [], difference: {}, axis: { label: figure.x.label, angle: !!figure.x.angle },
+  ...orderOf(list(figure.x.values), !!figure.x.angle) });
+
+function curvesFigure(figure, page) {
+  const data = withOwnAxis(figure, page);
   const drawn = [], missing = [], lines = [], differences = [];
   list(figure.channels).forEach((name, i) => {
     const colour = COLOURS[i % COLOURS.length];
@@ -496,6 +507,8 @@ function curvesFigure(figure, data) {
   });
   const extras = list(figure.extra).filter(e => hasNumbers(e.values)).map((e, i) => ({
     ...e, colour: EXTRA_COLOURS[i % EXTRA_COLOURS.length], width: 1.6, dash: [10, 4, 2, 4] }));
+  list(figure.series).filter(e => hasNumbers(e.values)).forEach((e, i) => extras.push({
+    ...e, colour: COLOURS[i % COLOURS.length], width: 1.9, dash: null }));
   const notes = [figure.note, missing.length ? "Not computed: " + missing.join(", ") + "." : null];
   const footer = () => notes.filter(Boolean).map(n => el("p.note", {}, n));
   if (!drawn.length && !extras.length)
@@ -506,7 +519,7 @@ function curvesFigure(figure, data) {
     { values: data.theta.map(() => v), colour: "#6b7682", width: 1, dash: [3, 3], silent: true }));
   const readings = readOutTable(figure, drawn, extras, bands, data);
   const label = figure.unit ? ` (${figure.unit})` : "";
-  const upper = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves over the shaft angle` });
+  const upper = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves over ${data.axis.label}` });
   const exact = differences.length > 0 && differences.every(d => d.values.every(v => !v));
   const lower = differences.length && !exact
     ? el("div.plot.low", { role: "img", "aria-label": `${figure.title}: difference over the shaft angle` }) : null;
@@ -533,7 +546,7 @@ function readOutTable(figure, drawn, extras, bands, data) {
   const angle = el("span.angle");
   const heading = (...content) => el("th.num", { scope: "col" }, ...content);
   const name = (...content) => el("th", { scope: "row" }, ...content);
-  const wide = () => el("td.num", { colspan: data.tables.length + (compared.length ? 1 : 0) });
+  const wide = () => el("td.num", { colspan: Math.max(1, data.tables.length + (compared.length ? 1 : 0)) });
   const rows = drawn.map(d => ({ ...d, cells: d.columns.map(() => el("td.num")),
                                  gap: compared.length ? el("td.num") : null }));
   const more = extras.map(e => ({ ...e, cell: wide() }));
@@ -554,8 +567,9 @@ function readOutTable(figure, drawn, extras, bands, data) {
   function show(row) {
     const at = row == null ? home : Math.min(Math.max(row, 0), data.order.length - 1);
     const i = data.order[at];
-    const why = row != null ? "" : largest > 0 ? " (largest difference)" : " (first angle)";
-    angle.textContent = degrees(data.theta[i]) + why;
+    const why = row != null ? "" : largest > 0 ? " (largest difference)" : data.axis.angle ? " (first angle)" : "";
+    angle.textContent = (data.axis.angle ? degrees(data.theta[i])
+      : `${data.axis.label}: ${number(data.theta[i])}`) + why;
     const value = v => unit(number(v, 6), figure.unit);
     for (const r of rows) {
       r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
@@ -679,19 +693,23 @@ function figures(report, data) {
 
 // What the sections need of the curves. A run backwards has falling angles: `order` lists the samples by
 // rising angle. The axis is rounded out to whole turns where the last step of a turn is all that is missing.
-function prepare(report, curves) {
-  const theta = list(curves.theta_deg);
+function orderOf(theta, angle) {
   const order = theta.map((_, i) => i).sort((a, b) => theta[a] - theta[b]);
   const first = theta[order[0]], last = theta[order[order.length - 1]];
   const step = order.length > 1 ? (last - first) / (order.length - 1) : 360;
-  const turns = (v, round) => (Math.abs(360 * round(v / 360) - v) <= 1.01 * step ? 360 * round(v / 360) : v);
+  const turns = (v, round) =>
+    (angle && Math.abs(360 * round(v / 360) - v) <= 1.01 * step ? 360 * round(v / 360) : v);
+  return { theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil) };
+}
+
+function prepare(report, curves) {
   const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
   const channels = new Map(list(report.channels).map(c => [c.name, c]));
   const about = name => channels.get(name) || {};
   const usual = ["analytic", "multibody"];
   const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
   return {
-    theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil), tables, pair,
+    ...orderOf(list(curves.theta_deg), true), axis: { label: "shaft angle (deg)", angle: true }, tables, pair,
     difference: curves.difference || {}, mounts: [], redraws: [],
     ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
     meaning: name => phrases(about(name).meaning, about(name).on_body && "on " + about(name).on_body),
