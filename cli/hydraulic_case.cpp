@@ -14,6 +14,4 @@ ReadyCase with_pressure(Case the_case) {
   return ready;
 }
 
-ReadyCase read_ready_case(const std::string& file) { return with_pressure(read_case(file)); }
-
 }  // namespace bentaxis::cli

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/case.h"
@@ -19,8 +18,5 @@ struct ReadyCase {
 /// into the case: one curve, which both models then get. Other cases pass through unchanged.
 /// @throws InputError, ComputationError
 ReadyCase with_pressure(Case the_case);
-
-/// Reads a case and computes its chamber pressure where needed.
-ReadyCase read_ready_case(const std::string& file);
 
 }  // namespace bentaxis::cli

@@ -251,7 +251,7 @@ ResultTable kept(const ResultTable& table) {
 }
 
 int make_golden(const Options& options) {
-  Case the_case = read_ready_case(options.case_file).the_case;
+  Case the_case = with_pressure(read_case(options.case_file)).the_case;
   the_case.operation.samples_per_revolution = options.samples;
   must_be_new(options.out);
   const fs::path case_path = fs::absolute(options.case_file)

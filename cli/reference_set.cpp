@@ -36,7 +36,7 @@ std::vector<fs::path> files_of(const Case& the_case) {
 
 ReferenceCases cases_of(const compare::ReferenceDescription& description) {
   const auto read = [&](const fs::path& file) {
-    Case the_case = read_ready_case(file).the_case;
+    Case the_case = with_pressure(read_case(file)).the_case;
     if (description.samples_per_revolution)
       the_case.operation.samples_per_revolution = *description.samples_per_revolution;
     return the_case;

@@ -120,7 +120,6 @@ std::string sundials_version() {
 }
 
 Integrator::Integrator(const Network& network) : network_(network) {}
-Integrator::~Integrator() = default;
 
 std::vector<double> Integrator::over_period(const std::vector<double>& pressures, double load_area,
                                             double tolerance, std::vector<double>* sensitivity,

@@ -25,9 +25,6 @@ struct Work {
 class Integrator {
  public:
   explicit Integrator(const Network& network);
-  ~Integrator();
-  Integrator(const Integrator&) = delete;
-  Integrator& operator=(const Integrator&) = delete;
 
   /// Receives the state at angles of the period, rising.
   using Observer = std::function<void(double x, const double* y)>;

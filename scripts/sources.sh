@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Sourced by the other scripts.
 
 # Our own files with the given endings, below the current directory, separated by null characters.

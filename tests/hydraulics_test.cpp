@@ -97,7 +97,7 @@ double log_difference(const Case& the_case, const PressureCurve& a, const Pressu
 
 TEST(Fluid, DensityFollowsItsOwnBulkModulus) {
   const Fluid fluid(*rated().hydraulics);
-  constexpr double h = 1e-5;
+  const double h = 1e-5;
   for (double s = -6; s < 6; s += 0.37) {
     const auto at = fluid.state(s);
     const double low = fluid.state(s - h).density, high = fluid.state(s + h).density;
@@ -204,7 +204,7 @@ TEST(Network, JacobianIsTheDerivativeOfTheRates) {
       const double x = random.in(0, 72), area = std::exp(random.in(-13, -11));
       std::vector<double> by_state(n * n), by_load(n), low(n), high(n);
       network.jacobian(x, y.data(), area, by_state.data(), by_load.data());
-      constexpr double h = 1e-6;
+      const double h = 1e-6;
       const auto expect_column = [&](const double* expected, double size) {
         for (int row = 0; row < n; ++row)
           EXPECT_NEAR((high[row] - low[row]) / (2 * h), expected[row], scaled(1e-5) * (size + 1));
@@ -407,7 +407,7 @@ TEST(PeriodicState, TheMapsDerivativeIsThatOfTheIntegration) {
   std::vector<double> sensitivity;
   const double area = state.summary.load_area;
   integrator.over_period(state.log_pressures, area, 1e-10, &sensitivity);
-  constexpr double h = 1e-4;
+  const double h = 1e-4;
   for (int j = 0; j < unknowns; ++j) {
     auto low = state.log_pressures, high = low;
     double low_area = area, high_area = area;
