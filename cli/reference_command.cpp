@@ -15,6 +15,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
 #include "commands.h"
+#include "hydraulic_case.h"
 #include "reference_set.h"
 
 namespace bentaxis::cli {
@@ -29,6 +30,9 @@ constexpr int kGoldenSamples = 36;
 // Round-off of the multibody model on the shipped cases is below 2e-13 of peak, and another
 // compiler or processor rounds otherwise; a parameter off by 1e-6 of itself shows at 1e-9 or more.
 constexpr const char* kGoldenTolerance = "1e-11";
+// The hydraulic model steps in time: other round-off chooses other steps, and its error of ln p is
+// up to 1e-7 (docs/hydraulics.md); reactions that are small against the pressure forces magnify it.
+constexpr const char* kHydraulicGoldenTolerance = "1e-6";
 
 struct Options {
   std::string case_file, from, out, folder;
@@ -247,7 +251,7 @@ ResultTable kept(const ResultTable& table) {
 }
 
 int make_golden(const Options& options) {
-  Case the_case = read_case(options.case_file);
+  Case the_case = with_pressure(read_case(options.case_file)).the_case;
   the_case.operation.samples_per_revolution = options.samples;
   must_be_new(options.out);
   const fs::path case_path = fs::absolute(options.case_file)
@@ -265,7 +269,9 @@ int make_golden(const Options& options) {
       "and its reason stated in the commit\"\n"
       "digits = 16\n"
       "\n[tolerance]\nrelative = {}\n",
-      toml_text(case_path.generic_string()), options.samples, kGoldenTolerance);
+      toml_text(case_path.generic_string()), options.samples,
+      the_case.pressure.kind == PressureKind::hydraulic ? kHydraulicGoldenTolerance
+                                                        : kGoldenTolerance);
   OutputFolder folder(options.out);
   for (const std::string model : {"analytic", "multibody"}) {
     const std::string file = model + ".csv";
@@ -304,6 +310,7 @@ std::string changes(const compare::Judgement& judgement) {
 // Rewrites the curves of one golden reference. @returns whether anything changed
 bool update_golden(const ReferenceDescription& description) {
   OutputFolder folder(description.folder);
+  const ReferenceCases cases = cases_of(description);
   std::string report, within;
   for (const auto& curve : description.curves) {
     if (curve.models.size() != 1 || !curve.columns.empty() ||
@@ -312,7 +319,7 @@ bool update_golden(const ReferenceDescription& description) {
           curve.file.string() +
           ": a golden curve belongs to one model, has our columns and lies in its folder");
     const std::string& model = curve.models.front();
-    const Case the_case = case_for(description, model);
+    const Case& the_case = model == "analytic" ? cases.analytic : cases.multibody;
     const ReferenceRun run = run_for_reference(model, the_case);
     const ResultTable table = kept(run.table);
     if (table.rows() != static_cast<std::size_t>(curve.points))

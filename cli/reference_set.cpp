@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bentaxis/pump/pressure.h"
+#include "hydraulic_case.h"
 #include "models.h"
 
 namespace bentaxis::cli {
@@ -33,12 +34,18 @@ std::vector<fs::path> files_of(const Case& the_case) {
   return {the_case.pressure.file};
 }
 
-Case case_for(const compare::ReferenceDescription& description, const std::string& model) {
-  Case the_case =
-      read_case(model == "multibody" ? description.multibody_case_file : description.case_file);
-  if (description.samples_per_revolution)
-    the_case.operation.samples_per_revolution = *description.samples_per_revolution;
-  return the_case;
+ReferenceCases cases_of(const compare::ReferenceDescription& description) {
+  const auto read = [&](const fs::path& file) {
+    Case the_case = with_pressure(read_case(file)).the_case;
+    if (description.samples_per_revolution)
+      the_case.operation.samples_per_revolution = *description.samples_per_revolution;
+    return the_case;
+  };
+  ReferenceCases cases{read(description.case_file), {}};
+  cases.multibody = description.multibody_case_file == description.case_file
+                        ? cases.analytic
+                        : read(description.multibody_case_file);
+  return cases;
 }
 
 ReferenceRun run_for_reference(const std::string& model, const Case& the_case) {

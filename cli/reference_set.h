@@ -28,8 +28,13 @@ std::vector<ReferencePlace> references_below(const std::filesystem::path& root);
 /// Files that the cases of a reference use beside the case files themselves.
 std::vector<std::filesystem::path> files_of(const Case& the_case);
 
-/// The case a model is given: the description's, with its number of samples.
-Case case_for(const compare::ReferenceDescription& description, const std::string& model);
+/// The cases that the models of a reference are given: read, with the description's number of
+/// samples, and with their chamber pressure computed where they leave it to the hydraulic model.
+/// @throws InputError, ComputationError
+struct ReferenceCases {
+  Case analytic, multibody;
+};
+ReferenceCases cases_of(const compare::ReferenceDescription& description);
 
 /// Runs a model over one turn of a case, driven.
 struct ReferenceRun {

@@ -98,11 +98,10 @@ std::vector<GroupLine> group_lines(const compare::Judgement& judgement) {
 }
 
 void hold_to_curves(const compare::ReferenceDescription& description, Outcome& outcome) {
+  const ReferenceCases cases = cases_of(description);
   std::vector<fs::path> used;
-  for (const std::string model : {"analytic", "multibody"}) {
-    const auto files = files_of(case_for(description, model));
-    used.insert(used.end(), files.begin(), files.end());
-  }
+  for (const Case* the_case : {&cases.analytic, &cases.multibody})
+    for (const auto& file : files_of(*the_case)) used.push_back(file);
   compare::check_files(description, used);
   outcome.properties = {{"source", description.source},
                         {"how_made", description.how_made},
@@ -116,7 +115,7 @@ void hold_to_curves(const compare::ReferenceDescription& description, Outcome& o
       return std::find(curve.models.begin(), curve.models.end(), model) != curve.models.end();
     };
     if (std::none_of(description.curves.begin(), description.curves.end(), holds)) continue;
-    const Case the_case = case_for(description, model);
+    const Case& the_case = model == "analytic" ? cases.analytic : cases.multibody;
     const ChannelLayout layout(the_case.pump.geometry.pistons);
     std::vector<compare::ReferenceCurve> curves;
     for (const auto& curve : description.curves)

@@ -299,14 +299,14 @@ PublishedSection judge_published(
                 {"counted", n.predicted() && !n.repeats}};
     bool any = false, inside = true;
     std::string reasons;
-    for (std::size_t m = 0; m < models.size(); ++m) {
-      row[models[m]] = nullptr;
+    for (const std::string& model : models) {
+      row[model] = nullptr;
       if (!why.empty()) continue;
       // A case at another condition is not run under the variants of this one.
-      std::string reason = unmet(wanted, run_of(models[m], "").facts);
+      std::string reason = unmet(wanted, run_of(model, "").facts);
       if (reason.empty()) {
-        if (const auto value = value_of(n, run_of(models[m], n.variant))) {
-          row[models[m]] = value->json();
+        if (const auto value = value_of(n, run_of(model, n.variant))) {
+          row[model] = value->json();
           any = true;
           inside = inside && value->low >= n.low && value->high <= n.high;
           continue;

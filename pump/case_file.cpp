@@ -1,8 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <fstream>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <sstream>
