@@ -50,8 +50,8 @@ DerivedQuantities derived_quantities(const Geometry& g) {
   std::vector<double> angles;
   for (const double u : {-1.0, 1.0, c2 != 0 ? std::clamp(-c1 / (2 * c2), -1.0, 1.0) : 1.0}) {
     const double across = g.piston_length * g.piston_length - q(u);
-    angles.push_back(std::asin(std::clamp(std::sqrt(std::max(0.0, across)) / g.piston_length,
-                                          0.0, 1.0)));
+    angles.push_back(
+        std::asin(std::clamp(std::sqrt(std::max(0.0, across)) / g.piston_length, 0.0, 1.0)));
   }
   const auto [smallest, largest] = std::minmax_element(angles.begin(), angles.end());
   result.smallest_tilt = *smallest;

@@ -7,9 +7,9 @@ namespace bentaxis::analytic {
 
 /// What an engineer checks first about a pump.
 struct DerivedQuantities {
-  double stroke = 0;        ///< m, max - min of z_B over a turn
-  double displacement = 0;  ///< m3 per revolution, N A stroke
-  double piston_area = 0;   ///< m2
+  double stroke = 0;         ///< m, max - min of z_B over a turn
+  double displacement = 0;   ///< m3 per revolution, N A stroke
+  double piston_area = 0;    ///< m2
   double smallest_tilt = 0;  ///< rad, of a piston against the block axis
   double largest_tilt = 0;   ///< rad
 };

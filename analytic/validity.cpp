@@ -103,9 +103,11 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
     const auto radius = [&](std::size_t row) {
       return std::hypot(table.at(row, at.xh()), table.at(row, at.yh()));
     };
-    scan(point, table, [&](std::size_t row) { return r4 - radius(row); }, radius);
-    point.consequence = "no pressure in the film can act outside the plate: the block tilts until "
-                        "its edge carries";
+    scan(
+        point, table, [&](std::size_t row) { return r4 - radius(row); }, radius);
+    point.consequence =
+        "no pressure in the film can act outside the plate: the block tilts until "
+        "its edge carries";
   } else {
     point.consequence = "the case has no port plate";
   }
@@ -129,7 +131,8 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
     const Model::FrictionPower p = model.friction_power(instant, table.at(row, at.Td()));
     return std::max({p.pistons, p.block, p.shaft_viscous, p.shaft_proportional});
   };
-  scan(friction, table, [&](std::size_t row) { return -power(row); }, power);
+  scan(
+      friction, table, [&](std::size_t row) { return -power(row); }, power);
   friction.consequence =
       "(38) is kept as printed: where Td omega < 0 (motoring) its proportional part drives the "
       "shaft instead of braking it";
