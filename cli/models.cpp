@@ -1,5 +1,6 @@
 #include "models.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "bentaxis/analytic/model.h"
@@ -27,6 +28,13 @@ ResultTable run_model(const std::string& model, const Case& the_case,
                                        progress);
   if (record != nullptr) *record = run.record;
   return std::move(run.table);
+}
+
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
+  const LoadScale scale = load_scale(the_case, samples);
+  const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
+                                 the_case.pump.geometry.bore_circle_radius);
+  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
 }
 
 }  // namespace bentaxis::cli

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/result_table.h"
@@ -21,5 +22,8 @@ ResultTable run_model(const std::string& model, const Case& the_case,
                       const PressureTrace& pressure, Way way,
                       const multibody::IntegrationOptions& integration,
                       multibody::IntegrationRecord* record = nullptr);
+
+/// Scales for groups of channels whose peak is zero: the case's largest load.
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples);
 
 }  // namespace bentaxis::cli

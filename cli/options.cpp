@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "bentaxis/pump/error.h"
+
 namespace bentaxis::cli {
 
 void add_case(CLI::App& command, std::string& file) {
@@ -23,16 +25,46 @@ void add_way(CLI::App& command, Way& way) {
       ->option_text("driven|integrated [driven]");
 }
 
-void add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
+CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
   std::map<std::string, multibody::Integrator> names;
   std::string list;
   for (std::size_t i = 0; i < multibody::integrator_names().size(); ++i) {
     names[multibody::integrator_names()[i]] = static_cast<multibody::Integrator>(i);
     list += (i == 0 ? "" : "|") + multibody::integrator_names()[i];
   }
-  command.add_option("--integrator", options.integrator, "time integrator of an integrated run")
+  return command
+      .add_option("--integrator", options.integrator, "time integrator of an integrated run")
       ->transform(CLI::CheckedTransformer(names))
       ->option_text(list + " [rk-merson]");
+}
+
+std::vector<multibody::Integrator> ErrorTarget::integrators() const {
+  if (integrator->count() > 0) return {integration->integrator};
+  std::vector<multibody::Integrator> all;
+  for (std::size_t i = 0; i < multibody::integrator_names().size(); ++i)
+    all.push_back(static_cast<multibody::Integrator>(i));
+  return all;
+}
+
+void ErrorTarget::refuse_unless(bool integrated) const {
+  if (!integrated)
+    throw InputError(
+        "--error: only an integrated run of the multibody model has an error to choose; give "
+        "--way integrated (driven and analytic runs are exact to round-off)");
+}
+
+void add_error(CLI::App& command, ErrorTarget& target,
+               const multibody::IntegrationOptions& integration, CLI::Option* integrator,
+               CLI::Option* accuracy) {
+  target.integration = &integration;
+  target.integrator = integrator;
+  command
+      .add_option("--error", target.error,
+                  "integrated: choose integrator and accuracy for this error of every reaction, of "
+                  "peak, by a short calibration, and verify it")
+      ->check(CLI::Range(1e-11, 0.1, "in [1e-11, 0.1]"))
+      ->excludes(accuracy)
+      ->option_text("NUMBER");
 }
 
 CLI::Range accuracy_range() { return {1e-12, 0.1, "in [1e-12, 0.1]"}; }
