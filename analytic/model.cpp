@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <limits>
 
 namespace bentaxis::analytic {
@@ -41,16 +43,47 @@ Model::PistonState Model::piston_state(const Instant& instant, double sin_theta,
   return state;
 }
 
-void Model::reactions(const Instant& instant, std::vector<double>& values) const {
-  const closed_form::State<double> state = {std::sin(instant.theta), std::cos(instant.theta),
-                                            instant.omega,           instant.omega_dot,
-                                            instant.ports.suction,   instant.ports.delivery};
-  double* const results = values.data();
-  if (prepared_.imposed) results[layout_.Rcs()] = not_computed();
+namespace {
+
+// A pump's numbers in another type: Pump is an array of numbers with names.
+closed_form::Pump<long double> extended(const closed_form::Pump<double>& pump) {
+  constexpr std::size_t count = sizeof pump / sizeof(double);
+  double numbers[count];
+  std::memcpy(numbers, &pump, sizeof numbers);
+  long double wide[count];
+  std::copy(std::begin(numbers), std::end(numbers), std::begin(wide));
+  closed_form::Pump<long double> result;
+  static_assert(sizeof result == sizeof wide);
+  std::memcpy(&result, wide, sizeof result);
+  return result;
+}
+
+template <class Real>
+void all_reactions(const closed_form::Common& common, const closed_form::Pump<Real>& pump,
+                   const Instant& instant, Real* results) {
+  const Real theta = instant.theta;
+  const closed_form::State<Real> state = {std::sin(theta),
+                                          std::cos(theta),
+                                          Real(instant.omega),
+                                          Real(instant.omega_dot),
+                                          Real(instant.ports.suction),
+                                          Real(instant.ports.delivery)};
   closed_form::reactions(
-      prepared_.common(), prepared_.numbers, state, true,
-      [pressure = instant.chamber_pressure.data()](int k) { return pressure[k]; },
-      [results](int index, double value) { results[index] = value; });
+      common, pump, state, true,
+      [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
+      [results](int index, Real value) { results[index] = value; });
+}
+
+}  // namespace
+
+void Model::reactions(const Instant& instant, std::vector<double>& values) const {
+  if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
+  all_reactions(prepared_.common(), prepared_.numbers, instant, values.data());
+}
+
+void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
+  if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
+  all_reactions(prepared_.common(), extended(prepared_.numbers), instant, values.data());
 }
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values) const {

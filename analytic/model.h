@@ -34,6 +34,10 @@ class Model {
   /// Allocates nothing. Many instants, or many pumps, at a time: batch.h.
   void reactions(const Instant& instant, std::vector<double>& values) const;
 
+  /// The same algebra with `long double` (64 bits of mantissa on x86): what reactions() loses to
+  /// rounding is the difference. For judging errors, not for speed.
+  void reactions(const Instant& instant, std::vector<long double>& values) const;
+
   /// Like reactions(), and the derived, input and check channels too: layout().size() values.
   void evaluate(const Instant& instant, std::vector<double>& values) const;
 

@@ -25,25 +25,48 @@ void add_way(CLI::App& command, Way& way) {
       ->option_text("driven|integrated [driven]");
 }
 
-CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
+namespace {
+
+std::map<std::string, multibody::Integrator> integrators_by_name() {
   std::map<std::string, multibody::Integrator> names;
-  std::string list;
-  for (std::size_t i = 0; i < multibody::integrator_names().size(); ++i) {
-    names[multibody::integrator_names()[i]] = static_cast<multibody::Integrator>(i);
-    list += (i == 0 ? "" : "|") + multibody::integrator_names()[i];
-  }
-  return command
-      .add_option("--integrator", options.integrator, "time integrator of an integrated run")
-      ->transform(CLI::CheckedTransformer(names))
-      ->option_text(list + " [rk-merson]");
+  for (const auto integrator : all_integrators())
+    names[multibody::integrator_names()[static_cast<std::size_t>(integrator)]] = integrator;
+  return names;
 }
 
-std::vector<multibody::Integrator> ErrorTarget::integrators() const {
-  if (integrator->count() > 0) return {integration->integrator};
+std::string integrator_list(const std::string& separator) {
+  std::string list;
+  for (const std::string& name : multibody::integrator_names())
+    list += (list.empty() ? "" : separator) + name;
+  return list;
+}
+
+}  // namespace
+
+std::vector<multibody::Integrator> all_integrators() {
   std::vector<multibody::Integrator> all;
   for (std::size_t i = 0; i < multibody::integrator_names().size(); ++i)
     all.push_back(static_cast<multibody::Integrator>(i));
   return all;
+}
+
+CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
+  return command
+      .add_option("--integrator", options.integrator, "time integrator of an integrated run")
+      ->transform(CLI::CheckedTransformer(integrators_by_name()))
+      ->option_text(integrator_list("|") + " [rk-merson]");
+}
+
+void add_integrators(CLI::App& command, std::vector<multibody::Integrator>& integrators) {
+  command.add_option("--integrators", integrators, "time integrators to try")
+      ->delimiter(',')
+      ->transform(CLI::CheckedTransformer(integrators_by_name()))
+      ->option_text("NAME[,NAME..] [" + integrator_list(",") + "]");
+}
+
+std::vector<multibody::Integrator> ErrorTarget::integrators() const {
+  if (integrator->count() > 0) return {integration->integrator};
+  return all_integrators();
 }
 
 void ErrorTarget::refuse_unless(bool integrated) const {

@@ -16,6 +16,9 @@ void add_case(CLI::App& command, std::string& file);
 void add_out(CLI::App& command, std::string& folder, const std::string& what);
 void add_way(CLI::App& command, Way& way);
 CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options);
+std::vector<multibody::Integrator> all_integrators();
+/// A list of integrators; empty where not given.
+void add_integrators(CLI::App& command, std::vector<multibody::Integrator>& integrators);
 /// The error a user asks for instead of an accuracy.
 struct ErrorTarget {
   double error = 0;  ///< of peak; 0: none asked for
