@@ -105,8 +105,8 @@ void pumps(benchmark::State& state, InstructionSet set, std::size_t count) {
   count_angles(state, count);
 }
 
-// What writing the results costs: the same columns filled with a constant, one after the other by
-// memset, or line by line in the order in which the kernel writes them.
+// What writing the results costs: the same columns filled with a constant, by memset one after the
+// other, or by ordinary stores in the order in which the kernel writes them.
 void write_columns(benchmark::State& state, bool kernel_order) {
   const auto count = static_cast<std::size_t>(state.range(0));
   BatchColumns columns(37, count);
@@ -145,8 +145,8 @@ void register_batches() {
   const InstructionSet widest = available_instruction_sets().back();
   RegisterBenchmark("batch/pistons", batch, widest, ChannelGroup::pistons, 720, 1);
   RegisterBenchmark("batch/bearings", batch, widest, ChannelGroup::bearings, 720, 1);
-  // Two threads: 37 x 8 B x 4096 per thread fit in a second-level cache of 2 MiB, 1 MiB takes
-  // half of it; millions of angles go to memory.
+  // Results take 296 B per angle: 2048 per thread stay in a second-level cache of 1 MiB, 32768 per
+  // thread in a third-level cache; millions go to memory.
   for (const std::size_t count : {4096, 1 << 16, 1 << 22})
     for (const int threads : {1, 2})
       RegisterBenchmark(

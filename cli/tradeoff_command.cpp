@@ -228,6 +228,14 @@ Json point_of(const TradeoffRun& run, double x) {
   return {{"x", x}, {"y", run.error.worst}, {"note", name_of_run(run)}};
 }
 
+// The same symbol for the same series in every figure: what is not integrated comes first.
+int style_of(const TradeoffRun& run) {
+  if (run.model == "analytic") return run.method == "scalar" ? 0 : 1;
+  if (!is_integrated(run)) return 2;
+  const auto& names = multibody::integrator_names();
+  return 3 + static_cast<int>(std::find(names.begin(), names.end(), run.variant) - names.begin());
+}
+
 // Runs of the same kind and variant make one series each.
 Json figure_of(const std::vector<TradeoffRun>& runs, const std::string& pressure,
                bool by_accuracy) {
@@ -241,7 +249,10 @@ Json figure_of(const std::vector<TradeoffRun>& runs, const std::string& pressure
             : run.model + " " + run.method + (run.method == "driven" ? " " + run.variant : "");
     if (by_name.find(name) == by_name.end()) {
       names.push_back(name);
-      by_name[name] = {{"name", name}, {"line", is_integrated(run)}, {"points", Json::array()}};
+      by_name[name] = {{"name", name},
+                       {"style", style_of(run)},
+                       {"line", is_integrated(run)},
+                       {"points", Json::array()}};
     }
     by_name[name]["points"].push_back(
         point_of(run, by_accuracy ? *run.accuracy : run.seconds_per_turn));

@@ -635,7 +635,7 @@ function barChart(width, groups, [low, high], figure) {
 
 // ---- Figures: points in a plane --------------------------------------------------------------------
 
-// figure: {x: {label, log}, y: {label, log}, series: [{name, line, emphasis, points: [{x, y, note}]}]}. Points
+// figure: {x: {label, log}, y: {label, log}, series: [{name, style, line, emphasis, points: [{x, y, note}]}]}. Points
 // that a logarithmic axis cannot show are left out; every point's note shows on hovering.
 const MARKS = [
   (x, y) => ({ tag: "circle", cx: x, cy: y, r: 4.5 }),
@@ -656,10 +656,10 @@ function scatterFigure(figure, data) {
   if (!all.length) return [el("p.empty", {}, "There is nothing to draw.")];
   let next = 0;
   for (const s of all) {
-    s.index = s.emphasis ? -1 : next++;
+    s.index = s.emphasis ? -1 : s.style ?? next++;  // the same style for the same thing in every figure
     s.colour = s.emphasis ? "#67727e" : COLOURS[s.index % COLOURS.length];
   }
-  const key = el("p.key", {}, all.map(s => {
+  const key = el("p.key.wrap", {}, all.map(s => {
     const box = svg("svg", { width: 34, height: 14, "aria-hidden": "true", class: "swatch" });
     if (s.line) box.append(svg("line", { x1: 0, x2: 34, y1: 7, y2: 7, stroke: s.colour, "stroke-width": s.emphasis ? 6 : 1.5,
                                          opacity: s.emphasis ? 0.35 : 1 }));
