@@ -171,7 +171,12 @@ std::string csv_of(const std::vector<TradeoffRun>& runs) {
 }
 
 Json json_of(const std::vector<TradeoffRun>& runs) {
-  const auto front = pareto_front(runs, is_integrated);
+  std::vector<std::size_t> front;  // of each pressure
+  for (const char* pressure : {"smooth", "step"})
+    for (const std::size_t i : pareto_front(runs, [&](const TradeoffRun& run) {
+           return is_integrated(run) && run.pressure == pressure;
+         }))
+      front.push_back(i);
   Json rows = Json::array();
   for (std::size_t i = 0; i < runs.size(); ++i) {
     Json row;
