@@ -15,20 +15,32 @@ using Numbers = closed_form::Pump<double>;
 // both kinds of piston are treated through their moments about A.
 void prepare_piston(const PumpParameters& pump, PistonInertia inertia, Numbers& p) {
   p.mass = pump.piston.mass;
+  p.spin_momentum = 0;
   const double length = pump.geometry.piston_length;
-  double share = 0;  // sG / b1
   if (inertia == PistonInertia::lumped) {
-    share = 1 - pump.piston.joint_mass_fraction;
-    p.inertia = p.mass * share;
-    p.spin_momentum = 0;
-  } else {
-    if (!pump.piston.real) throw InputError("real pistons asked for, but the case has no data");
-    const PistonMass::Real& real = *pump.piston.real;
-    share = real.centre_of_mass / length;
-    p.inertia = p.mass * share * share + real.transverse_inertia / (length * length);
-    p.spin_momentum = real.axial_inertia * real.spin / length;
+    p.static_moment = p.mass * (1 - pump.piston.joint_mass_fraction);
+    p.inertia = p.static_moment;
+    return;
+  }
+  if (const std::string why = piston_inertia_refusal(inertia, pump); !why.empty())
+    throw InputError(to_string(inertia) + " pistons: " + why);
+  const PistonMass::Real& real = *pump.piston.real;
+  const double centre = real.centre_of_mass;
+  const double share = centre / length;
+  if (inertia == PistonInertia::dynamically_equivalent) {
+    // Point masses at A and B that have the transverse inertia about the centre of mass between
+    // them, and the rest there.
+    const bool spread = real.transverse_inertia > 0;
+    const double at_joint = spread ? real.transverse_inertia / (length * centre) : 0;
+    const double at_ring = spread ? real.transverse_inertia / (length * (length - centre)) : 0;
+    const double at_centre = p.mass - at_joint - at_ring;
+    p.static_moment = at_ring + at_centre * share;
+    p.inertia = at_ring + at_centre * share * share;
+    return;
   }
   p.static_moment = p.mass * share;
+  p.inertia = p.mass * share * share + real.transverse_inertia / (length * length);
+  p.spin_momentum = real.axial_inertia * real.spin / length;
 }
 
 void prepare_block(const PumpParameters& pump, Numbers& p) {

@@ -1,5 +1,7 @@
 #include "assumptions.h"
 
+#include <algorithm>
+
 #include "bentaxis/pump/error.h"
 
 namespace bentaxis::cli {
@@ -17,16 +19,19 @@ void apply_assumption(const std::string& text, const PumpParameters& pump,
   if (key == "piston_friction") {
     assumptions.piston_friction = pick("off", "on");
   } else if (key == "inertia") {
-    assumptions.inertia = pick("lumped", "real") ? PistonInertia::real : PistonInertia::lumped;
-    if (assumptions.inertia == PistonInertia::real && !pump.piston.real)
-      throw InputError("assumption \"" + text +
-                       "\": the case has no centre_of_mass_mm, transverse_inertia_kg_mm2 and "
-                       "axial_inertia_kg_mm2 in [piston]");
+    const auto& names = piston_inertia_names();
+    const auto found = std::find(names.begin(), names.end(), value);
+    if (found == names.end())
+      throw InputError("assumption \"" + text + "\": inertia must be lumped, real or " + names[2]);
+    assumptions.inertia = static_cast<PistonInertia>(found - names.begin());
+    if (const std::string why = piston_inertia_refusal(assumptions.inertia, pump); !why.empty())
+      throw InputError("assumption \"" + text + "\": " + why);
   } else if (key == "gear") {
     assumptions.gear = pick("mesh", "imposed") ? GearScene::imposed : GearScene::mesh;
   } else {
     throw InputError("assumption \"" + text +
-                     "\": must be piston_friction=on|off, inertia=lumped|real or gear=mesh|imposed");
+                     "\": must be piston_friction=on|off, inertia=lumped|real|"
+                     "dynamically_equivalent or gear=mesh|imposed");
   }
 }
 

@@ -7,7 +7,8 @@
 
 namespace bentaxis::cli {
 
-/// Applies KEY=VALUE (piston_friction=on|off, inertia=lumped|real, gear=mesh|imposed).
+/// Applies KEY=VALUE (piston_friction=on|off, inertia=lumped|real|dynamically_equivalent,
+/// gear=mesh|imposed).
 /// @throws InputError
 void apply_assumption(const std::string& text, const PumpParameters& pump,
                       Assumptions& assumptions);

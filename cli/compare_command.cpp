@@ -1,10 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fmt/format.h>
 #include <memory>
 #include <optional>
 
+#include "assumptions.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/compare/comparison.h"
@@ -17,10 +19,11 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
 #include "bentaxis/pump/units.h"
-#include "assumptions.h"
 #include "calibration.h"
 #include "commands.h"
 #include "console.h"
+#include "hydraulic_case.h"
+#include "hydraulic_report.h"
 #include "models.h"
 #include "pump_report.h"
 #include "versions.h"
@@ -28,8 +31,8 @@
 namespace bentaxis::cli {
 namespace {
 
-constexpr double kDrivenTolerance = 1e-9;     // of peak; both models are exact to round-off
-constexpr double kIntegratedFactor = 100;     // achieved error over Simbody's accuracy per step
+constexpr double kDrivenTolerance = 1e-9;       // of peak; both models are exact to round-off
+constexpr double kIntegratedFactor = 100;       // achieved error over Simbody's accuracy per step
 constexpr double kDrivenRestTolerance = 1e-10;  // of what no assumption explains, of peak
 
 struct Options {
@@ -178,8 +181,8 @@ SplitResult split_assumptions(const Study& study, const compare::ZeroScales& sca
       if ((mask & (1U << i)) != 0) changes[i](assumptions, to);
     return analytic::run(study.analytic_case, assumptions, study.samples);
   };
-  result.split = compare::split_difference(study.analytic, study.multibody, names, variant, scales,
-                                           tolerance);
+  result.split =
+      compare::split_difference(study.analytic, study.multibody, names, variant, scales, tolerance);
   return result;
 }
 
@@ -189,17 +192,13 @@ std::string headline(const compare::Comparison& comparison, const SplitResult& s
       worst == nullptr ? ""
                        : fmt::format("{} at {:g} deg: {:.1e} of its peak", worst->channel.name,
                                      worst->theta_of_largest_deg, worst->largest_over_peak());
-  if (split.split) {
-    double rest = 0;
-    for (const auto& channel : split.split->channels)
-      if (channel.computed) rest = std::max(rest, channel.rest_over_peak());
+  if (split.split)
     return fmt::format(
         "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak is "
         "left (tolerance {:g}).",
         agrees ? "Explained." : "Not explained.", where,
-        agrees ? "After accounting for each assumption" : "Each assumption accounted for", rest,
-        split.split->tolerance);
-  }
+        agrees ? "After accounting for each assumption" : "Each assumption accounted for",
+        split.split->largest_rest(), split.split->tolerance);
   return fmt::format("{} Largest difference {} (tolerance {:g}).",
                      agrees ? "The two models agree." : "The two models differ.", where,
                      comparison.tolerance);
@@ -234,14 +233,29 @@ int compare(Options options) {
   for (const auto& text : options.multibody) apply_assumption(text, second.pump, second.multibody);
   check_same_run(first, second);
   OutputFolder folder(options.out);
+  // The same case is solved once: both models get the very same curve.
+  const bool same_case = options.multibody_case.empty();
+  ReadyCase ready = with_pressure(std::move(first));
+  first = std::move(ready.the_case);
+  if (same_case)
+    second.pressure = first.pressure;
+  else
+    second = with_pressure(std::move(second)).the_case;
 
   const bool integrated = options.way == Way::integrated;
   PressureTrace pressure(first.pressure);
   PressureTrace second_pressure(second.pressure);
   Samples samples = samples_of(first, pressure, options.way);
   Samples second_samples = samples_of(second, second_pressure, options.way);
-  Study study{std::move(first),   std::move(second),         std::move(pressure),
-              std::move(second_pressure), std::move(samples), std::move(second_samples), 0, {}, {}};
+  Study study{std::move(first),
+              std::move(second),
+              std::move(pressure),
+              std::move(second_pressure),
+              std::move(samples),
+              std::move(second_samples),
+              0,
+              {},
+              {}};
   const Case& the_case = study.analytic_case;
   const int n = the_case.pump.geometry.pistons;
 
@@ -266,8 +280,7 @@ int compare(Options options) {
   else
     study.multibody = run_multibody(study, options, 0, nullptr);
 
-  const auto comparison =
-      compare::compare_tables(study.analytic, study.multibody, comparison_options);
+  auto comparison = compare::compare_tables(study.analytic, study.multibody, comparison_options);
   std::vector<compare::Check> checks =
       compare::judge_checks(study.analytic, comparison_options.zero_scales, study.tolerance);
   for (auto& check :
@@ -276,10 +289,10 @@ int compare(Options options) {
   const SplitResult split = split_assumptions(
       study, comparison_options.zero_scales,
       integrated ? study.tolerance : std::min(study.tolerance, kDrivenRestTolerance));
+  if (split.split) compare::mark_explained(comparison, *split.split);
   const bool checks_hold =
       std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.holds(); });
-  const bool agrees =
-      checks_hold && (split.split ? split.split->explained() : comparison.agrees());
+  const bool agrees = checks_hold && (split.split ? split.split->explained() : comparison.agrees());
 
   // Fig. 32 with and without the block's viscous torque.
   std::vector<ResultTable> without_viscous;
@@ -294,8 +307,8 @@ int compare(Options options) {
                                                     progress_of("multibody, Cc = 0")));
   }
 
-  const auto limits = analytic::check_validity(the_case, the_case.analytic, study.samples,
-                                               study.analytic);
+  const auto limits =
+      analytic::check_validity(the_case, the_case.analytic, study.samples, study.analytic);
   const auto* worst = comparison.worst();
   Json report = {
       {"schema", 1},
@@ -316,32 +329,41 @@ int compare(Options options) {
                                    : Json()}}},
       {"meaning",
        "Two models that agree have solved the same equations correctly: that is verification. It "
-       "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
+       "says nothing about what both leave out or share (tables below). Whether a real pump "
+       "behaves "
        "so is validation, and needs measurements."},
       {"warnings", warnings_section(limits)},
       {"common", common_section(the_case)},
       {"validity", validity_section(limits)},
-      {"models", Json::array({compare::model_section(study.analytic,
-                                                     assumption_lines(the_case.analytic)),
-                              compare::model_section(
-                                  study.multibody,
-                                  assumption_lines(study.multibody_case.multibody))})},
+      {"models",
+       Json::array({compare::model_section(study.analytic, assumption_lines(the_case.analytic)),
+                    compare::model_section(study.multibody,
+                                           assumption_lines(study.multibody_case.multibody))})},
       {"channels", compare::channel_rows(comparison)},
       {"checks", compare::check_rows(checks)},
       {"assumptions", nullptr},
       {"runs", runs},
       {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
-  if (split.split)
+  if (ready.hydraulics) {
+    report["runs"].push_back(hydraulic_block(the_case, *ready.hydraulics));
+    for (Json& figure : hydraulic_figures(the_case, *ready.hydraulics))
+      report["figures"].push_back(std::move(figure));
+    folder.add("pressure.csv", to_csv(ready.hydraulics->table));
+  }
+  if (split.split) {
+    report["verdict"]["word"] = agrees ? "Explained" : "Not explained";
+    report["verdict"]["rest_over_peak"] = split.split->largest_rest();
+    report["verdict"]["rest_tolerance"] = split.split->tolerance;
     report["assumptions"] = compare::split_section(
         *split.split, split.rows,
         "The models were asked to assume different things. Each assumption's contribution is its "
         "effect in the analytic model, averaged over the orders in which the assumptions can be "
         "taken over; what is left is a difference between the models themselves.");
+  }
 
   const Json curves = compare::curve_section(study.analytic, study.multibody);
   folder.add("report.html", compare::render_page(the_case.name, report, curves));
-  folder.add("report.json",
-             report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  folder.add("report.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   folder.add("analytic.csv", to_csv(study.analytic));
   folder.add("multibody.csv", to_csv(study.multibody));
   const auto paths = folder.commit();
@@ -365,14 +387,14 @@ int compare(Options options) {
 
 Command add_compare_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "compare", "Run both models and report where and by how much they differ");
+  CLI::App* command =
+      app.add_subcommand("compare", "Run both models and report where and by how much they differ");
   add_case(*command, options->case_file);
   add_out(*command, options->out, "report.html, report.json and the curves");
   command
       ->add_option("--tolerance", options->tolerance,
                    "largest difference over peak that counts as agreement")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   add_way(*command, options->way);
   CLI::Option* integrator = add_integrator(*command, options->integration);
@@ -387,7 +409,8 @@ Command add_compare_command(CLI::App& app) {
   command
       ->add_option("--analytic", options->analytic,
                    "assumption of the analytic model: piston_friction=on|off, "
-                   "inertia=lumped|real, gear=mesh|imposed; overrides the case file")
+                   "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed; overrides the "
+                   "case file")
       ->option_text("KEY=VALUE ..");
   command->add_option("--multibody", options->multibody, "the same for the multibody model")
       ->option_text("KEY=VALUE ..");

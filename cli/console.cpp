@@ -1,10 +1,11 @@
 #include "console.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
-#include <unistd.h>
 
 #include "bentaxis/pump/error.h"
 
@@ -23,6 +24,7 @@ void on_signal(int signal) {
 void watch_for_interruption() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGHUP, on_signal);
 }
 
 Progress progress_of(const std::string& job) {

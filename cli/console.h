@@ -7,7 +7,7 @@
 
 namespace bentaxis::cli {
 
-/// From here on Ctrl-C and SIGTERM end a run at its next progress report.
+/// From here on Ctrl-C, SIGTERM and SIGHUP end a run at its next progress report.
 void watch_for_interruption();
 
 /// Progress of a named job: a line on standard error if that is a terminal, nothing otherwise.

@@ -38,12 +38,12 @@ int main(int argc, char** argv) {
       "how far they are apart.",
       "bentaxis"};
   app.set_version_flag("--version", "bentaxis " BENTAXIS_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.footer(
       "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
       "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out");
   const std::vector<Command> commands = {add_run_command(app), add_compare_command(app),
-                                         add_tradeoff_command(app)};
+                                         add_pressure_command(app), add_tradeoff_command(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
@@ -55,5 +55,6 @@ int main(int argc, char** argv) {
   watch_for_interruption();
   for (const Command& command : commands)
     if (command.parser->parsed()) return guarded(command.run);
+  std::fprintf(stderr, "bentaxis: a command is needed, such as compare (see bentaxis --help)\n");
   return kBadInput;
 }

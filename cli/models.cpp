@@ -5,6 +5,7 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/error.h"
 #include "console.h"
 
 namespace bentaxis::cli {
@@ -19,13 +20,18 @@ ResultTable run_model(const std::string& model, const Case& the_case,
                       const Assumptions& assumptions, const Samples& samples,
                       const PressureTrace& pressure, Way way,
                       const multibody::IntegrationOptions& integration,
-                      multibody::IntegrationRecord* record) {
+                      multibody::IntegrationRecord* record, const multibody::SceneChoice& scene) {
   const Progress progress = progress_of(model);
   if (model == "analytic") return analytic::run(the_case, assumptions, samples, progress);
   if (way == Way::driven)
-    return multibody::run_driven(the_case, assumptions, samples, progress);
-  auto run = multibody::run_integrated(the_case, assumptions, samples, pressure, integration,
-                                       progress);
+    return multibody::run_driven(the_case, assumptions, samples, progress, scene.scene,
+                                 scene.method);
+  if (scene.scene != multibody::Scene::full || scene.method != multibody::Method::multipliers)
+    throw InputError(
+        "--scene and --reactions are for --way driven: an integrated run is of the full "
+        "pump, by its equations of motion");
+  auto run =
+      multibody::run_integrated(the_case, assumptions, samples, pressure, integration, progress);
   if (record != nullptr) *record = run.record;
   return std::move(run.table);
 }

@@ -16,12 +16,14 @@ Samples samples_of(const Case& the_case, const PressureTrace& pressure, Way way)
 
 /// Runs "analytic" or "multibody" under the given assumptions.
 /// @param integration  used where way is integrated (multibody only)
+/// @param scene        of the driven multibody model; an integrated run is of the full pump
 /// @param record       filled by an integrated run, if not null
 ResultTable run_model(const std::string& model, const Case& the_case,
                       const Assumptions& assumptions, const Samples& samples,
                       const PressureTrace& pressure, Way way,
                       const multibody::IntegrationOptions& integration,
-                      multibody::IntegrationRecord* record = nullptr);
+                      multibody::IntegrationRecord* record = nullptr,
+                      const multibody::SceneChoice& scene = {});
 
 /// Scales for groups of channels whose peak is zero: the case's largest load.
 compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples);

@@ -1,7 +1,10 @@
 #include "options.h"
 
+#include <cmath>
+#include <functional>
 #include <map>
 
+#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 
 namespace bentaxis::cli {
@@ -27,21 +30,35 @@ void add_way(CLI::App& command, Way& way) {
 
 namespace {
 
-std::map<std::string, multibody::Integrator> integrators_by_name() {
-  std::map<std::string, multibody::Integrator> names;
-  for (const auto integrator : all_integrators())
-    names[multibody::integrator_names()[static_cast<std::size_t>(integrator)]] = integrator;
-  return names;
-}
-
-std::string integrator_list(const std::string& separator) {
+// An option whose values are an enumeration's names in its order.
+template <class Enumeration>
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Enumeration& value,
+                        const std::vector<std::string>& words, const std::string& what) {
+  std::map<std::string, Enumeration> names;
   std::string list;
-  for (const std::string& name : multibody::integrator_names())
-    list += (list.empty() ? "" : separator) + name;
-  return list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    names[words[i]] = static_cast<Enumeration>(i);
+    list += (i == 0 ? "" : "|") + words[i];
+  }
+  return command.add_option(name, value, what)
+      ->transform(CLI::CheckedTransformer(names))
+      ->option_text(list + " [" + words[static_cast<std::size_t>(value)] + "]");
 }
 
 }  // namespace
+
+void add_scene(CLI::App& command, multibody::SceneChoice& choice) {
+  add_choice(command, "--scene", choice.scene, multibody::scene_names(),
+             "multibody, driven: what is built; what a scene does not compute stays empty");
+  add_choice(command, "--reactions", choice.method, multibody::method_names(),
+             "multibody, driven: by forward dynamics and its multipliers, or by inverse dynamics "
+             "(faster; serves massless pistons too)");
+}
+
+CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
+  return add_choice(command, "--integrator", options.integrator, multibody::integrator_names(),
+                    "time integrator of an integrated run");
+}
 
 std::vector<multibody::Integrator> all_integrators() {
   std::vector<multibody::Integrator> all;
@@ -50,18 +67,18 @@ std::vector<multibody::Integrator> all_integrators() {
   return all;
 }
 
-CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
-  return command
-      .add_option("--integrator", options.integrator, "time integrator of an integrated run")
-      ->transform(CLI::CheckedTransformer(integrators_by_name()))
-      ->option_text(integrator_list("|") + " [rk-merson]");
-}
-
 void add_integrators(CLI::App& command, std::vector<multibody::Integrator>& integrators) {
+  std::map<std::string, multibody::Integrator> names;
+  std::string list;
+  for (const auto integrator : all_integrators()) {
+    const std::string& name = multibody::integrator_names()[static_cast<std::size_t>(integrator)];
+    names[name] = integrator;
+    list += (list.empty() ? "" : ",") + name;
+  }
   command.add_option("--integrators", integrators, "time integrators to try")
       ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(integrators_by_name()))
-      ->option_text("NAME[,NAME..] [" + integrator_list(",") + "]");
+      ->transform(CLI::CheckedTransformer(names))
+      ->option_text("NAME[,NAME..] [" + list + "]");
 }
 
 std::vector<multibody::Integrator> ErrorTarget::integrators() const {
@@ -85,11 +102,34 @@ void add_error(CLI::App& command, ErrorTarget& target,
       .add_option("--error", target.error,
                   "integrated: choose integrator and accuracy for this error of every reaction, of "
                   "peak, by a short calibration, and verify it")
-      ->check(CLI::Range(1e-11, 0.1, "in [1e-11, 0.1]"))
+      ->check(number_in(1e-11, 0.1))
       ->excludes(accuracy)
       ->option_text("NUMBER");
 }
 
-CLI::Range accuracy_range() { return {1e-12, 0.1, "in [1e-12, 0.1]"}; }
+namespace {
+
+CLI::Validator number_that(const std::string& range, const std::function<bool(double)>& allowed) {
+  return {[=](const std::string& text) {
+            double value = 0;
+            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value))
+              return std::string();
+            return text + ": must be " + range;
+          },
+          ""};
+}
+
+}  // namespace
+
+CLI::Validator number_in(double low, double high) {
+  return number_that("in [" + number_text(low) + ", " + number_text(high) + "]",
+                     [=](double value) { return value >= low && value <= high; });
+}
+
+CLI::Validator accuracy_range() { return number_in(1e-12, 0.1); }
+
+CLI::Validator positive_number() {
+  return number_that("a finite number > 0", [](double value) { return value > 0; });
+}
 
 }  // namespace bentaxis::cli

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bentaxis/multibody/integrated.h"
+#include "bentaxis/multibody/scene.h"
 
 namespace bentaxis::cli {
 
@@ -33,7 +34,13 @@ struct ErrorTarget {
 void add_error(CLI::App& command, ErrorTarget& target,
                const multibody::IntegrationOptions& integration, CLI::Option* integrator,
                CLI::Option* accuracy);
+/// A finite number in [low, high].
+CLI::Validator number_in(double low, double high);
+/// --scene and --reactions.
+void add_scene(CLI::App& command, multibody::SceneChoice& choice);
 /// Accuracies that Simbody's integrators accept.
-CLI::Range accuracy_range();
+CLI::Validator accuracy_range();
+/// A finite number above 0.
+CLI::Validator positive_number();
 
 }  // namespace bentaxis::cli

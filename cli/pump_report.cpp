@@ -1,8 +1,9 @@
 #include "pump_report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/compare/report.h"
@@ -40,24 +41,27 @@ Json derived_section(const Case& the_case) {
   add("ideal torque", "", derived.displacement * pressure / (2 * kPi), "Nm",
       "V (delivery - suction) / 2 pi");
   add("gear torque arm", "(d/2) cos ap",
-      the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle) * 1e3, "mm",
-      "(19), (22)");
+      the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle) * 1e3,
+      "mm", "(19), (22)");
   add("pitch cone", "delta", 90 - the_case.pump.geometry.tilt / kRadPerDegree / 2, "deg",
       "90 deg - alpha/2");
   return rows;
 }
 
 Json common_section(const Case& the_case) {
-  const bool curve = the_case.pressure.kind == PressureKind::curve;
+  const std::string once = ", evaluated once per sample and given to both models";
+  std::string trace = "ideal trace" + once;
+  if (the_case.pressure.kind == PressureKind::curve)
+    trace = "periodic cubic spline through " + the_case.pressure.file.filename().string() + once;
+  if (the_case.pressure.kind == PressureKind::hydraulic)
+    trace = fmt::format("hydraulic model, periodic cubic spline through {} points{}",
+                        the_case.pressure.points, once);
   Json rows = Json::array();
   const auto add = [&](const std::string& input, const std::string& value,
                        const std::string& caught_by) {
     rows.push_back({{"input", input}, {"value", value}, {"caught_by", caught_by}});
   };
-  add("chamber pressure",
-      curve ? "periodic cubic spline through " + the_case.pressure.file.filename().string() +
-                  ", evaluated once per sample and given to both models"
-            : "ideal trace, evaluated once per sample and given to both models",
+  add("chamber pressure", trace,
       "high-precision curves (computed with their own trace); mean torque of a frictionless pump = "
       "displacement x pressure / 2 pi");
   add("geometry, masses, loads of the case file", "read and converted to SI once",
@@ -70,7 +74,8 @@ Json common_section(const Case& the_case) {
   add("law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model");
   add("constant speed, equal for shaft and block (1:1)",
       "omega given; no torsion, no play in the gear",
-      "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, holds "
+      "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, "
+      "holds "
       "its speed");
   add("rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
       "nothing here: a rig or an elastic model");
@@ -156,7 +161,8 @@ Json figures_section(const ResultTable& analytic, const ResultTable& multibody,
     Json list = Json::array();
     for (const ResultTable& table : without_viscous)
       if (has(table, channel))
-        list.push_back({{"label", table.name + ", Cc = 0"}, {"values", compare::curve(table, channel)}});
+        list.push_back(
+            {{"label", table.name + ", Cc = 0"}, {"values", compare::curve(table, channel)}});
     return list;
   };
   if (has(analytic, "Rcs_z4_N") || has(multibody, "Rcs_z4_N"))

@@ -6,6 +6,7 @@
 #include "bentaxis/pump/files.h"
 #include "calibration.h"
 #include "commands.h"
+#include "hydraulic_case.h"
 #include "models.h"
 
 namespace bentaxis::cli {
@@ -14,15 +15,16 @@ namespace {
 struct Options {
   std::string case_file, model, out = "out";
   Way way = Way::driven;
-  std::string scene = "full";
+  multibody::SceneChoice scene;
   std::string gear;  ///< "", "mesh" or "imposed"
   multibody::IntegrationOptions integration;
   ErrorTarget target;
 };
 
 int run(const Options& options) {
-  const Case the_case = read_case(options.case_file);
+  Case the_case = read_case(options.case_file);
   OutputFolder folder(options.out);
+  the_case = with_pressure(std::move(the_case)).the_case;
   const PressureTrace pressure(the_case.pressure);
   const Way way = options.model == "multibody" ? options.way : Way::driven;
   Assumptions assumptions = options.model == "analytic" ? the_case.analytic : the_case.multibody;
@@ -38,7 +40,7 @@ int run(const Options& options) {
     table = std::move(verified.run.table);
   } else {
     table = run_model(options.model, the_case, assumptions, samples, pressure, way,
-                      options.integration);
+                      options.integration, nullptr, options.scene);
   }
   folder.add(options.model + ".csv", to_csv(table));
   for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
@@ -57,9 +59,7 @@ Command add_run_command(CLI::App& app) {
       ->option_text("analytic|multibody");
   add_out(*command, options->out, "the curves");
   add_way(*command, options->way);
-  command->add_option("--scene", options->scene, "multibody: what is built")
-      ->check(CLI::IsMember({"full"}))
-      ->option_text("full [full]");
+  add_scene(*command, options->scene);
   command
       ->add_option("--gear", options->gear,
                    "tooth force between shaft and block, or block speed imposed; overrides the "

@@ -23,13 +23,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Scenes of the driven multibody model: one line each.
-struct Scene {
-  const char* name;
-  ResultTable (*run)(const Case&, const Assumptions&, const Samples&, const Progress&);
-};
-constexpr Scene kScenes[] = {{"full", multibody::run_driven}};
-
 // A run is repeated as long as that takes no longer than this, s.
 constexpr double kRepeatFor = 0.3;
 
@@ -74,13 +67,16 @@ class Measurement {
         samples_(sample_case(the_case, pressure_, 1, the_case.operation.speed_rpm < 0)),
         model_(the_case.pump, assumptions_),
         reference_(right_curves(model_, samples_)),
-        jobs_(2 + std::size(kScenes) + options.integrators.size() * options.accuracies.size()) {}
+        jobs_(2 + multibody::scene_names().size() * multibody::method_names().size() +
+              options.integrators.size() * options.accuracies.size()) {}
 
   std::vector<TradeoffRun> all() {
     scalar();
     for (const auto set : analytic::available_instruction_sets()) batch(set);
     done_ = 2;
-    for (const Scene& scene : kScenes) driven(scene);
+    for (std::size_t m = 0; m < multibody::method_names().size(); ++m)
+      for (std::size_t s = 0; s < multibody::scene_names().size(); ++s)
+        driven(static_cast<multibody::Scene>(s), static_cast<multibody::Method>(m));
     for (const auto integrator : options_.integrators) integrate(integrator);
     if (progress_) progress_(1);
     return std::move(runs_);
@@ -148,14 +144,16 @@ class Measurement {
                         }));
   }
 
-  void driven(const Scene& scene) {
-    TradeoffRun& run = add("multibody", "driven", scene.name);
+  void driven(multibody::Scene scene, multibody::Method method) {
+    TradeoffRun& run = add("multibody", "driven",
+                           multibody::scene_names()[static_cast<std::size_t>(scene)] + ", " +
+                               multibody::method_names()[static_cast<std::size_t>(method)]);
     try {
       run.seconds_per_turn = std::numeric_limits<double>::infinity();
       for (int repeat = 0; repeat < 3; ++repeat) {
-        const ResultTable table = scene.run(case_, assumptions_, samples_, [&](double fraction) {
-          report(fraction / 3 + repeat / 3.0);
-        });
+        const auto watch = [&](double fraction) { report(fraction / 3 + repeat / 3.0); };
+        const ResultTable table =
+            multibody::run_driven(case_, assumptions_, samples_, watch, scene, method);
         run.seconds_per_turn = std::min(run.seconds_per_turn, table.provenance.seconds);
         if (repeat == 0) judge(run, table);
       }

@@ -30,7 +30,7 @@ struct TradeoffRun {
 struct TradeoffOptions {
   std::vector<multibody::Integrator> integrators;
   std::vector<double> accuracies;  ///< loosest first
-  int samples_per_revolution = 36;
+  int samples_per_revolution = 0;  ///< 0: eight per piston
   double max_seconds_per_run = 10;
 };
 

@@ -13,6 +13,7 @@
 #include "calibration.h"
 #include "commands.h"
 #include "console.h"
+#include "hydraulic_case.h"
 #include "options.h"
 #include "pump_report.h"
 #include "tradeoff.h"
@@ -287,14 +288,17 @@ Json figure_of(const std::vector<TradeoffRun>& runs, const std::string& pressure
                              "round-off. Integrated runs have a front of their own."}};
 }
 
-int tradeoff(const Options& options) {
-  const Case the_case = read_case(options.case_file);
+int tradeoff(Options options) {
+  const Case the_case = read_ready_case(options.case_file).the_case;
   if (the_case.operation.speed_rpm == 0)
     throw InputError(
         options.case_file +
         ": [operation] speed_rpm = 0: tradeoff integrates in time, which needs a speed "
         "other than 0");
   OutputFolder folder(options.out);
+  // A few angles per pitch, so that one piston can stand for all where it may.
+  if (options.tradeoff.samples_per_revolution == 0)
+    options.tradeoff.samples_per_revolution = 8 * the_case.pump.geometry.pistons;
   const Progress progress = progress_of("tradeoff");
   const std::vector<Variant> both = variants(the_case);
 
@@ -368,13 +372,13 @@ Command add_tradeoff_command(CLI::App& app) {
       ->option_text("NUMBER[,NUMBER..] [1e-2,1e-3,..,1e-10]");
   command
       ->add_option("--samples", tradeoff_options.samples_per_revolution,
-                   "angles per turn at which results are taken; few, because each ends a step")
+                   "angles per turn at which results are taken; each ends a step")
       ->check(CLI::Range(1, 100000))
-      ->option_text("NUMBER [36]");
+      ->option_text("NUMBER [8 per piston]");
   command
       ->add_option("--max-seconds-per-run", tradeoff_options.max_seconds_per_run,
                    "stop an integrated run that takes longer, and try no tighter accuracy")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->option_text("NUMBER [10]");
   return {command, [options] {
             TradeoffOptions& o = options->tradeoff;

@@ -1,9 +1,11 @@
 #include "versions.h"
 
-#include <Eigen/Core>
-#include <fstream>
 #include <sys/utsname.h>
 
+#include <Eigen/Core>
+#include <fstream>
+
+#include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
 
 namespace bentaxis::cli {
@@ -20,20 +22,21 @@ std::string processor() {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> versions() {
-  return {{"bentaxis", BENTAXIS_VERSION},
-          {"compiler",
+  return {
+      {"bentaxis", BENTAXIS_VERSION},
+      {"compiler",
 #ifdef __clang__
-           "Clang " __clang_version__
+       "Clang " __clang_version__
 #else
-           "GCC " __VERSION__
+       "GCC " __VERSION__
 #endif
-          },
-          {"build", std::string(BENTAXIS_BUILD_TYPE) + ", " + BENTAXIS_CXX_FLAGS},
-          {"Eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
-                        "." + std::to_string(EIGEN_MINOR_VERSION)},
-          {"Simbody", multibody::simbody_version()},
-          {"BLAS", multibody::blas_library()},
-          {"processor", processor()}};
+      },
+      {"build", std::string(BENTAXIS_BUILD_TYPE) + ", " + BENTAXIS_CXX_FLAGS},
+      {"Eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                    "." + std::to_string(EIGEN_MINOR_VERSION)},
+      {"Simbody", multibody::simbody_version()},
+      {"BLAS", multibody::blas_library()},
+      {"processor", processor()}};
 }
 
 }  // namespace bentaxis::cli

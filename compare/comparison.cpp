@@ -25,7 +25,8 @@ std::size_t samples_per_turn(const std::vector<double>& theta) {
   if (whole == 0 || std::abs(turns - whole) > 1e-9) return 0;
   for (std::size_t i = 1; i < theta.size(); ++i)
     if (std::abs(theta[i] - theta[0] - step * static_cast<double>(i)) > 1e-9) return 0;
-  return static_cast<std::size_t>(std::llround(static_cast<double>(theta.size()) / std::abs(whole)));
+  return static_cast<std::size_t>(
+      std::llround(static_cast<double>(theta.size()) / std::abs(whole)));
 }
 
 std::complex<double> fourier(const ResultTable& table, std::size_t column, int order) {
@@ -62,8 +63,7 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
   result.rms = std::sqrt(square / count);
   for (double* value : {&result.mean[0], &result.mean[1], &result.mean_difference}) *value /= count;
   const double relative = result.largest_over_peak();
-  result.digits =
-      relative > 0 ? std::clamp(-std::log10(relative), 0.0, kMostDigits) : kMostDigits;
+  result.digits = relative > 0 ? std::clamp(-std::log10(relative), 0.0, kMostDigits) : kMostDigits;
   result.verdict = relative <= result.tolerance ? Verdict::agrees : Verdict::differs;
 }
 
@@ -75,6 +75,8 @@ const char* to_string(Verdict verdict) {
       return "agrees";
     case Verdict::differs:
       return "differs";
+    case Verdict::explained:
+      return "explained";
     case Verdict::not_computed:
       break;
   }
@@ -144,7 +146,8 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
         if (per_turn <= static_cast<std::size_t>(2 * order)) continue;  // would alias
         Harmonic harmonic;
         harmonic.order = order;
-        const std::complex<double> values[2] = {fourier(first, a, order), fourier(second, b, order)};
+        const std::complex<double> values[2] = {fourier(first, a, order),
+                                                fourier(second, b, order)};
         if (!std::isfinite(std::abs(values[0]))) continue;  // not computed everywhere
         for (int i = 0; i < 2; ++i) {
           harmonic.amplitude[i] = std::abs(values[i]);

@@ -11,15 +11,16 @@
 namespace bentaxis::compare {
 
 enum class Verdict {
-  agrees,        ///< largest difference within tolerance x peak
+  agrees,  ///< largest difference within tolerance x peak
   differs,
+  explained,     ///< differs, and differing assumptions account for it
   not_computed,  ///< at least one table has no value of this channel
 };
 
 /// One harmonic of the shaft angle: x = amplitude cos(order theta - phase).
 struct Harmonic {
   int order = 0;
-  double amplitude[2] = {0, 0};  ///< of first and second table, channel's unit
+  double amplitude[2] = {0, 0};        ///< of first and second table, channel's unit
   std::optional<double> phase_deg[2];  ///< empty where the amplitude is round-off
 };
 

@@ -1,14 +1,29 @@
 #include "bentaxis/compare/report.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fmt/format.h>
 #include <map>
 
 namespace bentaxis::compare {
 namespace {
+
+const char* to_string(ChannelKind kind) {
+  switch (kind) {
+    case ChannelKind::reaction:
+      return "reaction";
+    case ChannelKind::derived:
+      return "derived";
+    case ChannelKind::input:
+      return "input";
+    case ChannelKind::check:
+      break;
+  }
+  return "check";
+}
 
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -19,7 +34,8 @@ Json rounded(double value) {
 
 Json column(const ResultTable& table, std::size_t index) {
   Json values = Json::array();
-  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(rounded(table.at(row, index)));
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    values.push_back(rounded(table.at(row, index)));
   return values;
 }
 
@@ -29,17 +45,23 @@ Json channel_rows(const Comparison& comparison) {
   Json rows = Json::array();
   for (const ChannelComparison& c : comparison.channels) {
     const Channel& channel = c.channel;
-    Json row = {{"name", channel.name},     {"quantity", channel.quantity},
-                {"meaning", channel.meaning}, {"equation", channel.equation},
-                {"piston", channel.piston}, {"axis", channel.axis},
-                {"frame", channel.frame},   {"on_body", channel.on_body},
-                {"by_body", channel.by_body}, {"point", channel.point},
-                {"unit", channel.unit},     {"group", channel.group},
-                {"kind", channel.kind == ChannelKind::reaction  ? "reaction"
-                         : channel.kind == ChannelKind::derived ? "derived"
-                                                                : "input"},
-                {"compared", c.judged},     {"peak", c.peak},
-                {"verdict", to_string(c.verdict)}, {"tolerance", c.tolerance}};
+    Json row = {{"name", channel.name},
+                {"quantity", channel.quantity},
+                {"meaning", channel.meaning},
+                {"equation", channel.equation},
+                {"piston", channel.piston},
+                {"axis", channel.axis},
+                {"frame", channel.frame},
+                {"on_body", channel.on_body},
+                {"by_body", channel.by_body},
+                {"point", channel.point},
+                {"unit", channel.unit},
+                {"group", channel.group},
+                {"kind", to_string(channel.kind)},
+                {"compared", c.judged},
+                {"peak", c.peak},
+                {"verdict", to_string(c.verdict)},
+                {"tolerance", c.tolerance}};
     if (c.verdict != Verdict::not_computed) {
       row["max_abs"] = c.largest;
       row["max_over_peak"] = number_or_null(c.largest_over_peak());
@@ -52,7 +74,8 @@ Json channel_rows(const Comparison& comparison) {
       row["orders"] = Json::array();
       for (const Harmonic& harmonic : c.harmonics) {
         Json phases = Json::array();
-        for (const auto& phase : harmonic.phase_deg) phases.push_back(phase ? Json(*phase) : Json());
+        for (const auto& phase : harmonic.phase_deg)
+          phases.push_back(phase ? Json(*phase) : Json());
         row["orders"].push_back({{"order", harmonic.order},
                                  {"amplitude", {harmonic.amplitude[0], harmonic.amplitude[1]}},
                                  {"phase_deg", phases}});
@@ -103,6 +126,8 @@ Json split_section(const Split& split, const std::vector<AssumptionRow>& rows,
                        {"mean", channel.contributions[i].mean}});
     section["channels"].push_back(
         {{"name", channel.channel.name},
+         {"group", channel.channel.group},
+         {"kind", to_string(channel.channel.kind)},
          {"unit", channel.channel.unit},
          {"peak", channel.peak},
          {"max_abs", channel.largest_difference},
@@ -158,8 +183,8 @@ std::string text_table(const Comparison& comparison) {
   for (const ChannelComparison& c : comparison.channels) {
     if (!c.judged) continue;
     auto& entry = worst[c.channel.group];
-    if (entry == nullptr || (c.verdict != Verdict::not_computed &&
-                             c.largest_over_peak() > entry->largest_over_peak()))
+    if (entry == nullptr ||
+        (c.verdict != Verdict::not_computed && c.largest_over_peak() > entry->largest_over_peak()))
       entry = &c;
   }
   std::vector<const ChannelComparison*> rows;

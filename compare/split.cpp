@@ -12,6 +12,24 @@ bool Split::explained() const {
   });
 }
 
+double Split::largest_rest() const {
+  double rest = 0;
+  for (const ChannelSplit& channel : channels)
+    if (channel.computed) rest = std::max(rest, channel.rest_over_peak());
+  return rest;
+}
+
+void mark_explained(Comparison& comparison, const Split& split) {
+  for (ChannelComparison& channel : comparison.channels) {
+    if (channel.verdict != Verdict::differs) continue;
+    const auto part =
+        std::find_if(split.channels.begin(), split.channels.end(),
+                     [&](const ChannelSplit& s) { return s.channel.name == channel.channel.name; });
+    if (part != split.channels.end() && part->computed && part->rest_over_peak() <= split.tolerance)
+      channel.verdict = Verdict::explained;
+  }
+}
+
 Split split_difference(const ResultTable& first, const ResultTable& second,
                        const std::vector<std::string>& assumptions,
                        const std::function<ResultTable(unsigned mask)>& variant,
@@ -55,8 +73,7 @@ Split split_difference(const ResultTable& first, const ResultTable& second,
           if ((mask & (1U << i)) != 0) continue;
           const double step =
               variants[mask | (1U << i)].at(row, column) - variants[mask].at(row, column);
-          if (is_computed(step))
-            part += weight(static_cast<unsigned>(std::popcount(mask))) * step;
+          if (is_computed(step)) part += weight(static_cast<unsigned>(std::popcount(mask))) * step;
         }
         result.contributions[i].largest = std::max(result.contributions[i].largest, std::abs(part));
         result.contributions[i].mean += part / static_cast<double>(first.rows());

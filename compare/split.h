@@ -33,6 +33,7 @@ struct Split {
   double tolerance = 0;  ///< of the rest, over peak
 
   bool explained() const;
+  double largest_rest() const;  ///< over peak, of all channels
 };
 
 /// Takes second - first apart along `assumptions` in which they differ.
@@ -47,5 +48,8 @@ Split split_difference(const ResultTable& first, const ResultTable& second,
                        const std::vector<std::string>& assumptions,
                        const std::function<ResultTable(unsigned mask)>& variant,
                        const ZeroScales& zero_scales, double tolerance);
+
+/// Marks the channels of a comparison that differ and whose rest is within tolerance as explained.
+void mark_explained(Comparison& comparison, const Split& split);
 
 }  // namespace bentaxis::compare

@@ -15,6 +15,20 @@ SpatialVec constraint_force_on(const SimTK::State& state, const SimTK::Constrain
   return SpatialVec(SimTK::Vec3(0), SimTK::Vec3(0));
 }
 
+int InlineJoint::first_row(const SimTK::State& state) const {
+  SimTK::MultiplierIndex position;
+  SimTK::MultiplierIndex velocity;
+  SimTK::MultiplierIndex acceleration;
+  constraint_.getIndexOfMultipliersInUse(state, position, velocity, acceleration);
+  return position;
+}
+
+SimTK::Vec3 InlineJoint::force_in_base(const SimTK::State& state) const {
+  const SimTK::Vector& multipliers = state.getMultipliers();
+  const int row = first_row(state);
+  return force_in_base(-multipliers[row], -multipliers[row + 1]);
+}
+
 void joint_forces(const SimTK::State& state, const SimTK::SimbodyMatterSubsystem& matter,
                   SimTK::Vector_<SpatialVec>& forces) {
   matter.calcMobilizerReactionForces(state, forces);

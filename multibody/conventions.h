@@ -12,7 +12,8 @@ namespace bentaxis::multibody {
 
 /// Force (at the body's origin) and moment that a constraint exerts on one of its bodies.
 /// @param state  realized to Acceleration
-SimTK::SpatialVec constraint_force_on(const SimTK::State& state, const SimTK::Constraint& constraint,
+SimTK::SpatialVec constraint_force_on(const SimTK::State& state,
+                                      const SimTK::Constraint& constraint,
                                       const SimTK::MobilizedBody& body);
 
 /// Forces and moments of all mobilizers on their bodies at the outboard frame's origin M.
@@ -25,5 +26,35 @@ template <class OneMobilityConstraint>
 double applied_generalized_force(const SimTK::State& state, const OneMobilityConstraint& drive) {
   return -drive.getMultiplier(state);
 }
+
+/// ADAMS' inline joint: keeps a point of the follower on a line of the base by two equations, the
+/// distance along two axes across the line, both fixed in the base. Simbody's PointOnLine with its
+/// axes and signs made explicit.
+class InlineJoint {
+ public:
+  InlineJoint() = default;
+  InlineJoint(SimTK::MobilizedBody& base, const SimTK::UnitVec3& line, const SimTK::Vec3& point,
+              SimTK::MobilizedBody& follower, const SimTK::Vec3& follower_point)
+      : constraint_(base, line, point, follower, follower_point),
+        x_(line.perp()),
+        y_(line % SimTK::Vec3(line.perp())) {}
+
+  const SimTK::Constraint::PointOnLine& constraint() const { return constraint_; }
+
+  /// First of its two rows among the position errors and multipliers of a state.
+  /// @param state  realized to Instance
+  int first_row(const SimTK::State& state) const;
+
+  /// Force on the follower, in the base's frame, whose components along the two axes are these.
+  SimTK::Vec3 force_in_base(double along_x, double along_y) const {
+    return along_x * x_ + along_y * y_;
+  }
+  /// Force on the follower, in the base's frame. @param state  realized to Acceleration
+  SimTK::Vec3 force_in_base(const SimTK::State& state) const;
+
+ private:
+  SimTK::Constraint::PointOnLine constraint_;
+  SimTK::Vec3 x_, y_;
+};
 
 }  // namespace bentaxis::multibody

@@ -34,8 +34,8 @@ class GearMeshImplementation : public SimTK::Constraint::Custom::Implementation 
   void calcPositionErrors(const State&, const Array_<Transform, ConstrainedBodyIndex>& bodies,
                           const Array_<Real, ConstrainedQIndex>&,
                           Array_<Real>& error) const override {
-    const double phase = turn_angle(bodies[block_].R(), block_frame_) -
-                         turn_angle(bodies[shaft_].R(), shaft_frame_);
+    const double phase =
+        turn_angle(bodies[block_].R(), block_frame_) - turn_angle(bodies[shaft_].R(), shaft_frame_);
     error[0] = arm_ * std::remainder(phase, 2 * SimTK::Pi);
   }
 
@@ -101,7 +101,9 @@ double turn_angle(const Rotation& body_in_ground, const Rotation& frame) {
 GearMesh::GearMesh(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& shaft,
                    SimTK::MobilizedBody& block, const Vec3& point, const SimTK::UnitVec3& line,
                    const Rotation& block_frame)
-    : Custom(new GearMeshImplementation(matter, shaft, block, point, Vec3(line), block_frame)) {}
+    : Custom(new GearMeshImplementation(matter, shaft, block, point, Vec3(line), block_frame)),
+      point_(point),
+      line_(line) {}
 
 double GearMesh::tooth_force(const State& state) const {
   return -getMultipliersAsVector(state)[0];  // a multiplier is minus the applied force

@@ -24,6 +24,12 @@ class GearMesh : public SimTK::Constraint::Custom {
 
   /// Force on the block along the line, N. State realized to Acceleration.
   double tooth_force(const SimTK::State& state) const;
+
+  const SimTK::Vec3& point() const { return point_; }
+  const SimTK::Vec3& line() const { return line_; }
+
+ private:
+  SimTK::Vec3 point_, line_;
 };
 
 /// Angle of a body about its fixed axis of rotation, in (-pi, pi]: `frame` has that axis as z.

@@ -1,6 +1,7 @@
 #include "bentaxis/multibody/integrated.h"
 
 #include <SimTKsimbody.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,8 +20,8 @@ using SimTK::Stage;
 
 namespace {
 
-// Within a segment between edges the pressure is evaluated at least this far inside, degrees: beyond
-// the tolerance within which an angle counts as on an edge.
+// Within a segment between edges the pressure is evaluated at least this far inside, degrees:
+// beyond the tolerance within which an angle counts as on an edge.
 constexpr double kInsideEdge = 2e-9;
 
 std::unique_ptr<SimTK::Integrator> make_integrator(const SimTK::MultibodySystem& system,
@@ -80,8 +81,7 @@ class Runner {
  public:
   Runner(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
          const PressureTrace& pressure, const IntegrationOptions& options, Drive drive)
-      : case_(the_case),
-        samples_(samples),
+      : samples_(samples),
         pressure_(pressure),
         system_(the_case.pump, assumptions, samples.omega, drive),
         direction_(samples.omega < 0 ? -1 : 1) {
@@ -93,6 +93,7 @@ class Runner {
                                                   the_case.pump.geometry.joint_circle_radius);
     const double end = samples.theta_deg.empty() ? 0 : std::abs(samples.theta_deg.back());
     edges_ = edge_distances(the_case, assumptions, pressure, end);
+    system_.require_piston_inertia();
     system_.assemble(0, samples.omega);
     system_.copy_assembly_to_dynamics();
     start_ = system_.dynamics().getTime();
@@ -116,14 +117,14 @@ class Runner {
       advance_to(std::abs(samples_.theta_deg[row]));
       note(row);
       if (at_sample) at_sample(row);
-      if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(samples_.theta_deg.size()));
+      if (progress)
+        progress(static_cast<double>(row + 1) / static_cast<double>(samples_.theta_deg.size()));
     }
     const SimTK::State& state = integrator_->getState();
     system_.system().realize(state, Stage::Acceleration);
     record_.work_of_loads = system_.work_of_loads(state);
     record_.work_of_drives = system_.work_of_drives(state);
-    record_.kinetic_energy_gained =
-        system_.system().calcKineticEnergy(state) - energy_at_start_;
+    record_.kinetic_energy_gained = system_.system().calcKineticEnergy(state) - energy_at_start_;
     record_.steps += integrator_->getNumStepsTaken();
     record_.evaluations += integrator_->getNumRealizations();
   }
@@ -192,11 +193,9 @@ class Runner {
     const double angle = turn_angle(shaft.getBodyRotation(state), SimTK::Rotation());
     keep(record_.worst_shaft_angle,
          std::remainder(angle - radians(std::fmod(samples_.theta_deg[row], 360.0)), 2 * kPi));
-    keep(record_.worst_speed,
-         shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
+    keep(record_.worst_speed, shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
   }
 
-  const Case& case_;
   const Samples& samples_;
   const PressureTrace& pressure_;
   PumpSystem system_;
@@ -230,7 +229,7 @@ class Stopwatch {
 }  // namespace
 
 const std::vector<std::string>& integrator_names() {
-  static const std::vector<std::string> names = {"rk-merson", "rk-feldberg", "rk3",
+  static const std::vector<std::string> names = {"rk-merson", "rk-feldberg",         "rk3",
                                                  "verlet",    "semi-explicit-euler", "cpodes"};
   return names;
 }

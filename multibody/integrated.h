@@ -31,13 +31,13 @@ struct IntegrationOptions {
 
 /// What the integration cost and how well it kept the constraints.
 struct IntegrationRecord {
-  double worst_position_error = 0;  ///< m, largest of all constraint equations at the samples
-  double worst_velocity_error = 0;  ///< m/s (rad/s for the speed of the shaft)
-  double worst_gear_phase = 0;      ///< rad, block minus shaft
-  double worst_shaft_angle = 0;     ///< rad, shaft minus omega t
-  double worst_speed = 0;           ///< relative to omega
-  double work_of_loads = 0;         ///< J, pressure, friction, weight, viscous
-  double work_of_drives = 0;        ///< J, drive (and imposed block motion)
+  double worst_position_error = 0;   ///< m, largest of all constraint equations at the samples
+  double worst_velocity_error = 0;   ///< m/s (rad/s for the speed of the shaft)
+  double worst_gear_phase = 0;       ///< rad, block minus shaft
+  double worst_shaft_angle = 0;      ///< rad, shaft minus omega t
+  double worst_speed = 0;            ///< relative to omega
+  double work_of_loads = 0;          ///< J, pressure, friction, weight, viscous
+  double work_of_drives = 0;         ///< J, drive (and imposed block motion)
   double kinetic_energy_gained = 0;  ///< J
   long steps = 0;
   long evaluations = 0;  ///< realizations of the equations of motion

@@ -25,56 +25,64 @@ namespace {
 class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
  public:
   PumpLoadsImplementation(const PumpParameters& pump, const Assumptions& assumptions,
-                          const PumpBodies& bodies, const LoadInputs& inputs)
-      : pump_(pump), assumptions_(assumptions), bodies_(bodies), inputs_(inputs) {}
+                          const PumpBodies& bodies, const LoadInputs& inputs, LoadedBodies loaded)
+      : pump_(pump),
+        assumptions_(assumptions),
+        bodies_(bodies),
+        inputs_(inputs),
+        loaded_(loaded),
+        pressure_(bodies.pistons.size()) {}
 
-  void calcForce(const State& state, SimTK::Vector_<SpatialVec>& forces,
-                 SimTK::Vector_<Vec3>&, SimTK::Vector&) const override {
+  void calcForce(const State& state, SimTK::Vector_<SpatialVec>& forces, SimTK::Vector_<Vec3>&,
+                 SimTK::Vector&) const override {
     const Vec3 z1(0, 0, 1);
     const Vec3 z2(bodies_.block_frame.z());
     const auto& shaft = bodies_.shaft;
     const auto& block = bodies_.block;
+    SpatialVec& on_block = forces[block.getMobilizedBodyIndex()];
+    SpatialVec& on_shaft = forces[shaft.getMobilizedBodyIndex()];
+    const Vec3& block_origin = block.getBodyOriginLocation(state);
+    const Vec3& shaft_origin = shaft.getBodyOriginLocation(state);
 
-    std::vector<double> pressure(bodies_.pistons.size());
     const double theta = turn_angle(shaft.getBodyRotation(state), SimTK::Rotation());
-    inputs_.chamber_pressure(theta, pressure);
-    const Vec3 ring(0, 0, pump_.geometry.piston_length);
+    inputs_.chamber_pressure(theta, pressure_);
     for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
       const auto& piston = bodies_.pistons[k];
-      const double velocity =
-          SimTK::dot(z2, piston.findStationVelocityInGround(state, ring));
+      const SimTK::Transform& place = piston.getBodyTransform(state);
+      const SpatialVec& rate = piston.getBodyVelocity(state);
+      const Vec3 ring = pump_.geometry.piston_length * Vec3(place.z());  // B from A
+      const double velocity = SimTK::dot(z2, rate[1] + rate[0] % ring);
       const AxialLoad load =
-          axial_load(pump_, assumptions_, pressure[k], velocity, inputs_.rest_speed);
-      piston.applyForceToBodyPoint(state, ring, (load.pressure + load.friction) * z2, forces);
-      const Vec3 on_block = block.findStationAtGroundPoint(
-          state, piston.findStationLocationInGround(state, ring));
-      block.applyForceToBodyPoint(
-          state, on_block, (pump_.block.bottom_area * pressure[k] - load.friction) * z2, forces);
+          axial_load(pump_, assumptions_, pressure_[k], velocity, inputs_.rest_speed);
+      add_at(ring, (load.pressure + load.friction) * z2, forces[piston.getMobilizedBodyIndex()]);
+      if (loaded_ == LoadedBodies::all)
+        add_at(place.p() + ring - block_origin,
+               (pump_.block.bottom_area * pressure_[k] - load.friction) * z2, on_block);
     }
+    if (loaded_ == LoadedBodies::pistons) return;
 
     const Vec3 spring = pump_.block.spring_force * z2;
-    apply_at(state, block, bodies_.block_origin, spring, forces);
-    apply_at(state, shaft, bodies_.block_origin, -spring, forces);
+    add_at(bodies_.block_origin - block_origin, spring, on_block);
+    add_at(bodies_.block_origin - shaft_origin, -spring, on_shaft);
     if (pump_.port_plate) {
       const FilmLoad film = film_load_now();
-      apply_at(state, block, bodies_.block_origin, film.force_z * z2, forces);
-      block.applyBodyTorque(state, bodies_.block_frame * Vec3(film.moment_x, film.moment_y, 0),
-                            forces);
+      add_at(bodies_.block_origin - block_origin, film.force_z * z2, on_block);
+      on_block[0] += bodies_.block_frame * Vec3(film.moment_x, film.moment_y, 0);
     }
     const double block_speed = SimTK::dot(z2, block.getBodyAngularVelocity(state));
     const double shaft_speed = SimTK::dot(z1, shaft.getBodyAngularVelocity(state));
-    block.applyBodyTorque(state, -pump_.friction.block_viscous * block_speed * z2, forces);
+    on_block[0] -= pump_.friction.block_viscous * block_speed * z2;
     double shaft_torque = -pump_.friction.shaft_viscous * shaft_speed;
     if (inputs_.shaft_torque) shaft_torque += inputs_.shaft_torque(theta);
-    shaft.applyBodyTorque(state, shaft_torque * z1, forces);
+    on_shaft[0] += shaft_torque * z1;
   }
 
   SimTK::Real calcPotentialEnergy(const State&) const override { return 0; }
 
  private:
-  static void apply_at(const State& state, const SimTK::MobilizedBody& body, const Vec3& point,
-                       const Vec3& force, SimTK::Vector_<SpatialVec>& forces) {
-    body.applyForceToBodyPoint(state, body.findStationAtGroundPoint(state, point), force, forces);
+  // A force whose point is given from the body's origin, in Ground.
+  static void add_at(const Vec3& lever, const Vec3& force, SpatialVec& on_body) {
+    on_body += SpatialVec(lever % force, force);
   }
 
   // The film load changes only with the port pressures.
@@ -92,6 +100,8 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
   Assumptions assumptions_;
   PumpBodies bodies_;
   const LoadInputs& inputs_;
+  LoadedBodies loaded_;
+  mutable std::vector<double> pressure_;
   mutable FilmLoad film_;
   mutable PortPressures film_ports_;
   mutable bool film_known_ = false;
@@ -101,7 +111,7 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
 
 PumpLoads::PumpLoads(SimTK::GeneralForceSubsystem& forces, const PumpParameters& pump,
                      const Assumptions& assumptions, const PumpBodies& bodies,
-                     const LoadInputs& inputs)
-    : Custom(forces, new PumpLoadsImplementation(pump, assumptions, bodies, inputs)) {}
+                     const LoadInputs& inputs, LoadedBodies loaded)
+    : Custom(forces, new PumpLoadsImplementation(pump, assumptions, bodies, inputs, loaded)) {}
 
 }  // namespace bentaxis::multibody

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <SimTKsimbody.h>
+
 #include <functional>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct LoadInputs {
   PortPressures ports;
   /// Torque about z1 on the shaft at angle theta where the shaft runs free; empty where driven.
   std::function<double(double theta)> shaft_torque;
-  double rest_speed = 0;  ///< m/s, below which a piston counts as at rest in the sign law of friction
+  double rest_speed =
+      0;  ///< m/s, below which a piston counts as at rest in the sign law of friction
 };
 
 /// The bodies the loads act on; A and B of each piston at z = 0 and z = length of its frame.
@@ -28,7 +30,11 @@ struct PumpBodies {
   std::vector<SimTK::MobilizedBody> pistons;
   SimTK::Rotation block_frame;  ///< S2 in Ground
   SimTK::Vec3 block_origin;     ///< O2 in Ground
+  SimTK::Vec3 shaft_origin;     ///< C1 in Ground
 };
+
+/// Which bodies are loaded: where shaft and block are prescribed, loads on them change nothing.
+enum class LoadedBodies { all, pistons };
 
 /// Adds pressure on pistons and block, friction, spring, port-plate film and viscous torques.
 /// Weight is not among them (Simbody's own gravity element).
@@ -36,7 +42,8 @@ struct PumpBodies {
 class PumpLoads : public SimTK::Force::Custom {
  public:
   PumpLoads(SimTK::GeneralForceSubsystem& forces, const PumpParameters& pump,
-            const Assumptions& assumptions, const PumpBodies& bodies, const LoadInputs& inputs);
+            const Assumptions& assumptions, const PumpBodies& bodies, const LoadInputs& inputs,
+            LoadedBodies loaded);
 };
 
 /// Axial force on a piston along z2 at B: pressure and friction, N.

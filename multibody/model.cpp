@@ -1,5 +1,6 @@
 #include "bentaxis/multibody/model.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -13,100 +14,274 @@ namespace bentaxis::multibody {
 
 using SimTK::Stage;
 
+namespace {
+
+Drive drive_of(Scene scene) {
+  return scene == Scene::full ? Drive::given_acceleration : Drive::prescribed;
+}
+
+// The one-piston scene is the scene of a pump with one piston.
+PumpParameters built_pump(const PumpParameters& pump, Scene scene) {
+  PumpParameters built = pump;
+  if (scene == Scene::piston) built.geometry.pistons = 1;
+  return built;
+}
+
+}  // namespace
+
+const std::vector<std::string>& scene_names() {
+  static const std::vector<std::string> names = {"full", "pistons", "piston"};
+  return names;
+}
+
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names = {"multipliers", "residual"};
+  return names;
+}
+
 struct Model::Implementation {
-  Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign)
-      : layout(pump.geometry.pistons), system(pump, assumptions, omega_sign, Drive::given_acceleration) {
+  Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
+                 Scene the_scene, Method the_method)
+      : layout(pump.geometry.pistons),
+        scene(the_scene),
+        method(the_method),
+        parameters(pump),
+        system(built_pump(pump, the_scene), assumptions, omega_sign, drive_of(the_scene)),
+        residual(system),
+        sign(omega_sign < 0 ? -1 : 1) {
     system.inputs().chamber_pressure = [this](double, std::vector<double>& p) { p = pressure; };
+    if (method == Method::multipliers) system.require_piston_inertia();
   }
 
+  void check(const Instant& instant) const;
+  void place_and_solve(double theta, const Instant& instant, std::size_t track);
+  void check_rank();
+
   ChannelLayout layout;
+  Scene scene;
+  Method method;
+  PumpParameters parameters;
   PumpSystem system;
+  ResidualSolver residual;
+  Reactions reactions;
   std::vector<double> pressure;
+  std::vector<SimTK::Vec3> angular_accelerations;
   PumpSystem::Rank rank;
-  double sign = 0;
+  double sign;
 };
 
-Model::Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign)
-    : implementation_(std::make_unique<Implementation>(pump, assumptions, omega_sign)) {
-  implementation_->sign = omega_sign < 0 ? -1 : 1;
-}
+Model::Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
+             Scene scene, Method method)
+    : implementation_(
+          std::make_unique<Implementation>(pump, assumptions, omega_sign, scene, method)) {}
 Model::~Model() = default;
 Model::Model(Model&&) noexcept = default;
 Model& Model::operator=(Model&&) noexcept = default;
 
 const ChannelLayout& Model::layout() const { return implementation_->layout; }
 
-void Model::evaluate(const Instant& instant, std::vector<double>& values) {
-  Implementation& self = *implementation_;
-  PumpSystem& system = self.system;
-  if (instant.omega * self.sign < 0)
+void Model::Implementation::check(const Instant& instant) const {
+  if (scene != Scene::full) return;
+  if (instant.omega * sign < 0)
     throw InputError("multibody model: built for the other direction of rotation");
-  if (instant.omega_dot != 0 && !(system.pump().shaft.axial_inertia > 0 &&
-                                  system.pump().block.axial_inertia > 0))
+  if (instant.omega_dot != 0 &&
+      !(system.pump().shaft.axial_inertia > 0 && system.pump().block.axial_inertia > 0))
     throw InputError("multibody model: changing speed needs axial inertias above 0");
-  self.pressure = instant.chamber_pressure;
+}
+
+void Model::Implementation::check_rank() {
+  if (rank.equations > 0) return;
+  rank = system.constraint_rank(system.dynamics());
+  if (rank.rank < rank.equations)
+    throw ComputationError("multibody model: " + std::to_string(rank.equations) +
+                           " constraint equations have rank " + std::to_string(rank.rank) +
+                           ": reactions cannot be told apart");
+}
+
+// Finds the reactions at an angle under the pressures in `pressure`.
+void Model::Implementation::place_and_solve(double theta, const Instant& instant,
+                                            std::size_t track) {
   system.inputs().ports = instant.ports;
   system.inputs().rest_speed = piston_rest_speed(system.pump().geometry, instant.omega);
-
+  system.place(theta, instant.omega, instant.omega_dot, track);
   SimTK::State& state = system.dynamics();
-  system.assemble(instant.theta, instant.omega);
-  system.copy_assembly_to_dynamics();
-  // At standstill the power balance is taken with a virtual turn of 1 rad/s.
-  const double rate_omega = instant.omega != 0 ? instant.omega : 1;
-  if (instant.omega == 0) system.assemble(instant.theta, rate_omega);
-  system.set_acceleration(state, instant.omega_dot);
-  system.system().realize(state, Stage::Acceleration);
-
-  if (self.rank.equations == 0) {
-    self.rank = system.constraint_rank(state);
-    if (self.rank.rank < self.rank.equations)
-      throw ComputationError("multibody model: " + std::to_string(self.rank.equations) +
-                             " constraint equations have rank " + std::to_string(self.rank.rank) +
-                             ": reactions cannot be told apart");
+  if (method == Method::multipliers) {
+    if (scene == Scene::full) system.set_acceleration(state, instant.omega_dot);
+    system.system().realize(state, Stage::Acceleration);
+    check_rank();
+    reactions_from_multipliers(system, state, reactions);
+  } else {
+    residual.solve(reactions);
+    check_rank();
   }
-  read_channels(system, state, {system.assembly(), rate_omega}, instant.omega_dot, self.pressure,
-                self.layout, values);
+  angular_accelerations.clear();
+  for (const auto& on : reactions.pistons) angular_accelerations.push_back(on.acceleration[0]);
+  system.remember_placement(angular_accelerations);
+}
+
+void Model::evaluate(const Instant& instant, std::vector<double>& values) {
+  Implementation& self = *implementation_;
+  self.check(instant);
+  const int n = self.layout.pistons();
+  if (self.scene == Scene::piston) {
+    for (int k = 0; k < n; ++k) {
+      self.pressure.assign(1, instant.chamber_pressure[k]);
+      self.place_and_solve(instant.theta - 2 * kPi * k / n, instant, k);
+      read_piston_channels(self.system, self.system.dynamics(), self.reactions, 0, k,
+                           instant.chamber_pressure[k], self.layout, values);
+    }
+    return;
+  }
+  self.pressure = instant.chamber_pressure;
+  self.place_and_solve(instant.theta, instant, 0);
+  const SimTK::State& state = self.system.dynamics();
+  for (int k = 0; k < n; ++k)
+    read_piston_channels(self.system, state, self.reactions, k, k, instant.chamber_pressure[k],
+                         self.layout, values);
+  if (self.scene != Scene::full) return;
+  // At standstill the power balance is taken with a virtual turn of 1 rad/s.
+  if (instant.omega == 0) self.system.assemble(instant.theta, 1);
+  const WorkRate rate =
+      instant.omega == 0 ? WorkRate{self.system.assembly(), 1} : WorkRate{state, instant.omega};
+  read_pump_channels(self.system, state, self.reactions, rate, instant.omega_dot, self.pressure,
+                     self.layout, values);
+}
+
+void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
+  Implementation& self = *implementation_;
+  if (self.scene != Scene::piston)
+    throw std::logic_error("evaluate_one() is of the one-piston scene");
+  self.pressure.assign(1, instant.chamber_pressure[0]);
+  self.place_and_solve(instant.theta, instant, 0);
+  read_piston_channels(self.system, self.system.dynamics(), self.reactions, 0, 0,
+                       instant.chamber_pressure[0], self.layout, values);
 }
 
 std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
-                                                             const Assumptions& assumptions) {
+                                                             const Assumptions& assumptions,
+                                                             Scene scene) {
   const bool mesh = assumptions.gear == GearScene::mesh;
-  const int n = pump.geometry.pistons;
+  const int n = scene == Scene::piston ? 1 : pump.geometry.pistons;
+  const std::string pistons = n == 1 ? "1 piston" : std::to_string(n) + " pistons";
+  const std::string bodies = std::to_string(n + 2) + " (shaft, block, " + pistons + ")";
+  if (scene != Scene::full)
+    return {{"method", "multibody, Simbody " + simbody_version()},
+            {"scene", scene == Scene::pistons ? "pistons; shaft and block move as prescribed"
+                                              : "one piston; shaft and block move as prescribed"},
+            {"bodies", bodies},
+            {"joints", "pistons spherical at A to the shaft"},
+            {"constraints", "B on its bore axis (2 per piston)"}};
   return {
       {"method", "multibody, Simbody " + simbody_version()},
       {"scene", std::string("full pump, gear ") +
                     (mesh ? "in mesh (tooth force along z4 at O4)"
                           : "replaced by a speed imposed on the block's joint")},
-      {"bodies", std::to_string(n + 2) + " (shaft, block, " + std::to_string(n) + " pistons)"},
-      {"joints",
-       "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
-      {"constraints", std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
-                          (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
+      {"bodies", bodies},
+      {"joints", "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
+      {"constraints",
+       std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
+           (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
+}
+
+SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {
+  const PumpSystem system(built_pump(pump, scene), assumptions, 1, drive_of(scene));
+  const SimTK::State& state = system.dynamics();
+  SceneSize size;
+  size.bodies = system.matter().getNumBodies() - 1;  // without Ground
+  size.mobilities = state.getNU();
+  size.equations = state.getNMultipliers();
+  return size;
 }
 
 Provenance Model::provenance() const {
   const Implementation& self = *implementation_;
   Provenance provenance;
-  provenance.facts = scene_facts(self.system.pump(), self.system.assumptions());
+  provenance.facts = scene_facts(self.parameters, self.system.assumptions(), self.scene);
   auto& facts = provenance.facts;
   facts.insert(facts.begin() + 1,
-               {"way", "driven: assembled at each angle by projection, accelerations and reactions "
-                       "solved, no time integration"});
+               {"way", "driven: pistons assembled at each angle from the constraint equations, " +
+                           std::string(self.method == Method::multipliers
+                                           ? "accelerations and reactions solved together"
+                                           : "accelerations too, reactions by inverse dynamics") +
+                           ", no time integration"});
   facts.emplace_back("mobilities", std::to_string(self.rank.mobilities));
   facts.emplace_back("constraint equations", std::to_string(self.rank.equations));
   facts.emplace_back("rank of the constraint matrix", std::to_string(self.rank.rank));
   return provenance;
 }
 
+namespace {
+
+// Row of the samples at which piston 1 stands where piston k + 1 stands in `row`.
+std::size_t row_of_piston_one(std::size_t row, int k, std::size_t rows, int pistons) {
+  return (row + rows - rows / pistons * k) % rows;
+}
+
+// Pressures that differ by less than this share of the largest are equal but for the rounding of
+// the angle they were evaluated at.
+constexpr double kSamePressure = 1e-13;
+
+// Does every piston see, at each of its angles, the pressure that piston 1 sees there? Then piston
+// 1 stands for all.
+bool one_stands_for_all(const Samples& samples) {
+  const std::size_t rows = samples.theta_deg.size();
+  const int n = samples.pistons;
+  if (rows == 0 || rows % n != 0) return false;
+  double largest = 0;
+  for (const double pressure : samples.chamber_pressure)
+    largest = std::max(largest, std::abs(pressure));
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double angle = 360.0 * static_cast<double>(row) / static_cast<double>(rows);
+    if (std::abs(samples.theta_deg[row] - angle) > 1e-9) return false;
+    for (int k = 1; k < n; ++k)
+      if (std::abs(samples.chamber_pressure[row * n + k] -
+                   samples.chamber_pressure[row_of_piston_one(row, k, rows, n) * n]) >
+          kSamePressure * largest)
+        return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
-                       const Progress& progress) {
+                       const Progress& progress, Scene scene, Method method) {
   const auto start = std::chrono::steady_clock::now();
-  Model model(the_case.pump, assumptions, samples.omega);
-  ResultTable table = tabulate(
-      "multibody", model.layout(), samples,
-      [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
-      progress);
+  Model model(the_case.pump, assumptions, samples.omega, scene, method);
+  const bool shared = scene == Scene::piston && one_stands_for_all(samples);
+  std::vector<std::vector<double>> of_one;
+  if (shared) {
+    Instant instant;
+    for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
+      samples.instant(row, instant);
+      of_one.emplace_back(model.layout().size(), not_computed());
+      model.evaluate_one(instant, of_one.back());
+    }
+  }
+  std::size_t next = 0;
+  const ChannelLayout& at = model.layout();
+  const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {
+    if (!shared) {
+      model.evaluate(instant, row);
+      return;
+    }
+    for (int k = 0; k < at.pistons(); ++k) {
+      const auto& one = of_one[row_of_piston_one(next, k, samples.theta_deg.size(), at.pistons())];
+      for (int axis = 0; axis < 3; ++axis) row[at.Rs(k, axis)] = one[at.Rs(0, axis)];
+      for (int axis = 0; axis < 2; ++axis) row[at.Rc(k, axis)] = one[at.Rc(0, axis)];
+      for (int axis = 0; axis < 3; ++axis) row[at.Rs3(k, axis)] = one[at.Rs3(0, axis)];
+      row[at.pressure(k)] = instant.chamber_pressure[k];
+      row[at.zB(k)] = one[at.zB(0)];
+      row[at.Tc(k)] = one[at.Tc(0)];
+      row[at.axis_moment(k)] = one[at.axis_moment(0)];
+    }
+    ++next;
+  };
+  ResultTable table = tabulate("multibody", at, samples, evaluate, progress);
   table.provenance = model.provenance();
+  if (scene == Scene::piston)
+    table.provenance.facts.emplace_back("pistons",
+                                        shared ? "one stands for all" : "evaluated one by one");
   table.provenance.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return table;

@@ -33,6 +33,11 @@ constexpr double kAssemblyTolerance = 1e-12;
 constexpr double kRankTolerance = 1e-11;
 // A step in theta up to which the last assembly is a better start than a fresh guess.
 constexpr double kNearby = 0.2;
+// Speed, rad/s, below which derivatives with respect to theta are not taken from those in time.
+constexpr double kSlowest = 1e-6;
+// Two placements closer than this (rad) are extrapolated together, up to so many of their steps.
+constexpr double kSmooth = 0.05;
+constexpr double kFarthest = 1.5;
 
 // Prescribes rotation about the joint's z axis, for a pin (1 coordinate) or a ball (quaternion).
 class TurningMotion : public SimTK::Motion::Custom::Implementation {
@@ -95,6 +100,29 @@ double nominal_inertia(double given) {
   return given > 0 ? given : kAny;
 }
 
+// A point mass on a piston's axis, from A.
+struct PointMass {
+  double mass = 0;
+  double z = 0;
+};
+
+// Masses at A, at the centre of mass and at B with the real piston's mass, centre and transverse
+// inertia: the middle one is what the outer two, with their common centre there, leave over.
+std::vector<PointMass> three_point_masses(const PistonMass& piston, double length) {
+  const auto& real = *piston.real;
+  const double from_a = real.centre_of_mass;
+  const double outer =
+      real.transverse_inertia > 0 ? real.transverse_inertia / (from_a * (length - from_a)) : 0;
+  return {{outer * (length - from_a) / length, 0},
+          {piston.mass - outer, from_a},
+          {outer * from_a / length, length}};
+}
+
+ComputationError no_assembly(double theta) {
+  return ComputationError("multibody model: no assembly found at theta = " +
+                          std::to_string(theta / kRadPerDegree) + " deg");
+}
+
 }  // namespace
 
 // Force element without force: integrates the power of loads and drives along with the motion.
@@ -108,8 +136,7 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
     first_ = owner_.forces_.allocateZ(state, Vector(2, Real(0)));
   }
   void realizeAcceleration(const State& state) const override {
-    const auto& forces =
-        owner_.system_.getRigidBodyForces(state, SimTK::Stage::Dynamics);
+    const auto& forces = owner_.system_.getRigidBodyForces(state, SimTK::Stage::Dynamics);
     double loads = 0;
     for (SimTK::MobilizedBodyIndex i(1); i < owner_.matter_.getNumBodies(); ++i) {
       const SpatialVec& v = owner_.matter_.getMobilizedBody(i).getBodyVelocity(state);
@@ -117,8 +144,7 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
     }
     double drives = 0;
     if (owner_.drive_ == Drive::constant_speed)
-      drives += owner_.drive_torque(state) *
-                owner_.shaft_.getBodyAngularVelocity(state)[2];
+      drives += owner_.drive_torque(state) * owner_.shaft_.getBodyAngularVelocity(state)[2];
     if (!owner_.has_gear())
       drives += owner_.imposed_block_torque(state) * owner_.block_.getOneU(state, 0);
     Vector& rate = owner_.forces_.updZDot(state);
@@ -136,13 +162,8 @@ class PumpSystem::WorkMeter : public SimTK::Force::Custom::Implementation {
 
 PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega,
                        Drive drive)
-    : pump_(pump),
-      assumptions_(assumptions),
-      drive_(drive),
-      matter_(system_),
-      forces_(system_) {
-  if (drive == Drive::torque &&
-      !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
+    : pump_(pump), assumptions_(assumptions), drive_(drive), matter_(system_), forces_(system_) {
+  if (drive == Drive::torque && !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
     throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
   inputs_.rest_speed = piston_rest_speed(pump.geometry, omega);
   inputs_.chamber_pressure = [](double, std::vector<double>& p) {
@@ -151,8 +172,9 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   SimTK::Force::UniformGravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
   add_shaft_and_block(omega);
   add_pistons();
-  PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_);
-  if (drive_ != Drive::given_acceleration) {
+  PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_,
+            is_prescribed() ? LoadedBodies::pistons : LoadedBodies::all);
+  if (drive_ == Drive::constant_speed || drive_ == Drive::torque) {
     work_ = new WorkMeter(*this);
     SimTK::Force::Custom(forces_, work_);
   }
@@ -160,16 +182,21 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   system_.realizeTopology();
   assembly_ = system_.getDefaultState();
   dynamics_ = system_.getDefaultState();
-  // Assembly: shaft and block follow the prescribed turning, so what holds them is switched off.
-  cylindrical_.disable(assembly_);
-  if (drive_ == Drive::constant_speed) speed_.disable(assembly_);
-  if (drive_ == Drive::given_acceleration) acceleration_.disable(assembly_);
-  if (has_gear()) gear_->disable(assembly_);
-  // Dynamics: joints and constraints hold them; an imposed block keeps its motion.
-  shaft_motion_.disable(dynamics_);
-  if (has_gear()) block_motion_.disable(dynamics_);
+  if (!is_prescribed()) {
+    // Assembly: shaft and block follow the prescribed turning, so what holds them is switched off.
+    cylindrical_.constraint().disable(assembly_);
+    if (drive_ == Drive::constant_speed) speed_.disable(assembly_);
+    if (drive_ == Drive::given_acceleration) acceleration_.disable(assembly_);
+    if (has_gear()) gear_->disable(assembly_);
+    // Dynamics: joints and constraints hold them; an imposed block keeps its motion.
+    shaft_motion_.disable(dynamics_);
+    if (has_gear()) block_motion_.disable(dynamics_);
+  }
   system_.realize(assembly_, SimTK::Stage::Instance);
   system_.realize(dynamics_, SimTK::Stage::Instance);
+  solver_ = std::make_unique<PistonSolver>(
+      system_, matter_, shaft_, bodies_.pistons, bores_, pump_.geometry.piston_length,
+      pistons_free_to_spin_ ? pump_.piston.real->spin : 0, dynamics_);
 }
 
 void PumpSystem::add_shaft_and_block(double omega) {
@@ -178,6 +205,7 @@ void PumpSystem::add_shaft_and_block(double omega) {
   const Vec3 c2(0, 0, pump_.bearings.cylindrical_z);
   bodies_.block_frame = Rotation(-g.tilt, SimTK::XAxis);
   bodies_.block_origin = Vec3(0, 0, g.axis_offset);
+  bodies_.shaft_origin = c1;
 
   const double zs = pump_.shaft.centre_of_mass_z;
   const double shaft_inertia = nominal_inertia(pump_.shaft.axial_inertia);
@@ -197,9 +225,9 @@ void PumpSystem::add_shaft_and_block(double omega) {
   bodies_.block = block_;
   shaft_motion_ = SimTK::Motion::Custom(shaft_, new TurningMotion(turning_, true));
   block_motion_ = SimTK::Motion::Custom(block_, new TurningMotion(turning_, false));
+  if (is_prescribed()) return;
 
-  cylindrical_ =
-      SimTK::Constraint::PointOnLine(matter_.updGround(), UnitVec3(SimTK::ZAxis), c2, shaft_, c2);
+  cylindrical_ = InlineJoint(matter_.updGround(), UnitVec3(SimTK::ZAxis), c2, shaft_, c2);
   constexpr int kAboutZ = 2;
   if (drive_ == Drive::constant_speed)
     speed_ = SimTK::Constraint::ConstantSpeed(shaft_, SimTK::MobilizerUIndex(kAboutZ), omega);
@@ -213,8 +241,8 @@ void PumpSystem::add_shaft_and_block(double omega) {
     const double sign = omega < 0 ? -1 : 1;
     const double ap = pump_.gear.pressure_angle;
     const Vec3 mesh_point(0, radius, -radius / std::tan(cone) + g.axis_offset);
-    const Vec3 line = sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone),
-                                  std::sin(ap) * std::sin(cone));
+    const Vec3 line =
+        sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
     gear_ = std::make_unique<GearMesh>(matter_, shaft_, block_, mesh_point, UnitVec3(line),
                                        bodies_.block_frame);
   }
@@ -230,8 +258,19 @@ void PumpSystem::add_pistons() {
     properties = symmetric_body(mass.mass, (1 - mass.joint_mass_fraction) * length,
                                 at_ring * length * length, 0);
     pistons_free_to_spin_ = false;
+  } else if (const std::string why = piston_inertia_refusal(assumptions_.inertia, pump_);
+             !why.empty()) {
+    throw InputError(to_string(assumptions_.inertia) + " pistons: " + why);
+  } else if (assumptions_.inertia == PistonInertia::dynamically_equivalent) {
+    double about_joint = 0;
+    double moment = 0;
+    for (const PointMass& point : three_point_masses(mass, length)) {
+      moment += point.mass * point.z;
+      about_joint += point.mass * point.z * point.z;
+    }
+    properties = symmetric_body(mass.mass, mass.mass > 0 ? moment / mass.mass : 0, about_joint, 0);
+    pistons_free_to_spin_ = false;
   } else {
-    if (!mass.real) throw InputError("real pistons asked for, but the case has no data of them");
     const auto& real = *mass.real;
     properties = symmetric_body(
         mass.mass, real.centre_of_mass,
@@ -239,10 +278,7 @@ void PumpSystem::add_pistons() {
         real.axial_inertia);
     pistons_free_to_spin_ = real.axial_inertia > 0;
   }
-  if (!(properties.getInertia().getMoments()[0] > 0))
-    throw ComputationError(
-        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
-        "has no equation of motion in Simbody; the analytic model has no such limit");
+  piston_inertia_about_joint_ = properties.getInertia().getMoments()[0];
 
   for (int k = 0; k < g.pistons; ++k) {
     const Rotation phase(-2 * kPi * k / g.pistons, SimTK::ZAxis);
@@ -260,10 +296,17 @@ void PumpSystem::add_pistons() {
   }
 }
 
+void PumpSystem::require_piston_inertia() const {
+  if (!(piston_inertia_about_joint_ > 0))
+    throw ComputationError(
+        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
+        "has no equation of motion in Simbody's forward dynamics; use --reactions residual, or the "
+        "analytic model");
+}
+
 void PumpSystem::guess_pistons() {
   // Parallel to the block axis: Newton's method then climbs to the positive root of (12).
-  const Rotation shaft_to_block =
-      ~Rotation(turning_.theta, SimTK::ZAxis) * bodies_.block_frame;
+  const Rotation shaft_to_block = ~Rotation(turning_.theta, SimTK::ZAxis) * bodies_.block_frame;
   for (const auto& piston : bodies_.pistons) piston.setQToFitRotation(assembly_, shaft_to_block);
 }
 
@@ -307,9 +350,7 @@ void PumpSystem::assemble(double theta, double omega) {
     for (const auto& piston : bodies_.pistons)
       done = done && SimTK::dot(z2, Vec3(piston.getBodyRotation(assembly_).z())) > 0;
   }
-  if (!done)
-    throw ComputationError("multibody model: no assembly found at theta = " +
-                           std::to_string(theta / kRadPerDegree) + " deg");
+  if (!done) throw no_assembly(theta);
 
   system_.prescribeU(assembly_);
   system_.realize(assembly_, SimTK::Stage::Velocity);
@@ -345,6 +386,118 @@ void PumpSystem::copy_assembly_to_dynamics() {
   dynamics_.updU() = assembly_.getU();
 }
 
+bool PumpSystem::solve_placement() {
+  Vector& q = dynamics_.updQ();
+  const int shaft = shaft_.getFirstQIndex(dynamics_);
+  q[shaft] = std::cos(placed_theta_ / 2);
+  q[shaft + 1] = q[shaft + 2] = 0;
+  q[shaft + 3] = std::sin(placed_theta_ / 2);
+  q[block_.getFirstQIndex(dynamics_)] = placed_theta_;
+  if (!(solver_->solve_positions(dynamics_) <= kAssemblyTolerance)) return false;
+  const Vec3 z2(bodies_.block_frame.z());
+  for (const auto& piston : bodies_.pistons)
+    if (!(SimTK::dot(z2, Vec3(piston.getBodyRotation(dynamics_).z())) > 0)) return false;
+  return true;
+}
+
+// From the last two placements of a track the polynomial that has their values and two derivatives
+// (degree 5), or from the last one alone its Taylor polynomial.
+bool PumpSystem::extrapolate(const Track& track, double theta) {
+  if (!track.last) return false;
+  const double ahead = std::remainder(theta - track.last->theta, 2 * kPi);
+  if (!(std::abs(ahead) < kNearby)) return false;
+  const double step =
+      track.before ? std::remainder(track.last->theta - track.before->theta, 2 * kPi) : 0;
+  // Close to the step between them: farther out a polynomial of this degree magnifies round-off.
+  const double t = step != 0 ? ahead / step : 0;
+  const bool both = std::abs(step) < kSmooth && t > 0 && t < kFarthest;
+  Vector& q = dynamics_.updQ();
+  for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
+    const Direction& last = track.last->pistons[k];
+    Vec3 axis = last.value + ahead * (last.first + ahead / 2 * last.second);
+    if (both) {
+      // Backward difference form: what Taylor's polynomial of degree 2 missed at `before`, as
+      // c3 x^3 + c4 x^4 + c5 x^5 with x in steps from `last`.
+      const Direction& before = track.before->pistons[k];
+      const Vec3 value =
+          before.value - (last.value - step * last.first + step * step / 2 * last.second);
+      const Vec3 first = step * (before.first - (last.first - step * last.second));
+      const Vec3 second = step * step * (before.second - last.second);
+      const Vec3 c3 = -10 * value - 4 * first - second / 2;
+      const Vec3 c4 = -15 * value - 7 * first - second;
+      const Vec3 c5 = -6 * value - 3 * first - second / 2;
+      axis += t * t * t * (c3 + t * (c4 + t * c5));
+    }
+    // The turn that takes z to the axis the shortest way; a turn about the piston's own axis
+    // changes nothing.
+    SimTK::Vec4 quaternion(axis.norm() + axis[2], -axis[1], axis[0], 0);
+    quaternion /= quaternion.norm();
+    const int first_q = bodies_.pistons[k].getFirstQIndex(dynamics_);
+    for (int i = 0; i < 4; ++i) q[first_q + i] = quaternion[i];
+  }
+  return true;
+}
+
+void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t track) {
+  if (track >= tracks_.size()) tracks_.resize(track + 1);
+  placed_track_ = track;
+  placed_theta_ = theta;
+  placed_omega_ = omega;
+  placed_omega_dot_ = omega_dot;
+  if (!(extrapolate(tracks_[track], theta) && solve_placement())) {
+    assemble(theta, omega);
+    copy_assembly_to_dynamics();
+    if (!solve_placement()) throw no_assembly(theta);
+  }
+  // What is prescribed in this state (both bodies, or an imposed block) moves with the rest.
+  turning_.theta = theta;
+  turning_.start = dynamics_.getTime();
+  turning_.omega = omega;
+  turning_.omega_dot = omega_dot;
+  Vector& u = dynamics_.updU();
+  u = 0;
+  u[shaft_.getFirstUIndex(dynamics_) + 2] = omega;
+  u[block_.getFirstUIndex(dynamics_)] = omega;
+  solver_->solve_speeds(dynamics_);
+}
+
+void PumpSystem::remember_placement(const std::vector<Vec3>& angular_acceleration) {
+  Track& track = tracks_[placed_track_];
+  std::swap(track.before, track.last);
+  if (!track.last) track.last.emplace();
+  track.last->theta = placed_theta_;
+  track.last->pistons.resize(bodies_.pistons.size());
+  const Rotation& shaft = shaft_.getBodyRotation(dynamics_);
+  const Vec3& shaft_rate = shaft_.getBodyAngularVelocity(dynamics_);
+  const Vec3 shaft_acceleration(0, 0, placed_omega_dot_);
+  const double omega = placed_omega_;
+  for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
+    const auto& piston = bodies_.pistons[k];
+    Direction& direction = track.last->pistons[k];
+    const Vec3 axis(piston.getBodyRotation(dynamics_).z());
+    direction.value = ~shaft * axis;
+    direction.first = direction.second = Vec3(0);
+    // Derivatives with respect to theta do not depend on the speed; at standstill there are none.
+    if (std::abs(omega) < kSlowest) continue;
+    const Vec3& rate = piston.getBodyAngularVelocity(dynamics_);
+    const Vec3 relative = rate - shaft_rate;
+    const Vec3 first = relative % axis;
+    const Vec3 second = (angular_acceleration[k] - shaft_acceleration) % axis +
+                        relative % (rate % axis) - shaft_rate % first;
+    direction.first = ~shaft * first / omega;
+    direction.second = (~shaft * second - placed_omega_dot_ * direction.first) / (omega * omega);
+  }
+  if (std::abs(omega) < kSlowest) track.before.reset();
+}
+
+void PumpSystem::constrained_accelerations(Vector& udot) {
+  udot.resize(dynamics_.getNU());
+  udot = 0;
+  udot[shaft_.getFirstUIndex(dynamics_) + 2] = placed_omega_dot_;
+  udot[block_.getFirstUIndex(dynamics_)] = placed_omega_dot_;
+  solver_->solve_accelerations(dynamics_, udot);
+}
+
 double PumpSystem::drive_torque(const State& state) const {
   switch (drive_) {
     case Drive::constant_speed:
@@ -352,6 +505,7 @@ double PumpSystem::drive_torque(const State& state) const {
     case Drive::given_acceleration:
       return applied_generalized_force(state, acceleration_);
     case Drive::torque:
+    case Drive::prescribed:
       break;
   }
   return 0;

@@ -7,15 +7,19 @@
 //   piston  on a spherical joint at A to the shaft, with B kept on its bore axis by an inline
 //           joint to the block;
 //   gear    a force along z4 at O4 between shaft and block (mesh), or the block's speed imposed.
+// With a prescribed drive, shaft and block are moved and nothing that holds or drives them is
+// built.
 #pragma once
 
 #include <SimTKsimbody.h>
+
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "bentaxis/multibody/gear_mesh.h"
 #include "bentaxis/multibody/loads.h"
+#include "bentaxis/multibody/piston_solver.h"
 #include "bentaxis/pump/parameters.h"
 
 namespace bentaxis::multibody {
@@ -35,11 +39,13 @@ enum class Drive {
   constant_speed,      ///< speed held by a constraint: integrated runs
   given_acceleration,  ///< rate of speed given: evaluation at an instant
   torque,              ///< free, under LoadInputs::shaft_torque
+  prescribed,          ///< shaft and block prescribed: only pistons are solved for
 };
 
 /// A pump ready for Simbody's solvers. Two states serve two purposes: in `assembly` shaft and block
-/// are prescribed and Simbody's projection finds the pistons; in `dynamics` everything is held by
-/// joints and constraints, whose forces are the reactions.
+/// are prescribed and Simbody's projection finds the pistons from any start; in `dynamics`
+/// everything is held by joints and constraints, whose forces are the reactions (a prescribed drive
+/// prescribes shaft and block there too).
 class PumpSystem {
  public:
   PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega, Drive drive);
@@ -53,6 +59,24 @@ class PumpSystem {
   /// Copies positions and velocities of the assembly to the dynamics state at the same time.
   void copy_assembly_to_dynamics();
 
+  /// Puts the dynamics state at the given angle, speed and rate of speed: positions and speeds,
+  /// from an extrapolation of the last placement where that is near and from an assembly where not.
+  /// Leaves it realized to Velocity.
+  /// @param track  which of several interleaved sequences of angles this one continues
+  /// @throws ComputationError where no assembly is found.
+  void place(double theta, double omega, double omega_dot, std::size_t track = 0);
+  /// Keeps what place() extrapolates from. @param angular_acceleration  of each piston, in Ground
+  void remember_placement(const std::vector<SimTK::Vec3>& angular_acceleration);
+
+  /// Accelerations of all mobilities as the constraint equations have them at the last placement.
+  void constrained_accelerations(SimTK::Vector& udot);
+  PistonSolver& piston_solver() { return *solver_; }
+
+  /// @throws ComputationError if a piston has no inertia about its joint: then there are
+  /// equilibrium
+  ///         equations but no equations of motion.
+  void require_piston_inertia() const;
+
   const PumpParameters& pump() const { return pump_; }
   const Assumptions& assumptions() const { return assumptions_; }
   const SimTK::MultibodySystem& system() const { return system_; }
@@ -60,13 +84,16 @@ class PumpSystem {
   const PumpBodies& bodies() const { return bodies_; }
   const SimTK::State& assembly() const { return assembly_; }
   SimTK::State& dynamics() { return dynamics_; }
+  const SimTK::State& dynamics() const { return dynamics_; }
   LoadInputs& inputs() { return inputs_; }
   const LoadInputs& inputs() const { return inputs_; }
 
-  const std::vector<SimTK::Constraint::PointOnLine>& bores() const { return bores_; }
-  const SimTK::Constraint::PointOnLine& cylindrical_bearing() const { return cylindrical_; }
+  const std::vector<InlineJoint>& bores() const { return bores_; }
+  const InlineJoint& cylindrical_bearing() const { return cylindrical_; }
   const GearMesh& gear() const { return *gear_; }
-  bool has_gear() const { return assumptions_.gear == GearScene::mesh; }
+  bool has_gear() const { return !is_prescribed() && assumptions_.gear == GearScene::mesh; }
+  bool is_prescribed() const { return drive_ == Drive::prescribed; }
+  bool pistons_free_to_spin() const { return pistons_free_to_spin_; }
 
   /// Torque about z1 that the drive constraint applies to the shaft, Nm.
   double drive_torque(const SimTK::State& state) const;
@@ -95,6 +122,7 @@ class PumpSystem {
   void add_pistons();
   void guess_pistons();
   void set_piston_spins();
+  bool solve_placement();
 
   PumpParameters pump_;
   Assumptions assumptions_;
@@ -109,16 +137,34 @@ class PumpSystem {
   SimTK::MobilizedBody::Ball shaft_;
   SimTK::MobilizedBody::Pin block_;
   SimTK::Motion shaft_motion_, block_motion_;
-  SimTK::Constraint::PointOnLine cylindrical_;
+  InlineJoint cylindrical_;
   SimTK::Constraint::ConstantSpeed speed_;
   SimTK::Constraint::ConstantAcceleration acceleration_;
   std::unique_ptr<GearMesh> gear_;
-  std::vector<SimTK::Constraint::PointOnLine> bores_;
+  std::vector<InlineJoint> bores_;
   class WorkMeter;
   WorkMeter* work_ = nullptr;  // owned by its force element
   SimTK::State assembly_, dynamics_;
   bool pistons_free_to_spin_ = false;
+  double piston_inertia_about_joint_ = 0;
   std::optional<double> assembled_theta_;
+  std::unique_ptr<PistonSolver> solver_;
+  // Directions of the pistons in the shaft's frame at a placement, with their derivatives with
+  // respect to theta.
+  struct Direction {
+    SimTK::Vec3 value, first, second;
+  };
+  struct Placement {
+    double theta = 0;
+    std::vector<Direction> pistons;
+  };
+  struct Track {
+    std::optional<Placement> last, before;
+  };
+  bool extrapolate(const Track& track, double theta);
+  std::vector<Track> tracks_;
+  double placed_theta_ = 0, placed_omega_ = 0, placed_omega_dot_ = 0;
+  std::size_t placed_track_ = 0;
 };
 
 }  // namespace bentaxis::multibody

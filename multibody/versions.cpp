@@ -2,6 +2,7 @@
 
 #include <SimTKsimbody.h>
 #include <dlfcn.h>
+
 #include <filesystem>
 
 namespace bentaxis::multibody {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/hydraulic_data.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/pump/pressure.h"
 
@@ -30,8 +32,9 @@ struct Case {
   PumpParameters pump;
   Operation operation;
   PressureSpec pressure;
-  Assumptions analytic;   ///< what the analytic model assumes in this case
-  Assumptions multibody;  ///< what the multibody model assumes
+  std::optional<HydraulicData> hydraulics;  ///< present where pressure.kind is hydraulic
+  Assumptions analytic;                     ///< what the analytic model assumes in this case
+  Assumptions multibody;                    ///< what the multibody model assumes
   std::vector<CaseEntry> entries;
 };
 

@@ -1,4 +1,7 @@
+#include <toml++/toml.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -7,7 +10,6 @@
 #include <optional>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/csv.h"
@@ -144,7 +146,8 @@ class TableReader {
   std::pair<double, double> pair(const std::string& key, Range range) {
     const toml::node* node = find(key, "a pair of numbers [a, b]", false);
     const toml::array* array = node->as_array();
-    if (array == nullptr || array->size() != 2) fail(*node, key, "must be a pair of numbers [a, b]");
+    if (array == nullptr || array->size() != 2)
+      fail(*node, key, "must be a pair of numbers [a, b]");
     const std::pair<double, double> values{number_of((*array)[0], key, range, false),
                                            number_of((*array)[1], key, range, false)};
     record(key, quoted(*node));
@@ -158,9 +161,10 @@ class TableReader {
       const std::string word(key.str());
       if (known_.count(word) > 0) continue;
       const bool is_table = node.is_table();
-      std::string message = is_table && name_.empty() ? "unknown table [" + word + "]"
-                                                      : "unknown key \"" + word + "\"" +
-                                                            (name_.empty() ? "" : " in [" + name_ + "]");
+      std::string message =
+          is_table && name_.empty()
+              ? "unknown table [" + word + "]"
+              : "unknown key \"" + word + "\"" + (name_.empty() ? "" : " in [" + name_ + "]");
       const auto nearest =
           std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
             return edit_distance(word, a) < edit_distance(word, b);
@@ -169,9 +173,9 @@ class TableReader {
         message += "; did you mean \"" + *nearest + "\"?";
       else if (!known_.empty())
         message += "; allowed: " + list_of_keys();
-      throw InputError(place(node.source().begin.line > 0 ? static_cast<int>(node.source().begin.line)
-                                                          : line_) +
-                       message);
+      throw InputError(
+          place(node.source().begin.line > 0 ? static_cast<int>(node.source().begin.line) : line_) +
+          message);
     }
   }
 
@@ -187,8 +191,8 @@ class TableReader {
     for (const auto& [found, node] : *table_) {
       const std::string word(found.str());
       if (known_.count(word) == 0 && edit_distance(word, key) <= 3)
-        return "; is \"" + word + "\" in line " +
-               std::to_string(node.source().begin.line) + " meant?";
+        return "; is \"" + word + "\" in line " + std::to_string(node.source().begin.line) +
+               " meant?";
     }
     return "";
   }
@@ -215,7 +219,8 @@ class TableReader {
     known_.insert(key);
     const toml::node* node = table_ == nullptr ? nullptr : table_->get(key);
     if (node == nullptr && !optional)
-      throw InputError(place(line_) + label(key) + " is missing: must be " + wanted + misspelt(key));
+      throw InputError(place(line_) + label(key) + " is missing: must be " + wanted +
+                       misspelt(key));
     return node;
   }
 
@@ -272,6 +277,8 @@ class CaseReader {
     read_operation(table(top, "operation"));
     read_pressure(table(top, "pressure"));
     if (top.has("port_plate")) read_port_plate(table(top, "port_plate"));
+    if (result_.pressure.kind == PressureKind::hydraulic || top.has("hydraulics"))
+      read_hydraulics(table(top, "hydraulics"));
     read_assumptions(top);
     top.finish();
     return std::move(result_);
@@ -310,8 +317,7 @@ class CaseReader {
       in.fail("piston_length_mm",
               "must be > " + short_text(margin.longest_distance * 1e3) +
                   ": the pump cannot be assembled at theta = " + short_text(margin.theta_deg) +
-                  " deg, where " +
-                  short_text((margin.longest_distance - g.piston_length) * 1e3) +
+                  " deg, where " + short_text((margin.longest_distance - g.piston_length) * 1e3) +
                   " mm are missing (set by joint_circle_radius_mm, bore_circle_radius_mm, "
                   "axis_offset_mm, tilt_deg)");
   }
@@ -333,8 +339,8 @@ class CaseReader {
 
   void read_piston(TableReader in) {
     PistonMass& piston = result_.pump.piston;
-    const bool real = in.choice("inertia", {"lumped", "real"}) == 1;
-    piston.inertia = real ? PistonInertia::real : PistonInertia::lumped;
+    piston.inertia = static_cast<PistonInertia>(in.choice("inertia", piston_inertia_names()));
+    const bool real = piston.inertia != PistonInertia::lumped;
     piston.mass = in.number("mass_kg", kNotNegative);
     piston.joint_mass_fraction = in.number("joint_mass_fraction", {0, 1}, 0.5);
     // Data of the real piston may stand in a lumped case; they are read where they are complete.
@@ -357,6 +363,8 @@ class CaseReader {
       in.number("spin_rpm", kAny, 0.0);
     }
     in.finish();
+    if (const std::string why = piston_inertia_refusal(piston.inertia, result_.pump); !why.empty())
+      in.fail("inertia", why);
   }
 
   void read_shaft(TableReader in) {
@@ -402,18 +410,26 @@ class CaseReader {
 
   void read_pressure(TableReader in) {
     PressureSpec& pressure = result_.pressure;
-    const bool curve = in.choice("kind", {"ideal", "curve"}) == 1;
-    pressure.kind = curve ? PressureKind::curve : PressureKind::ideal;
+    pressure.kind =
+        std::array{PressureKind::ideal, PressureKind::curve,
+                   PressureKind::hydraulic}[in.choice("kind", {"ideal", "curve", "hydraulic"})];
+    const bool curve = pressure.kind == PressureKind::curve;
+    const bool hydraulic = pressure.kind == PressureKind::hydraulic;
     pressure.ports.suction = pascals(in.number("suction_bar", kAny));
-    pressure.ports.delivery = pascals(in.number("delivery_bar", kAny));
-    // Keys of the other kind may be present and are then unused.
-    const std::optional<double> unused = curve ? std::optional<double>(0.0) : std::nullopt;
+    pressure.ports.delivery =
+        pascals(in.number("delivery_bar", hydraulic ? Range{0, 10000} : kAny));
+    // Keys of the other kinds may be present and are then unused.
+    if (hydraulic || in.has("points")) pressure.points = in.integer("points", 16, 100000, 800);
+    const bool ideal = pressure.kind == PressureKind::ideal;
+    const std::optional<double> unused = ideal ? std::nullopt : std::optional<double>(0.0);
     pressure.transition_deg = in.number("transition_deg", {0, 180}, unused);
     pressure.delivery_start_deg = in.number("delivery_start_deg", kAny, 180.0);
     if (curve) {
       pressure.file = std::filesystem::path(file_).parent_path() / in.text("file");
       if (!std::filesystem::exists(pressure.file))
         in.fail("file", "no such file: " + pressure.file.string());
+      if (std::filesystem::is_directory(pressure.file))
+        in.fail("file", "is a folder: " + pressure.file.string());
       pressure.curve = read_pressure_curve(pressure.file);
       PressureTrace{pressure};  // refuses a curve that cannot be a periodic spline
     } else if (in.has("file")) {
@@ -444,6 +460,64 @@ class CaseReader {
     result_.pump.port_plate = plate;
   }
 
+  // After [port_plate], whose arcs and lands are the defaults of the ports here.
+  void read_hydraulics(TableReader in) {
+    HydraulicData data;
+    const auto& plate = result_.pump.port_plate;
+    data.density = in.number("density_kg_per_m3", {100, 5000}, 850.0);
+    data.bulk_modulus = in.number("bulk_modulus_MPa", {10, 1e9}, 1400.0) * 1e6;
+    data.air_share = in.number("air_percent", {0, 50, true}, 0.5) / 100;
+    data.air_exponent = in.number("air_exponent", {1, 1.67}, 1.4);
+    data.atmosphere = pascals(in.number("atmosphere_bar", {0.1, 10}, 1.01325));
+    const auto port = [&](const std::string& name, std::optional<PortArc> arc) {
+      PlatePort result;
+      const std::string key = name + "_arc_deg";
+      if (in.has(key) || !arc) {
+        const auto [from, to] = in.pair(key, kAny);
+        if (!(from < to && to <= from + 360))
+          in.fail(key, "must be [from, to] with from < to <= from + 360");
+        arc = PortArc{from, to};
+      }
+      result.arc = *arc;
+      result.notch.length_deg = in.number(name + "_notch_deg", {0, 90}, 0.0);
+      result.notch.area = square_metres(in.number(name + "_notch_area_mm2", kNotNegative, 0.0));
+      return result;
+    };
+    data.delivery = port("delivery", plate ? std::optional(plate->delivery) : std::nullopt);
+    data.suction = port("suction", plate ? std::optional(plate->suction) : std::nullopt);
+    data.kidney_width_deg = in.number("kidney_width_deg", {0, 180, true});
+    data.kidney_height =
+        metres(in.number("kidney_height_mm", kPositive,
+                         plate ? std::optional((plate->r3 - plate->r2) * 1e3) : std::nullopt));
+    data.kidney_rounding_deg = in.number("kidney_rounding_deg", {0, data.kidney_width_deg},
+                                         std::min(5.0, data.kidney_width_deg));
+    data.notch_law = in.choice("notch_law", {"quadratic", "linear"}, 0) == 0 ? NotchLaw::quadratic
+                                                                             : NotchLaw::linear;
+    for (const auto& [name, side] :
+         {std::pair{"delivery", &data.delivery}, std::pair{"suction", &data.suction}})
+      if (side->arc.to_deg - side->arc.from_deg + side->notch.length_deg + data.kidney_width_deg >
+          360)
+        in.fail("kidney_width_deg",
+                std::string("with the ") + name + " port's arc and notch must not exceed 360 deg");
+    data.discharge_coefficient = in.number("discharge_coefficient", {0, 2, true}, 0.67);
+    data.transition_pressure = pascals(in.number("transition_pressure_bar", kPositive, 0.1));
+    // 1 l/min = 1e-3/60 m3/s
+    data.leakage =
+        in.number("leakage_l_per_min_per_bar", kNotNegative, 0.002) / 6e4 / kPascalPerBar;
+    const Range absolute{-data.atmosphere / kPascalPerBar, kInfinity, true};
+    data.case_pressure = pascals(in.number("case_bar", absolute, 0.0));
+    data.dead_volume = in.number("dead_volume_cm3", kPositive, 3.0) / 1e6;
+    data.delivery_volume = in.number("delivery_volume_l", kPositive, 0.5) / 1e3;
+    data.tolerance = in.number("tolerance", {1e-12, 1e-4}, 1e-10);
+    in.finish();
+    if (result_.pressure.kind != PressureKind::hydraulic) return;  // present and unused
+    if (!absolute.contains(result_.pressure.ports.suction / kPascalPerBar))
+      in.fail("atmosphere_bar",
+              "must exceed -suction_bar of [pressure]: no absolute pressure is "
+              "below zero");
+    result_.hydraulics = data;
+  }
+
   // [assumptions.analytic] and [assumptions.multibody]: what a model leaves out or does otherwise.
   void read_assumptions(TableReader& top) {
     const auto fallback = Assumptions{true, result_.pump.piston.inertia, GearScene::mesh};
@@ -451,22 +525,18 @@ class CaseReader {
     if (!top.has("assumptions")) return;
     TableReader both = section(root_.get("assumptions"), "assumptions");
     const toml::table& models = *root_.get_as<toml::table>("assumptions");
-    for (auto [name, target] : {std::pair{"analytic", &result_.analytic},
-                                std::pair{"multibody", &result_.multibody}}) {
+    for (auto [name, target] :
+         {std::pair{"analytic", &result_.analytic}, std::pair{"multibody", &result_.multibody}}) {
       if (!both.has(name)) continue;
       TableReader in = section(models.get(name), std::string("assumptions.") + name);
       target->piston_friction = in.flag("piston_friction", true);
-      target->inertia =
-          in.choice("inertia", {"lumped", "real"},
-                    fallback.inertia == PistonInertia::real ? 1 : 0) == 1
-              ? PistonInertia::real
-              : PistonInertia::lumped;
+      target->inertia = static_cast<PistonInertia>(
+          in.choice("inertia", piston_inertia_names(), static_cast<std::size_t>(fallback.inertia)));
       target->gear =
           in.choice("gear", {"mesh", "imposed"}, 0) == 1 ? GearScene::imposed : GearScene::mesh;
-      if (target->inertia == PistonInertia::real && !result_.pump.piston.real)
-        in.fail("inertia",
-                "needs centre_of_mass_mm, transverse_inertia_kg_mm2, axial_inertia_kg_mm2 in "
-                "[piston]");
+      if (const std::string why = piston_inertia_refusal(target->inertia, result_.pump);
+          !why.empty())
+        in.fail("inertia", why);
       in.finish();
     }
     both.finish();

@@ -46,49 +46,79 @@ ChannelLayout::ChannelLayout(int pistons) : n_(pistons) {
   auto& list = channels_;
   for (int k = 1; k <= n_; ++k) {
     const std::string piston = label("piston ", k);
-    add(list, {"Rs", "joint force", "(29)-(33)", piston, "shaft", label("A", k), "S2", "N", "Rs",
-               Kind::reaction, k}, "xyz");
-    add(list, {"Rc", "bore force", "(30)-(33)", piston, "block", label("B", k), "S2", "N", "Rc",
-               Kind::reaction, k}, "xy");
+    add(list,
+        {"Rs", "joint force", "(29)-(33)", piston, "shaft", label("A", k), "S2", "N", "Rs",
+         Kind::reaction, k},
+        "xyz");
+    add(list,
+        {"Rc", "bore force", "(30)-(33)", piston, "block", label("B", k), "S2", "N", "Rc",
+         Kind::reaction, k},
+        "xy");
   }
-  add(list, {"Fh", "hydrodynamic force of the port-plate film", "(51), (56)", "block",
-             "port-plate film", "(xh, yh)", "S2", "N", "Fh"}, "z");
-  add(list, {"Th", "moment of Fh by its offset", "(52), (57)", "block", "port-plate film",
-             "about O2", "S2", "Nm", "Th"}, "xy");
+  add(list,
+      {"Fh", "hydrodynamic force of the port-plate film", "(51), (56)", "block", "port-plate film",
+       "(xh, yh)", "S2", "N", "Fh"},
+      "z");
+  add(list,
+      {"Th", "moment of Fh by its offset", "(52), (57)", "block", "port-plate film", "about O2",
+       "S2", "Nm", "Th"},
+      "xy");
   add(list, {"Rcn", "pin force", "(54), (56)", "block", "pin", "(0, 0, z_pin)", "S2", "N", "Rcn"},
       "xy");
   add(list, {"Rcs", "gear tooth force", "(55), (57)", "block", "shaft", "O4", "S4", "N", "Rcs"},
       "z");
-  add(list, {"Rb1", "tapered bearing force", "(39), (42)", "shaft", "tapered bearing", "C1", "S1",
-             "N", "Rb1"}, "xyz");
-  add(list, {"Rb2", "cylindrical bearing force", "(40), (42)", "shaft", "cylindrical bearing", "C2",
-             "S1", "N", "Rb2"}, "xy");
-  add(list, {"Td", "drive torque", "(41), (43)", "shaft", "prime mover", "about z1", "S1", "Nm",
-             "Td"}, "z");
-  add(list, {"xh", "point where Fh acts", "(53)", "block", "port-plate film", "from z2", "S2", "mm",
-             "xh_yh", Kind::derived}, "x");
-  add(list, {"yh", "point where Fh acts", "(53)", "block", "port-plate film", "from z2", "S2", "mm",
-             "xh_yh", Kind::derived}, "y");
-  add(list, {"Tcs", "torque that carries the block round", "(57)", "block",
-             "shaft (gear) or imposed drive", "about z2", "S2", "Nm", "Tcs", Kind::derived}, "z");
+  add(list,
+      {"Rb1", "tapered bearing force", "(39), (42)", "shaft", "tapered bearing", "C1", "S1", "N",
+       "Rb1"},
+      "xyz");
+  add(list,
+      {"Rb2", "cylindrical bearing force", "(40), (42)", "shaft", "cylindrical bearing", "C2", "S1",
+       "N", "Rb2"},
+      "xy");
+  add(list,
+      {"Td", "drive torque", "(41), (43)", "shaft", "prime mover", "about z1", "S1", "Nm", "Td"},
+      "z");
+  add(list,
+      {"xh", "point where Fh acts", "(53)", "block", "port-plate film", "from z2", "S2", "mm",
+       "xh_yh", Kind::derived},
+      "x");
+  add(list,
+      {"yh", "point where Fh acts", "(53)", "block", "port-plate film", "from z2", "S2", "mm",
+       "xh_yh", Kind::derived},
+      "y");
+  add(list,
+      {"Tcs", "torque that carries the block round", "(57)", "block",
+       "shaft (gear) or imposed drive", "about z2", "S2", "Nm", "Tcs", Kind::derived},
+      "z");
   for (int k = 1; k <= n_; ++k)
-    add(list, {"p", "chamber pressure, gauge", "(24)", label("piston ", k), "oil", label("B", k),
-               "", "bar", "p", Kind::input, k}, "-");
+    add(list,
+        {"p", "chamber pressure, gauge", "(24)", label("piston ", k), "oil", label("B", k), "",
+         "bar", "p", Kind::input, k},
+        "-");
   for (int k = 1; k <= n_; ++k)
-    add(list, {"zB", "position of B on its bore axis", "(11)", label("piston ", k), "",
-               label("B", k), "S2", "mm", "zB", Kind::derived, k}, "z");
+    add(list,
+        {"zB", "position of B on its bore axis", "(11)", label("piston ", k), "", label("B", k),
+         "S2", "mm", "zB", Kind::derived, k},
+        "z");
   for (int k = 1; k <= n_; ++k)
-    add(list, {"Rs", "joint force along the piston (z3) and across it", "(17), (29)",
-               label("piston ", k), "shaft", label("A", k), "S3", "N", "Rs", Kind::derived, k},
+    add(list,
+        {"Rs", "joint force along the piston (z3) and across it", "(17), (29)", label("piston ", k),
+         "shaft", label("A", k), "S3", "N", "Rs", Kind::derived, k},
         "xyz");
   for (int k = 1; k <= n_; ++k)
-    add(list, {"Tc", "share of the pistons' torque on the block", "(57)", "block",
-               label("piston ", k), "about z2", "S2", "Nm", "Tc", Kind::derived, k}, "z");
-  add(list, {"power_residual", "sum of all power over omega (virtual work per radian)", "", "pump",
-             "", "", "", "Nm", "power_residual", Kind::check}, "-");
+    add(list,
+        {"Tc", "share of the pistons' torque on the block", "(57)", "block", label("piston ", k),
+         "about z2", "S2", "Nm", "Tc", Kind::derived, k},
+        "z");
+  add(list,
+      {"power_residual", "sum of all power over omega (virtual work per radian)", "", "pump", "",
+       "", "", "Nm", "power_residual", Kind::check},
+      "-");
   for (int k = 1; k <= n_; ++k)
-    add(list, {"axis_moment", "moment about the piston's own axis", "", label("piston ", k), "",
-               "centre of mass", "", "Nm", "axis_moment", Kind::check, k}, "-");
+    add(list,
+        {"axis_moment", "moment about the piston's own axis", "", label("piston ", k), "",
+         "centre of mass", "", "Nm", "axis_moment", Kind::check, k},
+        "-");
 }
 
 }  // namespace bentaxis

@@ -26,9 +26,9 @@ struct Channel {
   std::string axis;      ///< "x2"
   std::string frame;     ///< "S2"
   std::string on_body, by_body, point;
-  std::string unit;      ///< "N", "Nm", "mm", "bar"
+  std::string unit;       ///< "N", "Nm", "mm", "bar"
   double unit_in_si = 1;  ///< SI value of one unit
-  std::string group;     ///< channels that share one peak: the components of one vector
+  std::string group;      ///< channels that share one peak: the components of one vector
   ChannelKind kind = ChannelKind::reaction;
 };
 

@@ -2,10 +2,11 @@
 
 // Single-threaded reading keeps the library free of threads it does not need.
 #define CSV_IO_NO_THREAD
+#include <libfccp/csv.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <libfccp/csv.h>
 #include <string_view>
 
 #include "bentaxis/pump/error.h"
@@ -65,6 +66,7 @@ NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empt
         row.push_back(value);
       }
       table.rows.push_back(std::move(row));
+      table.lines.push_back(reader.get_file_line());
     }
   } catch (const io::error::base& error) {
     std::string what = error.what();

@@ -11,6 +11,7 @@ namespace bentaxis {
 struct NumericTable {
   std::vector<std::string> header;
   std::vector<std::vector<double>> rows;
+  std::vector<unsigned> lines;  ///< of the file, one per row
 };
 
 /// Reads a file of numbers, comma separated, one header line. Numbers are converted exactly

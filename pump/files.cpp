@@ -1,10 +1,11 @@
 #include "bentaxis/pump/files.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <unistd.h>
 
 #include "bentaxis/pump/error.h"
 
@@ -34,7 +35,8 @@ void write_whole(const fs::path& temporary, const fs::path& shown, const std::st
 
 OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
-  fs::path missing = fs::absolute(folder_).lexically_normal();
+  if (folder_.empty()) fail("\"\"", "an output folder needs a name");
+  fs::path missing = fs::absolute(folder_, error).lexically_normal();
   if (missing.filename().empty()) missing = missing.parent_path();
   while (!missing.empty() && !fs::exists(missing, error)) {
     created_ = missing;
@@ -51,8 +53,12 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   for (const auto& [temporary, final_path] : pending_) fs::remove(temporary, ignored);
-  // A folder made for a run that produced nothing goes too.
-  if (!created_.empty()) fs::remove_all(created_, ignored);
+  // Folders made for a run that produced nothing go too, unless someone else has put something
+  // there.
+  if (created_.empty()) return;
+  fs::path folder = fs::absolute(folder_, ignored).lexically_normal();
+  if (folder.filename().empty()) folder = folder.parent_path();
+  while (fs::remove(folder, ignored) && folder != created_) folder = folder.parent_path();
 }
 
 void OutputFolder::add(const std::string& name, const std::string& content) {

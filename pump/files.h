@@ -28,7 +28,8 @@ class OutputFolder {
  private:
   std::filesystem::path folder_;
   std::filesystem::path created_;  // topmost folder that did not exist before; empty if none
-  std::vector<std::pair<std::filesystem::path, std::filesystem::path>> pending_;  // temporary, final
+  std::vector<std::pair<std::filesystem::path, std::filesystem::path>>
+      pending_;  // temporary, final
 };
 
 }  // namespace bentaxis

@@ -7,6 +7,18 @@
 
 namespace bentaxis {
 
+std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& pump) {
+  if (inertia == PistonInertia::lumped) return "";
+  if (!pump.piston.real)
+    return "needs centre_of_mass_mm, transverse_inertia_kg_mm2, axial_inertia_kg_mm2 in [piston]";
+  const PistonMass::Real& real = *pump.piston.real;
+  if (inertia == PistonInertia::dynamically_equivalent && real.transverse_inertia > 0 &&
+      !(real.centre_of_mass > 0 && real.centre_of_mass < pump.geometry.piston_length))
+    return "needs centre_of_mass_mm between 0 and piston_length_mm (both excluded), where "
+           "transverse_inertia_kg_mm2 is not 0";
+  return "";
+}
+
 double piston_friction_force(const Friction& friction, double velocity, double rest_speed) {
   double direction = 0;
   if (friction.regularization > 0) {

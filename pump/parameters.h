@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace bentaxis {
 
@@ -13,13 +14,13 @@ namespace bentaxis {
 /// piston joints, y1 up; S2 has its origin at (0, 0, axis_offset) in S1 and is bent by `tilt`
 /// about x towards +y1; z2 is the block axis (Roccatello & Nervegna 2009, Fig. 1, (7)).
 struct Geometry {
-  int pistons = 0;                   ///< N
-  double tilt = 0;                   ///< alpha, rad, between shaft and block axis
-  double joint_circle_radius = 0;    ///< R_a, m, of the spherical joints A_k about z1
-  double bore_circle_radius = 0;     ///< R_d, m, of the bores about z2
-  double axis_offset = 0;            ///< b, m, z1 of the block frame's origin O2
-  double piston_length = 0;          ///< b_1, m, from A to B
-  double bore_diameter = 0;          ///< D_pi, m
+  int pistons = 0;                 ///< N
+  double tilt = 0;                 ///< alpha, rad, between shaft and block axis
+  double joint_circle_radius = 0;  ///< R_a, m, of the spherical joints A_k about z1
+  double bore_circle_radius = 0;   ///< R_d, m, of the bores about z2
+  double axis_offset = 0;          ///< b, m, z1 of the block frame's origin O2
+  double piston_length = 0;        ///< b_1, m, from A to B
+  double bore_diameter = 0;        ///< D_pi, m
 };
 
 /// Bevel gear pair with equal tooth counts that carries the block round (19)-(23).
@@ -37,7 +38,15 @@ struct Bearings {
 enum class PistonInertia {
   lumped,  ///< two point masses, chi m at A and (1 - chi) m at B (27), (28)
   real,    ///< rigid, axisymmetric, spinning about its own axis at constant rate (appendix)
+  dynamically_equivalent,  ///< three point masses at A, at the centre of mass and at B that have
+                           ///< the real piston's mass, centre and transverse inertia; no spin
 };
+
+/// Names as in a case file, in the order of the enumeration.
+inline const std::vector<std::string>& piston_inertia_names() {
+  static const std::vector<std::string> names = {"lumped", "real", "dynamically_equivalent"};
+  return names;
+}
 
 /// Mass properties of one piston. Each kind's own data is present when the case file gives it.
 struct PistonMass {
@@ -48,7 +57,7 @@ struct PistonMass {
     double spin = 0;                ///< w_s, rad/s, absolute, positive along A->B
   };
   PistonInertia inertia = PistonInertia::lumped;
-  double mass = 0;                  ///< m_pi, kg
+  double mass = 0;                   ///< m_pi, kg
   double joint_mass_fraction = 0.5;  ///< chi, share of the mass at A
   std::optional<Real> real;
 };
@@ -69,11 +78,11 @@ struct Block {
 };
 
 struct Friction {
-  double piston_coulomb = 0;      ///< F_c, N
-  double piston_viscous = 0;      ///< c_v, N s/m
-  double regularization = 0.01;   ///< v_reg, m/s; 0 gives the sign function
-  double block_viscous = 0;       ///< C_c, Nm s/rad
-  double shaft_viscous = 0;       ///< C_s, Nm s/rad
+  double piston_coulomb = 0;       ///< F_c, N
+  double piston_viscous = 0;       ///< c_v, N s/m
+  double regularization = 0.01;    ///< v_reg, m/s; 0 gives the sign function
+  double block_viscous = 0;        ///< C_c, Nm s/rad
+  double shaft_viscous = 0;        ///< C_s, Nm s/rad
   double shaft_torque_factor = 1;  ///< C_t of (38); 1 means no proportional loss
 };
 
@@ -122,11 +131,16 @@ inline bool operator==(const Assumptions& a, const Assumptions& b) {
 }
 
 inline std::string to_string(PistonInertia inertia) {
-  return inertia == PistonInertia::lumped ? "lumped" : "real";
+  return piston_inertia_names()[static_cast<std::size_t>(inertia)];
 }
 inline std::string to_string(GearScene gear) {
   return gear == GearScene::mesh ? "mesh" : "imposed";
 }
+
+/// Why this piston cannot be treated as `inertia` asks, as the end of a message; empty where it
+/// can. Real and dynamically equivalent pistons need their data; three point masses with a
+/// transverse inertia need the centre of mass strictly between A and B.
+std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& pump);
 
 /// Applies the law of piston friction Fpf = -(Fc tanh(v/v_reg) + cv v), N, along z2 at B.
 /// With v_reg = 0 the tanh is sign(v), and |v| <= `rest_speed` counts as rest.

@@ -68,11 +68,14 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
       ports_(spec.ports),
       transition_deg_(spec.transition_deg),
       delivery_start_deg_(spec.delivery_start_deg) {
-  if (kind_ == PressureKind::curve) {
+  if (kind_ != PressureKind::ideal) {
     const auto& theta = spec.curve.theta_deg;
     const auto fail = [&](const std::string& why) {
       throw InputError(spec.file.string() + ": pressure curve: " + why);
     };
+    if (kind_ == PressureKind::hydraulic && theta.empty())
+      throw InputError(
+          "[pressure] kind = \"hydraulic\": this job needs the pressure to be computed first");
     if (theta.size() < 3) fail("at least 3 points needed, found " + std::to_string(theta.size()));
     for (std::size_t i = 1; i < theta.size(); ++i)
       if (!(theta[i] > theta[i - 1])) fail("angles must increase strictly");
@@ -129,9 +132,19 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file) {
   if (table.header != wanted)
     throw InputError(file.string() + ":1: header must be theta_deg,pressure_bar");
   PressureCurve curve;
-  for (const auto& row : table.rows) {
-    curve.theta_deg.push_back(row[0]);
-    curve.pressure.push_back(pascals(row[1]));
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const double theta = table.rows[i][0];
+    const auto refuse = [&](const std::string& range) {
+      throw InputError(file.string() + ":" + std::to_string(table.lines[i]) +
+                       ": theta_deg = " + number_text(theta) + ": must be " + range);
+    };
+    if (i > 0 && !(theta > curve.theta_deg.back()))
+      refuse("> " + number_text(curve.theta_deg.back()) + " (angles increase strictly)");
+    if (i > 0 && !(theta - curve.theta_deg.front() < 360))
+      refuse("< " + number_text(curve.theta_deg.front() + 360) +
+             " (a turn after the first; the end point is not repeated)");
+    curve.theta_deg.push_back(theta);
+    curve.pressure.push_back(pascals(table.rows[i][1]));
   }
   return curve;
 }

@@ -14,7 +14,11 @@ struct PortPressures {
   double delivery = 0;
 };
 
-enum class PressureKind { ideal, curve };
+enum class PressureKind {
+  ideal,      ///< smoothed steps between the port pressures
+  curve,      ///< periodic cubic spline through the points of a file
+  hydraulic,  ///< the same through points that a hydraulic model has computed
+};
 
 /// A periodic pressure curve: angles in degrees (strictly increasing, spanning less than 360, end
 /// point not repeated) and gauge pressures in Pa.
@@ -30,13 +34,15 @@ struct PressureSpec {
   double transition_deg = 0;        ///< w, width of each rise and fall
   double delivery_start_deg = 180;  ///< middle of the rise
   std::filesystem::path file;       ///< of a curve
-  PressureCurve curve;
+  int points = 800;                 ///< of a computed curve, per turn
+  PressureCurve curve;              ///< of kind hydraulic: empty until it has been computed
 };
 
 /// Pressure over a turn. Works in degrees, where edges are exact.
 class PressureTrace {
  public:
-  /// @throws InputError if a curve has fewer than 3 points or its angles are not as required.
+  /// @throws InputError if a curve has fewer than 3 points (or was not computed yet), or its angles
+  /// are not as required.
   explicit PressureTrace(const PressureSpec& spec);
   ~PressureTrace();
   PressureTrace(PressureTrace&&) noexcept;

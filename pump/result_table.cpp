@@ -30,8 +30,9 @@ double not_computed() {
 }
 
 std::size_t ResultTable::find(const std::string& channel_name) const {
-  const auto it = std::find_if(channels.begin(), channels.end(),
-                               [&](const Channel& channel) { return channel.name == channel_name; });
+  const auto it = std::find_if(channels.begin(), channels.end(), [&](const Channel& channel) {
+    return channel.name == channel_name;
+  });
   return static_cast<std::size_t>(it - channels.begin());
 }
 
@@ -39,8 +40,7 @@ double ResultTable::peak(const std::string& group) const {
   // Components of one vector share group, frame and piston.
   std::map<std::pair<std::string, int>, std::vector<std::size_t>> vectors;
   for (std::size_t c = 0; c < columns(); ++c)
-    if (channels[c].group == group)
-      vectors[{channels[c].frame, channels[c].piston}].push_back(c);
+    if (channels[c].group == group) vectors[{channels[c].frame, channels[c].piston}].push_back(c);
   double peak = 0;
   for (const auto& [key, components] : vectors) {
     for (std::size_t row = 0; row < rows(); ++row) {
@@ -115,12 +115,13 @@ LoadScale load_scale(const Case& the_case, const Samples& samples) {
       std::max(pump.geometry.joint_circle_radius, pump.geometry.bore_circle_radius);
   const double inertia = pump.piston.mass * samples.omega * samples.omega * radius;
   LoadScale scale;
-  scale.force = std::max({pressure * std::max(area, pump.block.bottom_area),
-                          pump.block.spring_force, pump.friction.piston_coulomb, inertia,
-                          pump.gravity * std::max({pump.shaft.mass, pump.block.mass,
-                                                   pump.piston.mass})});
-  scale.moment = std::max({scale.force * radius, pump.friction.block_viscous * std::abs(samples.omega),
-                           pump.friction.shaft_viscous * std::abs(samples.omega)});
+  scale.force =
+      std::max({pressure * std::max(area, pump.block.bottom_area), pump.block.spring_force,
+                pump.friction.piston_coulomb, inertia,
+                pump.gravity * std::max({pump.shaft.mass, pump.block.mass, pump.piston.mass})});
+  scale.moment =
+      std::max({scale.force * radius, pump.friction.block_viscous * std::abs(samples.omega),
+                pump.friction.shaft_viscous * std::abs(samples.omega)});
   return scale;
 }
 

@@ -1,6 +1,7 @@
 // The analytic model: high-precision curves, an independent twin, hand-solved cases, properties.
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
+
+#include <Eigen/Dense>
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/model.h"
@@ -372,9 +373,9 @@ TEST(Properties, ImposedBlockSpeedTakesTheGearTorqueOffTheShaft) {
   }
 }
 
-// Mean torque of a frictionless pump is displacement x pressure / 2 pi; a transition of w rad lowers
-// it by about w^2/40. Midpoint sums of a smooth periodic function converge beyond any order; the
-// step needs angles that share the edges.
+// Mean torque of a frictionless pump is displacement x pressure / 2 pi; a transition of w rad
+// lowers it by about w^2/40. Midpoint sums of a smooth periodic function converge beyond any order;
+// the step needs angles that share the edges.
 TEST(Properties, MeanTorqueIsDisplacementTimesPressure) {
   Case the_case = reference_case("bap63_rated");
   the_case.pump.friction = {};
@@ -399,7 +400,8 @@ TEST(Properties, MeanTorqueIsDisplacementTimesPressure) {
 TEST(Properties, KinematicRippleHasTheTextbookOrders) {
   for (const int pistons : {3, 5, 7, 4, 6}) {
     PumpParameters p = plain_pump(pistons);
-    p.geometry.bore_circle_radius = p.geometry.joint_circle_radius * (1 + std::cos(p.geometry.tilt)) / 2;
+    p.geometry.bore_circle_radius =
+        p.geometry.joint_circle_radius * (1 + std::cos(p.geometry.tilt)) / 2;
     const Model model(p, {});
     const ChannelLayout& at = model.layout();
     std::vector<double> v(at.size());
@@ -438,13 +440,16 @@ TEST(Kinematics, DerivativesAreExact) {
     const PumpParameters pump = random.pump();
     const analytic::Kinematics kinematics(pump.geometry);
     const double angle = random.in(0, 6);
-    const auto ring = [&](double t) { return kinematics.piston(std::sin(t), std::cos(t)).ring().z(); };
+    const auto ring = [&](double t) {
+      return kinematics.piston(std::sin(t), std::cos(t)).ring().z();
+    };
     const auto state = kinematics.piston(std::sin(angle), std::cos(angle));
     const double first = state.joint.first.z() + state.axis.first.z();
     const double second = state.joint.second.z() + state.axis.second.z();
     const auto errors = [&](double h) {
-      return std::pair{std::abs((ring(angle + h) - ring(angle - h)) / (2 * h) - first),
-                       std::abs((ring(angle + h) - 2 * ring(angle) + ring(angle - h)) / (h * h) - second)};
+      return std::pair{
+          std::abs((ring(angle + h) - ring(angle - h)) / (2 * h) - first),
+          std::abs((ring(angle + h) - 2 * ring(angle) + ring(angle - h)) / (h * h) - second)};
     };
     const auto coarse = errors(2e-2);
     const auto fine = errors(1e-2);
@@ -470,7 +475,8 @@ TEST(Kinematics, StrokeCountsInnerStationaryPoints) {
       low = std::min(low, z);
       high = std::max(high, z);
     }
-    const double ends = std::abs(kinematics.piston(0, 1).ring().z() - kinematics.piston(0, -1).ring().z());
+    const double ends =
+        std::abs(kinematics.piston(0, 1).ring().z() - kinematics.piston(0, -1).ring().z());
     const double stroke = analytic::derived_quantities(g).stroke;
     EXPECT_NEAR(stroke, high - low, 1e-6);
     if (stroke > ends + 1e-6) ++inner;

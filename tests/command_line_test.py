@@ -31,7 +31,7 @@ class Case:
     """The text of a case file, edited key by key. "pump.tilt_deg" is a key of a table, "name" one of none."""
 
     def __init__(self, **changes):
-        self.lines = (REPO / "cases" / "bap63_rated.toml").read_text().splitlines()
+        self.lines = (REPO / "reference_data" / "high_precision" / "bap63_rated" / "case.toml").read_text().splitlines()
         self.set({"operation.samples_per_revolution": 36})
         self.set(changes)
 
@@ -303,7 +303,7 @@ class RunTest(ProgramTest):
         case = self.case(**{"pump.tilt_deg": 0.0, "pump.axis_offset_mm": 0.0, "pressure.delivery_bar": 0.0,
                             "block.spring_force_N": 0.0, "friction.piston_coulomb_N": 0.0,
                             "friction.block_viscous_Nm_per_rpm": 0.0})
-        self.run_program("run", case, "--model", "analytic", "--out", "out")
+        self.run_program("run", case, "--model", "analytic", "--gear", "imposed", "--out", "out")
         self.assertEqual(set(self.column("out/analytic.csv", "Fh_z2_N")), {"0"})
         for name in ("xh_x2_mm", "yh_y2_mm"):
             self.assertEqual(set(self.column("out/analytic.csv", name)), {""})
@@ -561,7 +561,7 @@ class OutputTest(ProgramTest):
     def test_folder_cannot_be_made(self):
         (self.folder / "file").write_text("mine")
         case = self.case()
-        for out in ("file", "file/below", "/proc/bentaxis", "/dev/null"):
+        for out in ("file", "file/below", "/proc/bentaxis", "/dev/null", ""):
             for command in self.COMMANDS:
                 with self.subTest(out=out, command=command):
                     self.assert_mentions(self.refused(*command, case, "--out", out), out, "cannot be written")
@@ -639,6 +639,14 @@ class InterruptionTest(ProgramTest):
                     self.assertEqual((process.out, process.err.count("\n")), ("", 1), process.err)
                     self.assertEqual(self.contents(), before)
 
+    def test_other_signals_that_end_a_run(self):
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number):
+                process = self.start_and_wait("run", self.long_case(), "--model", "multibody", "--out", "new/folder")
+                process.send_signal(number)
+                self.finish(process, INTERRUPTED)
+                self.assertEqual(self.contents().keys(), {"long.toml"})
+
     def test_interrupted_run_keeps_what_others_put_into_its_folder(self):
         process = self.start_and_wait("run", self.long_case(), "--model", "multibody", "--out", "out")
         self.run_program("run", self.case(), "--model", "analytic", "--out", "out")
@@ -667,6 +675,104 @@ class TogetherTest(ProgramTest):
         self.assertTrue((self.folder / "out" / "report.html").read_text().rstrip().endswith("</html>"))
         for model in RunTest.MODELS:
             self.assertEqual(len(self.column(f"out/{model}.csv", "theta_deg")), 36)
+
+
+class PressureTest(ProgramTest):
+    """bentaxis pressure, and what run and compare make of a hydraulic case."""
+
+    CASES = ("bap63_rated", "bap63_peak")
+
+    def hydraulic(self, name="case.toml", of="bap63_rated", **changes):
+        case = Case()
+        case.lines = (REPO / "cases" / f"{of}_hydraulic.toml").read_text().splitlines()
+        return case.set({"operation.samples_per_revolution": 72, **changes}).write(self.folder / name)
+
+    def test_files_and_numbers(self):
+        result = self.run_program("pressure", self.hydraulic(), "--out", "out", "--transient", 2)
+        self.assertEqual({p.name for p in self.folder.glob("out/*")},
+                         {"pressure.html", "pressure.json", "pressure.csv", "transient.csv"})
+        self.assertEqual(len(self.column("out/pressure.csv", "p_1_bar")), 800)
+        delivery = [float(v) for v in self.column("out/pressure.csv", "p_delivery_bar")]
+        self.assertAlmostEqual(sum(delivery) / len(delivery), 275, delta=0.01)
+        report = json.loads((self.folder / "out/pressure.json").read_text())
+        self.assertLessEqual({"Fig. 10, 17", "Fig. 25", "Fig. 17"}, {f["paper"] for f in report["figures"]})
+        facts = {row[0]: row[1] for row in report["runs"][0]["table"]["rows"]}
+        self.assertAlmostEqual(facts["mean delivery pressure"], 275, delta=1e-4)
+        self.assertIn("volumetric efficiency", result.out)
+        # 72 samples a turn are few, but the means of both models are those of the same samples
+        self.assertRegex(result.out, r"mean drive torque, multibody +29\d")
+
+    def test_shipped_cases_against_the_published_numbers(self):
+        for name in self.CASES:
+            result = self.run_program("pressure", REPO / "cases" / f"{name}_hydraulic.toml", "--out", name,
+                                      "--published", REPO / "reference_data" / "published" / f"{name}.toml")
+            rows = json.loads((self.folder / name / "pressure.json").read_text())["published"]["rows"]
+            self.assertEqual({row["verdict"] for row in rows}, {"inside"})
+            self.assertLessEqual({row["status"] for row in rows}, {"used to infer", "calibrated", "predicted"})
+            self.assertNotIn("OUTSIDE", result.out)
+        needs = [float(x) for x in re.findall(r"needs a mean delivery pressure of ([0-9.]+) bar", result.out)]
+        self.assertEqual(len(needs), 3)
+        for pressure in needs:
+            self.assertTrue(370 < pressure < 385.8, needs)
+
+    def test_number_outside_its_window(self):
+        case = self.hydraulic(**{"friction.shaft_torque_factor": 0.95})
+        result = self.run_program("pressure", case, "--out", "out", "--published",
+                                  REPO / "reference_data/published/bap63_rated.toml", status=OUT_OF_TOLERANCE)
+        self.assertIn("OUTSIDE", result.out)
+
+    def test_torque_curve(self):
+        self.run_program("pressure", self.hydraulic(), "--out", "out", "--delivery-bar", "0:350:25")
+        pressures = [float(v) for v in self.column("out/torque_curve.csv", "delivery_bar")]
+        self.assertEqual(pressures, [25.0 * i for i in range(15)])
+        torque = [float(v) for v in self.column("out/torque_curve.csv", "mean_Td_analytic_Nm")]
+        other = [float(v) for v in self.column("out/torque_curve.csv", "mean_Td_multibody_Nm")]
+        flow = [float(v) for v in self.column("out/torque_curve.csv", "flow_l_per_min")]
+        self.assertEqual((torque, flow), (sorted(torque), sorted(flow, reverse=True)))
+        for a, b in zip(torque, other):
+            self.assertAlmostEqual(a, b, delta=1e-9 * torque[-1])
+
+    def test_overlay(self):
+        self.run_program("pressure", self.hydraulic(), "--overlay", self.hydraulic("peak.toml", "bap63_peak"),
+                         "--out", "out")
+        figures = {f["paper"]: f for f in json.loads((self.folder / "out/pressure.json").read_text())["figures"]}
+        for number in range(19, 25):
+            figure = figures[f"Fig. {number}"]
+            self.assertEqual(len(figure["x"]["values"]), 3 * 72)
+            self.assertTrue(all(len(s["values"]) == 3 * 72 for s in figure["series"]))
+
+    def test_both_models_get_the_same_curve(self):
+        case = self.hydraulic()
+        self.run_program("compare", case, "--out", "out")
+        self.assertEqual({p.name for p in self.folder.glob("out/*")}, REPORT_FILES | {"pressure.csv"})
+        for k in range(1, 6):
+            self.assertEqual(self.column("out/analytic.csv", f"p_{k}_bar"), self.column("out/multibody.csv", f"p_{k}_bar"))
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertIn("Hydraulic model", [run["title"] for run in report["runs"]])
+        self.run_program("run", case, "--model", "multibody", "--out", "run")
+        self.assertEqual((self.folder / "run/multibody.csv").read_text(), (self.folder / "out/multibody.csv").read_text())
+
+    def test_refused(self):
+        for changes, words in (
+                ({"operation.speed_rpm": 0.0}, ("speed_rpm", "standstill")),
+                ({"operation.speed_rpm": -1500.0}, ("speed_rpm", "motoring")),
+                ({"pump.tilt_deg": 0.0}, ("tilt_deg", "stroke")),
+                ({"pressure.delivery_bar": -1.0}, ("delivery_bar", "[0,")),
+                ({"pressure.suction_bar": -2.0}, ("suction_bar", "absolute")),
+                ({"pressure.points": 4}, ("points", "[16,")),
+                ({"hydraulics.air_percent": 0.0}, ("air_percent", "(0,")),
+                ({"hydraulics.bulk_modulus_GPa": 1.4}, ("bulk_modulus_GPa", "bulk_modulus_MPa")),
+                ({"hydraulics.kidney_width_deg": None}, ("kidney_width_deg", "missing")),
+                ({"hydraulics.notch_law": '"cubic"'}, ("notch_law", "quadratic"))):
+            with self.subTest(changes):
+                line = self.refused("pressure", self.hydraulic(**changes), "--out", "out")
+                self.assert_mentions(line, "case.toml", *words)
+        self.assert_mentions(self.refused("pressure", self.case("ideal.toml")), "ideal.toml", "hydraulic")
+        case = self.hydraulic()
+        for text, word in ("1:2", "FROM:TO:STEP"), ("a:2:1", "FROM:TO:STEP"), ("5:1:1", "FROM <= TO"), ("0:1:0", "STEP > 0"):
+            self.assert_mentions(self.refused("pressure", case, "--delivery-bar", text), text, word)
+        slow = self.hydraulic("slow.toml", **{"operation.speed_rpm": 5.0})
+        self.assert_mentions(self.refused("pressure", slow, status=COMPUTATION_FAILED), "hydraulics", "periodic")
 
 
 # ---- Negative controls: a wrong input to one model is noticed -------------------------------------------

@@ -1,9 +1,8 @@
 // The comparison: made-up tables with known answers; no model is run here.
-#include "bentaxis/compare/comparison.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "bentaxis/compare/comparison.h"
 #include "bentaxis/compare/page.h"
 #include "bentaxis/compare/report.h"
 #include "bentaxis/compare/split.h"
@@ -40,13 +39,15 @@ ResultTable table(const std::string& name, const std::vector<Channel>& channels,
   return t;
 }
 
-double wave(double deg, int order, double phase = 0) { return std::cos(order * radians(deg) - phase); }
+double wave(double deg, int order, double phase = 0) {
+  return std::cos(order * radians(deg) - phase);
+}
 
 TEST(Comparison, MeasuresADifferenceOfKnownShape) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto a = table("a", channels, {[](double t) { return 100 * wave(t, 5); }});
-  const auto b = table("b", channels,
-                       {[](double t) { return 100 * wave(t, 5) + 1 + 2 * wave(t, 10, 0.5); }});
+  const auto b =
+      table("b", channels, {[](double t) { return 100 * wave(t, 5) + 1 + 2 * wave(t, 10, 0.5); }});
   Options options;
   options.orders = {5, 10};
   options.tolerance = 1e-3;
@@ -117,9 +118,10 @@ TEST(Comparison, WhatOneTableLacksIsNotComputedAndNotAgreeing) {
 }
 
 TEST(Checks, AreJudgedTogetherOverThePistons) {
-  const std::vector<Channel> channels = {
-      channel("m_1_Nm", "m", "Nm", ChannelKind::check), channel("m_2_Nm", "m", "Nm", ChannelKind::check)};
-  auto t = table("a", channels, {[](double) { return 1e-9; }, [](double d) { return d == 90 ? -2e-6 : 0; }});
+  const std::vector<Channel> channels = {channel("m_1_Nm", "m", "Nm", ChannelKind::check),
+                                         channel("m_2_Nm", "m", "Nm", ChannelKind::check)};
+  auto t = table("a", channels,
+                 {[](double) { return 1e-9; }, [](double d) { return d == 90 ? -2e-6 : 0; }});
   for (auto& c : t.channels) c.meaning = "moment";
   const auto checks = judge_checks(t, {{"Nm", 100.0}}, 1e-9);
   ASSERT_EQ(checks.size(), 1U);
@@ -147,6 +149,22 @@ TEST(Split, AddsUpAndSharesInteractionsEvenly) {
   EXPECT_NEAR(x.rest, 1e-7, 1e-14);
   EXPECT_TRUE(split.explained());
   EXPECT_FALSE(split_difference(first, second, {"p", "q"}, variant, {}, 1e-9).explained());
+}
+
+TEST(Split, MarksOnlyExplainedChannels) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
+  const auto model = [&](double p, double extra) {
+    return table("m", channels,
+                 {[=](double) { return 10 + p; }, [=](double) { return 5 + extra; }});
+  };
+  const auto second = model(1, 0.1);
+  const Split split = split_difference(
+      model(0, 0), second, {"p"}, [&](unsigned) { return model(1, 0); }, {}, 1e-9);
+  Comparison c = compare_tables(model(0, 0), second, {});
+  mark_explained(c, split);
+  EXPECT_EQ(c.channels[0].verdict, Verdict::explained);
+  EXPECT_EQ(c.channels[1].verdict, Verdict::differs);  // no assumption accounts for it
+  EXPECT_NEAR(split.largest_rest(), 0.02, 1e-12);
 }
 
 TEST(Page, HoldsTheDataAndNeedsNoNetwork) {

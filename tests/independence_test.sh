@@ -20,8 +20,10 @@ forbid_symbol() {  # library, forbidden namespace
 
 forbid_include "$source_dir/analytic" multibody || status=1
 forbid_include "$source_dir/multibody" analytic || status=1
-for room in analytic multibody; do forbid_include "$source_dir/compare" $room || status=1; done
-for room in analytic multibody compare cli; do forbid_include "$source_dir/pump" $room || status=1; done
+for room in analytic multibody hydraulics; do forbid_include "$source_dir/compare" $room || status=1; done
+for room in analytic multibody compare cli; do forbid_include "$source_dir/hydraulics" $room || status=1; done
+for room in analytic multibody; do forbid_include "$source_dir/$room" hydraulics || status=1; done
+for room in analytic multibody hydraulics compare cli; do forbid_include "$source_dir/pump" $room || status=1; done
 forbid_symbol "$analytic" multibody || status=1
 forbid_symbol "$multibody" analytic || status=1
 

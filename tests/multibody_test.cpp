@@ -118,27 +118,47 @@ struct Perturbation {
 
 TEST(NegativeControl, EveryActiveParameterShowsInSomeReaction) {
   Case the_case = reference_case("asymmetric_ports");
-  the_case.pump.friction.regularization = 0.5;  // of the order of the pistons' speed, so that it acts
+  the_case.pump.friction.regularization =
+      0.5;  // of the order of the pistons' speed, so that it acts
   const Samples samples = one_turn(the_case);
   const ResultTable reference = analytic::run(the_case, the_case.analytic, samples);
-#define BENTAXIS_FIELD(path) {#path, [](Case& c) -> double& { return c.pump.path; }}
-  const std::vector<Perturbation> perturbations = {
-      BENTAXIS_FIELD(geometry.tilt), BENTAXIS_FIELD(geometry.joint_circle_radius),
-      BENTAXIS_FIELD(geometry.bore_circle_radius), BENTAXIS_FIELD(geometry.axis_offset),
-      BENTAXIS_FIELD(geometry.piston_length), BENTAXIS_FIELD(geometry.bore_diameter),
-      BENTAXIS_FIELD(gear.pitch_diameter), BENTAXIS_FIELD(gear.pressure_angle),
-      BENTAXIS_FIELD(bearings.tapered_z), BENTAXIS_FIELD(bearings.cylindrical_z),
-      BENTAXIS_FIELD(piston.mass), BENTAXIS_FIELD(piston.real->centre_of_mass),
-      BENTAXIS_FIELD(piston.real->transverse_inertia), BENTAXIS_FIELD(piston.real->axial_inertia),
-      BENTAXIS_FIELD(piston.real->spin), BENTAXIS_FIELD(shaft.mass),
-      BENTAXIS_FIELD(shaft.centre_of_mass_z), BENTAXIS_FIELD(block.mass),
-      BENTAXIS_FIELD(block.centre_of_mass_z), BENTAXIS_FIELD(block.pin_z),
-      BENTAXIS_FIELD(block.bottom_area), BENTAXIS_FIELD(block.spring_force),
-      BENTAXIS_FIELD(friction.piston_coulomb), BENTAXIS_FIELD(friction.piston_viscous),
-      BENTAXIS_FIELD(friction.regularization), BENTAXIS_FIELD(friction.block_viscous),
-      BENTAXIS_FIELD(friction.shaft_viscous), BENTAXIS_FIELD(friction.shaft_torque_factor),
-      BENTAXIS_FIELD(gravity), BENTAXIS_FIELD(port_plate->r1), BENTAXIS_FIELD(port_plate->r4),
-      BENTAXIS_FIELD(port_plate->delivery.from_deg), BENTAXIS_FIELD(port_plate->suction.to_deg)};
+#define BENTAXIS_FIELD(path)                               \
+  {                                                        \
+#path, [](Case & c) -> double& { return c.pump.path; } \
+  }
+  const std::vector<Perturbation> perturbations = {BENTAXIS_FIELD(geometry.tilt),
+                                                   BENTAXIS_FIELD(geometry.joint_circle_radius),
+                                                   BENTAXIS_FIELD(geometry.bore_circle_radius),
+                                                   BENTAXIS_FIELD(geometry.axis_offset),
+                                                   BENTAXIS_FIELD(geometry.piston_length),
+                                                   BENTAXIS_FIELD(geometry.bore_diameter),
+                                                   BENTAXIS_FIELD(gear.pitch_diameter),
+                                                   BENTAXIS_FIELD(gear.pressure_angle),
+                                                   BENTAXIS_FIELD(bearings.tapered_z),
+                                                   BENTAXIS_FIELD(bearings.cylindrical_z),
+                                                   BENTAXIS_FIELD(piston.mass),
+                                                   BENTAXIS_FIELD(piston.real->centre_of_mass),
+                                                   BENTAXIS_FIELD(piston.real->transverse_inertia),
+                                                   BENTAXIS_FIELD(piston.real->axial_inertia),
+                                                   BENTAXIS_FIELD(piston.real->spin),
+                                                   BENTAXIS_FIELD(shaft.mass),
+                                                   BENTAXIS_FIELD(shaft.centre_of_mass_z),
+                                                   BENTAXIS_FIELD(block.mass),
+                                                   BENTAXIS_FIELD(block.centre_of_mass_z),
+                                                   BENTAXIS_FIELD(block.pin_z),
+                                                   BENTAXIS_FIELD(block.bottom_area),
+                                                   BENTAXIS_FIELD(block.spring_force),
+                                                   BENTAXIS_FIELD(friction.piston_coulomb),
+                                                   BENTAXIS_FIELD(friction.piston_viscous),
+                                                   BENTAXIS_FIELD(friction.regularization),
+                                                   BENTAXIS_FIELD(friction.block_viscous),
+                                                   BENTAXIS_FIELD(friction.shaft_viscous),
+                                                   BENTAXIS_FIELD(friction.shaft_torque_factor),
+                                                   BENTAXIS_FIELD(gravity),
+                                                   BENTAXIS_FIELD(port_plate->r1),
+                                                   BENTAXIS_FIELD(port_plate->r4),
+                                                   BENTAXIS_FIELD(port_plate->delivery.from_deg),
+                                                   BENTAXIS_FIELD(port_plate->suction.to_deg)};
 #undef BENTAXIS_FIELD
   std::map<std::string, int> noticed_in;
   for (const Perturbation& perturbation : perturbations) {

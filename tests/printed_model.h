@@ -113,7 +113,7 @@ class PrintedModel {
         const V e_acc = (acc_b - acc_a) / g.piston_length;
         force += fg;
         moment += centre.cross(fg) - real.transverse_inertia * e.cross(e_acc) -
-                  real.axial_inertia * real.spin * e_rate;
+                  (a_.inertia == PistonInertia::real ? real.axial_inertia * real.spin : 0) * e_rate;
       }
       // Five unknowns, six equations of which one is an identity: least squares by QR.
       Eigen::Matrix<double, 6, 5> m = Eigen::Matrix<double, 6, 5>::Zero();
@@ -142,12 +142,14 @@ class PrintedModel {
     const V o4(0, p_.gear.pitch_diameter / 2,
                -p_.gear.pitch_diameter / 2 / std::tan(cone) + g.axis_offset);
     const double ap = p_.gear.pressure_angle;
-    const V k4 = sign * V(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
+    const V k4 =
+        sign * V(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
 
     // Block (56), (57): unknown Fh, Thx, Thy, Rcnx, Rcny, Rcs.
     {
       V force(0, 0, p_.block.spring_force);
-      V moment = V(0, 0, -p_.friction.block_viscous * t.omega - p_.block.axial_inertia * t.omega_dot);
+      V moment =
+          V(0, 0, -p_.friction.block_viscous * t.omega - p_.block.axial_inertia * t.omega_dot);
       for (int k = 0; k < g.pistons; ++k) {
         const V on = -rc[k] + V(0, 0, p_.block.bottom_area * t.chamber_pressure[k] - friction[k]);
         force += on;

@@ -1,7 +1,8 @@
 // Shared room: case files, pressure, curves as CSV, channels, tables, output folders.
-#include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
 
 #include "bentaxis/analytic/port_plate.h"
 #include "bentaxis/multibody/land_pressure.h"
@@ -173,8 +174,9 @@ TEST(Assembly, MarginIsTheLargestDistanceOverTheTurn) {
     for (int i = 0; i < 3600; ++i) {
       const double t = 2 * kPi * i / 3600;
       const double x = (g.bore_circle_radius - g.joint_circle_radius) * std::sin(t);
-      const double y = (g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt)) * std::cos(t) -
-                       g.axis_offset * std::sin(g.tilt);
+      const double y =
+          (g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt)) * std::cos(t) -
+          g.axis_offset * std::sin(g.tilt);
       largest = std::max(largest, std::hypot(x, y));
     }
     EXPECT_NEAR(assembly_margin(g).longest_distance, largest, 1e-7);
@@ -230,7 +232,8 @@ TEST(Pressure, SplineIsPeriodicSmoothAndOfFourthOrder) {
     const PressureTrace trace(spec);
     double worst = 0;
     for (double x = -400; x < 800; x += 1.7)
-      worst = std::max(worst, std::abs(trace(x) - std::sin(radians(x)) - 0.3 * std::cos(radians(3 * x))));
+      worst = std::max(worst,
+                       std::abs(trace(x) - std::sin(radians(x)) - 0.3 * std::cos(radians(3 * x))));
     return worst;
   };
   EXPECT_NEAR(std::log2(error(60) / error(120)), 4, 0.15);
@@ -332,10 +335,10 @@ TEST(Csv, NumbersReadBackToTheSameDouble) {
 TEST(Channels, ColumnsAreTheFixedOnes) {
   const ChannelLayout layout(2);
   const std::vector<std::string> expected = {
-      "Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N", "Rc_1_x2_N", "Rc_1_y2_N", "Rs_2_x2_N", "Rs_2_y2_N",
-      "Rs_2_z2_N", "Rc_2_x2_N", "Rc_2_y2_N", "Fh_z2_N", "Th_x2_Nm", "Th_y2_Nm", "Rcn_x2_N",
-      "Rcn_y2_N", "Rcs_z4_N", "Rb1_x1_N", "Rb1_y1_N", "Rb1_z1_N", "Rb2_x1_N", "Rb2_y1_N",
-      "Td_z1_Nm", "xh_x2_mm", "yh_y2_mm"};
+      "Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N", "Rc_1_x2_N", "Rc_1_y2_N", "Rs_2_x2_N",
+      "Rs_2_y2_N", "Rs_2_z2_N", "Rc_2_x2_N", "Rc_2_y2_N", "Fh_z2_N",   "Th_x2_Nm",
+      "Th_y2_Nm",  "Rcn_x2_N",  "Rcn_y2_N",  "Rcs_z4_N",  "Rb1_x1_N",  "Rb1_y1_N",
+      "Rb1_z1_N",  "Rb2_x1_N",  "Rb2_y1_N",  "Td_z1_Nm",  "xh_x2_mm",  "yh_y2_mm"};
   for (std::size_t i = 0; i < expected.size(); ++i)
     EXPECT_EQ(layout.channels()[i].name, expected[i]);
 }

@@ -1,10 +1,9 @@
 // Pins the signs and frames of Simbody 3.7 that multibody/conventions.h wraps, against free-body
 // diagrams written here. Generic data: nothing is aligned with an axis by chance.
-#include "bentaxis/multibody/conventions.h"
-
 #include <SimTKsimbody.h>
 #include <gtest/gtest.h>
 
+#include "bentaxis/multibody/conventions.h"
 #include "bentaxis/multibody/gear_mesh.h"
 
 namespace bentaxis::multibody {
@@ -49,7 +48,8 @@ TEST(SimbodyConventions, ConstraintForceOnTheFollowerBalancesItsLoad) {
   MobilizedBody::Translation body(w.matter.updGround(), Transform(),
                                   Body::Rigid(MassProperties(2, Vec3(0), Inertia(1))), Transform());
   const UnitVec3 line(Vec3(1, 2, 3));
-  Constraint::PointOnLine constraint(w.matter.updGround(), line, Vec3(0), body, Vec3(0));
+  const InlineJoint inline_joint(w.matter.updGround(), line, Vec3(0), body, Vec3(0));
+  const Constraint::PointOnLine& constraint = inline_joint.constraint();
   const Vec3 load(5, -7, 11);
   Force::ConstantForce(w.forces, body, Vec3(0), load);
   State state = w.system.realizeTopology();
@@ -57,8 +57,18 @@ TEST(SimbodyConventions, ConstraintForceOnTheFollowerBalancesItsLoad) {
   const SpatialVec f = constraint_force_on(state, constraint, body);
   const Vec3 along = dot(load, Vec3(line)) * Vec3(line);
   EXPECT_LT(distance(f[1], -(load - along)), 1e-12);
+  // The same through the wrapper that names its axes, and its equations measure along them.
+  EXPECT_LT(distance(inline_joint.force_in_base(state), f[1]), 1e-12);
+  body.setQToFitTranslation(state, Vec3(0.3, -0.2, 0.5));
+  w.system.realize(state, Stage::Position);
+  const int row = inline_joint.first_row(state);
+  const Vec3 error = inline_joint.force_in_base(state.getQErr()[row], state.getQErr()[row + 1]);
+  const Vec3 off = Vec3(0.3, -0.2, 0.5);
+  EXPECT_LT(distance(error, off - dot(off, Vec3(line)) * Vec3(line)), 1e-15);
+  w.system.realize(state, Stage::Acceleration);
   // Newton's third law on the other side.
-  EXPECT_LT(distance(constraint_force_on(state, constraint, w.matter.getGround())[1], -f[1]), 1e-12);
+  EXPECT_LT(distance(constraint_force_on(state, constraint, w.matter.getGround())[1], -f[1]),
+            1e-12);
 }
 
 // A speed held against a load torque: the drive applies the opposite torque.

@@ -1,9 +1,10 @@
 // What the tests share: where the data are, tolerances, random pumps.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <filesystem>
-#include <gtest/gtest.h>
 #include <iostream>
 #include <random>
 #include <string>
@@ -101,9 +102,13 @@ class RandomPump {
       real.axial_inertia = in(0.1, 1.9) * real.transverse_inertia;
       real.spin = in(-100, 100);
       p.piston.real = real;
-      p.piston.inertia = in(0, 1) < 0.5 ? PistonInertia::real : PistonInertia::lumped;
+      const double kind = in(0, 1);
+      p.piston.inertia = kind < 0.4   ? PistonInertia::real
+                         : kind < 0.6 ? PistonInertia::dynamically_equivalent
+                                      : PistonInertia::lumped;
       p.shaft = {in(0.5, 4), in(-0.08, 0), in(1e-3, 4e-3)};
-      p.block = {in(0.5, 3), in(0.02, 0.06), in(0.03, 0.08), in(0, 4e-4), in(0, 500), in(1e-3, 3e-3)};
+      p.block = {in(0.5, 3),  in(0.02, 0.06), in(0.03, 0.08),
+                 in(0, 4e-4), in(0, 500),     in(1e-3, 3e-3)};
       p.friction = {in(0, 60), in(0, 30), in(0.005, 0.05), in(0, 0.1), in(0, 0.05), in(0.8, 1)};
       if (in(0, 1) < 0.7) {
         const double r1 = in(0.01, 0.015);

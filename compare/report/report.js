@@ -108,13 +108,18 @@ function verdictBanner({ verdict, meaning }, data) {
     if (worst.max_over_peak != null) tiles.push(["worst difference", ratio(worst.max_over_peak) + " of peak"]);
     if (worst.channel) tiles.push(["found in", el("span", {}, el("code", {}, worst.channel),
       worst.theta_deg == null ? null : " at " + degrees(worst.theta_deg))]);
-    if (verdict.tolerance != null) tiles.push(["tolerance", small(verdict.tolerance) + " of peak"]);
-    if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
+    if (verdict.rest_over_peak != null) {  // unequal assumptions: the rest is what is judged
+      tiles.push(["left unexplained", ratio(verdict.rest_over_peak) + " of peak"]);
+      tiles.push(["tolerance of the rest", small(verdict.rest_tolerance) + " of peak"]);
+    } else {
+      if (verdict.tolerance != null) tiles.push(["tolerance", small(verdict.tolerance) + " of peak"]);
+      if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
+    }
   }
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
   return el("div", {},
     el("div.banner." + tone, { role: "status" },
-      el("p.word", {}, { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
+      el("p.word", {}, verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
       el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
       facts(tiles, ".tiles")),
     meaning ? el("p.meaning", {}, meaning) : null);
@@ -155,7 +160,14 @@ function assumptionSplit({ assumptions }, data) {
       ...data.pair.map((name, i) => ({ head: name, cell: r => number(data.ofTable(r, i)) })),
       { head: "Equal", cell: r => (data.ofTable(r, 0) === data.ofTable(r, 1) ? "yes" : el("span.chip.warn", {}, "no")) },
     ], assumptions.rows),
-    !list(assumptions.channels).length ? null : table([
+    !list(assumptions.channels).length ? null : el("div", {},
+      el("p.hint", {}, "The channel of each reaction with the largest difference:"),
+      splitTable(worstOfGroups(assumptions.channels)),
+      el("details.others", {}, el("summary", {}, `All channels (${assumptions.channels.length})`),
+        splitTable(assumptions.channels))));
+
+  function splitTable(channels) {
+    return table([
       { head: "Channel", main: true, cell: r => el("code", {}, r.name) },
       { head: "Peak", num: true, cell: r => unit(number(r.peak), r.unit) },
       { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), r.unit) },
@@ -165,7 +177,18 @@ function assumptionSplit({ assumptions }, data) {
       { head: "Rest", num: true, cell: r => el("span", {}, unit(small(r.rest), r.unit),
           r.rest_over_peak == null ? null : el("small", {}, ratio(r.rest_over_peak) + " of peak")) },
       { head: "Verdict", cell: r => chip(r.verdict) },
-    ], assumptions.channels));
+    ], channels);
+  }
+}
+
+// The channel with the largest difference of each group, in the order of the groups.
+function worstOfGroups(channels) {
+  const worst = new Map();
+  for (const channel of channels) {
+    const key = channel.group + "|" + channel.kind;
+    if (!worst.has(key) || channel.over_peak > worst.get(key).over_peak) worst.set(key, channel);
+  }
+  return [...worst.values()];
 }
 
 const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(run => el("div.block", {},
@@ -394,6 +417,10 @@ function valueTicks(low, high, pixels, options, graph) {
   return ticks.map((t, i) => ({ v: t.v, label: labels[i] }));
 }
 
+function valueAxisTicks(low, high, pixels, options, graph) {
+  return valueTicks(low, high, pixels, options, graph).filter(t => t.v >= low && t.v <= high);
+}
+
 // One dygraph. lines: {values, colour, width, dash, silent}; bands are filled behind the curves.
 function plot(box, data, lines, bands, yLabel) {
   const names = lines.map((_, i) => String(i));
@@ -411,8 +438,8 @@ function plot(box, data, lines, bands, yLabel) {
   const { touchstart, touchmove, touchend, ...mouse } = Dygraph.defaultInteractionModel;
   return new Dygraph(box, rows, {
     labels: ["theta", ...names], series, legend: "never", interactionModel: mouse,
-    xlabel: "shaft angle (deg)", ylabel: yLabel, labelsDiv: el("div"),
-    axes: { x: { ticker: angleTicks, axisLabelWidth: 44 },
+    xlabel: data.axis.label, ylabel: yLabel, labelsDiv: el("div"),
+    axes: { x: { ticker: data.axis.angle ? angleTicks : valueAxisTicks, axisLabelWidth: 44 },
             y: { ticker: valueTicks, axisLabelWidth: 74, pixelsPerLabel: 26 } },
     axisLabelFontSize: 13, xLabelHeight: 20, yLabelWidth: 22, rightGap: 22, yRangePad: 8,
     gridLineColor: "#e1e6ec", gridLineWidth: 1, axisLineColor: "#67727e",
@@ -464,7 +491,14 @@ function lineOf(values, colour, t, alone) {
   return { values, colour: colour + (pale ? "66" : ""), width: pale ? 4.5 : 1.9, dash: DASHES[t % DASHES.length] };
 }
 
-function curvesFigure(figure, data) {
+// A figure may bring its own axis and curves: {x: {label, angle, values}, series: [{label, values}]}. It is
+// then drawn from these alone; `angle` says that the axis is one of shaft angles.
+const withOwnAxis = (figure, data) => (!figure.x ? data : {
+  ...data, tables: [], difference: {}, axis: { label: figure.x.label, angle: !!figure.x.angle },
+  ...orderOf(list(figure.x.values), !!figure.x.angle) });
+
+function curvesFigure(figure, page) {
+  const data = withOwnAxis(figure, page);
   const drawn = [], missing = [], lines = [], differences = [];
   list(figure.channels).forEach((name, i) => {
     const colour = COLOURS[i % COLOURS.length];
@@ -478,6 +512,8 @@ function curvesFigure(figure, data) {
   });
   const extras = list(figure.extra).filter(e => hasNumbers(e.values)).map((e, i) => ({
     ...e, colour: EXTRA_COLOURS[i % EXTRA_COLOURS.length], width: 1.6, dash: [10, 4, 2, 4] }));
+  list(figure.series).filter(e => hasNumbers(e.values)).forEach((e, i) => extras.push({
+    ...e, colour: COLOURS[i % COLOURS.length], width: 1.9, dash: null }));
   const notes = [figure.note, missing.length ? "Not computed: " + missing.join(", ") + "." : null];
   const footer = () => notes.filter(Boolean).map(n => el("p.note", {}, n));
   if (!drawn.length && !extras.length)
@@ -488,7 +524,7 @@ function curvesFigure(figure, data) {
     { values: data.theta.map(() => v), colour: "#6b7682", width: 1, dash: [3, 3], silent: true }));
   const readings = readOutTable(figure, drawn, extras, bands, data);
   const label = figure.unit ? ` (${figure.unit})` : "";
-  const upper = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves over the shaft angle` });
+  const upper = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves over ${data.axis.label}` });
   const exact = differences.length > 0 && differences.every(d => d.values.every(v => !v));
   const lower = differences.length && !exact
     ? el("div.plot.low", { role: "img", "aria-label": `${figure.title}: difference over the shaft angle` }) : null;
@@ -515,7 +551,7 @@ function readOutTable(figure, drawn, extras, bands, data) {
   const angle = el("span.angle");
   const heading = (...content) => el("th.num", { scope: "col" }, ...content);
   const name = (...content) => el("th", { scope: "row" }, ...content);
-  const wide = () => el("td.num", { colspan: data.tables.length + (compared.length ? 1 : 0) });
+  const wide = () => el("td.num", { colspan: Math.max(1, data.tables.length + (compared.length ? 1 : 0)) });
   const rows = drawn.map(d => ({ ...d, cells: d.columns.map(() => el("td.num")),
                                  gap: compared.length ? el("td.num") : null }));
   const more = extras.map(e => ({ ...e, cell: wide() }));
@@ -536,8 +572,9 @@ function readOutTable(figure, drawn, extras, bands, data) {
   function show(row) {
     const at = row == null ? home : Math.min(Math.max(row, 0), data.order.length - 1);
     const i = data.order[at];
-    const why = row != null ? "" : largest > 0 ? " (largest difference)" : " (first angle)";
-    angle.textContent = degrees(data.theta[i]) + why;
+    const why = row != null ? "" : largest > 0 ? " (largest difference)" : data.axis.angle ? " (first angle)" : "";
+    angle.textContent = (data.axis.angle ? degrees(data.theta[i])
+      : `${data.axis.label}: ${number(data.theta[i])}`) + why;
     const value = v => unit(number(v, 6), figure.unit);
     for (const r of rows) {
       r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
@@ -751,19 +788,23 @@ function figures({ figures }, data) {
 
 // What the sections need of the curves. A run backwards has falling angles: `order` lists the samples by
 // rising angle. The axis is rounded out to whole turns where the last step of a turn is all that is missing.
-function prepare(report, curves) {
-  const theta = list(curves.theta_deg);
+function orderOf(theta, angle) {
   const order = theta.map((_, i) => i).sort((a, b) => theta[a] - theta[b]);
   const first = theta[order[0]], last = theta[order[order.length - 1]];
   const step = order.length > 1 ? (last - first) / (order.length - 1) : 360;
-  const turns = (v, round) => (Math.abs(360 * round(v / 360) - v) <= 1.01 * step ? 360 * round(v / 360) : v);
+  const turns = (v, round) =>
+    (angle && Math.abs(360 * round(v / 360) - v) <= 1.01 * step ? 360 * round(v / 360) : v);
+  return { theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil) };
+}
+
+function prepare(report, curves) {
   const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
   const channels = new Map(list(report.channels).map(c => [c.name, c]));
   const about = name => channels.get(name) || {};
   const usual = ["analytic", "multibody"];
   const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
   return {
-    theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil), tables, pair,
+    ...orderOf(list(curves.theta_deg), true), axis: { label: "shaft angle (deg)", angle: true }, tables, pair,
     difference: curves.difference || {}, mounts: [], redraws: [],
     ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
     meaning: name => phrases(about(name).meaning, about(name).on_body && "on " + about(name).on_body),

@@ -1,0 +1,55 @@
+#include "bentaxis/hydraulics/chamber.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::hydraulics {
+
+Chamber::Chamber(const Geometry& g, double dead_volume)
+    : length_squared_(g.piston_length * g.piston_length),
+      area_(kPi / 4 * g.bore_diameter * g.bore_diameter),
+      dead_volume_(dead_volume) {
+  // In S2 the joint is off the axis of its bore by ((Rd-Ra) sin, (Rd - Ra cos(alpha)) cos - b
+  // sin(alpha)).
+  rise_ = g.joint_circle_radius * std::sin(g.tilt);
+  const double across = g.bore_circle_radius - g.joint_circle_radius;
+  const double along = g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt);
+  const double offset = g.axis_offset * std::sin(g.tilt);
+  c0_ = across * across + offset * offset;
+  c1_ = -2 * along * offset;
+  c2_ = along * along - across * across;
+
+  // Extremes: the ends u = -1, 1 and where rise root = (c1 + 2 c2 u)/2, squared a quadratic.
+  std::vector<double> candidates = {-1, 1};
+  const double r2 = rise_ * rise_;
+  const double a = c2_ * (c2_ + r2);
+  const double b = c1_ * (c2_ + r2);
+  const double c = c1_ * c1_ / 4 - r2 * (length_squared_ - c0_);
+  const double discriminant = b * b - 4 * a * c;
+  if (a != 0 && discriminant >= 0)
+    for (const double sign : {-1.0, 1.0})
+      candidates.push_back((-b + sign * std::sqrt(discriminant)) / (2 * a));
+  else if (a == 0 && b != 0)
+    candidates.push_back(-c / b);
+  highest_ = lowest_ = height(1).value;
+  for (const double u : candidates) {
+    if (!(std::abs(u) <= 1)) continue;
+    highest_ = std::max(highest_, height(u).value);
+    lowest_ = std::min(lowest_, height(u).value);
+  }
+}
+
+Chamber::Height Chamber::height(double u) const {
+  const double root = std::sqrt(length_squared_ - (c0_ + u * (c1_ + u * c2_)));
+  return {rise_ * u + root, rise_ - (c1_ + 2 * c2_ * u) / (2 * root)};
+}
+
+Chamber::Volume Chamber::volume(double theta) const {
+  const Height at = height(std::cos(theta));
+  return {dead_volume_ + area_ * (highest_ - at.value), area_ * at.slope * std::sin(theta)};
+}
+
+}  // namespace bentaxis::hydraulics

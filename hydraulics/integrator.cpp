@@ -1,0 +1,241 @@
+#include "bentaxis/hydraulics/integrator.h"
+
+#include <cvodes/cvodes.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sundials/sundials_version.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <string>
+
+#include "bentaxis/hydraulics/versions.h"
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+constexpr long kMostSteps = 200000;  // between two port edges
+constexpr int kIntegrals = 5;
+
+double* data(N_Vector v) { return N_VGetArrayPointer(v); }
+
+// What the callbacks of CVODES work on.
+struct Problem {
+  const Network& network;
+  double load_area = 0;
+  Network::Flows flows;
+  std::vector<double> by_state, by_load;  // of the sensitivity equations
+  double mass_scale = 1;                  // kg/degree: of the integrals, for their error control
+  double work_scale = 1;
+};
+
+int rates(realtype x, N_Vector y, N_Vector dy, void* user) {
+  const auto& problem = *static_cast<Problem*>(user);
+  return problem.network.rates(x, data(y), problem.load_area, data(dy)) ? 0 : 1;
+}
+
+int jacobian(realtype x, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
+             N_Vector) {
+  auto& problem = *static_cast<Problem*>(user);
+  problem.network.jacobian(x, data(y), problem.load_area, SUNDenseMatrix_Data(matrix),
+                           problem.by_load.data());
+  return 0;
+}
+
+int sensitivity_rates(int count, realtype x, N_Vector y, N_Vector, N_Vector* s, N_Vector* ds,
+                      void* user, N_Vector, N_Vector) {
+  auto& problem = *static_cast<Problem*>(user);
+  const Network& network = problem.network;
+  network.jacobian(x, data(y), problem.load_area, problem.by_state.data(), problem.by_load.data());
+  const int size = network.size();
+  for (int j = 0; j < count; ++j) {
+    double* to = data(ds[j]);
+    const double* from = data(s[j]);
+    for (int row = 0; row < size; ++row)
+      to[row] = j < network.pressures() ? 0 : problem.by_load[row];
+    for (int column = 0; column < size; ++column) {
+      if (from[column] == 0) continue;
+      const double* entries = problem.by_state.data() + column * size;
+      for (int row = 0; row < size; ++row) to[row] += entries[row] * from[column];
+    }
+  }
+  return 0;
+}
+
+int integral_rates(realtype x, N_Vector y, N_Vector dq, void* user) {
+  auto& problem = *static_cast<Problem*>(user);
+  const Network& network = problem.network;
+  network.flows(x, data(y), problem.load_area, problem.flows);
+  double* to = data(dq);
+  std::fill(to, to + kIntegrals, 0.0);
+  const double mass = network.seconds_per_degree() / problem.mass_scale;
+  for (int k = 0; k < network.pistons(); ++k) {
+    to[0] += problem.flows.suction[k] * mass;
+    to[1] += problem.flows.delivery[k] * mass;
+    to[2] += problem.flows.leakage[k] * mass;
+  }
+  to[3] = problem.flows.load * mass;
+  to[4] = problem.flows.power * network.seconds_per_degree() / problem.work_scale;
+  return 0;
+}
+
+void be_silent(int, const char*, const char*, char*, void*) {}
+
+}  // namespace
+
+// Everything CVODES allocates for one integration.
+struct Integrator::Implementation {
+  SUNContext context = nullptr;
+  N_Vector y = nullptr, integrals = nullptr, sampled = nullptr;
+  N_Vector* sensitivity = nullptr;
+  int sensitivities = 0;
+  SUNMatrix matrix = nullptr;
+  SUNLinearSolver solver = nullptr;
+  void* memory = nullptr;
+
+  Implementation() {
+    if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
+  }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+  ~Implementation() {
+    if (memory != nullptr) CVodeFree(&memory);
+    if (solver != nullptr) SUNLinSolFree(solver);
+    if (matrix != nullptr) SUNMatDestroy(matrix);
+    if (sensitivity != nullptr) N_VDestroyVectorArray(sensitivity, sensitivities);
+    for (N_Vector v : {y, integrals, sampled})
+      if (v != nullptr) N_VDestroy(v);
+    SUNContext_Free(&context);
+  }
+};
+
+std::string sundials_version() {
+  char text[32] = "";
+  return SUNDIALSGetVersion(text, sizeof text) == 0 ? text : "unknown";
+}
+
+Integrator::Integrator(const Network& network) : network_(network) {}
+Integrator::~Integrator() = default;
+
+std::vector<double> Integrator::over_period(const std::vector<double>& pressures, double load_area,
+                                            double tolerance, std::vector<double>* sensitivity,
+                                            Integrals* integrals, const Watch* watch) {
+  const int size = network_.size();
+  Problem problem{network_, load_area, {}, {}, {}, 1, 1};
+  problem.by_state.resize(static_cast<std::size_t>(size) * size);
+  problem.by_load.resize(size);
+  // Integrals are scaled to the mass and the work of one piston's stroke at delivery pressure.
+  const double stroke = network_.chamber().swept();
+  problem.mass_scale = network_.fluid().state(0).density * stroke;
+  problem.work_scale =
+      stroke * std::max(network_.delivery_pressure(), network_.fluid().atmosphere());
+
+  double reached = 0;
+  const auto check = [&](int flag, const char* what) {
+    if (flag >= 0) return;
+    const char* name = CVodeGetReturnFlagName(flag);
+    const std::string text = name;
+    std::free(const_cast<char*>(name));
+    throw ComputationError("hydraulics: time integration (CVODES) failed at a shaft angle of " +
+                           number_text(reached) + " deg: " + what + ": " + text);
+  };
+  Implementation cv;
+  cv.y = N_VNew_Serial(size, cv.context);
+  cv.sampled = N_VNew_Serial(size, cv.context);
+  cv.matrix = SUNDenseMatrix(size, size, cv.context);
+  if (cv.y == nullptr || cv.sampled == nullptr || cv.matrix == nullptr) throw std::bad_alloc();
+  std::copy(pressures.begin(), pressures.end(), data(cv.y));
+  if (!network_.open_line()) data(cv.y)[size - 1] = 0;
+  cv.solver = SUNLinSol_Dense(cv.y, cv.matrix, cv.context);
+  cv.memory = CVodeCreate(CV_BDF, cv.context);
+  if (cv.memory == nullptr || cv.solver == nullptr) throw std::bad_alloc();
+  check(CVodeSetErrHandlerFn(cv.memory, be_silent, nullptr), "error handler");
+  check(CVodeInit(cv.memory, rates, 0, cv.y), "start");
+  check(CVodeSStolerances(cv.memory, 0, tolerance), "tolerance");
+  check(CVodeSetUserData(cv.memory, &problem), "user data");
+  check(CVodeSetLinearSolver(cv.memory, cv.solver, cv.matrix), "linear solver");
+  check(CVodeSetJacFn(cv.memory, jacobian), "Jacobian");
+  check(CVodeSetMaxNumSteps(cv.memory, kMostSteps), "steps");
+  if (sensitivity != nullptr) {
+    cv.sensitivities = network_.pressures() + (network_.open_line() ? 0 : 1);
+    cv.sensitivity = N_VCloneVectorArray(cv.sensitivities, cv.y);
+    if (cv.sensitivity == nullptr) throw std::bad_alloc();
+    for (int j = 0; j < cv.sensitivities; ++j) {
+      N_VConst(0, cv.sensitivity[j]);
+      if (j < network_.pressures()) data(cv.sensitivity[j])[j] = 1;
+    }
+    check(CVodeSensInit(cv.memory, cv.sensitivities, CV_SIMULTANEOUS, sensitivity_rates,
+                        cv.sensitivity),
+          "sensitivities");
+    std::vector<double> absolute(cv.sensitivities, tolerance);
+    check(CVodeSensSStolerances(cv.memory, tolerance, absolute.data()), "tolerance");
+    // They serve as the Jacobian of a Newton iteration: the states set the steps.
+    check(CVodeSetSensErrCon(cv.memory, SUNFALSE), "error control");
+  }
+  if (integrals != nullptr) {
+    cv.integrals = N_VNew_Serial(kIntegrals, cv.context);
+    if (cv.integrals == nullptr) throw std::bad_alloc();
+    N_VConst(0, cv.integrals);
+    check(CVodeQuadInit(cv.memory, integral_rates, cv.integrals), "integrals");
+    check(CVodeQuadSStolerances(cv.memory, 0, tolerance), "tolerance");
+    check(CVodeSetQuadErrCon(cv.memory, SUNTRUE), "error control");
+  }
+
+  std::vector<double> stops = network_.edges_deg();
+  stops.push_back(network_.period_deg());
+  std::size_t next_sample = 0;
+  const auto sample_until = [&](double x, const auto& state_at) {
+    if (watch == nullptr || !watch->sample) return;
+    for (; next_sample < watch->at.size() && watch->at[next_sample] <= x; ++next_sample)
+      watch->sample(watch->at[next_sample], state_at(watch->at[next_sample]));
+  };
+  sample_until(0, [&](double) { return data(cv.y); });
+  for (const double stop : stops) {
+    check(CVodeSetStopTime(cv.memory, stop), "stop");
+    for (int flag = 0; flag != CV_TSTOP_RETURN;) {
+      flag = CVode(cv.memory, stop, cv.y, &reached, CV_ONE_STEP);
+      check(flag, "step");
+      sample_until(reached, [&](double x) {
+        check(CVodeGetDky(cv.memory, x, 0, cv.sampled), "sample");
+        return data(cv.sampled);
+      });
+      if (watch != nullptr && watch->step) watch->step(reached, data(cv.y));
+    }
+    long steps = 0, evaluations = 0, setups = 0;
+    CVodeGetNumSteps(cv.memory, &steps);
+    CVodeGetNumRhsEvals(cv.memory, &evaluations);
+    CVodeGetNumLinSolvSetups(cv.memory, &setups);
+    work_.steps += steps;
+    work_.evaluations += evaluations;
+    work_.factorizations += setups;
+    double at = 0;
+    if (integrals != nullptr) check(CVodeGetQuad(cv.memory, &at, cv.integrals), "integrals");
+    if (sensitivity != nullptr)
+      check(CVodeGetSens(cv.memory, &at, cv.sensitivity), "sensitivities");
+    if (stop == stops.back()) break;
+    // The slopes of the areas jump here: start again at order 1 instead of stepping over it.
+    check(CVodeReInit(cv.memory, stop, cv.y), "restart");
+    if (integrals != nullptr) check(CVodeQuadReInit(cv.memory, cv.integrals), "restart");
+    if (sensitivity != nullptr)
+      check(CVodeSensReInit(cv.memory, CV_SIMULTANEOUS, cv.sensitivity), "restart");
+  }
+  if (integrals != nullptr) {
+    const double* q = data(cv.integrals);
+    *integrals = {q[0] * problem.mass_scale, q[1] * problem.mass_scale, q[2] * problem.mass_scale,
+                  q[3] * problem.mass_scale, q[4] * problem.work_scale};
+  }
+  if (sensitivity != nullptr) {
+    sensitivity->clear();
+    for (int j = 0; j < cv.sensitivities; ++j)
+      sensitivity->insert(sensitivity->end(), data(cv.sensitivity[j]),
+                          data(cv.sensitivity[j]) + size);
+  }
+  return {data(cv.y), data(cv.y) + size};
+}
+
+}  // namespace bentaxis::hydraulics

@@ -1,0 +1,25 @@
+// Evaluates both models at one instant and prints the drive torque and their difference.
+#include <cmath>
+#include <cstdio>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/multibody/model.h"
+
+int main(int, char** argv) {
+  const bentaxis::Case the_case = bentaxis::read_case(argv[1]);
+  const bentaxis::analytic::Model analytic(the_case.pump, the_case.analytic);
+  bentaxis::multibody::Model multibody(the_case.pump, the_case.multibody, 1);
+  bentaxis::Instant now;
+  now.theta = 0.5;
+  now.omega = 157.0;
+  now.chamber_pressure.assign(the_case.pump.geometry.pistons, 100e5);
+  std::vector<double> a(analytic.layout().size());
+  std::vector<double> m(analytic.layout().size());
+  analytic.evaluate(now, a);
+  multibody.evaluate(now, m);
+  const double torque = a[analytic.layout().Td()];
+  const double difference = std::abs(m[analytic.layout().Td()] - torque);
+  std::printf("Td = %.6f Nm, difference %.1e Nm\n", torque, difference);
+  return difference < 1e-9 ? 0 : 1;
+}

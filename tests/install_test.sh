@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Installs the build into an empty folder, builds a program against it and runs both.
+# usage: install_test.sh BUILD_DIR SOURCE_DIR
+set -euo pipefail
+build=$1 source_dir=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cmake --install "$build" --prefix "$scratch/usr" > /dev/null
+cmake -S "$source_dir/tests/install" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/usr" \
+  -DCMAKE_BUILD_TYPE=Release > "$scratch/log" || { cat "$scratch/log"; exit 1; }
+cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+"$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml"
+cd "$scratch"
+usr/bin/bentaxis compare usr/share/bentaxis/cases/bap63_rated.toml --out out > /dev/null
+ls out/report.html
