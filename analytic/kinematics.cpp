@@ -3,41 +3,24 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "bentaxis/analytic/prepared.h"
+
 namespace bentaxis::analytic {
 
-Kinematics::Kinematics(const Geometry& g)
-    : joint_radius_(g.joint_circle_radius),
-      length_squared_(g.piston_length * g.piston_length),
-      sin_tilt_(std::sin(g.tilt)),
-      cos_tilt_(std::cos(g.tilt)),
-      radius_difference_(g.bore_circle_radius - g.joint_circle_radius),
-      radius_projected_(g.bore_circle_radius - g.joint_circle_radius * cos_tilt_),
-      offset_y_(g.axis_offset * sin_tilt_),
-      offset_z_(-g.axis_offset * cos_tilt_) {}
+namespace {
+
+Eigen::Vector3d to_eigen(const closed_form::Vec3<double>& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+Kinematics::Kinematics(const Geometry& geometry) : numbers_{} {
+  prepare_geometry(geometry, numbers_);
+}
 
 PistonKinematics Kinematics::piston(double s, double c) const {
-  const double yr = joint_radius_ * cos_tilt_;
-  const double zr = joint_radius_ * sin_tilt_;
-  PistonKinematics k;
-  k.joint.value = {-joint_radius_ * s, yr * c + offset_y_, zr * c + offset_z_};
-  k.joint.first = {-joint_radius_ * c, -yr * s, -zr * s};
-  k.joint.second = {joint_radius_ * s, -yr * c, -zr * c};
-
-  // AB = (x, y, h): x and y from the two circles, h the positive root of (12), differentiated
-  // twice through x^2 + y^2 + h^2 = b1^2.
-  const double x = -radius_difference_ * s;
-  const double y = radius_projected_ * c - offset_y_;
-  const double x1 = -radius_difference_ * c;
-  const double y1 = -radius_projected_ * s;
-  const double x2 = radius_difference_ * s;
-  const double y2 = -radius_projected_ * c;
-  const double h = std::sqrt(length_squared_ - x * x - y * y);
-  const double h1 = -(x * x1 + y * y1) / h;
-  const double h2 = -(x1 * x1 + x * x2 + y1 * y1 + y * y2 + h1 * h1) / h;
-  k.axis.value = {x, y, h};
-  k.axis.first = {x1, y1, h1};
-  k.axis.second = {x2, y2, h2};
-  return k;
+  const auto m = closed_form::piston_motion(numbers_, s, c);
+  return {{to_eigen(m.joint), to_eigen(m.joint_first), to_eigen(m.joint_second)},
+          {to_eigen(m.axis), to_eigen(m.axis_first), to_eigen(m.axis_second)}};
 }
 
 Eigen::Matrix3d Kinematics::s3_in_s1(const Eigen::Vector3d& axis) const {

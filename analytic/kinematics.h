@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "bentaxis/analytic/closed_form.h"
 #include "bentaxis/pump/parameters.h"
 
 namespace bentaxis::analytic {
@@ -30,24 +31,20 @@ class Kinematics {
 
   /// R12 of (7): components in S1 of a vector given in S2.
   Eigen::Vector3d to_s1(const Eigen::Vector3d& v2) const {
-    return {v2.x(), cos_tilt_ * v2.y() + sin_tilt_ * v2.z(),
-            cos_tilt_ * v2.z() - sin_tilt_ * v2.y()};
+    return {v2.x(), numbers_.cos_tilt * v2.y() + numbers_.sin_tilt * v2.z(),
+            numbers_.cos_tilt * v2.z() - numbers_.sin_tilt * v2.y()};
   }
   /// Components in S2 of a vector given in S1.
   Eigen::Vector3d to_s2(const Eigen::Vector3d& v1) const {
-    return {v1.x(), cos_tilt_ * v1.y() - sin_tilt_ * v1.z(),
-            cos_tilt_ * v1.z() + sin_tilt_ * v1.y()};
+    return {v1.x(), numbers_.cos_tilt * v1.y() - numbers_.sin_tilt * v1.z(),
+            numbers_.cos_tilt * v1.z() + numbers_.sin_tilt * v1.y()};
   }
   /// Orthonormal axes of S3 in S1 for a piston along `axis` (in S2): columns i3, j3, k3. j3 lies in
   /// the plane of y1 and z1 as in (15), without the division of (17) that fails at k3_y = 0.
   Eigen::Matrix3d s3_in_s1(const Eigen::Vector3d& axis) const;
 
  private:
-  double joint_radius_, length_squared_;
-  double sin_tilt_, cos_tilt_;
-  double radius_difference_;    // Rd - Ra: amplitude of the x2 distance from A to the bore axis
-  double radius_projected_;     // Rd - Ra cos(alpha): of the y2 distance
-  double offset_y_, offset_z_;  // O1 from O2 in S2
+  closed_form::Pump<double> numbers_;  // of the geometry only
 };
 
 }  // namespace bentaxis::analytic

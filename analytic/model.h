@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bentaxis/analytic/kinematics.h"
-#include "bentaxis/analytic/port_plate.h"
+#include "bentaxis/analytic/prepared.h"
 #include "bentaxis/pump/channels.h"
 #include "bentaxis/pump/instant.h"
 #include "bentaxis/pump/parameters.h"
@@ -31,8 +31,12 @@ class Model {
   /// @param instant  shaft angle, speed, its rate, and pressures; one pressure per piston
   /// @param values   at least layout().reactions() long; SI, ordered by layout(). Rcs is
   ///                 not_computed() where the block speed is imposed.
-  /// Allocates nothing. About 1 + 40 N multiplications and N roots.
+  /// Allocates nothing. Many instants, or many pumps, at a time: batch.h.
   void reactions(const Instant& instant, std::vector<double>& values) const;
+
+  /// The same algebra with `long double` (64 bits of mantissa on x86): what reactions() loses to
+  /// rounding is the difference. For judging errors, not for speed.
+  void reactions(const Instant& instant, std::vector<long double>& values) const;
 
   /// Like reactions(), and the derived, input and check channels too: layout().size() values.
   void evaluate(const Instant& instant, std::vector<double>& values) const;
@@ -56,47 +60,14 @@ class Model {
   FrictionPower friction_power(const Instant& instant, double drive_torque) const;
 
  private:
-  // Resultants of all pistons on block and shaft.
-  struct Sums;
-  struct PistonLoad;
+  struct PistonState;
 
-  PistonLoad piston_load(const PistonKinematics& state, const Instant& instant, int k) const;
-  void solve_piston(const PistonKinematics& state, const PistonLoad& load, const Instant& instant,
-                    Eigen::Vector3d& joint_force, Eigen::Vector2d& bore_force) const;
-  double solve_block(const Sums& sums, const Instant& instant, std::vector<double>& values) const;
-  void solve_shaft(const Sums& sums, const Instant& instant, double tooth_force,
-                   std::vector<double>& values) const;
-  // Bearing forces that hold a force and moment about O1 on the shaft.
-  struct BearingForces {
-    Eigen::Vector3d tapered;
-    Eigen::Vector2d cylindrical;
-  };
-  BearingForces bearings(const Eigen::Vector3d& force, const Eigen::Vector3d& moment) const;
-  // sin and cos of the angle of piston k (from 0).
-  void piston_angle(double sin_theta, double cos_theta, int k, double& s, double& c) const {
-    s = sin_theta * phase_cos_[k] - cos_theta * phase_sin_[k];
-    c = cos_theta * phase_cos_[k] + sin_theta * phase_sin_[k];
-  }
+  PistonState piston_state(const Instant& instant, double sin_theta, double cos_theta, int k) const;
 
   PumpParameters pump_;
   ChannelLayout layout_;
   Kinematics kinematics_;
-  bool imposed_;
-  std::vector<double> phase_sin_, phase_cos_;  // of 2 pi k / N
-
-  double piston_area_, gravity_y_, gravity_z_;  // gravity in S2
-  Friction friction_;
-  // Mass properties of a piston about A: mass, static moment m sG / b1, inertia (It + m sG^2)/b1^2
-  // and spin momentum Ia w_s / b1, each for use with the vector AB instead of the unit vector.
-  double mass_, static_moment_, inertia_, spin_momentum_;
-  double centre_share_;  // sG / b1
-
-  LandForce land_delivery_, land_suction_;
-  Eigen::Vector3d gear_point_s1_, gear_point_s2_;  // O4
-  Eigen::Vector3d gear_line_s1_, gear_line_s2_;    // k4 for omega >= 0
-  double gear_arm_;                                // d/2 cos(alpha_p)
-  Eigen::Vector3d separation_s1_;                  // part of k4 that pushes the gears apart
-  Eigen::Vector3d block_axis_s1_;                  // z2 in S1
+  PreparedPump prepared_;
 };
 
 /// One turn of a case under the assumptions it gives this model, as a table.

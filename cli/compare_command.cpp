@@ -19,6 +19,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
 #include "bentaxis/pump/units.h"
+#include "calibration.h"
 #include "commands.h"
 #include "console.h"
 #include "hydraulic_case.h"
@@ -42,6 +43,8 @@ struct Options {
   Way way = Way::driven;
   multibody::IntegrationOptions integration;
   std::vector<double> accuracies;  // integrated: all are run, the last is reported in full
+  ErrorTarget target;              // integrated: chooses integrator and accuracy instead
+  std::string choice;              // what was chosen for the target
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
 };
 
@@ -112,24 +115,25 @@ Json integrate_all(Study& study, const Options& options,
                     record.worst_position_error, record.worst_velocity_error,
                     record.worst_gear_phase / kRadPerDegree, record.work_residual(),
                     free_shaft.worst_speed, record.steps, record.evaluations});
-    facts = {{"gear phase, worst (block minus shaft)",
+    facts = Json::array(
+            {{"gear phase, worst (block minus shaft)",
               fmt::format("{:.2e} deg", record.worst_gear_phase / kRadPerDegree)},
              {"shaft angle against omega t, worst",
               fmt::format("{:.2e} deg", record.worst_shaft_angle / kRadPerDegree)},
              {"work of loads", fmt::format("{:.6g} J", record.work_of_loads)},
              {"work of the drive", fmt::format("{:.6g} J", record.work_of_drives)},
              {"kinetic energy gained", fmt::format("{:.3g} J", record.kinetic_energy_gained)},
-             {"work unaccounted for", fmt::format("{:.3g} J", record.work_residual())}};
+             {"work unaccounted for", fmt::format("{:.3g} J", record.work_residual())}});
   }
-  const std::string name =
-      multibody::integrator_names()[static_cast<std::size_t>(options.integration.integrator)];
+  if (!options.choice.empty()) facts.push_back(Json::array({"chosen", options.choice}));
   return {{{"title", "Integrated run and torque-driven run"},
            {"text",
             fmt::format("Integrator {}, {} revolution(s). Errors are the largest difference from "
                         "the analytic model over the peak. In the torque-driven run the shaft is "
                         "free and fed the analytic Td; its speed error is relative to omega. Facts "
                         "are of the last accuracy.",
-                        name, study.multibody_case.operation.revolutions)},
+                        name_of(options.integration.integrator),
+                        study.multibody_case.operation.revolutions)},
            {"facts", facts},
            {"table",
             {{"columns",
@@ -212,7 +216,18 @@ void check_same_run(const Case& first, const Case& second) {
   if (first.operation.revolutions != second.operation.revolutions) differs("revolutions");
 }
 
-int compare(const Options& options) {
+// Integrator and accuracy for the error asked for, verified over the whole run.
+void choose_integration(const Study& study, Options& options) {
+  const Case& the_case = study.multibody_case;
+  const VerifiedRun verified =
+      run_to_error(the_case, the_case.multibody, study.multibody_samples, study.multibody_pressure,
+                   options.target.error, options.target.integrators());
+  options.integration = verified.calibration.chosen;
+  options.accuracies = {verified.calibration.chosen.accuracy};
+  options.choice = verified.text();
+}
+
+int compare(Options options) {
   Case first = read_case(options.case_file);
   Case second = options.multibody_case.empty() ? first : read_case(options.multibody_case);
   for (const auto& text : options.analytic) apply_assumption(text, first.pump, first.analytic);
@@ -245,9 +260,14 @@ int compare(const Options& options) {
   const Case& the_case = study.analytic_case;
   const int n = the_case.pump.geometry.pistons;
 
-  study.tolerance = options.tolerance > 0 ? options.tolerance
-                    : integrated          ? kIntegratedFactor * options.accuracies.back()
-                                          : kDrivenTolerance;
+  if (options.target.error > 0) {
+    options.target.refuse_unless(integrated);
+    choose_integration(study, options);
+  }
+  study.tolerance = options.tolerance > 0      ? options.tolerance
+                    : options.target.error > 0 ? options.target.error
+                    : integrated               ? kIntegratedFactor * options.accuracies.back()
+                                               : kDrivenTolerance;
   compare::Options comparison_options;
   comparison_options.tolerance = study.tolerance;
   comparison_options.orders = {n, 2 * n};
@@ -356,6 +376,7 @@ int compare(const Options& options) {
   std::printf("%s\n%s\n\n%s", the_case.name.c_str(),
               report["verdict"]["headline"].get<std::string>().c_str(),
               compare::text_table(comparison).c_str());
+  if (!options.choice.empty()) std::printf("chosen %s\n", options.choice.c_str());
   for (const auto& check : checks)
     std::printf("%s: %s: %.1e of scale, %s\n", check.table.c_str(), check.name.c_str(),
                 check.relative(), check.holds() ? "holds" : "violated");
@@ -382,13 +403,15 @@ Command add_compare_command(CLI::App& app) {
       ->check(positive_number())
       ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   add_way(*command, options->way);
-  add_integrator(*command, options->integration);
-  command
-      ->add_option("--accuracy", options->accuracies,
-                   "accuracies of an integrated run; all are tabled, the last is compared")
-      ->delimiter(',')
-      ->check(accuracy_range())
-      ->option_text("NUMBER[,NUMBER..] [1e-4,1e-6]");
+  CLI::Option* integrator = add_integrator(*command, options->integration);
+  CLI::Option* accuracy =
+      command
+          ->add_option("--accuracy", options->accuracies,
+                       "accuracies of an integrated run; all are tabled, the last is compared")
+          ->delimiter(',')
+          ->check(accuracy_range())
+          ->option_text("NUMBER[,NUMBER..] [1e-4,1e-6]");
+  add_error(*command, options->target, options->integration, integrator, accuracy);
   command
       ->add_option("--analytic", options->analytic,
                    "assumption of the analytic model: piston_friction=on|off, "

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/error.h"
 
 namespace bentaxis::cli {
 
@@ -31,15 +32,15 @@ namespace {
 
 // An option whose values are an enumeration's names in its order.
 template <class Enumeration>
-void add_choice(CLI::App& command, const std::string& name, Enumeration& value,
-                const std::vector<std::string>& words, const std::string& what) {
+CLI::Option* add_choice(CLI::App& command, const std::string& name, Enumeration& value,
+                        const std::vector<std::string>& words, const std::string& what) {
   std::map<std::string, Enumeration> names;
   std::string list;
   for (std::size_t i = 0; i < words.size(); ++i) {
     names[words[i]] = static_cast<Enumeration>(i);
     list += (i == 0 ? "" : "|") + words[i];
   }
-  command.add_option(name, value, what)
+  return command.add_option(name, value, what)
       ->transform(CLI::CheckedTransformer(names))
       ->option_text(list + " [" + words[static_cast<std::size_t>(value)] + "]");
 }
@@ -54,9 +55,56 @@ void add_scene(CLI::App& command, multibody::SceneChoice& choice) {
              "(faster; serves massless pistons too)");
 }
 
-void add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
-  add_choice(command, "--integrator", options.integrator, multibody::integrator_names(),
-             "time integrator of an integrated run");
+CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {
+  return add_choice(command, "--integrator", options.integrator, multibody::integrator_names(),
+                    "time integrator of an integrated run");
+}
+
+std::vector<multibody::Integrator> all_integrators() {
+  std::vector<multibody::Integrator> all;
+  for (std::size_t i = 0; i < multibody::integrator_names().size(); ++i)
+    all.push_back(static_cast<multibody::Integrator>(i));
+  return all;
+}
+
+void add_integrators(CLI::App& command, std::vector<multibody::Integrator>& integrators) {
+  std::map<std::string, multibody::Integrator> names;
+  std::string list;
+  for (const auto integrator : all_integrators()) {
+    const std::string& name = multibody::integrator_names()[static_cast<std::size_t>(integrator)];
+    names[name] = integrator;
+    list += (list.empty() ? "" : ",") + name;
+  }
+  command.add_option("--integrators", integrators, "time integrators to try")
+      ->delimiter(',')
+      ->transform(CLI::CheckedTransformer(names))
+      ->option_text("NAME[,NAME..] [" + list + "]");
+}
+
+std::vector<multibody::Integrator> ErrorTarget::integrators() const {
+  if (integrator->count() > 0) return {integration->integrator};
+  return all_integrators();
+}
+
+void ErrorTarget::refuse_unless(bool integrated) const {
+  if (!integrated)
+    throw InputError(
+        "--error: only an integrated run of the multibody model has an error to choose; give "
+        "--way integrated (driven and analytic runs are exact to round-off)");
+}
+
+void add_error(CLI::App& command, ErrorTarget& target,
+               const multibody::IntegrationOptions& integration, CLI::Option* integrator,
+               CLI::Option* accuracy) {
+  target.integration = &integration;
+  target.integrator = integrator;
+  command
+      .add_option("--error", target.error,
+                  "integrated: choose integrator and accuracy for this error of every reaction, of "
+                  "peak, by a short calibration, and verify it")
+      ->check(number_in(1e-11, 0.1))
+      ->excludes(accuracy)
+      ->option_text("NUMBER");
 }
 
 namespace {

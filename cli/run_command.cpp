@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bentaxis/pump/files.h"
+#include "calibration.h"
 #include "commands.h"
 #include "hydraulic_case.h"
 #include "models.h"
@@ -17,6 +18,7 @@ struct Options {
   multibody::SceneChoice scene;
   std::string gear;  ///< "", "mesh" or "imposed"
   multibody::IntegrationOptions integration;
+  ErrorTarget target;
 };
 
 int run(const Options& options) {
@@ -28,9 +30,18 @@ int run(const Options& options) {
   Assumptions assumptions = options.model == "analytic" ? the_case.analytic : the_case.multibody;
   if (!options.gear.empty())
     assumptions.gear = options.gear == "imposed" ? GearScene::imposed : GearScene::mesh;
-  const ResultTable table =
-      run_model(options.model, the_case, assumptions, samples_of(the_case, pressure, way), pressure,
-                way, options.integration, nullptr, options.scene);
+  const Samples samples = samples_of(the_case, pressure, way);
+  ResultTable table;
+  if (options.target.error > 0) {
+    options.target.refuse_unless(way == Way::integrated);
+    VerifiedRun verified = run_to_error(the_case, assumptions, samples, pressure,
+                                        options.target.error, options.target.integrators());
+    std::fprintf(stderr, "chosen %s\n", verified.text().c_str());
+    table = std::move(verified.run.table);
+  } else {
+    table = run_model(options.model, the_case, assumptions, samples, pressure, way,
+                      options.integration, nullptr, options.scene);
+  }
   folder.add(options.model + ".csv", to_csv(table));
   for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
   return kDone;
@@ -55,12 +66,13 @@ Command add_run_command(CLI::App& app) {
                    "case file")
       ->check(CLI::IsMember({"mesh", "imposed"}))
       ->option_text("mesh|imposed [mesh]");
-  add_integrator(*command, options->integration);
-  command
-      ->add_option("--accuracy", options->integration.accuracy,
-                   "relative accuracy per step of an integrated run")
-      ->check(accuracy_range())
-      ->option_text("NUMBER [1e-6]");
+  CLI::Option* integrator = add_integrator(*command, options->integration);
+  CLI::Option* accuracy = command
+                              ->add_option("--accuracy", options->integration.accuracy,
+                                           "relative accuracy per step of an integrated run")
+                              ->check(accuracy_range())
+                              ->option_text("NUMBER [1e-6]");
+  add_error(*command, options->target, options->integration, integrator, accuracy);
   return {command, [options] { return run(*options); }};
 }
 

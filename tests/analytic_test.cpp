@@ -5,6 +5,7 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/port_plate.h"
 #include "printed_model.h"
 #include "support.h"
 

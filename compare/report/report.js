@@ -125,6 +125,12 @@ function verdictBanner({ verdict, meaning }, data) {
     meaning ? el("p.meaning", {}, meaning) : null);
 }
 
+// What a report has to say in words: {text, groups: [{title, lines}]}.
+const summary = ({ summary }) => !summary ? null : el("div", {},
+  summary.text ? el("p", {}, summary.text) : null,
+  list(summary.groups).map(g => el("div.block", {}, g.title ? el("h3", {}, g.title) : null,
+    el("ul.plain", {}, list(g.lines).map(line => el("li", {}, line))))));
+
 const warnings = ({ warnings }) => !list(warnings).length ? null :
   el("ul.warnings", {}, warnings.map(w => el("li", {}, el("strong", {}, w.name), el("span", {}, w.text))));
 
@@ -665,6 +671,97 @@ function barChart(width, groups, [low, high], figure) {
   return root;
 }
 
+// ---- Figures: points in a plane --------------------------------------------------------------------
+
+// figure: {x: {label, log}, y: {label, log}, series: [{name, style, line, emphasis, points: [{x, y, note}]}]}. Points
+// that a logarithmic axis cannot show are left out; every point's note shows on hovering.
+const MARKS = [
+  (x, y) => ({ tag: "circle", cx: x, cy: y, r: 4.5 }),
+  (x, y) => ({ tag: "path", d: `M${x - 4.5},${y - 4.5}h9v9h-9z` }),
+  (x, y) => ({ tag: "path", d: `M${x},${y - 5.5}l5.2,9h-10.4z` }),
+  (x, y) => ({ tag: "path", d: `M${x},${y - 6}l6,6l-6,6l-6,-6z` }),
+  (x, y) => ({ tag: "path", d: `M${x},${y + 5.5}l5.2,-9h-10.4z` }),
+];
+function mark(i, x, y, colour) {
+  const { tag, ...shape } = MARKS[i % MARKS.length](x, y);
+  return svg(tag, { ...shape, fill: colour, stroke: "#ffffff", "stroke-width": 1 });
+}
+
+function scatterFigure(figure, data) {
+  const drawable = (axis, v) => typeof v === "number" && (!axis.log || v > 0);
+  const all = list(figure.series).map(s => ({ ...s,
+    points: list(s.points).filter(p => drawable(figure.x, p.x) && drawable(figure.y, p.y)) })).filter(s => s.points.length);
+  if (!all.length) return [el("p.empty", {}, "There is nothing to draw.")];
+  let next = 0;
+  for (const s of all) {
+    s.index = s.emphasis ? -1 : s.style ?? next++;  // the same style for the same thing in every figure
+    s.colour = s.emphasis ? "#67727e" : COLOURS[s.index % COLOURS.length];
+  }
+  const key = el("p.key.wrap", {}, all.map(s => {
+    const box = svg("svg", { width: 34, height: 14, "aria-hidden": "true", class: "swatch" });
+    if (s.line) box.append(svg("line", { x1: 0, x2: 34, y1: 7, y2: 7, stroke: s.colour, "stroke-width": s.emphasis ? 6 : 1.5,
+                                         opacity: s.emphasis ? 0.35 : 1 }));
+    if (!s.emphasis) box.append(mark(s.index, 17, 7, s.colour));
+    return el("span", {}, box, s.name);
+  }));
+  const chart = el("div.bars");
+  const draw = () => chart.replaceChildren(scatterChart(chart.clientWidth || 600, figure, all));
+  data.mounts.push(() => { draw(); new ResizeObserver(draw).observe(chart); });
+  data.redraws.push(draw);
+  return [key, chart, figure.note ? el("p.note", {}, figure.note) : null];
+}
+
+// Ticks of an axis from `low` to `high`: powers of ten, thinned out, where it is logarithmic.
+function axisTicks(axis, low, high, most) {
+  if (!axis.log) {
+    const ticks = roundTicks(low, high, most), labels = tickLabels(ticks);
+    return ticks.map((v, i) => ({ at: v, label: labels[i] }));
+  }
+  const every = Math.max(1, Math.ceil((high - low) / most)), ticks = [];
+  for (let p = Math.ceil(low / every) * every; p <= high; p += every) ticks.push({ at: p, label: "1e" + p });
+  return ticks;
+}
+
+function scatterChart(width, figure, series) {
+  const left = 74, right = width - 14, top = 12, bottom = 380, height = 430;
+  const place = (axis, v) => (axis.log ? Math.log10(v) : v);
+  const range = (axis, key) => {
+    const values = series.flatMap(s => s.points.map(p => place(axis, p[key])));
+    const low = Math.min(...values), high = Math.max(...values), margin = 0.04 * (high - low) || 0.5;
+    return axis.log ? [Math.floor(low - 0.05), Math.ceil(high + 0.05)] : [low - margin, high + margin];
+  };
+  const [x0, x1] = range(figure.x, "x"), [y0, y1] = range(figure.y, "y");
+  const px = v => left + (right - left) * (place(figure.x, v) - x0) / (x1 - x0);
+  const py = v => bottom - (bottom - top) * (place(figure.y, v) - y0) / (y1 - y0);
+  const root = svg("svg", { width, height, role: "img", "aria-label": figure.title + "; the values are in the table" });
+  const text = (x, y, content, more) => root.append(svg("text", { x, y, "text-anchor": "middle", ...more }, content));
+  for (const t of axisTicks(figure.x, x0, x1, Math.max(2, (right - left) / 70))) {
+    const x = left + (right - left) * (t.at - x0) / (x1 - x0);
+    root.append(svg("line", { x1: x, x2: x, y1: top, y2: bottom, class: "grid" }));
+    text(x, bottom + 18, t.label);
+  }
+  for (const t of axisTicks(figure.y, y0, y1, 14)) {
+    const y = bottom - (bottom - top) * (t.at - y0) / (y1 - y0);
+    root.append(svg("line", { x1: left, x2: right, y1: y, y2: y, class: "grid" }));
+    text(left - 8, y + 4, t.label, { "text-anchor": "end" });
+  }
+  // What is emphasised lies broad and pale under the rest.
+  for (const s of [...series].sort((a, b) => (b.emphasis ? 1 : 0) - (a.emphasis ? 1 : 0))) {
+    if (s.line && s.points.length > 1)
+      root.append(svg("polyline", { points: s.points.map(p => `${px(p.x)},${py(p.y)}`).join(" "), fill: "none",
+        stroke: s.colour, "stroke-width": s.emphasis ? 8 : 1.3, opacity: s.emphasis ? 0.35 : 1, "stroke-linejoin": "round" }));
+    if (s.emphasis) continue;
+    for (const p of s.points) {
+      const dot = mark(s.index, px(p.x), py(p.y), s.colour);
+      dot.append(svg("title", {}, phrases(p.note, `${figure.x.label} ${small(p.x)}`, `${figure.y.label} ${small(p.y)}`)));
+      root.append(dot);
+    }
+  }
+  text((left + right) / 2, height - 6, figure.x.label, { class: "axis" });
+  text(14, (top + bottom) / 2, figure.y.label, { class: "axis", transform: `rotate(-90 14 ${(top + bottom) / 2})` });
+  return root;
+}
+
 // Multiples of 1, 2 or 5 times a power of ten.
 function roundTicks(low, high, most) {
   const power = 10 ** Math.floor(Math.log10((high - low) / most));
@@ -830,19 +927,20 @@ function mapFigure(figure, data) {
   return [key, drawnBox(figure, data, draw), figure.note ? el("p.note", {}, figure.note) : null];
 }
 
-const DRAWN = { piston_bars: barsFigure, xy: xyFigure, map: mapFigure };
+const DRAWN = { piston_bars: barsFigure, xy: xyFigure, map: mapFigure, scatter: scatterFigure };
 
 // A figure may bring curves of its own, at angles of its own.
 const dataOf = (figure, report, data) => !figure.curves ? data
   : { ...prepare(report, figure.curves), mounts: data.mounts, redraws: data.redraws };
 
 function figures(report, data) {
-  const figures = list(report.figures).filter(f => f.curves || f.kind === "xy" || f.kind === "map" || data.order.length);
+  const figures = list(report.figures).filter(f => f.curves || f.kind === "xy" || f.kind === "map"
+    || f.kind === "scatter" || data.order.length);
   if (!figures.length) return null;
   return el("div", {},
-    el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; double-click to see "
-      + "all again. Point at a curve to read the values in the table above it."),
-    figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
+    shown.some(f => !f.kind) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
+      + "double-click to see all again. Point at a curve to read the values in the table above it.") : null,
+    shown.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
       f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
       (DRAWN[f.kind] || curvesFigure)(f, dataOf(f, report, data)))));
 }
@@ -876,7 +974,7 @@ function prepare(report, curves) {
 }
 
 const SECTIONS = [
-  ["verdict", "Verdict", verdictBanner], ["warnings", "Warnings", warnings],
+  ["verdict", "Verdict", verdictBanner], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
   ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
   ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
   ["runs", "Runs", runs], ["published", "Against the published numbers", published],

@@ -1,0 +1,192 @@
+#include "bentaxis/analytic/batch.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "bentaxis/analytic/batch_job.h"
+#include "bentaxis/analytic/prepared.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/result_table.h"
+
+namespace bentaxis::analytic {
+namespace {
+
+constexpr std::size_t kCacheLine = 64;
+constexpr std::size_t kDoublesPerLine = kCacheLine / sizeof(double);
+constexpr std::size_t kNumbers = sizeof(closed_form::Pump<double>) / sizeof(double);
+static_assert(std::is_trivially_copyable_v<closed_form::Pump<double>>);
+
+// Instants per task: long enough to hide what a task costs (about 1 us).
+constexpr std::size_t kGrain = 1024;
+
+// Results larger than this will not be found in a cache by whoever reads them: bytes.
+constexpr std::size_t kCacheBytes = std::size_t{16} << 20;
+
+// Should and can results be written past the caches?
+bool streams(const BatchInstants& instants, const BatchOutputs& outputs) {
+  std::size_t bytes = 0;
+  bool aligned = true;
+  for (const double* column : outputs) {
+    if (column == nullptr) continue;
+    bytes += instants.count * sizeof(double);
+    aligned &= reinterpret_cast<std::uintptr_t>(column) % kCacheLine == 0;
+  }
+  return aligned && bytes > kCacheBytes;
+}
+
+BatchKernel* kernel(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return run_batch_avx512;
+    case InstructionSet::avx2:
+      return run_batch_avx2;
+    case InstructionSet::sse2:
+      break;
+  }
+  return run_batch_sse2;
+}
+
+BatchJob::Column column(const Varying& v) { return {v.each, v.all}; }
+
+void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout& layout,
+             const BatchInstants& instants, const BatchOutputs& outputs,
+             const BatchOptions& options) {
+  if (outputs.size() < layout.reactions())
+    throw InputError("batch: " + std::to_string(outputs.size()) + " outputs, needed are " +
+                     std::to_string(layout.reactions()) + " (null where not asked for)");
+  // A pump has 99 pistons at most.
+  BatchJob::Column pressures[99];
+  for (int k = 0; k < layout.pistons(); ++k) pressures[k] = column(instants.chamber_pressure[k]);
+  const auto bodies = outputs.begin() + static_cast<std::ptrdiff_t>(layout.Fh());
+  BatchJob job = {pump.common(),
+                  streams(instants, outputs),
+                  std::any_of(bodies, outputs.end(), [](const double* p) { return p != nullptr; }),
+                  &pump.numbers,
+                  pumps,
+                  instants.count,
+                  column(instants.theta),
+                  column(instants.omega),
+                  column(instants.omega_dot),
+                  column(instants.suction),
+                  column(instants.delivery),
+                  pressures,
+                  outputs.data()};
+  if (pump.imposed && outputs[layout.Rcs()] != nullptr)
+    std::fill_n(outputs[layout.Rcs()], instants.count, not_computed());
+
+  BatchKernel* const run = kernel(options.instruction_set);
+  if (options.threads <= 1 || instants.count <= kGrain) {
+    run(job, 0, instants.count);
+    return;
+  }
+  // Each thread keeps to one piece of every array, so that its part stays in its own cache.
+  const auto in_pieces = [&] {
+    const std::size_t blocks = (instants.count + kGrain - 1) / kGrain;
+    oneapi::tbb::parallel_for(
+        oneapi::tbb::blocked_range<std::size_t>(0, blocks),
+        [&](const auto& range) {
+          run(job, range.begin() * kGrain, std::min(instants.count, range.end() * kGrain));
+        },
+        oneapi::tbb::static_partitioner());
+  };
+  if (options.threads >= oneapi::tbb::this_task_arena::max_concurrency())
+    in_pieces();
+  else
+    oneapi::tbb::task_arena(options.threads).execute(in_pieces);
+}
+
+}  // namespace
+
+std::string to_string(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx512:
+      return "AVX-512";
+    case InstructionSet::avx2:
+      return "AVX2";
+    case InstructionSet::sse2:
+      break;
+  }
+  return "SSE2";
+}
+
+std::vector<InstructionSet> available_instruction_sets() {
+  std::vector<InstructionSet> sets = {InstructionSet::sse2};
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    sets.push_back(InstructionSet::avx2);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
+    sets.push_back(InstructionSet::avx512);
+  return sets;
+}
+
+std::size_t lanes(InstructionSet set) { return std::size_t{2} << static_cast<int>(set); }
+
+BatchColumns::BatchColumns(std::size_t columns, std::size_t rows)
+    : rows_(rows),
+      // One line more than the rows need: columns a power of two apart would share cache sets.
+      stride_((rows / kDoublesPerLine + 1) / 2 * 2 * kDoublesPerLine + kDoublesPerLine),
+      storage_(columns * stride_ + kDoublesPerLine) {
+  const auto address = reinterpret_cast<std::uintptr_t>(storage_.data());
+  first_ = storage_.data() + (kCacheLine - address % kCacheLine) % kCacheLine / sizeof(double);
+}
+
+BatchOutputs outputs_of(const ChannelLayout& layout, ChannelGroup group, BatchColumns& columns) {
+  BatchOutputs outputs(layout.reactions(), nullptr);
+  const std::size_t first = group == ChannelGroup::bearings ? layout.Rb1(0) : 0;
+  const std::size_t end = group == ChannelGroup::pistons ? layout.Fh() : outputs.size();
+  for (std::size_t i = first; i < end; ++i) outputs[i] = columns.column(i);
+  return outputs;
+}
+
+BatchModel::BatchModel(const PumpParameters& pump, const Assumptions& assumptions)
+    : layout_(pump.geometry.pistons),
+      pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
+BatchModel::~BatchModel() = default;
+BatchModel::BatchModel(BatchModel&&) noexcept = default;
+BatchModel& BatchModel::operator=(BatchModel&&) noexcept = default;
+
+void BatchModel::reactions(const BatchInstants& instants, const BatchOutputs& outputs,
+                           const BatchOptions& options) const {
+  run_job(*pump_, nullptr, layout_, instants, outputs, options);
+}
+
+PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions)
+    : layout_(pumps.empty() ? 1 : pumps.front().geometry.pistons), size_(pumps.size()) {
+  if (pumps.empty()) throw InputError("batch of pumps: there is none");
+  numbers_.resize(kNumbers * size_);
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (pumps[i].geometry.pistons != layout_.pistons())
+      throw InputError("batch of pumps: pump " + std::to_string(i + 1) + " has " +
+                       std::to_string(pumps[i].geometry.pistons) + " pistons, the first has " +
+                       std::to_string(layout_.pistons()));
+    PreparedPump pump = prepare(pumps[i], assumptions);
+    double numbers[kNumbers];
+    std::memcpy(numbers, &pump.numbers, sizeof numbers);
+    for (std::size_t n = 0; n < kNumbers; ++n) numbers_[n * size_ + i] = numbers[n];
+    if (i == 0) {
+      common_ = std::make_unique<PreparedPump>(std::move(pump));
+    } else {
+      common_->smooth_friction |= pump.smooth_friction;
+      common_->dry_friction |= pump.dry_friction;
+    }
+  }
+}
+PumpBatch::~PumpBatch() = default;
+PumpBatch::PumpBatch(PumpBatch&&) noexcept = default;
+PumpBatch& PumpBatch::operator=(PumpBatch&&) noexcept = default;
+
+void PumpBatch::reactions(const BatchInstants& instants, const BatchOutputs& outputs,
+                          const BatchOptions& options) const {
+  if (instants.count != size_)
+    throw InputError("batch of pumps: " + std::to_string(instants.count) + " instants for " +
+                     std::to_string(size_) + " pumps");
+  run_job(*common_, numbers_.data(), layout_, instants, outputs, options);
+}
+
+}  // namespace bentaxis::analytic

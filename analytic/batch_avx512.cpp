@@ -1,0 +1,10 @@
+#define xsimd xsimd_avx512  // see batch_kernel.h
+#include "bentaxis/analytic/batch_kernel.h"
+
+namespace bentaxis::analytic {
+
+void run_batch_avx512(const BatchJob& job, std::size_t begin, std::size_t end) {
+  run_batch<xsimd::avx512bw>(job, begin, end);
+}
+
+}  // namespace bentaxis::analytic

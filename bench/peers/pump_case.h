@@ -1,0 +1,105 @@
+// What every peer is given: the default pump at rated pressure, lumped pistons, constant and equal
+// speeds of shaft and block; and how its joint forces are judged.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::peers {
+
+using Vector = Eigen::Vector3d;
+
+class PumpCase {
+ public:
+  static constexpr int kSamples = 36;  // per turn, as in `bentaxis tradeoff`
+
+  PumpCase()
+      : the_case(read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml")),
+        omega(rad_per_second(the_case.operation.speed_rpm)),
+        trace(the_case.pressure),
+        model(the_case.pump, the_case.analytic),
+        kinematics(the_case.pump.geometry) {}
+
+  int pistons() const { return the_case.pump.geometry.pistons; }
+  double area() const {
+    const double d = the_case.pump.geometry.bore_diameter;
+    return kPi / 4 * d * d;
+  }
+  /// Angle of piston k (from 0), rad.
+  double angle(double theta, int k) const { return theta - 2 * kPi * k / pistons(); }
+  analytic::PistonKinematics piston(double theta, int k) const {
+    return kinematics.piston(std::sin(angle(theta, k)), std::cos(angle(theta, k)));
+  }
+  /// Pressure and friction on piston k along z2 at B, N.
+  double axial(double theta, int k, double velocity) const {
+    const double pressure = trace(piston_angle_deg(theta / kRadPerDegree, k + 1, pistons()));
+    return piston_friction_force(the_case.pump.friction, velocity, 0) - area() * pressure;
+  }
+  /// Largest |Rs - right Rs| at a sample so far, and the peak of the right one.
+  void judge(int sample, int k, const Vector& rs) {
+    Instant instant;
+    instant.theta = 2 * kPi * sample / kSamples;
+    instant.omega = omega;
+    instant.ports = the_case.pressure.ports;
+    for (int i = 1; i <= pistons(); ++i)
+      instant.chamber_pressure.push_back(
+          trace(piston_angle_deg(360.0 * sample / kSamples, i, pistons())));
+    std::vector<double> values(model.layout().size());
+    model.reactions(instant, values);
+    const auto& at = model.layout();
+    const Vector right(values[at.Rs(k, 0)], values[at.Rs(k, 1)], values[at.Rs(k, 2)]);
+    worst_ = std::max(worst_, (rs - right).cwiseAbs().maxCoeff());
+    peak_ = std::max(peak_, right.norm());
+  }
+  double error() const { return worst_ / peak_; }
+  void forget() { worst_ = peak_ = 0; }
+
+  Case the_case;
+  double omega;
+  PressureTrace trace;
+  analytic::Model model;
+  analytic::Kinematics kinematics;
+
+ private:
+  double worst_ = 0, peak_ = 0;
+};
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Collects the rows that scripts/write_performance_page reads.
+class Rows {
+ public:
+  void add(const std::string& engine, const std::string& way, const std::string& settings,
+           double seconds_per_turn, double error, int angles) {
+    if (!text_.empty()) text_ += ",\n";
+    char line[512];
+    std::snprintf(line, sizeof line,
+                  R"({"engine": "%s", "way": "%s", "settings": "%s", "seconds_per_turn": %.6g, )"
+                  R"("error_Rs": %.3g, "angles": %d})",
+                  engine.c_str(), way.c_str(), settings.c_str(), seconds_per_turn, error, angles);
+    text_ += line;
+  }
+  void print() const { std::printf("[%s]\n", text_.c_str()); }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace bentaxis::peers

@@ -1,0 +1,37 @@
+#include "achieved_error.h"
+
+#include <algorithm>
+
+#include "bentaxis/compare/comparison.h"
+#include "models.h"
+
+namespace bentaxis::cli {
+
+AchievedError achieved_error(const Case& the_case, const Samples& samples,
+                             const ResultTable& reference, const ResultTable& table) {
+  compare::Options options;
+  options.zero_scales = zero_scales(the_case, samples);
+  const compare::Comparison comparison = compare::compare_tables(reference, table, options);
+  AchievedError error;
+  const auto keep = [](double& worst, double value) {
+    worst = is_computed(worst) ? std::max(worst, value) : value;
+  };
+  for (const compare::ChannelComparison& c : comparison.channels) {
+    if (c.channel.kind != ChannelKind::reaction || c.verdict == compare::Verdict::not_computed)
+      continue;
+    const double value = c.largest_over_peak();
+    const std::string& quantity = c.channel.quantity;
+    if (quantity == "Rs") keep(error.rs, value);
+    if (quantity == "Rc") keep(error.rc, value);
+    if (quantity == "Rb1" || quantity == "Rb2") keep(error.bearings, value);
+    if (quantity == "Rcs") keep(error.rcs, value);
+    if (quantity == "Td") keep(error.td, value);
+    if (error.worst_channel.empty() || value > error.worst) {
+      error.worst = value;
+      error.worst_channel = c.channel.name;
+    }
+  }
+  return error;
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,351 @@
+// The batch kernel: the scalar model's results to round-off on every instruction set this machine
+// has, only what was asked for, no allocation.
+#include "bentaxis/analytic/batch.h"
+
+#include <gtest/gtest.h>
+
+#include "allocations.h"
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/error.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+using namespace analytic;
+
+// Instants as arrays, from one instant per lane.
+struct Arrays {
+  explicit Arrays(const std::vector<Instant>& list)
+      : pressure(list.front().chamber_pressure.size()) {
+    for (const Instant& i : list) {
+      theta.push_back(i.theta);
+      omega.push_back(i.omega);
+      omega_dot.push_back(i.omega_dot);
+      suction.push_back(i.ports.suction);
+      delivery.push_back(i.ports.delivery);
+      for (std::size_t k = 0; k < pressure.size(); ++k)
+        pressure[k].push_back(i.chamber_pressure[k]);
+    }
+    for (const auto& column : pressure) chamber.push_back({column.data(), 0});
+    instants = {list.size(),    {theta.data(), 0},   {omega.data(), 0},   {omega_dot.data(), 0},
+                chamber.data(), {suction.data(), 0}, {delivery.data(), 0}};
+  }
+  std::vector<double> theta, omega, omega_dot, suction, delivery;
+  std::vector<std::vector<double>> pressure;
+  std::vector<Varying> chamber;
+  BatchInstants instants;
+};
+
+std::vector<Instant> turn(const Case& the_case) {
+  const Samples samples = one_turn(the_case);
+  std::vector<Instant> list(samples.theta_deg.size());
+  for (std::size_t i = 0; i < list.size(); ++i) samples.instant(i, list[i]);
+  return list;
+}
+
+// ---- high-precision curves ---------------------------------------------------------------------
+
+class BatchReference : public testing::TestWithParam<std::string> {};
+
+// As for the scalar model: rounding of the inputs and some 300 operations.
+constexpr double kReferenceTolerance = 1e-13;
+
+TEST_P(BatchReference, EveryReactionIsRightToRoundOffOnEveryInstructionSet) {
+  const Case the_case = reference_case(GetParam());
+  const NumericTable reference =
+      read_numeric_csv(reference_folder() / GetParam() / "reference.csv", true);
+  const ResultTable table = analytic::run(the_case, the_case.analytic, one_turn(the_case));
+  const Arrays arrays(turn(the_case));
+  const BatchModel model(the_case.pump, the_case.analytic);
+  BatchColumns columns(model.layout().reactions(), arrays.instants.count);
+  for (const InstructionSet set : available_instruction_sets()) {
+    model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, columns),
+                    {set, 1});
+    for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
+      const Channel& channel = table.channels[c];
+      const double peak = table.peak(channel.group);
+      for (std::size_t row = 0; row < table.rows(); ++row) {
+        const double expected = reference.rows[row][c + 1];
+        const double value = columns.column(c)[row] / channel.unit_in_si;
+        ASSERT_EQ(is_computed(expected), is_computed(value)) << channel.name;
+        if (!is_computed(expected)) continue;
+        ASSERT_NEAR(expected, value, scaled(kReferenceTolerance) * (peak > 0 ? peak : 1))
+            << channel.name << " at " << table.theta_deg[row] << " deg, " << to_string(set);
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, BatchReference, testing::ValuesIn(reference_cases()),
+                         [](const auto& test) { return test.param; });
+
+// ---- against the scalar model on random pumps
+// ----------------------------------------------------
+
+// The same operations, fused or not; sine, cosine and tanh of another library: of the row's largest
+// force, the worst found is below 5e-15.
+constexpr double kScalarTolerance = 1e-13;
+
+double worst_difference(const Model& model, const Instant& instant, const BatchColumns& columns,
+                        std::size_t row) {
+  std::vector<double> values(model.layout().size());
+  model.reactions(instant, values);
+  double largest = 0;
+  double worst = 0;
+  for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
+    const double batch = columns.column(c)[row];
+    if (is_computed(values[c]) != is_computed(batch)) return 1e300;
+    if (!is_computed(values[c])) continue;
+    largest = std::max(largest, std::abs(values[c]));
+    worst = std::max(worst, std::abs(values[c] - batch));
+  }
+  return worst / largest;
+}
+
+TEST(Batch, OnePumpAtAnyInstantEqualsTheScalarModel) {
+  RandomPump random(31);
+  for (int n = 0; n < 60; ++n) {
+    const PumpParameters pump = random.pump();
+    const Assumptions assumptions = random.assumptions(pump);
+    const Model scalar(pump, assumptions);
+    const BatchModel model(pump, assumptions);
+    std::vector<Instant> instants;
+    for (int i = 0; i < 1 + n % 19; ++i) instants.push_back(random.instant(pump, true));
+    const Arrays arrays(instants);
+    for (const InstructionSet set : available_instruction_sets()) {
+      BatchColumns columns(model.layout().reactions(), instants.size());
+      model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, columns),
+                      {set, 1});
+      for (std::size_t i = 0; i < instants.size(); ++i)
+        ASSERT_LT(worst_difference(scalar, instants[i], columns, i), scaled(kScalarTolerance))
+            << "pump " << n << ", lane " << i << ", " << to_string(set);
+    }
+  }
+}
+
+// Pumps of one batch may have friction with and without a regularization, a port plate or none.
+std::vector<PumpParameters> pumps_of(RandomPump& random, int pistons, int count) {
+  std::vector<PumpParameters> pumps;
+  for (int i = 0; i < count; ++i) {
+    PumpParameters pump = random.pump();
+    while (assembly_margin(pump.geometry).longest_distance > 0.8 * pump.geometry.piston_length)
+      pump = random.pump();
+    pump.geometry.pistons = pistons;
+    if (i % 3 == 1) pump.friction.regularization = 0;
+    pumps.push_back(pump);
+  }
+  return pumps;
+}
+
+TEST(Batch, ManyPumpsEqualTheScalarModel) {
+  RandomPump random(32);
+  for (const int count : {1, 2, 3, 7, 8, 9, 31}) {
+    for (const PistonInertia inertia : {PistonInertia::lumped, PistonInertia::real}) {
+      for (const GearScene gear : {GearScene::mesh, GearScene::imposed}) {
+        const Assumptions assumptions = {true, inertia, gear};
+        const auto pumps = pumps_of(random, 5, count);
+        const PumpBatch model(pumps, assumptions);
+        std::vector<Instant> instants;
+        for (const PumpParameters& pump : pumps) instants.push_back(random.instant(pump, true));
+        const Arrays arrays(instants);
+        for (const InstructionSet set : available_instruction_sets()) {
+          BatchColumns columns(model.layout().reactions(), pumps.size());
+          model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, columns),
+                          {set, 1});
+          for (std::size_t i = 0; i < pumps.size(); ++i)
+            ASSERT_LT(worst_difference(Model(pumps[i], assumptions), instants[i], columns, i),
+                      scaled(kScalarTolerance))
+                << "pump " << i << " of " << count << ", " << to_string(set);
+        }
+      }
+    }
+  }
+}
+
+// Angles far beyond a turn, dead centres, standstill: where the vector functions take other paths.
+TEST(Batch, SpecialInstantsEqualTheScalarModel) {
+  const Case the_case = reference_case("bap63_rated");
+  for (const double regularization : {0.0, 0.01}) {
+    PumpParameters pump = the_case.pump;
+    pump.friction.regularization = regularization;
+    const Model scalar(pump, {});
+    const BatchModel model(pump, {});
+    std::vector<Instant> instants;
+    for (const double theta : {0.0, -0.0, kPi, -kPi, 1e-300, 1e5, -3e7, 1e12, 2 * kPi}) {
+      for (const double omega : {0.0, 157.0, -157.0, 1e-9}) {
+        Instant instant;
+        instant.theta = theta;
+        instant.omega = omega;
+        instant.chamber_pressure = {0, 1e7, 2e7, 0, 3e7};
+        instants.push_back(instant);
+      }
+    }
+    const Arrays arrays(instants);
+    for (const InstructionSet set : available_instruction_sets()) {
+      BatchColumns columns(model.layout().reactions(), instants.size());
+      model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, columns),
+                      {set, 1});
+      for (std::size_t i = 0; i < instants.size(); ++i)
+        ASSERT_LT(worst_difference(scalar, instants[i], columns, i), scaled(kScalarTolerance))
+            << instants[i].theta << " " << instants[i].omega << " " << to_string(set);
+    }
+  }
+}
+
+// Negative control: a parameter off by 1e-6 in the pump given to the batch must be noticed.
+TEST(Batch, TheComparisonNoticesAnotherPump) {
+  RandomPump random(33);
+  const PumpParameters pump = random.pump();
+  PumpParameters other = pump;
+  other.geometry.piston_length *= 1 + 1e-6;
+  const std::vector<Instant> instants = {random.instant(pump, true)};
+  const BatchModel model(other, {});
+  BatchColumns columns(model.layout().reactions(), 1);
+  const Arrays arrays(instants);
+  model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, columns));
+  EXPECT_GT(worst_difference(Model(pump, {}), instants[0], columns, 0), kScalarTolerance);
+}
+
+// ---- only what was asked for
+// ---------------------------------------------------------------------
+
+TEST(Batch, WritesWhatWasAskedForAndNothingElse) {
+  const Case the_case = reference_case("bap63_rated");
+  std::vector<Instant> instants = turn(the_case);
+  instants.resize(13);
+  const Arrays arrays(instants);
+  const BatchModel model(the_case.pump, the_case.analytic);
+  const std::size_t reactions = model.layout().reactions();
+  constexpr double untouched = 4321;
+  for (const InstructionSet set : available_instruction_sets()) {
+    BatchColumns all(reactions, instants.size());
+    model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, all), {set, 1});
+    for (const ChannelGroup group : {ChannelGroup::pistons, ChannelGroup::bearings}) {
+      BatchColumns part(reactions, instants.size());
+      for (std::size_t c = 0; c < reactions; ++c)
+        std::fill_n(part.column(c), instants.size() + 1, untouched);  // and one beyond the end
+      const BatchOutputs outputs = outputs_of(model.layout(), group, part);
+      model.reactions(arrays.instants, outputs, {set, 1});
+      for (std::size_t c = 0; c < reactions; ++c) {
+        for (std::size_t i = 0; i < instants.size(); ++i)
+          ASSERT_EQ(part.column(c)[i], outputs[c] != nullptr ? all.column(c)[i] : untouched)
+              << model.layout().channels()[c].name << " " << to_string(set);
+        ASSERT_EQ(part.column(c)[instants.size()], untouched);
+      }
+    }
+  }
+}
+
+TEST(Batch, OneNumberForAllEqualsAnArrayOfIt) {
+  const Case the_case = reference_case("step_single");
+  const std::vector<Instant> instants = turn(the_case);
+  const Arrays arrays(instants);
+  const BatchModel model(the_case.pump, the_case.analytic);
+  BatchInstants constant = arrays.instants;
+  constant.omega = {nullptr, instants[0].omega};
+  constant.omega_dot = {};
+  constant.suction = {nullptr, instants[0].ports.suction};
+  constant.delivery = {nullptr, instants[0].ports.delivery};
+  BatchColumns first(model.layout().reactions(), instants.size());
+  BatchColumns second(model.layout().reactions(), instants.size());
+  model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, first));
+  model.reactions(constant, outputs_of(model.layout(), ChannelGroup::all, second));
+  for (std::size_t c = 0; c < model.layout().reactions(); ++c)
+    for (std::size_t i = 0; i < instants.size(); ++i)
+      ASSERT_EQ(first.column(c)[i], second.column(c)[i]);
+}
+
+// Code for writing past the caches is compiled anew: additions may be fused elsewhere. 4e-16 found.
+constexpr double kRecompiledTolerance = 1e-14;
+
+// Large enough to be shared by threads and to be written past the caches.
+TEST(Batch, ThreadsAndWritingPastTheCachesChangeNothing) {
+  const Case the_case = reference_case("bap63_rated");
+  const std::vector<Instant> some = turn(the_case);
+  std::vector<Instant> instants;
+  for (std::size_t i = 0; i < 60'003; ++i) instants.push_back(some[i % some.size()]);
+  const Arrays arrays(instants);
+  const BatchModel model(the_case.pump, the_case.analytic);
+  BatchColumns small(model.layout().reactions(), some.size());
+  const Arrays some_arrays(some);
+  model.reactions(some_arrays.instants, outputs_of(model.layout(), ChannelGroup::all, small));
+  const auto large = [&](int threads) {
+    BatchColumns columns(model.layout().reactions(), instants.size());
+    model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, columns),
+                    {available_instruction_sets().back(), threads});
+    return columns;
+  };
+  const BatchColumns one = large(1);
+  for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
+    double peak = 0;
+    for (std::size_t i = 0; i < some.size(); ++i)
+      peak = std::max(peak, std::abs(small.column(c)[i]));
+    for (std::size_t i = 0; i < instants.size(); ++i)
+      ASSERT_NEAR(one.column(c)[i], small.column(c)[i % some.size()],
+                  scaled(kRecompiledTolerance) * peak);
+  }
+  for (const int threads : {2, 3}) {
+    const BatchColumns shared = large(threads);
+    for (std::size_t c = 0; c < model.layout().reactions(); ++c)
+      for (std::size_t i = 0; i < instants.size(); ++i)
+        ASSERT_EQ(shared.column(c)[i], one.column(c)[i]) << threads;
+  }
+}
+
+// ---- counts
+// ----------------------------------------------------------------------------------------
+
+TEST(Allocations, AreCounted) {
+  const AllocationCounter counter;
+  ::operator delete(::operator new(100));
+  EXPECT_EQ(counter.count(), 1);
+}
+
+TEST(Allocations, NoEvaluationAllocates) {
+  const Case the_case = reference_case("bap63_rated");
+  const std::vector<Instant> instants = turn(the_case);
+  const Model scalar(the_case.pump, the_case.analytic);
+  std::vector<double> values(scalar.layout().size());
+  const BatchModel model(the_case.pump, the_case.analytic);
+  const Arrays arrays(instants);
+  BatchColumns columns(model.layout().reactions(), instants.size());
+  const BatchOutputs outputs = outputs_of(model.layout(), ChannelGroup::all, columns);
+  const PumpBatch pumps(std::vector<PumpParameters>(instants.size(), the_case.pump),
+                        the_case.analytic);
+  const auto sets = available_instruction_sets();
+
+  const AllocationCounter counter;
+  for (const Instant& instant : instants) scalar.reactions(instant, values);
+  for (const Instant& instant : instants) scalar.evaluate(instant, values);
+  for (const InstructionSet set : sets) {
+    model.reactions(arrays.instants, outputs, {set, 1});
+    pumps.reactions(arrays.instants, outputs, {set, 1});
+  }
+  EXPECT_EQ(counter.count(), 0);
+}
+
+// ---- input
+// -----------------------------------------------------------------------------------------
+
+TEST(Batch, RefusesWhatDoesNotFit) {
+  const Case the_case = reference_case("bap63_rated");
+  EXPECT_THROW(PumpBatch({}, {}), InputError);
+  PumpParameters seven = the_case.pump;
+  seven.geometry.pistons = 7;
+  EXPECT_THROW(PumpBatch({the_case.pump, seven}, {}), InputError);
+  const PumpBatch two({the_case.pump, the_case.pump}, {});
+  const Arrays one({turn(the_case)[0]});
+  EXPECT_THROW(two.reactions(one.instants, BatchOutputs(37)), InputError);
+  EXPECT_THROW(BatchModel(the_case.pump, {}).reactions(one.instants, BatchOutputs(36)), InputError);
+}
+
+TEST(Batch, InstructionSetsAreNamedAndOrdered) {
+  const auto sets = available_instruction_sets();
+  ASSERT_FALSE(sets.empty());
+  EXPECT_EQ(sets.front(), InstructionSet::sse2);
+  for (std::size_t i = 1; i < sets.size(); ++i) EXPECT_EQ(lanes(sets[i]), 2 * lanes(sets[i - 1]));
+}
+
+}  // namespace
+}  // namespace bentaxis::test
