@@ -116,14 +116,14 @@ Json integrate_all(Study& study, const Options& options,
                     record.worst_gear_phase / kRadPerDegree, record.work_residual(),
                     free_shaft.worst_speed, record.steps, record.evaluations});
     facts = Json::array(
-            {{"gear phase, worst (block minus shaft)",
-              fmt::format("{:.2e} deg", record.worst_gear_phase / kRadPerDegree)},
-             {"shaft angle against omega t, worst",
-              fmt::format("{:.2e} deg", record.worst_shaft_angle / kRadPerDegree)},
-             {"work of loads", fmt::format("{:.6g} J", record.work_of_loads)},
-             {"work of the drive", fmt::format("{:.6g} J", record.work_of_drives)},
-             {"kinetic energy gained", fmt::format("{:.3g} J", record.kinetic_energy_gained)},
-             {"work unaccounted for", fmt::format("{:.3g} J", record.work_residual())}});
+        {{"gear phase, worst (block minus shaft)",
+          fmt::format("{:.2e} deg", record.worst_gear_phase / kRadPerDegree)},
+         {"shaft angle against omega t, worst",
+          fmt::format("{:.2e} deg", record.worst_shaft_angle / kRadPerDegree)},
+         {"work of loads", fmt::format("{:.6g} J", record.work_of_loads)},
+         {"work of the drive", fmt::format("{:.6g} J", record.work_of_drives)},
+         {"kinetic energy gained", fmt::format("{:.3g} J", record.kinetic_energy_gained)},
+         {"work unaccounted for", fmt::format("{:.3g} J", record.work_residual())}});
   }
   if (!options.choice.empty()) facts.push_back(Json::array({"chosen", options.choice}));
   return {{{"title", "Integrated run and torque-driven run"},
