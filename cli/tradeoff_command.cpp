@@ -289,7 +289,7 @@ Json figure_of(const std::vector<TradeoffRun>& runs, const std::string& pressure
 }
 
 int tradeoff(Options options) {
-  const Case the_case = read_ready_case(options.case_file).the_case;
+  const Case the_case = with_pressure(read_case(options.case_file)).the_case;
   if (the_case.operation.speed_rpm == 0)
     throw InputError(
         options.case_file +
