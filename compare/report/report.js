@@ -938,9 +938,9 @@ function figures(report, data) {
     || f.kind === "scatter" || data.order.length);
   if (!figures.length) return null;
   return el("div", {},
-    shown.some(f => !f.kind) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
+    figures.some(f => !f.kind) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
       + "double-click to see all again. Point at a curve to read the values in the table above it.") : null,
-    shown.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
+    figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
       f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
       (DRAWN[f.kind] || curvesFigure)(f, dataOf(f, report, data)))));
 }
