@@ -70,7 +70,7 @@ Json common_section(const Case& the_case) {
       "high-precision curves; the integral itself is taken twice (closed form, quadrature)");
   add("law of piston friction",
       the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
-      "high-precision curves; power balance of each model");
+      "high-precision curves; power balance; written once in each model");
   add("law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model");
   add("constant speed, equal for shaft and block (1:1)",
       "omega given; no torsion, no play in the gear",
