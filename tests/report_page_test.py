@@ -168,7 +168,9 @@ PROBE = r"""
     return { text: e.textContent, left: box.left, right: box.right, top: box.top + scrollY, height: box.height };
   };
 
-  const result = { errors: window.probeErrors, ready: root.dataset.ready };
+  // The page's own message where it could not be drawn.
+  const failure = [...document.querySelectorAll("[role=alert]")].map(e => e.textContent);
+  const result = { errors: window.probeErrors.concat(failure), ready: root.dataset.ready };
   try {
     Object.assign(result, { first: measure(), plots: plots(), bars: bars(), title: document.title,
       heading: document.querySelector("h1") && document.querySelector("h1").textContent,
