@@ -4,6 +4,15 @@
 #include <cmath>
 
 namespace bentaxis::analytic {
+namespace {
+
+// Rd - Ra cos(alpha), without the cancellation that cos(alpha) next to 1 brings.
+double projected_difference(const Geometry& g) {
+  const double half = std::sin(g.tilt / 2);
+  return (g.bore_circle_radius - g.joint_circle_radius) + 2 * g.joint_circle_radius * half * half;
+}
+
+}  // namespace
 
 Kinematics::Kinematics(const Geometry& g)
     : joint_radius_(g.joint_circle_radius),
@@ -11,7 +20,7 @@ Kinematics::Kinematics(const Geometry& g)
       sin_tilt_(std::sin(g.tilt)),
       cos_tilt_(std::cos(g.tilt)),
       radius_difference_(g.bore_circle_radius - g.joint_circle_radius),
-      radius_projected_(g.bore_circle_radius - g.joint_circle_radius * cos_tilt_),
+      radius_projected_(projected_difference(g)),
       offset_y_(g.axis_offset * sin_tilt_),
       offset_z_(-g.axis_offset * cos_tilt_) {}
 

@@ -17,5 +17,6 @@ struct Command {
 
 Command add_run_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);
+Command add_hardcases_command(CLI::App& app);
 
 }  // namespace bentaxis::cli

@@ -10,6 +10,7 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/multibody/pump_system.h"
 #include "bentaxis/multibody/reactions.h"
+#include "bentaxis/multibody/solver_guard.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -141,6 +142,7 @@ class Runner {
     system_.inputs().chamber_pressure = [&](double, std::vector<double>& p) { p = pressure; };
     system_.system().realize(state, Stage::Acceleration);
     system_.inputs().chamber_pressure = std::move(in_segment);
+    require_accurate_forces(system_, state, radians(samples_.theta_deg[row]));
     read_channels(system_, state, {state, samples_.omega}, 0, pressure, layout, values);
   }
 

@@ -5,6 +5,7 @@
 
 #include "bentaxis/multibody/pump_system.h"
 #include "bentaxis/multibody/reactions.h"
+#include "bentaxis/multibody/solver_guard.h"
 #include "bentaxis/multibody/versions.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -65,6 +66,7 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) {
                              " constraint equations have rank " + std::to_string(self.rank.rank) +
                              ": reactions cannot be told apart");
   }
+  require_accurate_forces(system, state, instant.theta);
   read_channels(system, state, {system.assembly(), rate_omega}, instant.omega_dot, self.pressure,
                 self.layout, values);
 }

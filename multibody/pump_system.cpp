@@ -95,6 +95,10 @@ double nominal_inertia(double given) {
   return given > 0 ? given : kAny;
 }
 
+// Nor does a mass on a fixed axis act but by its weight: one of 0 gets any, without weight, because
+// Simbody has no inertia without mass.
+double nominal_mass(double given) { return given > 0 ? given : 1; }
+
 }  // namespace
 
 // Force element without force: integrates the power of loads and drives along with the motion.
@@ -141,8 +145,10 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   inputs_.chamber_pressure = [](double, std::vector<double>& p) {
     std::fill(p.begin(), p.end(), 0.0);
   };
-  SimTK::Force::UniformGravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
   add_shaft_and_block(omega);
+  SimTK::Force::Gravity gravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
+  gravity.setDefaultBodyIsExcluded(shaft_, pump_.shaft.mass == 0);
+  gravity.setDefaultBodyIsExcluded(block_, pump_.block.mass == 0);
   add_pistons();
   PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_);
   if (drive_ != Drive::given_acceleration) {
@@ -174,17 +180,19 @@ void PumpSystem::add_shaft_and_block(double omega) {
 
   const double zs = pump_.shaft.centre_of_mass_z;
   const double shaft_inertia = nominal_inertia(pump_.shaft.axial_inertia);
+  const double shaft_mass = nominal_mass(pump_.shaft.mass);
   shaft_ = SimTK::MobilizedBody::Ball(
       matter_.updGround(), Transform(c1),
-      SimTK::Body::Rigid(symmetric_body(pump_.shaft.mass, zs,
-                                        shaft_inertia + pump_.shaft.mass * zs * zs, shaft_inertia)),
+      SimTK::Body::Rigid(
+          symmetric_body(shaft_mass, zs, shaft_inertia + shaft_mass * zs * zs, shaft_inertia)),
       Transform(c1));
   const double zc = pump_.block.centre_of_mass_z;
   const double block_inertia = nominal_inertia(pump_.block.axial_inertia);
+  const double block_mass = nominal_mass(pump_.block.mass);
   block_ = SimTK::MobilizedBody::Pin(
       matter_.updGround(), Transform(bodies_.block_frame, bodies_.block_origin),
-      SimTK::Body::Rigid(symmetric_body(pump_.block.mass, zc,
-                                        block_inertia + pump_.block.mass * zc * zc, block_inertia)),
+      SimTK::Body::Rigid(
+          symmetric_body(block_mass, zc, block_inertia + block_mass * zc * zc, block_inertia)),
       Transform());
   bodies_.shaft = shaft_;
   bodies_.block = block_;

@@ -1,0 +1,67 @@
+// The catalogue of hard cases: reading it, and what each model makes of one of its cases.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/result_table.h"
+
+namespace bentaxis::cli {
+
+/// One entry of reference_data/hard/catalogue.toml with what its folder holds.
+struct HardCase {
+  std::string name, group, hard;
+  std::vector<std::string> changes;  ///< "pump.tilt_deg = 1e-9": keys that differ from the base
+  bool analytic_refused = false;     ///< the model is expected to refuse
+  bool multibody_refused = false;
+  std::filesystem::path folder;
+};
+
+/// The entries whose name contains `filter`.
+/// @throws InputError
+std::vector<HardCase> read_catalogue(const std::filesystem::path& folder,
+                                     const std::string& filter);
+
+/// Loss of digits in one scale group of reactions, over the group's peak.
+struct GroupLoss {
+  std::string group;
+  double measured = 0;
+  double predicted = 0;
+};
+
+enum class HardVerdict {
+  accurate,  ///< right within the predicted loss
+  refused,   ///< ended with a message
+  wrong,     ///< off by more than predicted, or refused what should be solved
+};
+const char* to_string(HardVerdict verdict);
+
+/// What one model made of a hard case.
+struct HardOutcome {
+  std::string model;
+  HardVerdict verdict = HardVerdict::wrong;
+  bool refusal_expected = false;
+  std::string message;  ///< of the refusal, or what is wrong
+  std::vector<GroupLoss> groups;
+  double seconds_per_angle = 0;
+  std::string weak_point;  ///< the input whose rounding matters most
+
+  /// Group with the largest measured loss; nullptr where refused.
+  const GroupLoss* worst() const;
+  /// Loss measured over loss predicted where the loss exceeds 1e-10 of peak: the farthest from 1.
+  std::optional<double> worst_ratio() const;
+};
+
+/// Losses above this share of the peak must be predicted within kPredictionFactor.
+inline constexpr double kNoticeableLoss = 1e-10;
+inline constexpr double kPredictionFactor = 100;
+/// A loss up to this share of the peak is round-off, whatever was predicted.
+inline constexpr double kRoundOffLoss = 1e-12;
+
+/// Runs both models on a case and holds them against its high-precision curve.
+std::vector<HardOutcome> run_hard_case(const HardCase& hard);
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bentaxis/compare/page.h"
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/files.h"
+#include "commands.h"
+#include "console.h"
+#include "data_folder.h"
+#include "hard_cases.h"
+#include "options.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Options {
+  std::string out = "out", catalogue, filter;
+};
+
+struct Row {
+  HardCase hard;
+  HardOutcome outcome;
+};
+
+double digits(double loss) { return loss > 0 ? std::clamp(-std::log10(loss), 0.0, 16.0) : 16; }
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const auto& part : parts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
+bool misjudged(const HardOutcome& outcome) {
+  const auto ratio = outcome.worst_ratio();
+  return ratio && (*ratio > kPredictionFactor || *ratio < 1 / kPredictionFactor);
+}
+
+Json json_of(const std::vector<Row>& rows) {
+  Json cases = Json::array();
+  for (const auto& [hard, o] : rows) {
+    if (cases.empty() || cases.back()["name"] != hard.name)
+      cases.push_back({{"name", hard.name},
+                       {"group", hard.group},
+                       {"hard", hard.hard},
+                       {"changes", hard.changes},
+                       {"models", Json::array()}});
+    Json groups = Json::array();
+    for (const GroupLoss& g : o.groups)
+      groups.push_back(
+          {{"group", g.group}, {"loss_over_peak", g.measured}, {"predicted", g.predicted}});
+    const auto ratio = o.worst_ratio();
+    cases.back()["models"].push_back(
+        {{"model", o.model},
+         {"expected", o.refusal_expected ? "refused" : "accurate"},
+         {"verdict", to_string(o.verdict)},
+         {"message", o.message},
+         {"digits", o.worst() ? Json(digits(o.worst()->measured)) : Json()},
+         {"groups", groups},
+         {"weak_point", o.weak_point},
+         {"measured_over_predicted", ratio ? Json(*ratio) : Json()},
+         {"microseconds_per_angle", o.seconds_per_angle * 1e6}});
+  }
+  return cases;
+}
+
+std::string csv_of(const std::vector<Row>& rows) {
+  std::string text =
+      "case,model,expected,verdict,group,loss_over_peak,predicted_over_peak,digits,us_per_angle\n";
+  for (const auto& [hard, o] : rows) {
+    const GroupLoss* worst = o.worst();
+    text += fmt::format("{},{},{},{},", hard.name, o.model,
+                        o.refusal_expected ? "refused" : "accurate", to_string(o.verdict));
+    if (worst != nullptr)
+      text += fmt::format("{},{},{},{:.1f},{:.1f}\n", worst->group, number_text(worst->measured),
+                          number_text(worst->predicted), digits(worst->measured),
+                          o.seconds_per_angle * 1e6);
+    else
+      text += ",,,,\n";
+  }
+  return text;
+}
+
+std::string cell(const HardOutcome& o) {
+  if (o.verdict == HardVerdict::refused) return "refused";
+  const GroupLoss* worst = o.worst();
+  if (worst == nullptr) return to_string(o.verdict);
+  return fmt::format("{}{:.1f} ({:.1f})", o.verdict == HardVerdict::wrong ? "WRONG " : "",
+                     digits(worst->measured), digits(worst->predicted));
+}
+
+// The table of docs/trust.md.
+std::string markdown_of(const std::vector<Row>& rows) {
+  std::string text =
+      "| case | what is hard | analytic: digits (predicted) | multibody: digits (predicted) |\n"
+      "|---|---|---|---|\n";
+  for (std::size_t i = 0; i + 1 < rows.size(); i += 2)
+    text += fmt::format("| `{}` | {} | {} | {} |\n", rows[i].hard.name, rows[i].hard.hard,
+                        cell(rows[i].outcome), cell(rows[i + 1].outcome));
+  return text;
+}
+
+// One block per group of cases, a row per case and model.
+Json page_runs(const std::vector<Row>& rows) {
+  Json runs = Json::array();
+  for (const auto& [hard, o] : rows) {
+    auto block = std::find_if(runs.begin(), runs.end(), [&, &name = hard.group](const Json& r) {
+      return r["title"] == name;
+    });
+    if (block == runs.end()) {
+      runs.push_back(
+          {{"title", hard.group},
+           {"table",
+            {{"columns",
+              {"case", "what is hard", "differs from the rated pump in", "model", "verdict",
+               "digits", "digits predicted", "least in", "weak point", "us per angle", "message"}},
+             {"rows", Json::array()}}}});
+      block = runs.end() - 1;
+    }
+    const GroupLoss* worst = o.worst();
+    const auto rounded = [](double value) { return std::round(10 * value) / 10; };
+    (*block)["table"]["rows"].push_back(
+        {hard.name, hard.hard, joined(hard.changes, ", "), o.model, to_string(o.verdict),
+         worst ? Json(rounded(digits(worst->measured))) : Json(),
+         worst ? Json(rounded(digits(worst->predicted))) : Json(),
+         worst ? Json(worst->group) : Json(), o.weak_point,
+         worst ? Json(rounded(o.seconds_per_angle * 1e6)) : Json(), o.message});
+  }
+  return runs;
+}
+
+int run(const Options& options) {
+  const auto folder = options.catalogue.empty() ? reference_data() / "hard"
+                                                : std::filesystem::path(options.catalogue);
+  const auto cases = read_catalogue(folder, options.filter);
+  OutputFolder out(options.out);
+  std::vector<Row> rows;
+  std::printf("%-24s %-10s %-9s %7s %10s %9s  %s\n", "case", "model", "verdict", "digits",
+              "predicted", "us/angle", "least in, message");
+  for (const HardCase& hard : cases) {
+    for (HardOutcome& o : run_hard_case(hard)) {
+      const GroupLoss* worst = o.worst();
+      std::printf("%-24s %-10s %-9s", hard.name.c_str(), o.model.c_str(), to_string(o.verdict));
+      if (worst != nullptr)
+        std::printf(" %7.1f %10.1f %9.1f  %s %s\n", digits(worst->measured),
+                    digits(worst->predicted), o.seconds_per_angle * 1e6, worst->group.c_str(),
+                    o.message.c_str());
+      else
+        std::printf(" %7s %10s %9s  %s\n", "", "", "", o.message.c_str());
+      std::fflush(stdout);
+      rows.push_back({hard, std::move(o)});
+    }
+  }
+  std::map<std::string, int> counts;
+  int unpredicted = 0;
+  for (const Row& row : rows) {
+    ++counts[to_string(row.outcome.verdict)];
+    if (!misjudged(row.outcome)) continue;
+    ++unpredicted;
+    std::printf("%s, %s: measured over predicted loss %.1e\n", row.hard.name.c_str(),
+                row.outcome.model.c_str(), *row.outcome.worst_ratio());
+  }
+  const bool good = counts["WRONG"] == 0 && unpredicted == 0;
+  const std::string headline = fmt::format(
+      "{} cases, two models: {} accurate within the predicted loss, {} refused with a message, {} "
+      "wrong. Losses above {:g} of peak that were not predicted within a factor of {:g}: {}.",
+      cases.size(), counts["accurate"], counts["refused"], counts["WRONG"], kNoticeableLoss,
+      kPredictionFactor, unpredicted);
+
+  Json report = {
+      {"schema", 1},
+      {"title", "Hard cases"},
+      {"program", versions()},
+      {"verdict", {{"agrees", good}, {"word", good ? "Holds" : "Fails"}, {"headline", headline}}},
+      {"meaning",
+       "Digits are -log10 of the largest difference from the 50-digit curve over the peak of the "
+       "reaction; predicted are the digits that the rounding of inputs and arithmetic leaves "
+       "(docs/trust.md)."}};
+  Json page = report;
+  report["cases"] = json_of(rows);
+  page["runs"] = page_runs(rows);
+  out.add("hardcases.html", compare::render_page("Hard cases", page, Json::object()));
+  out.add("hardcases.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  out.add("hardcases.csv", csv_of(rows));
+  out.add("hardcases.md", markdown_of(rows));
+  std::printf("\n%s\n\n", headline.c_str());
+  for (const auto& path : out.commit()) std::printf("%s\n", path.c_str());
+  return good ? kDone : kOutOfTolerance;
+}
+
+}  // namespace
+
+Command add_hardcases_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "hardcases", "Run the catalogue of hard cases: digits achieved and predicted, refusals");
+  add_out(*command, options->out, "hardcases.html, .json, .csv and .md");
+  command->add_option("--filter", options->filter, "only cases whose name contains this")
+      ->option_text("TEXT");
+  command
+      ->add_option("--catalogue", options->catalogue,
+                   "folder with another catalogue.toml and its cases")
+      ->option_text("DIR");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace bentaxis::cli
