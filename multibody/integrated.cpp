@@ -242,29 +242,31 @@ IntegratedRun run_integrated(const Case& the_case, const Assumptions& assumption
                              const IntegrationOptions& options, const Progress& progress) {
   refuse_standstill(the_case);
   const Stopwatch stopwatch;
-  Runner runner(the_case, assumptions, samples, pressure, options, Drive::constant_speed);
-  const ChannelLayout layout(samples.pistons);
   IntegratedRun result;
-  std::vector<std::vector<double>> rows;
-  runner.run(progress, [&](std::size_t row) {
-    rows.emplace_back(layout.size(), not_computed());
-    runner.read(row, layout, rows.back());
+  translate_simbody_errors([&] {
+    Runner runner(the_case, assumptions, samples, pressure, options, Drive::constant_speed);
+    const ChannelLayout layout(samples.pistons);
+    std::vector<std::vector<double>> rows;
+    runner.run(progress, [&](std::size_t row) {
+      rows.emplace_back(layout.size(), not_computed());
+      runner.read(row, layout, rows.back());
+    });
+    std::size_t next = 0;
+    result.table = tabulate("multibody", layout, samples,
+                            [&](const Instant&, std::vector<double>& row) { row = rows[next++]; });
+    result.record = runner.record();
+    result.record.seconds = stopwatch.seconds();
+    result.table.provenance.seconds = result.record.seconds;
+    const PumpSystem::Rank rank = runner.system().constraint_rank(runner.system().dynamics());
+    result.table.provenance.facts = scene_facts(the_case.pump, assumptions);
+    auto& facts = result.table.provenance.facts;
+    facts.insert(facts.begin() + 1,
+                 {"way", "integrated in time from an assembled start, " +
+                             integrator_names()[static_cast<std::size_t>(options.integrator)] +
+                             ", accuracy " + number_text(options.accuracy)});
+    facts.emplace_back("constraint equations", std::to_string(rank.equations));
+    facts.emplace_back("rank of the constraint matrix", std::to_string(rank.rank));
   });
-  std::size_t next = 0;
-  result.table = tabulate("multibody", layout, samples,
-                          [&](const Instant&, std::vector<double>& row) { row = rows[next++]; });
-  result.record = runner.record();
-  result.record.seconds = stopwatch.seconds();
-  result.table.provenance.seconds = result.record.seconds;
-  const PumpSystem::Rank rank = runner.system().constraint_rank(runner.system().dynamics());
-  result.table.provenance.facts = scene_facts(the_case.pump, assumptions);
-  auto& facts = result.table.provenance.facts;
-  facts.insert(facts.begin() + 1,
-               {"way", "integrated in time from an assembled start, " +
-                           integrator_names()[static_cast<std::size_t>(options.integrator)] +
-                           ", accuracy " + number_text(options.accuracy)});
-  facts.emplace_back("constraint equations", std::to_string(rank.equations));
-  facts.emplace_back("rank of the constraint matrix", std::to_string(rank.rank));
   return result;
 }
 
@@ -274,14 +276,18 @@ IntegrationRecord run_torque_driven(const Case& the_case, const Assumptions& ass
                                     const IntegrationOptions& options, const Progress& progress) {
   refuse_standstill(the_case);
   const Stopwatch stopwatch;
-  Runner runner(the_case, assumptions, samples, pressure, options, Drive::torque);
-  // (38): of the drive torque the share Ct turns the shaft; the viscous loss is a load of its own.
-  runner.system().inputs().shaft_torque = [&](double theta) {
-    return the_case.pump.friction.shaft_torque_factor *
-           drive_torque(runner.angle_in_segment(theta));
-  };
-  runner.run(progress, {});
-  IntegrationRecord record = runner.record();
+  IntegrationRecord record;
+  translate_simbody_errors([&] {
+    Runner runner(the_case, assumptions, samples, pressure, options, Drive::torque);
+    // (38): of the drive torque the share Ct turns the shaft; the viscous loss is a load of its
+    // own.
+    runner.system().inputs().shaft_torque = [&](double theta) {
+      return the_case.pump.friction.shaft_torque_factor *
+             drive_torque(runner.angle_in_segment(theta));
+    };
+    runner.run(progress, {});
+    record = runner.record();
+  });
   record.seconds = stopwatch.seconds();
   return record;
 }

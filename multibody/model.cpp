@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "bentaxis/multibody/pump_system.h"
 #include "bentaxis/multibody/reactions.h"
@@ -21,6 +22,8 @@ struct Model::Implementation {
     system.inputs().chamber_pressure = [this](double, std::vector<double>& p) { p = pressure; };
   }
 
+  void evaluate(const Instant& instant, std::vector<double>& values);
+
   ChannelLayout layout;
   PumpSystem system;
   std::vector<double> pressure;
@@ -28,8 +31,9 @@ struct Model::Implementation {
   double sign = 0;
 };
 
-Model::Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign)
-    : implementation_(std::make_unique<Implementation>(pump, assumptions, omega_sign)) {
+Model::Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign) {
+  translate_simbody_errors(
+      [&] { implementation_ = std::make_unique<Implementation>(pump, assumptions, omega_sign); });
   implementation_->sign = omega_sign < 0 ? -1 : 1;
 }
 Model::~Model() = default;
@@ -48,8 +52,15 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) {
     throw InputError("multibody model: changing speed needs axial inertias above 0");
   self.pressure = instant.chamber_pressure;
   system.inputs().ports = instant.ports;
-  system.inputs().rest_speed = piston_rest_speed(system.pump().geometry, instant.omega);
+  // At standstill the pistons' velocities are round-off of the projection, with any sign.
+  system.inputs().rest_speed = instant.omega == 0
+                                   ? std::numeric_limits<double>::infinity()
+                                   : piston_rest_speed(system.pump().geometry, instant.omega);
 
+  translate_simbody_errors([&] { self.evaluate(instant, values); });
+}
+
+void Model::Implementation::evaluate(const Instant& instant, std::vector<double>& values) {
   SimTK::State& state = system.dynamics();
   system.assemble(instant.theta, instant.omega);
   system.copy_assembly_to_dynamics();
@@ -59,16 +70,16 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) {
   system.set_acceleration(state, instant.omega_dot);
   system.system().realize(state, Stage::Acceleration);
 
-  if (self.rank.equations == 0) {
-    self.rank = system.constraint_rank(state);
-    if (self.rank.rank < self.rank.equations)
-      throw ComputationError("multibody model: " + std::to_string(self.rank.equations) +
-                             " constraint equations have rank " + std::to_string(self.rank.rank) +
+  if (rank.equations == 0) {
+    rank = system.constraint_rank(state);
+    if (rank.rank < rank.equations)
+      throw ComputationError("multibody model: " + std::to_string(rank.equations) +
+                             " constraint equations have rank " + std::to_string(rank.rank) +
                              ": reactions cannot be told apart");
   }
   require_accurate_forces(system, state, instant.theta);
-  read_channels(system, state, {system.assembly(), rate_omega}, instant.omega_dot, self.pressure,
-                self.layout, values);
+  read_channels(system, state, {system.assembly(), rate_omega}, instant.omega_dot, pressure, layout,
+                values);
 }
 
 std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,

@@ -225,6 +225,12 @@ void PumpSystem::add_pistons() {
   const Geometry& g = pump_.geometry;
   const PistonMass& mass = pump_.piston;
   const double length = g.piston_length;
+  const auto refuse = [] {
+    throw ComputationError(
+        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
+        "has no equation of motion in Simbody; the analytic model has no such limit");
+  };
+  if (!(mass.mass > 0)) refuse();
   MassProperties properties;
   if (assumptions_.inertia == PistonInertia::lumped) {
     const double at_ring = (1 - mass.joint_mass_fraction) * mass.mass;
@@ -240,10 +246,7 @@ void PumpSystem::add_pistons() {
         real.axial_inertia);
     pistons_free_to_spin_ = real.axial_inertia > 0;
   }
-  if (!(properties.getInertia().getMoments()[0] > 0))
-    throw ComputationError(
-        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
-        "has no equation of motion in Simbody; the analytic model has no such limit");
+  if (!(properties.getInertia().getMoments()[0] > 0)) refuse();
 
   for (int k = 0; k < g.pistons; ++k) {
     const Rotation phase(-2 * kPi * k / g.pistons, SimTK::ZAxis);

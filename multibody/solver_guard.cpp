@@ -1,5 +1,6 @@
 #include "bentaxis/multibody/solver_guard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -65,6 +66,16 @@ void require_accurate_forces(const PumpSystem& pump, const SimTK::State& state, 
       "; bodies of very different mass, or constraints that are almost dependent (bearings close "
       "together or far away, small gear, pistons near the assembly limit, rods without inertia "
       "about their axis); the analytic model has no such limit");
+}
+
+void translate_simbody_errors(const std::function<void()>& job) {
+  try {
+    job();
+  } catch (const SimTK::Exception::Base& error) {
+    std::string why = error.getMessageText();
+    std::replace(why.begin(), why.end(), '\n', ' ');
+    throw ComputationError("multibody model: Simbody refused: " + why);
+  }
 }
 
 }  // namespace bentaxis::multibody

@@ -1,6 +1,8 @@
 // How far Simbody's constraint solver can be trusted at one state.
 #pragma once
 
+#include <functional>
+
 #include "bentaxis/multibody/pump_system.h"
 
 namespace bentaxis::multibody {
@@ -19,6 +21,9 @@ double estimated_force_error(const PumpSystem& pump, const SimTK::State& state);
 /// Refuses reactions that have lost more than kLargestForceError.
 /// @throws ComputationError naming the angle, the error and the usual causes
 void require_accurate_forces(const PumpSystem& pump, const SimTK::State& state, double theta);
+
+/// Runs `job`; what Simbody throws becomes a ComputationError of one line.
+void translate_simbody_errors(const std::function<void()>& job);
 
 /// Of the largest constraint force. Sound pumps stay below 1e-12 (tests/hardcases_test.cpp).
 inline constexpr double kLargestForceError = 1e-8;
