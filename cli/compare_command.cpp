@@ -23,6 +23,7 @@
 #include "console.h"
 #include "models.h"
 #include "pump_report.h"
+#include "rounding_report.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -321,6 +322,9 @@ int compare(const Options& options) {
       {"assumptions", nullptr},
       {"runs", runs},
       {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
+  report["runs"].push_back(rounding_block(rounding_lines(the_case, the_case.analytic)));
+  for (const auto& text : rounding_warnings(the_case, the_case.analytic))
+    report["warnings"].push_back({{"name", "digits lost to rounding"}, {"text", text}});
   if (split.split) {
     report["verdict"]["word"] = agrees ? "Explained" : "Not explained";
     report["verdict"]["rest_over_peak"] = split.split->largest_rest();

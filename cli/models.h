@@ -5,6 +5,7 @@
 
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/pump/files.h"
 #include "bentaxis/pump/result_table.h"
 #include "options.h"
 
@@ -21,5 +22,10 @@ ResultTable run_model(const std::string& model, const Case& the_case,
                       const PressureTrace& pressure, Way way,
                       const multibody::IntegrationOptions& integration,
                       multibody::IntegrationRecord* record = nullptr);
+
+/// Runs the analytic model over one turn and writes its curves as CSV, row by row: memory does not
+/// grow with the number of samples.
+void stream_analytic(const Case& the_case, const Assumptions& assumptions,
+                     const PressureTrace& pressure, OutputFolder::Stream& out);
 
 }  // namespace bentaxis::cli

@@ -5,6 +5,7 @@
 #include "bentaxis/pump/files.h"
 #include "commands.h"
 #include "models.h"
+#include "rounding_report.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -25,10 +26,16 @@ int run(const Options& options) {
   Assumptions assumptions = options.model == "analytic" ? the_case.analytic : the_case.multibody;
   if (!options.gear.empty())
     assumptions.gear = options.gear == "imposed" ? GearScene::imposed : GearScene::mesh;
-  const ResultTable table =
-      run_model(options.model, the_case, assumptions, samples_of(the_case, pressure, way), pressure,
-                way, options.integration);
-  folder.add(options.model + ".csv", to_csv(table));
+  for (const std::string& warning : rounding_warnings(the_case, assumptions))
+    std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
+  if (options.model == "analytic") {
+    stream_analytic(the_case, assumptions, pressure, folder.open("analytic.csv"));
+  } else {
+    const ResultTable table =
+        run_model(options.model, the_case, assumptions, samples_of(the_case, pressure, way),
+                  pressure, way, options.integration);
+    folder.add(options.model + ".csv", to_csv(table));
+  }
   for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
   return kDone;
 }

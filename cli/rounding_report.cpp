@@ -1,0 +1,69 @@
+#include "rounding_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/analytic/rounding.h"
+#include "bentaxis/compare/comparison.h"
+
+namespace bentaxis::cli {
+namespace {
+
+constexpr int kAngles = 24;
+constexpr double kWorthAWarning = 1e-9;  // of peak: the tolerance of a comparison
+
+}  // namespace
+
+std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions& assumptions) {
+  Case thin = the_case;
+  thin.operation.samples_per_revolution =
+      std::min(kAngles, the_case.operation.samples_per_revolution);
+  const PressureTrace pressure(thin.pressure);
+  const Samples samples = sample_case(thin, pressure);
+  const ResultTable table = analytic::run(thin, assumptions, samples);
+  const LoadScale scale = load_scale(thin, samples);
+  const compare::ZeroScales zero_scales = {{"N", scale.force}, {"Nm", scale.moment}};
+  std::vector<RoundingLine> lines;
+  for (const auto& g : analytic::estimate_rounding(thin, assumptions, samples, pressure, kAngles)) {
+    const auto channel = std::find_if(table.channels.begin(), table.channels.end(),
+                                      [&](const Channel& c) { return c.group == g.group; });
+    const double peak = compare::scale_of(table, *channel, zero_scales);
+    if (!(peak > 0)) continue;
+    lines.push_back({g.group, g.inputs / peak, g.arithmetic / peak, g.theta_deg, g.input});
+  }
+  return lines;
+}
+
+std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptions& assumptions) {
+  std::vector<std::string> warnings;
+  for (const RoundingLine& line : rounding_lines(the_case, assumptions))
+    if (line.total() > kWorthAWarning)
+      warnings.push_back(fmt::format(
+          "{} is known to {:.1e} of its peak only: rounding of {} to double, at {:g} deg",
+          line.group, line.total(),
+          line.arithmetic > line.inputs || line.input.empty() ? "intermediate results" : line.input,
+          line.theta_deg));
+  return warnings;
+}
+
+nlohmann::json rounding_block(const std::vector<RoundingLine>& lines) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const RoundingLine& line : lines)
+    rows.push_back({line.group, line.inputs, line.arithmetic,
+                    std::round(-10 * std::log10(std::max(line.total(), 1e-16))) / 10, line.input,
+                    line.theta_deg});
+  return {
+      {"title", "What rounding leaves of the digits"},
+      {"text",
+       "First-order estimate of the analytic model: the effect of one unit in the last place of "
+       "every input, and of rounding every operation the other way; shares of the reaction's "
+       "peak."},
+      {"table",
+       {{"columns",
+         {"reaction", "inputs", "arithmetic", "digits left", "weakest input", "at, deg"}},
+        {"rows", rows}}}};
+}
+
+}  // namespace bentaxis::cli
