@@ -17,6 +17,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "console.h"
+#include "data_folder.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -249,6 +250,51 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard) {
     judge(multibody);
   }
   return {analytic, multibody};
+}
+
+bool LongRun::bounded() const {
+  constexpr double kGrowth = 2;
+  return position_error[1] <= kGrowth * position_error[0] &&
+         reaction_error[1] <= kGrowth * reaction_error[0];
+}
+
+LongRun run_long(int turns, double accuracy) {
+  Case the_case = read_case(reference_data() / "hard" / "long_run" / "case.toml");
+  the_case.operation.revolutions = turns;
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples = sample_case(the_case, pressure, turns);
+  const ResultTable analytic = analytic::run(the_case, the_case.analytic, samples);
+  multibody::IntegrationOptions options;
+  options.accuracy = accuracy;
+  const auto run =
+      multibody::run_integrated(the_case, the_case.multibody, samples, pressure, options,
+                                progress_of(std::to_string(turns) + " turns"));
+  std::vector<double> peaks;
+  for (const Channel& channel : analytic.channels) peaks.push_back(analytic.peak(channel.group));
+  std::vector<double> errors(turns);
+  for (std::size_t row = 0; row < analytic.rows(); ++row) {
+    double& error = errors[row / the_case.operation.samples_per_revolution];
+    for (std::size_t c = 0; c < analytic.columns(); ++c)
+      if (analytic.channels[c].kind == ChannelKind::reaction)
+        error = std::max(error, std::abs(run.table.at(row, c) - analytic.at(row, c)) / peaks[c]);
+  }
+  LongRun result;
+  result.turns = turns;
+  result.accuracy = accuracy;
+  result.seconds = run.record.seconds;
+  result.work_of_loads = run.record.work_of_loads;
+  int next = 1;
+  for (int turn = 0; turn < turns; ++turn) {
+    const int half = 2 * turn < turns ? 0 : 1;
+    const auto& record = run.record.turns[turn];
+    result.position_error[half] = std::max(result.position_error[half], record.position_error);
+    result.reaction_error[half] = std::max(result.reaction_error[half], errors[turn]);
+    if (turn + 1 != next && turn + 1 != turns) continue;
+    result.shown.push_back({turn + 1, record, errors[turn]});
+    const int leading = std::stoi(std::to_string(next).substr(0, 1));  // 1, 2, 5, 10, ..
+    next = leading == 2 ? next / 2 * 5 : next * 2;
+  }
+  return result;
 }
 
 }  // namespace bentaxis::cli

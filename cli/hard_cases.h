@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/result_table.h"
 
@@ -63,5 +64,25 @@ inline constexpr double kRoundOffLoss = 1e-12;
 
 /// Runs both models on a case and holds them against its high-precision curve.
 std::vector<HardOutcome> run_hard_case(const HardCase& hard);
+
+/// A long integrated run of the rated pump with real, spinning pistons: does anything grow?
+struct LongRun {
+  struct Turn {
+    int number = 0;  ///< from 1
+    multibody::TurnRecord record;
+    double reaction_error = 0;  ///< largest difference from the analytic model within this turn,
+                                ///< over the peak of the reaction
+  };
+  int turns = 0;
+  double accuracy = 0;
+  double seconds = 0;
+  double work_of_loads = 0;       ///< J: what the work residual is to be compared with
+  std::vector<Turn> shown;        ///< 1, 2, 5, 10, .. and the last
+  double position_error[2] = {};  ///< m, worst of the first and of the second half
+  double reaction_error[2] = {};  ///< likewise
+  /// Nothing is worse in the second half by more than a factor of 2.
+  bool bounded() const;
+};
+LongRun run_long(int turns, double accuracy);
 
 }  // namespace bentaxis::cli

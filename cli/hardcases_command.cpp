@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bentaxis/compare/page.h"
 #include "bentaxis/pump/csv.h"
@@ -24,6 +25,7 @@ using Json = nlohmann::json;
 
 struct Options {
   std::string out = "out", catalogue, filter;
+  int turns = 20;
 };
 
 struct Row {
@@ -137,6 +139,39 @@ Json page_runs(const std::vector<Row>& rows) {
   return runs;
 }
 
+Json page_of(const LongRun& run) {
+  Json rows = Json::array();
+  for (const auto& t : run.shown)
+    rows.push_back({t.number, t.record.position_error, t.record.velocity_error, t.record.gear_phase,
+                    t.record.spin_error, t.record.work_residual, t.reaction_error});
+  return {
+      {"title", fmt::format("{} turns integrated", run.turns)},
+      {"text",
+       fmt::format("Real pistons spinning, accuracy {:g}; worst within the turn, work since the "
+                   "start of {:.4g} J that the loads did. {:.3g} s a turn. Second half over "
+                   "first half: constraint error {:.2g}, reaction error {:.2g}.",
+                   run.accuracy, run.work_of_loads, run.seconds / run.turns,
+                   run.position_error[1] / run.position_error[0],
+                   run.reaction_error[1] / run.reaction_error[0])},
+      {"table",
+       {{"columns",
+         {"turn", "constraint error, m", "its rate, m/s", "gear phase, rad", "spin error, rad/s",
+          "work lost, J", "reaction error, of peak"}},
+        {"rows", rows}}}};
+}
+
+void print(const LongRun& run) {
+  std::printf(
+      "\n%d turns integrated, accuracy %g, %.3g s a turn; worst within the turn:\n%6s %12s "
+      "%12s %12s %12s %12s %12s\n",
+      run.turns, run.accuracy, run.seconds / run.turns, "turn", "constraint/m", "rate/(m/s)",
+      "phase/rad", "spin/(rad/s)", "work lost/J", "reaction");
+  for (const auto& t : run.shown)
+    std::printf("%6d %12.1e %12.1e %12.1e %12.1e %12.1e %12.1e\n", t.number,
+                t.record.position_error, t.record.velocity_error, t.record.gear_phase,
+                t.record.spin_error, t.record.work_residual, t.reaction_error);
+}
+
 int run(const Options& options) {
   const auto folder = options.catalogue.empty() ? reference_data() / "hard"
                                                 : std::filesystem::path(options.catalogue);
@@ -168,12 +203,22 @@ int run(const Options& options) {
     std::printf("%s, %s: measured over predicted loss %.1e\n", row.hard.name.c_str(),
                 row.outcome.model.c_str(), *row.outcome.worst_ratio());
   }
-  const bool good = counts["WRONG"] == 0 && unpredicted == 0;
-  const std::string headline = fmt::format(
+  std::optional<LongRun> long_run;
+  if (options.turns > 0 && options.filter.empty()) {
+    constexpr double kAccuracy = 1e-6;
+    long_run = run_long(options.turns, kAccuracy);
+    print(*long_run);
+  }
+  const bool bounded = !long_run || long_run->bounded();
+  const bool good = counts["WRONG"] == 0 && unpredicted == 0 && bounded;
+  std::string headline = fmt::format(
       "{} cases, two models: {} accurate within the predicted loss, {} refused with a message, {} "
       "wrong. Losses above {:g} of peak that were not predicted within a factor of {:g}: {}.",
       cases.size(), counts["accurate"], counts["refused"], counts["WRONG"], kNoticeableLoss,
       kPredictionFactor, unpredicted);
+  if (long_run)
+    headline += fmt::format(" Over {} integrated turns errors {}.", long_run->turns,
+                            bounded ? "do not grow" : "GROW");
 
   Json report = {
       {"schema", 1},
@@ -187,6 +232,11 @@ int run(const Options& options) {
   Json page = report;
   report["cases"] = json_of(rows);
   page["runs"] = page_runs(rows);
+  if (long_run) {
+    page["runs"].push_back(page_of(*long_run));
+    report["long_run"] = page["runs"].back();
+    report["long_run"]["bounded"] = bounded;
+  }
   out.add("hardcases.html", compare::render_page("Hard cases", page, Json::object()));
   out.add("hardcases.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   out.add("hardcases.csv", csv_of(rows));
@@ -205,6 +255,11 @@ Command add_hardcases_command(CLI::App& app) {
   add_out(*command, options->out, "hardcases.html, .json, .csv and .md");
   command->add_option("--filter", options->filter, "only cases whose name contains this")
       ->option_text("TEXT");
+  command
+      ->add_option("--turns", options->turns,
+                   "length of the integrated run; 0 leaves it out, as --filter does")
+      ->check(CLI::NonNegativeNumber)
+      ->option_text("NUMBER [20]");
   command
       ->add_option("--catalogue", options->catalogue,
                    "folder with another catalogue.toml and its cases")

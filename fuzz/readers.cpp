@@ -1,5 +1,6 @@
 #include "readers.h"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -24,28 +25,12 @@ void require(bool condition, const char* what) {
   std::abort();
 }
 
-// A file that holds the bytes, in memory where there is a place for that; one per process.
-const std::filesystem::path& file_with(const std::uint8_t* data, std::size_t size) {
-  static const std::filesystem::path file = [] {
-    const std::filesystem::path shared = "/dev/shm";
-    const auto folder =
-        access(shared.c_str(), W_OK) == 0 ? shared : std::filesystem::temp_directory_path();
-    return folder / ("bentaxis_fuzz_" + std::to_string(getpid()));
-  }();
-  static const bool removed_at_exit = [] {
-    return std::atexit([] { std::filesystem::remove(file_with(nullptr, 0)); }) == 0;
-  }();
-  (void)removed_at_exit;
-  if (data == nullptr && size == 0) {
-    static bool exists = false;
-    if (exists) return file;
-    exists = true;
-  }
-  std::FILE* out = std::fopen(file.c_str(), "wb");
-  require(out != nullptr, "no scratch file");
-  if (size > 0) require(std::fwrite(data, 1, size, out) == size, "scratch file not written");
-  std::fclose(out);
-  return file;
+// A file that holds the bytes; it lives in memory, so that the disk does not set the pace.
+std::filesystem::path file_with(const std::uint8_t* data, std::size_t size) {
+  static const int handle = memfd_create("fuzz", 0);
+  require(handle >= 0 && ftruncate(handle, 0) == 0, "no scratch file");
+  require(pwrite(handle, data, size, 0) == static_cast<ssize_t>(size), "scratch file not written");
+  return "/proc/self/fd/" + std::to_string(handle);
 }
 
 void check_message(const std::exception& error) {
@@ -76,7 +61,7 @@ void read_as_case(const std::uint8_t* data, std::size_t size) {
 }
 
 void read_as_csv(const std::uint8_t* data, std::size_t size) {
-  const auto& file = file_with(data, size);
+  const auto file = file_with(data, size);
   for (const bool allow_empty : {false, true}) {
     try {
       const NumericTable table = read_numeric_csv(file, allow_empty);

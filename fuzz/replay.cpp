@@ -2,7 +2,9 @@
 // of its own, the same every time.
 //   fuzz_replay case|csv|curve FOLDER MUTATIONS
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -62,6 +64,18 @@ Bytes mutated(Bytes bytes, const std::vector<Bytes>& corpus, std::mt19937& engin
   return bytes;
 }
 
+// What is being read, for whoever has to find out why it ended the program.
+const Bytes* current = nullptr;
+
+void keep_input(int) {
+  if (current != nullptr)
+    std::ofstream("failing_input", std::ios::binary)
+        .write(reinterpret_cast<const char*>(current->data()),
+               static_cast<std::streamsize>(current->size()));
+  std::fprintf(stderr, "fuzz_replay: the input is in failing_input\n");
+  std::_Exit(1);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -89,16 +103,14 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "fuzz_replay: %s is empty\n", argv[2]);
     return 2;
   }
+  std::signal(SIGABRT, keep_input);
   std::mt19937 engine(1);
   const int mutations = std::stoi(argv[3]);
   for (int i = 0; i < mutations; ++i) {
     const Bytes bytes = mutated(corpus[engine() % corpus.size()], corpus, engine);
-    std::ofstream("last_input", std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
+    current = &bytes;
     read(bytes.data(), bytes.size());
   }
-  std::filesystem::remove("last_input");
   std::printf("%zu files, %d mutations\n", corpus.size(), mutations);
   return 0;
 }

@@ -184,9 +184,27 @@ class Runner {
     };
   }
 
+  void note_turn(std::size_t row, const SimTK::State& state) {
+    const auto turn = static_cast<std::size_t>(std::abs(samples_.theta_deg[row]) / 360);
+    record_.turns.resize(std::max(record_.turns.size(), turn + 1));
+    TurnRecord& record = record_.turns[turn];
+    const auto keep = [](double& worst, double value) { worst = std::max(worst, std::abs(value)); };
+    if (state.getNQErr() > 0) keep(record.position_error, state.getQErr().normInf());
+    if (state.getNUErr() > 0) keep(record.velocity_error, state.getUErr().normInf());
+    keep(record.gear_phase, system_.gear_phase(state));
+    if (system_.pistons_free_to_spin())
+      for (const auto& piston : system_.bodies().pistons)
+        keep(record.spin_error, SimTK::dot(piston.getBodyAngularVelocity(state),
+                                           SimTK::Vec3(piston.getBodyRotation(state).z())) -
+                                    case_.pump.piston.real->spin);
+    record.work_residual = system_.work_of_loads(state) + system_.work_of_drives(state) -
+                           (system_.system().calcKineticEnergy(state) - energy_at_start_);
+  }
+
   void note(std::size_t row) {
     const SimTK::State& state = integrator_->getState();
     system_.system().realize(state, Stage::Velocity);
+    note_turn(row, state);
     const auto keep = [](double& worst, double value) { worst = std::max(worst, std::abs(value)); };
     if (state.getNQErr() > 0) keep(record_.worst_position_error, state.getQErr().normInf());
     if (state.getNUErr() > 0) keep(record_.worst_velocity_error, state.getUErr().normInf());

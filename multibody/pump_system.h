@@ -69,6 +69,9 @@ class PumpSystem {
   const GearMesh& gear() const { return *gear_; }
   bool has_gear() const { return assumptions_.gear == GearScene::mesh; }
 
+  /// Whether the pistons are rigid bodies that can turn about their own axis.
+  bool pistons_free_to_spin() const { return pistons_free_to_spin_; }
+
   /// Torque about z1 that the drive constraint applies to the shaft, Nm.
   double drive_torque(const SimTK::State& state) const;
   /// Torque about z2 that the imposed motion applies to the block, Nm.
