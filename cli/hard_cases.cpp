@@ -174,8 +174,11 @@ std::vector<HardCase> read_catalogue(const std::filesystem::path& folder,
     if (const toml::table* change = entry["change"].as_table())
       for (const auto& [key, value] : *change) {
         std::ostringstream text;
-        text << key.str() << " = " << toml::default_formatter(value, toml::format_flags::none);
-        hard.changes.push_back(text.str());
+        if (value.is_floating_point())
+          text << number_text(value.as_floating_point()->get());
+        else
+          text << toml::default_formatter(value, toml::format_flags::none);
+        hard.changes.push_back(std::string(key.str()) + " = " + text.str());
       }
     hard.folder = folder / hard.name;
     cases.push_back(std::move(hard));

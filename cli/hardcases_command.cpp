@@ -110,31 +110,35 @@ std::string markdown_of(const std::vector<Row>& rows) {
   return text;
 }
 
-// One block per group of cases, a row per case and model.
+// One block per group of cases, a row per case.
 Json page_runs(const std::vector<Row>& rows) {
   Json runs = Json::array();
-  for (const auto& [hard, o] : rows) {
-    auto block = std::find_if(runs.begin(), runs.end(), [&, &name = hard.group](const Json& r) {
-      return r["title"] == name;
-    });
+  const auto shown = [](double loss) { return Json(std::round(10 * digits(loss)) / 10); };
+  for (std::size_t i = 0; i + 1 < rows.size(); i += 2) {
+    const HardCase& hard = rows[i].hard;
+    auto block = std::find_if(runs.begin(), runs.end(),
+                              [&](const Json& r) { return r["title"] == hard.group; });
     if (block == runs.end()) {
       runs.push_back(
           {{"title", hard.group},
            {"table",
             {{"columns",
-              {"case", "what is hard", "differs from the rated pump in", "model", "verdict",
-               "digits", "digits predicted", "least in", "weak point", "us per angle", "message"}},
+              {"case", "what is hard", "set to", "analytic", "digits", "predicted", "least in",
+               "multibody", "digits ", "predicted ", "least in ", "us/angle", "message"}},
              {"rows", Json::array()}}}});
       block = runs.end() - 1;
     }
-    const GroupLoss* worst = o.worst();
-    const auto rounded = [](double value) { return std::round(10 * value) / 10; };
-    (*block)["table"]["rows"].push_back(
-        {hard.name, hard.hard, joined(hard.changes, ", "), o.model, to_string(o.verdict),
-         worst ? Json(rounded(digits(worst->measured))) : Json(),
-         worst ? Json(rounded(digits(worst->predicted))) : Json(),
-         worst ? Json(worst->group) : Json(), o.weak_point,
-         worst ? Json(rounded(o.seconds_per_angle * 1e6)) : Json(), o.message});
+    Json row = {hard.name, hard.hard, joined(hard.changes, ", ")};
+    for (const HardOutcome* o : {&rows[i].outcome, &rows[i + 1].outcome}) {
+      const GroupLoss* worst = o->worst();
+      row.push_back(to_string(o->verdict));
+      row.push_back(worst ? shown(worst->measured) : Json());
+      row.push_back(worst ? shown(worst->predicted) : Json());
+      row.push_back(worst ? Json(worst->group) : Json());
+    }
+    row.push_back(std::round(1e6 * rows[i + 1].outcome.seconds_per_angle));
+    row.push_back(rows[i].outcome.message + rows[i + 1].outcome.message);
+    (*block)["table"]["rows"].push_back(row);
   }
   return runs;
 }
