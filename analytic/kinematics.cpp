@@ -6,7 +6,6 @@
 #include "bentaxis/analytic/prepared.h"
 
 namespace bentaxis::analytic {
-
 namespace {
 
 Eigen::Vector3d to_eigen(const closed_form::Vec3<double>& v) { return {v.x, v.y, v.z}; }

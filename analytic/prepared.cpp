@@ -104,7 +104,9 @@ void prepare_geometry(const Geometry& g, closed_form::Pump<double>& p) {
   p.joint_y = g.joint_circle_radius * p.cos_tilt;
   p.joint_z = g.joint_circle_radius * p.sin_tilt;
   p.difference = g.bore_circle_radius - g.joint_circle_radius;
-  p.projected = g.bore_circle_radius - p.joint_y;
+  // Rd - Ra cos(alpha), without the cancellation that cos(alpha) next to 1 brings.
+  const double half = std::sin(g.tilt / 2);
+  p.projected = p.difference + 2 * g.joint_circle_radius * half * half;
   p.length_squared = g.piston_length * g.piston_length;
   p.offset_y = g.axis_offset * p.sin_tilt;
   p.offset_z = -g.axis_offset * p.cos_tilt;

@@ -17,6 +17,7 @@ struct Command {
 
 Command add_run_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);
+Command add_hardcases_command(CLI::App& app);
 Command add_inertia_command(CLI::App& app);
 Command add_pressure_command(CLI::App& app);
 Command add_regress_command(CLI::App& app);

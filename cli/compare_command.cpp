@@ -27,6 +27,7 @@
 #include "models.h"
 #include "published_section.h"
 #include "pump_report.h"
+#include "rounding_report.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -43,6 +44,7 @@ struct Options {
   Way way = Way::driven;
   multibody::IntegrationOptions integration;
   std::vector<double> accuracies;  // integrated: all are run, the last is reported in full
+  multibody::SceneChoice scene;    // driven
   ErrorTarget target;              // integrated: chooses integrator and accuracy instead
   std::string choice;              // what was chosen for the target
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
@@ -63,7 +65,7 @@ ResultTable run_multibody(const Study& study, const Options& options, double acc
   multibody::IntegrationOptions integration = options.integration;
   integration.accuracy = accuracy;
   return run_model("multibody", the_case, the_case.multibody, study.multibody_samples,
-                   study.multibody_pressure, options.way, integration, record);
+                   study.multibody_pressure, options.way, integration, record, options.scene);
 }
 
 // The analytic torque as a function of the shaft angle, for the torque-driven run.
@@ -355,6 +357,13 @@ int compare(Options options) {
       report["figures"].push_back(std::move(figure));
     folder.add("pressure.csv", to_csv(ready.hydraulics->table));
   }
+  report["runs"].push_back(rounding_block(rounding_lines(the_case, the_case.analytic)));
+  for (const auto& text : rounding_warnings(the_case, the_case.analytic))
+    report["warnings"].push_back({{"name", "digits lost to rounding"}, {"text", text}});
+  if (!integrated && options.scene.method == multibody::Method::multipliers)
+    for (const auto& text :
+         multiplier_warnings(study.multibody_case, study.multibody_case.multibody))
+      report["warnings"].push_back({{"name", "digits lost in Simbody"}, {"text", text}});
   if (split.split) {
     report["verdict"]["word"] = agrees ? "Explained" : "Not explained";
     report["verdict"]["rest_over_peak"] = split.split->largest_rest();
@@ -403,6 +412,7 @@ Command add_compare_command(CLI::App& app) {
       ->check(positive_number())
       ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   add_way(*command, options->way);
+  add_scene(*command, options->scene);
   CLI::Option* integrator = add_integrator(*command, options->integration);
   CLI::Option* accuracy =
       command

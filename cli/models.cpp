@@ -43,4 +43,21 @@ ResultTable run_model(const std::string& model, const Case& the_case,
   return std::move(run.table);
 }
 
+void stream_analytic(const Case& the_case, const Assumptions& assumptions,
+                     const PressureTrace& pressure, OutputFolder::Stream& out) {
+  const analytic::Model model(the_case.pump, assumptions);
+  const Sampler sampler(the_case, pressure);
+  out.write(csv_header(model.layout().channels()));
+  std::string line;
+  stream_rows(
+      "analytic", model.layout(), sampler,
+      [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
+      [&](double theta_deg, const std::vector<double>& row) {
+        line.clear();
+        append_csv_row(line, theta_deg, row.data(), row.size());
+        out.write(line);
+      },
+      progress_of("analytic"));
+}
+
 }  // namespace bentaxis::cli

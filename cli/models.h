@@ -6,6 +6,7 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/pump/files.h"
 #include "bentaxis/pump/result_table.h"
 #include "options.h"
 
@@ -27,5 +28,10 @@ ResultTable run_model(const std::string& model, const Case& the_case,
                       const multibody::IntegrationOptions& integration,
                       multibody::IntegrationRecord* record = nullptr,
                       const multibody::SceneChoice& scene = {});
+
+/// Runs the analytic model over one turn and writes its curves as CSV, row by row: memory does not
+/// grow with the number of samples.
+void stream_analytic(const Case& the_case, const Assumptions& assumptions,
+                     const PressureTrace& pressure, OutputFolder::Stream& out);
 
 }  // namespace bentaxis::cli

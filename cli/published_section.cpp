@@ -6,6 +6,7 @@
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "data_folder.h"
 #include "models.h"
 #include "reference_set.h"
 
@@ -56,7 +57,7 @@ compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
 std::optional<compare::PublishedSection> published_section(const PublishedInput& analytic,
                                                            const PublishedInput& multibody) {
   std::map<std::pair<std::string, std::string>, ResultTable> tables;
-  const auto shipped = default_reference_folder();
+  const auto shipped = shipped_reference_data();
   if (!shipped || !std::filesystem::is_directory(*shipped / "published")) return std::nullopt;
   for (const auto& place : references_below(*shipped / "published")) {
     const auto description = compare::read_description(place.folder, place.name);

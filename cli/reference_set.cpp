@@ -9,16 +9,6 @@
 namespace bentaxis::cli {
 namespace fs = std::filesystem;
 
-std::optional<fs::path> default_reference_folder() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  for (const fs::path& folder :
-       {program.parent_path() / BENTAXIS_DATA_FROM_BINARY / "reference_data",
-        fs::path(BENTAXIS_SOURCE_DIR) / "reference_data"})
-    if (fs::is_directory(folder)) return folder.lexically_normal();
-  return std::nullopt;
-}
-
 std::vector<ReferencePlace> references_below(const fs::path& root) {
   std::vector<ReferencePlace> places;
   for (const auto& folder : compare::find_references(root)) {

@@ -1,9 +1,7 @@
-// Reference data as the commands use them: where the shipped set is, and how a model is run on a
-// reference's case.
+// Reference data as the commands use them: how a model is run on a reference's case.
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +10,6 @@
 #include "bentaxis/pump/result_table.h"
 
 namespace bentaxis::cli {
-
-/// The set that was installed with this program, else the one of its source tree; nothing where
-/// there is neither.
-std::optional<std::filesystem::path> default_reference_folder();
 
 /// All references at or below a folder, as folder and name. The name is the path below `root`, or
 /// the folder's own name where root is itself a reference.

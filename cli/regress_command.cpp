@@ -16,6 +16,7 @@
 #include "bentaxis/pump/files.h"
 #include "commands.h"
 #include "console.h"
+#include "data_folder.h"
 #include "reference_set.h"
 #include "versions.h"
 
@@ -446,7 +447,7 @@ void write(const std::string& file, const std::string& content) {
 }
 
 int regress(const Options& options) {
-  const auto shipped = default_reference_folder();
+  const auto shipped = shipped_reference_data();
   if (options.folder.empty() && !shipped)
     throw InputError("no reference data are installed with this program: name a folder");
   const fs::path root = options.folder.empty() ? *shipped : fs::path(options.folder);

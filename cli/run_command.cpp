@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "hydraulic_case.h"
 #include "models.h"
+#include "rounding_report.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -30,19 +31,26 @@ int run(const Options& options) {
   Assumptions assumptions = options.model == "analytic" ? the_case.analytic : the_case.multibody;
   if (!options.gear.empty())
     assumptions.gear = options.gear == "imposed" ? GearScene::imposed : GearScene::mesh;
-  const Samples samples = samples_of(the_case, pressure, way);
-  ResultTable table;
-  if (options.target.error > 0) {
-    options.target.refuse_unless(way == Way::integrated);
-    VerifiedRun verified = run_to_error(the_case, assumptions, samples, pressure,
-                                        options.target.error, options.target.integrators());
+  if (options.target.error > 0) options.target.refuse_unless(way == Way::integrated);
+  std::vector<std::string> warnings = rounding_warnings(the_case, assumptions);
+  if (options.model == "multibody" && way == Way::driven &&
+      options.scene.method == multibody::Method::multipliers)
+    for (auto& text : multiplier_warnings(the_case, assumptions)) warnings.push_back(text);
+  for (const std::string& warning : warnings)
+    std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
+  if (options.model == "analytic") {
+    stream_analytic(the_case, assumptions, pressure, folder.open("analytic.csv"));
+  } else if (options.target.error > 0) {
+    const VerifiedRun verified =
+        run_to_error(the_case, assumptions, samples_of(the_case, pressure, way), pressure,
+                     options.target.error, options.target.integrators());
     std::fprintf(stderr, "chosen %s\n", verified.text().c_str());
-    table = std::move(verified.run.table);
+    folder.add("multibody.csv", to_csv(verified.run.table));
   } else {
-    table = run_model(options.model, the_case, assumptions, samples, pressure, way,
-                      options.integration, nullptr, options.scene);
+    folder.add("multibody.csv", to_csv(run_model(options.model, the_case, assumptions,
+                                                 samples_of(the_case, pressure, way), pressure, way,
+                                                 options.integration, nullptr, options.scene)));
   }
-  folder.add(options.model + ".csv", to_csv(table));
   for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
   return kDone;
 }

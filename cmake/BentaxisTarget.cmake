@@ -1,6 +1,8 @@
 # What every target of the project has in common: standard, warnings as errors, include path.
 #   bentaxis_library(<name> STANDARD <17|20> SOURCES ... HEADERS ...)
 option(BENTAXIS_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
+option(BENTAXIS_SANITIZE_THREAD "Build with the thread sanitizer" OFF)
+option(BENTAXIS_BUILD_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
 
 function(bentaxis_target name standard)
   target_compile_features(${name} PRIVATE cxx_std_${standard})
@@ -12,6 +14,13 @@ function(bentaxis_target name standard)
     target_compile_options(${name} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
     target_link_options(${name} PUBLIC -fsanitize=address,undefined)
+  endif()
+  if(BENTAXIS_SANITIZE_THREAD)
+    target_compile_options(${name} PRIVATE -fsanitize=thread -fno-omit-frame-pointer)
+    target_link_options(${name} PUBLIC -fsanitize=thread)
+  endif()
+  if(BENTAXIS_BUILD_FUZZERS)
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
 endfunction()
 

@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDescriptionName = "description.toml";
+// What lists the cases of a folder that are not references of their own: the hard cases.
+constexpr const char* kCatalogueName = "catalogue.toml";
 // Angles this close are the same: a thousandth of the round-off of an angle written in 9 digits.
 constexpr double kSameAngle = 1e-9;
 // A spline across a wider gap would invent the curve there.
@@ -461,6 +463,7 @@ std::vector<fs::path> find_references(const fs::path& root) {
       found.push_back(folder);
       return;
     }
+    if (fs::is_regular_file(folder / kCatalogueName)) return;
     std::vector<fs::path> entries;
     for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
     std::sort(entries.begin(), entries.end());

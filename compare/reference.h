@@ -74,7 +74,8 @@ struct ReferenceDescription {
 
 /// Folders with a description at or below `root`, in the order of their names.
 /// @throws InputError where root is no folder, holds no description, or a folder holds files but no
-///         description (README.md and folders named "generator" are for people and left alone).
+///         description (README.md, folders named "generator", for people, and folders with a
+///         catalogue.toml, of other commands, are left alone).
 std::vector<std::filesystem::path> find_references(const std::filesystem::path& root);
 
 /// Reads folder/description.toml. @throws InputError naming file, line and key.

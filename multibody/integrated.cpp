@@ -10,6 +10,7 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/multibody/pump_system.h"
 #include "bentaxis/multibody/reactions.h"
+#include "bentaxis/multibody/solver_guard.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -141,6 +142,7 @@ class Runner {
     system_.inputs().chamber_pressure = [&](double, std::vector<double>& p) { p = pressure; };
     system_.system().realize(state, Stage::Acceleration);
     system_.inputs().chamber_pressure = std::move(in_segment);
+    require_accurate_forces(system_, state, radians(samples_.theta_deg[row]));
     read_channels(system_, state, {state, samples_.omega}, 0, pressure, layout, values);
   }
 
@@ -182,9 +184,27 @@ class Runner {
     };
   }
 
+  void note_turn(std::size_t row, const SimTK::State& state) {
+    const auto turn = static_cast<std::size_t>(std::abs(samples_.theta_deg[row]) / 360);
+    record_.turns.resize(std::max(record_.turns.size(), turn + 1));
+    TurnRecord& record = record_.turns[turn];
+    const auto keep = [](double& worst, double value) { worst = std::max(worst, std::abs(value)); };
+    if (state.getNQErr() > 0) keep(record.position_error, state.getQErr().normInf());
+    if (state.getNUErr() > 0) keep(record.velocity_error, state.getUErr().normInf());
+    keep(record.gear_phase, system_.gear_phase(state));
+    if (system_.pistons_free_to_spin())
+      for (const auto& piston : system_.bodies().pistons)
+        keep(record.spin_error, SimTK::dot(piston.getBodyAngularVelocity(state),
+                                           SimTK::Vec3(piston.getBodyRotation(state).z())) -
+                                    system_.pump().piston.real->spin);
+    record.work_residual = system_.work_of_loads(state) + system_.work_of_drives(state) -
+                           (system_.system().calcKineticEnergy(state) - energy_at_start_);
+  }
+
   void note(std::size_t row) {
     const SimTK::State& state = integrator_->getState();
     system_.system().realize(state, Stage::Velocity);
+    note_turn(row, state);
     const auto keep = [](double& worst, double value) { worst = std::max(worst, std::abs(value)); };
     if (state.getNQErr() > 0) keep(record_.worst_position_error, state.getQErr().normInf());
     if (state.getNUErr() > 0) keep(record_.worst_velocity_error, state.getUErr().normInf());
@@ -244,29 +264,31 @@ IntegratedRun run_integrated(const Case& the_case, const Assumptions& assumption
                              const IntegrationOptions& options, const Progress& progress) {
   refuse_standstill(the_case);
   const Stopwatch stopwatch;
-  Runner runner(the_case, assumptions, samples, pressure, options, Drive::constant_speed);
-  const ChannelLayout layout(samples.pistons);
   IntegratedRun result;
-  std::vector<std::vector<double>> rows;
-  runner.run(progress, [&](std::size_t row) {
-    rows.emplace_back(layout.size(), not_computed());
-    runner.read(row, layout, rows.back());
+  translate_simbody_errors([&] {
+    Runner runner(the_case, assumptions, samples, pressure, options, Drive::constant_speed);
+    const ChannelLayout layout(samples.pistons);
+    std::vector<std::vector<double>> rows;
+    runner.run(progress, [&](std::size_t row) {
+      rows.emplace_back(layout.size(), not_computed());
+      runner.read(row, layout, rows.back());
+    });
+    std::size_t next = 0;
+    result.table = tabulate("multibody", layout, samples,
+                            [&](const Instant&, std::vector<double>& row) { row = rows[next++]; });
+    result.record = runner.record();
+    result.record.seconds = stopwatch.seconds();
+    result.table.provenance.seconds = result.record.seconds;
+    const PumpSystem::Rank rank = runner.system().constraint_rank(runner.system().dynamics());
+    result.table.provenance.facts = scene_facts(the_case.pump, assumptions);
+    auto& facts = result.table.provenance.facts;
+    facts.insert(facts.begin() + 1,
+                 {"way", "integrated in time from an assembled start, " +
+                             integrator_names()[static_cast<std::size_t>(options.integrator)] +
+                             ", accuracy " + number_text(options.accuracy)});
+    facts.emplace_back("constraint equations", std::to_string(rank.equations));
+    facts.emplace_back("rank of the constraint matrix", std::to_string(rank.rank));
   });
-  std::size_t next = 0;
-  result.table = tabulate("multibody", layout, samples,
-                          [&](const Instant&, std::vector<double>& row) { row = rows[next++]; });
-  result.record = runner.record();
-  result.record.seconds = stopwatch.seconds();
-  result.table.provenance.seconds = result.record.seconds;
-  const PumpSystem::Rank rank = runner.system().constraint_rank(runner.system().dynamics());
-  result.table.provenance.facts = scene_facts(the_case.pump, assumptions);
-  auto& facts = result.table.provenance.facts;
-  facts.insert(facts.begin() + 1,
-               {"way", "integrated in time from an assembled start, " +
-                           integrator_names()[static_cast<std::size_t>(options.integrator)] +
-                           ", accuracy " + number_text(options.accuracy)});
-  facts.emplace_back("constraint equations", std::to_string(rank.equations));
-  facts.emplace_back("rank of the constraint matrix", std::to_string(rank.rank));
   return result;
 }
 
@@ -276,14 +298,18 @@ IntegrationRecord run_torque_driven(const Case& the_case, const Assumptions& ass
                                     const IntegrationOptions& options, const Progress& progress) {
   refuse_standstill(the_case);
   const Stopwatch stopwatch;
-  Runner runner(the_case, assumptions, samples, pressure, options, Drive::torque);
-  // (38): of the drive torque the share Ct turns the shaft; the viscous loss is a load of its own.
-  runner.system().inputs().shaft_torque = [&](double theta) {
-    return the_case.pump.friction.shaft_torque_factor *
-           drive_torque(runner.angle_in_segment(theta));
-  };
-  runner.run(progress, {});
-  IntegrationRecord record = runner.record();
+  IntegrationRecord record;
+  translate_simbody_errors([&] {
+    Runner runner(the_case, assumptions, samples, pressure, options, Drive::torque);
+    // (38): of the drive torque the share Ct turns the shaft; the viscous loss is a load of its
+    // own.
+    runner.system().inputs().shaft_torque = [&](double theta) {
+      return the_case.pump.friction.shaft_torque_factor *
+             drive_torque(runner.angle_in_segment(theta));
+    };
+    runner.run(progress, {});
+    record = runner.record();
+  });
   record.seconds = stopwatch.seconds();
   return record;
 }

@@ -29,6 +29,15 @@ struct IntegrationOptions {
   double accuracy = 1e-6;  ///< Simbody's relative accuracy per step; not the achieved error
 };
 
+/// Worst errors within one revolution of an integrated run, and what it lost until its end.
+struct TurnRecord {
+  double position_error = 0;  ///< m, of all constraint equations at the samples
+  double velocity_error = 0;  ///< m/s
+  double gear_phase = 0;      ///< rad, block minus shaft
+  double spin_error = 0;      ///< rad/s, of pistons that are free to spin
+  double work_residual = 0;   ///< J, since the start
+};
+
 /// What the integration cost and how well it kept the constraints.
 struct IntegrationRecord {
   double worst_position_error = 0;   ///< m, largest of all constraint equations at the samples
@@ -43,6 +52,7 @@ struct IntegrationRecord {
   long steps = 0;
   long evaluations = 0;  ///< realizations of the equations of motion
   double seconds = 0;
+  std::vector<TurnRecord> turns;  ///< one per revolution
 
   /// Work that constraints and integration error created or destroyed, J.
   double work_residual() const { return work_of_loads + work_of_drives - kinetic_energy_gained; }

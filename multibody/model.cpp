@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "bentaxis/multibody/pump_system.h"
 #include "bentaxis/multibody/reactions.h"
+#include "bentaxis/multibody/solver_guard.h"
 #include "bentaxis/multibody/versions.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -54,6 +56,7 @@ struct Model::Implementation {
   }
 
   void check(const Instant& instant) const;
+  void evaluate(const Instant& instant, std::vector<double>& values);
   void place_and_solve(double theta, const Instant& instant, std::size_t track);
   void check_rank();
 
@@ -71,9 +74,12 @@ struct Model::Implementation {
 };
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
-             Scene scene, Method method)
-    : implementation_(
-          std::make_unique<Implementation>(pump, assumptions, omega_sign, scene, method)) {}
+             Scene scene, Method method) {
+  translate_simbody_errors([&] {
+    implementation_ =
+        std::make_unique<Implementation>(pump, assumptions, omega_sign, scene, method);
+  });
+}
 Model::~Model() = default;
 Model::Model(Model&&) noexcept = default;
 Model& Model::operator=(Model&&) noexcept = default;
@@ -102,13 +108,17 @@ void Model::Implementation::check_rank() {
 void Model::Implementation::place_and_solve(double theta, const Instant& instant,
                                             std::size_t track) {
   system.inputs().ports = instant.ports;
-  system.inputs().rest_speed = piston_rest_speed(system.pump().geometry, instant.omega);
+  // At standstill the pistons' velocities are round-off of the projection, with any sign.
+  system.inputs().rest_speed = instant.omega == 0
+                                   ? std::numeric_limits<double>::infinity()
+                                   : piston_rest_speed(system.pump().geometry, instant.omega);
   system.place(theta, instant.omega, instant.omega_dot, track);
   SimTK::State& state = system.dynamics();
   if (method == Method::multipliers) {
     if (scene == Scene::full) system.set_acceleration(state, instant.omega_dot);
     system.system().realize(state, Stage::Acceleration);
     check_rank();
+    require_accurate_forces(system, state, theta);
     reactions_from_multipliers(system, state, reactions);
   } else {
     residual.solve(reactions);
@@ -119,42 +129,46 @@ void Model::Implementation::place_and_solve(double theta, const Instant& instant
   system.remember_placement(angular_accelerations);
 }
 
-void Model::evaluate(const Instant& instant, std::vector<double>& values) {
-  Implementation& self = *implementation_;
-  self.check(instant);
-  const int n = self.layout.pistons();
-  if (self.scene == Scene::piston) {
+void Model::Implementation::evaluate(const Instant& instant, std::vector<double>& values) {
+  check(instant);
+  const int n = layout.pistons();
+  if (scene == Scene::piston) {
     for (int k = 0; k < n; ++k) {
-      self.pressure.assign(1, instant.chamber_pressure[k]);
-      self.place_and_solve(instant.theta - 2 * kPi * k / n, instant, k);
-      read_piston_channels(self.system, self.system.dynamics(), self.reactions, 0, k,
-                           instant.chamber_pressure[k], self.layout, values);
+      pressure.assign(1, instant.chamber_pressure[k]);
+      place_and_solve(instant.theta - 2 * kPi * k / n, instant, k);
+      read_piston_channels(system, system.dynamics(), reactions, 0, k, instant.chamber_pressure[k],
+                           layout, values);
     }
     return;
   }
-  self.pressure = instant.chamber_pressure;
-  self.place_and_solve(instant.theta, instant, 0);
-  const SimTK::State& state = self.system.dynamics();
+  pressure = instant.chamber_pressure;
+  place_and_solve(instant.theta, instant, 0);
+  const SimTK::State& state = system.dynamics();
   for (int k = 0; k < n; ++k)
-    read_piston_channels(self.system, state, self.reactions, k, k, instant.chamber_pressure[k],
-                         self.layout, values);
-  if (self.scene != Scene::full) return;
+    read_piston_channels(system, state, reactions, k, k, instant.chamber_pressure[k], layout,
+                         values);
+  if (scene != Scene::full) return;
   // At standstill the power balance is taken with a virtual turn of 1 rad/s.
-  if (instant.omega == 0) self.system.assemble(instant.theta, 1);
+  if (instant.omega == 0) system.assemble(instant.theta, 1);
   const WorkRate rate =
-      instant.omega == 0 ? WorkRate{self.system.assembly(), 1} : WorkRate{state, instant.omega};
-  read_pump_channels(self.system, state, self.reactions, rate, instant.omega_dot, self.pressure,
-                     self.layout, values);
+      instant.omega == 0 ? WorkRate{system.assembly(), 1} : WorkRate{state, instant.omega};
+  read_pump_channels(system, state, reactions, rate, instant.omega_dot, pressure, layout, values);
+}
+
+void Model::evaluate(const Instant& instant, std::vector<double>& values) {
+  translate_simbody_errors([&] { implementation_->evaluate(instant, values); });
 }
 
 void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   Implementation& self = *implementation_;
   if (self.scene != Scene::piston)
     throw std::logic_error("evaluate_one() is of the one-piston scene");
-  self.pressure.assign(1, instant.chamber_pressure[0]);
-  self.place_and_solve(instant.theta, instant, 0);
-  read_piston_channels(self.system, self.system.dynamics(), self.reactions, 0, 0,
-                       instant.chamber_pressure[0], self.layout, values);
+  translate_simbody_errors([&] {
+    self.pressure.assign(1, instant.chamber_pressure[0]);
+    self.place_and_solve(instant.theta, instant, 0);
+    read_piston_channels(self.system, self.system.dynamics(), self.reactions, 0, 0,
+                         instant.chamber_pressure[0], self.layout, values);
+  });
 }
 
 std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,

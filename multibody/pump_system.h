@@ -93,6 +93,8 @@ class PumpSystem {
   const GearMesh& gear() const { return *gear_; }
   bool has_gear() const { return !is_prescribed() && assumptions_.gear == GearScene::mesh; }
   bool is_prescribed() const { return drive_ == Drive::prescribed; }
+
+  /// Whether the pistons are rigid bodies that can turn about their own axis.
   bool pistons_free_to_spin() const { return pistons_free_to_spin_; }
 
   /// Torque about z1 that the drive constraint applies to the shaft, Nm.

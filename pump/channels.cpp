@@ -1,5 +1,7 @@
 #include "bentaxis/pump/channels.h"
 
+#include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -38,13 +40,11 @@ void add(std::vector<Channel>& list, const Vector& vector, const std::string& ax
   }
 }
 
-}  // namespace
-
-ChannelLayout::ChannelLayout(int pistons) : n_(pistons) {
+std::vector<Channel> list_channels(int pistons) {
+  std::vector<Channel> list;
   const auto label = [](const std::string& letter, int k) { return letter + std::to_string(k); };
   using Kind = ChannelKind;
-  auto& list = channels_;
-  for (int k = 1; k <= n_; ++k) {
+  for (int k = 1; k <= pistons; ++k) {
     const std::string piston = label("piston ", k);
     add(list,
         {"Rs", "joint force", "(29)-(33)", piston, "shaft", label("A", k), "S2", "N", "Rs",
@@ -90,22 +90,22 @@ ChannelLayout::ChannelLayout(int pistons) : n_(pistons) {
       {"Tcs", "torque that carries the block round", "(57)", "block",
        "shaft (gear) or imposed drive", "about z2", "S2", "Nm", "Tcs", Kind::derived},
       "z");
-  for (int k = 1; k <= n_; ++k)
+  for (int k = 1; k <= pistons; ++k)
     add(list,
         {"p", "chamber pressure, gauge", "(24)", label("piston ", k), "oil", label("B", k), "",
          "bar", "p", Kind::input, k},
         "-");
-  for (int k = 1; k <= n_; ++k)
+  for (int k = 1; k <= pistons; ++k)
     add(list,
         {"zB", "position of B on its bore axis", "(11)", label("piston ", k), "", label("B", k),
          "S2", "mm", "zB", Kind::derived, k},
         "z");
-  for (int k = 1; k <= n_; ++k)
+  for (int k = 1; k <= pistons; ++k)
     add(list,
         {"Rs", "joint force along the piston (z3) and across it", "(17), (29)", label("piston ", k),
          "shaft", label("A", k), "S3", "N", "Rs", Kind::derived, k},
         "xyz");
-  for (int k = 1; k <= n_; ++k)
+  for (int k = 1; k <= pistons; ++k)
     add(list,
         {"Tc", "share of the pistons' torque on the block", "(57)", "block", label("piston ", k),
          "about z2", "S2", "Nm", "Tc", Kind::derived, k},
@@ -114,11 +114,23 @@ ChannelLayout::ChannelLayout(int pistons) : n_(pistons) {
       {"power_residual", "sum of all power over omega (virtual work per radian)", "", "pump", "",
        "", "", "Nm", "power_residual", Kind::check},
       "-");
-  for (int k = 1; k <= n_; ++k)
+  for (int k = 1; k <= pistons; ++k)
     add(list,
         {"axis_moment", "moment about the piston's own axis", "", label("piston ", k), "",
          "centre of mass", "", "Nm", "axis_moment", Kind::check, k},
         "-");
+  return list;
+}
+
+}  // namespace
+
+ChannelLayout::ChannelLayout(int pistons) : n_(pistons) {
+  static std::mutex mutex;
+  static std::map<int, std::shared_ptr<const std::vector<Channel>>> lists;
+  const std::lock_guard<std::mutex> lock(mutex);
+  auto& list = lists[pistons];
+  if (!list) list = std::make_shared<const std::vector<Channel>>(list_channels(pistons));
+  channels_ = list;
 }
 
 }  // namespace bentaxis

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,16 +34,16 @@ struct Channel {
 };
 
 /// Where each quantity of a pump with N pistons stands in a row of results, and its description.
-/// Pistons count from 0 here; axes are 0, 1, 2 for x, y, z.
+/// Pistons count from 0 here; axes are 0, 1, 2 for x, y, z. Cheap to make and to copy.
 class ChannelLayout {
  public:
   explicit ChannelLayout(int pistons);
 
   int pistons() const { return n_; }
-  std::size_t size() const { return channels_.size(); }
+  std::size_t size() const { return channels_->size(); }
   /// Number of leading channels that are unknowns of the equilibrium: 5 N + 12.
   std::size_t reactions() const { return at(5, 12); }
-  const std::vector<Channel>& channels() const { return channels_; }
+  const std::vector<Channel>& channels() const { return *channels_; }
 
   std::size_t Rs(int k, int axis) const { return static_cast<std::size_t>(5 * k + axis); }
   std::size_t Rc(int k, int axis) const { return static_cast<std::size_t>(5 * k + 3 + axis); }
@@ -69,7 +70,7 @@ class ChannelLayout {
   }
 
   int n_;
-  std::vector<Channel> channels_;
+  std::shared_ptr<const std::vector<Channel>> channels_;  // one list per number of pistons
 };
 
 }  // namespace bentaxis

@@ -1,5 +1,7 @@
 #include "bentaxis/pump/files.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -17,19 +19,22 @@ namespace {
   throw InputError(path.string() + ": cannot be written: " + why);
 }
 
-void write_whole(const fs::path& temporary, const fs::path& shown, const std::string& content) {
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (file == nullptr) fail(shown, std::strerror(errno));
-  const bool written = std::fwrite(content.data(), 1, content.size(), file) == content.size();
-  int error = written ? 0 : errno;
-  if (error == 0 && (std::fflush(file) != 0 || fsync(fileno(file)) != 0)) error = errno;
-  if (std::fclose(file) != 0 && error == 0) error = errno;
-  if (error != 0) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    fail(shown, std::strerror(error));
+// Keeps other programs from putting files in place in a folder meanwhile. Best effort: where locks
+// are not supported each file is still whole.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY)) {
+    if (handle_ >= 0) flock(handle_, LOCK_EX);
   }
-}
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock() {
+    if (handle_ >= 0) close(handle_);
+  }
+
+ private:
+  int handle_;
+};
 
 }  // namespace
 
@@ -53,22 +58,46 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   for (const auto& [temporary, final_path] : pending_) fs::remove(temporary, ignored);
-  // Folders made for a run that produced nothing go too, unless someone else has put something
-  // there.
   if (created_.empty()) return;
+  // A folder made for a run that produced nothing goes too, unless somebody else put something in.
   fs::path folder = fs::absolute(folder_, ignored).lexically_normal();
   if (folder.filename().empty()) folder = folder.parent_path();
   while (fs::remove(folder, ignored) && folder != created_) folder = folder.parent_path();
 }
 
-void OutputFolder::add(const std::string& name, const std::string& content) {
+void OutputFolder::Stream::write(const std::string& piece) {
+  if (std::fwrite(piece.data(), 1, piece.size(), file_.get()) != piece.size())
+    fail(shown_, std::strerror(errno));
+}
+
+void OutputFolder::Stream::finish() {
+  if (!file_) return;
+  if (std::fflush(file_.get()) != 0 || fsync(fileno(file_.get())) != 0)
+    fail(shown_, std::strerror(errno));
+  if (std::fclose(file_.release()) != 0) fail(shown_, std::strerror(errno));
+}
+
+OutputFolder::Stream& OutputFolder::open(const std::string& name) {
   const fs::path final_path = folder_ / name;
   const fs::path temporary = folder_ / ("." + name + ".part-" + std::to_string(getpid()));
+  auto stream = std::make_unique<Stream>();
+  stream->shown_ = final_path;
+  stream->file_.reset(std::fopen(temporary.c_str(), "wb"));
+  if (!stream->file_) fail(final_path, std::strerror(errno));
   pending_.emplace_back(temporary, final_path);
-  write_whole(temporary, final_path, content);
+  streams_.push_back(std::move(stream));
+  return *streams_.back();
+}
+
+void OutputFolder::add(const std::string& name, const std::string& content) {
+  Stream& stream = open(name);
+  stream.write(content);
+  stream.finish();
 }
 
 std::vector<fs::path> OutputFolder::commit() {
+  for (const auto& stream : streams_) stream->finish();
+  const FolderLock lock(folder_);
   for (const auto& [temporary, final_path] : pending_)
     if (fs::is_directory(final_path)) fail(final_path, "is a folder");
   std::vector<fs::path> paths;

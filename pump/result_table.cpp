@@ -15,6 +15,24 @@ namespace {
 
 constexpr std::uint64_t kNotComputedBits = 0x7ff8'0000'0000'be57;
 
+using Evaluate = std::function<void(const Instant&, std::vector<double>&)>;
+
+bool is_stray_nan(double value);
+
+// One row in the channels' units, checked.
+void evaluate_row(const std::string& name, const std::vector<Channel>& channels,
+                  const Evaluate& evaluate, const Instant& instant, double theta_deg,
+                  std::vector<double>& row) {
+  std::fill(row.begin(), row.end(), not_computed());
+  evaluate(instant, row);
+  for (std::size_t c = 0; c < row.size(); ++c) {
+    if (std::isinf(row[c]) || is_stray_nan(row[c]))
+      throw ComputationError(name + " model: " + channels[c].name + " is not finite at " +
+                             number_text(theta_deg) + " deg");
+    row[c] /= channels[c].unit_in_si;
+  }
+}
+
 bool is_stray_nan(double value) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
@@ -64,19 +82,44 @@ void Samples::instant(std::size_t row, Instant& instant) const {
   instant.chamber_pressure.assign(first, first + pistons);
 }
 
+Sampler::Sampler(const Case& the_case, const PressureTrace& pressure, int revolutions, bool falling)
+    : case_(the_case),
+      pressure_(pressure),
+      rows_(static_cast<long long>(the_case.operation.samples_per_revolution) * revolutions),
+      turn_deg_(falling ? -360.0 : 360.0) {}
+
+double Sampler::theta_deg(long long row) const {
+  const double theta =
+      turn_deg_ * static_cast<double>(row) / case_.operation.samples_per_revolution;
+  return theta == 0 ? 0 : theta;
+}
+
+void Sampler::instant(long long row, Instant& instant) const {
+  const int n = case_.pump.geometry.pistons;
+  const double theta = theta_deg(row);
+  instant.theta = radians(std::fmod(theta, 360.0));
+  instant.omega = rad_per_second(case_.operation.speed_rpm);
+  instant.omega_dot = 0;
+  instant.ports = case_.pressure.ports;
+  instant.chamber_pressure.resize(n);
+  for (int k = 1; k <= n; ++k)
+    instant.chamber_pressure[k - 1] = pressure_(piston_angle_deg(theta, k, n));
+}
+
 Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions,
                     bool falling) {
+  const Sampler sampler(the_case, pressure, revolutions, falling);
   Samples samples;
   samples.pistons = the_case.pump.geometry.pistons;
   samples.omega = rad_per_second(the_case.operation.speed_rpm);
   samples.ports = the_case.pressure.ports;
-  const int per_turn = the_case.operation.samples_per_revolution;
-  const auto rows = static_cast<long long>(per_turn) * revolutions;
-  for (long long i = 0; i < rows; ++i) {
-    const double theta = (falling ? -360.0 : 360.0) * static_cast<double>(i) / per_turn;
-    samples.theta_deg.push_back(theta == 0 ? 0 : theta);
-    for (int k = 1; k <= samples.pistons; ++k)
-      samples.chamber_pressure.push_back(pressure(piston_angle_deg(theta, k, samples.pistons)));
+  Instant instant;
+  for (long long row = 0; row < sampler.rows(); ++row) {
+    sampler.instant(row, instant);
+    samples.theta_deg.push_back(sampler.theta_deg(row));
+    samples.chamber_pressure.insert(samples.chamber_pressure.end(),
+                                    instant.chamber_pressure.begin(),
+                                    instant.chamber_pressure.end());
   }
   return samples;
 }
@@ -93,17 +136,25 @@ ResultTable tabulate(const std::string& name, const ChannelLayout& layout, const
   std::vector<double> row(layout.size());
   for (std::size_t i = 0; i < samples.theta_deg.size(); ++i) {
     samples.instant(i, instant);
-    std::fill(row.begin(), row.end(), not_computed());
-    evaluate(instant, row);
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      if (std::isinf(row[c]) || is_stray_nan(row[c]))
-        throw ComputationError(name + " model: " + table.channels[c].name + " is not finite at " +
-                               number_text(samples.theta_deg[i]) + " deg");
-      table.values.push_back(row[c] / table.channels[c].unit_in_si);
-    }
+    evaluate_row(name, table.channels, evaluate, instant, samples.theta_deg[i], row);
+    table.values.insert(table.values.end(), row.begin(), row.end());
     if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(table.rows()));
   }
   return table;
+}
+
+void stream_rows(const std::string& name, const ChannelLayout& layout, const Sampler& sampler,
+                 const Evaluate& evaluate,
+                 const std::function<void(double theta_deg, const std::vector<double>&)>& sink,
+                 const Progress& progress) {
+  Instant instant;
+  std::vector<double> row(layout.size());
+  for (long long i = 0; i < sampler.rows(); ++i) {
+    sampler.instant(i, instant);
+    evaluate_row(name, layout.channels(), evaluate, instant, sampler.theta_deg(i), row);
+    sink(sampler.theta_deg(i), row);
+    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(sampler.rows()));
+  }
 }
 
 LoadScale load_scale(const Case& the_case, const Samples& samples) {
@@ -125,18 +176,26 @@ LoadScale load_scale(const Case& the_case, const Samples& samples) {
   return scale;
 }
 
-std::string to_csv(const ResultTable& table) {
+std::string csv_header(const std::vector<Channel>& channels) {
   std::string text = "theta_deg";
-  for (const Channel& channel : table.channels) text += "," + channel.name;
-  text += "\n";
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    append_number(text, table.theta_deg[row]);
-    for (std::size_t column = 0; column < table.columns(); ++column) {
-      text += ',';
-      append_number(text, table.at(row, column));
-    }
-    text += '\n';
+  for (const Channel& channel : channels) text += "," + channel.name;
+  return text + "\n";
+}
+
+void append_csv_row(std::string& text, double theta_deg, const double* values, std::size_t count) {
+  append_number(text, theta_deg);
+  for (std::size_t column = 0; column < count; ++column) {
+    text += ',';
+    append_number(text, values[column]);
   }
+  text += '\n';
+}
+
+std::string to_csv(const ResultTable& table) {
+  std::string text = csv_header(table.channels);
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    append_csv_row(text, table.theta_deg[row], table.values.data() + row * table.columns(),
+                   table.columns());
   return text;
 }
 

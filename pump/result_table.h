@@ -54,6 +54,24 @@ struct Samples {
   void instant(std::size_t row, Instant& instant) const;
 };
 
+/// Angles of a run one at a time, for runs too long to hold.
+class Sampler {
+ public:
+  /// As sample_case. Both arguments must outlive it.
+  Sampler(const Case& the_case, const PressureTrace& pressure, int revolutions = 1,
+          bool falling = false);
+  long long rows() const { return rows_; }
+  double theta_deg(long long row) const;
+  /// Fills `instant` with sample `row`. theta is reduced to one turn first, exactly.
+  void instant(long long row, Instant& instant) const;
+
+ private:
+  const Case& case_;
+  const PressureTrace& pressure_;
+  long long rows_;
+  double turn_deg_;  // 360, or -360 where angles fall
+};
+
 /// Samples of `revolutions` turns: angles 360 i/s for i = 0 .. s x revolutions - 1; against the
 /// direction of rotation (speed < 0) an integrated run takes `falling` angles -360 i/s.
 Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions = 1,
@@ -69,6 +87,13 @@ ResultTable tabulate(const std::string& name, const ChannelLayout& layout, const
                      const std::function<void(const Instant&, std::vector<double>&)>& evaluate,
                      const Progress& progress = {});
 
+/// The same row by row, without a table: `sink` gets each row's angle and its values in the
+/// channels' units.
+void stream_rows(const std::string& name, const ChannelLayout& layout, const Sampler& sampler,
+                 const std::function<void(const Instant&, std::vector<double>&)>& evaluate,
+                 const std::function<void(double theta_deg, const std::vector<double>&)>& sink,
+                 const Progress& progress = {});
+
 /// Largest applied load of a case, for channels whose peak is zero.
 struct LoadScale {
   double force = 0;   ///< N: largest applied force
@@ -79,5 +104,9 @@ LoadScale load_scale(const Case& the_case, const Samples& samples);
 /// The table as CSV text: theta_deg, then one column per channel; shortest text that reads back to
 /// the same double; not computed = empty.
 std::string to_csv(const ResultTable& table);
+
+/// Its parts: the header line, and one line of numbers.
+std::string csv_header(const std::vector<Channel>& channels);
+void append_csv_row(std::string& text, double theta_deg, const double* values, std::size_t count);
 
 }  // namespace bentaxis

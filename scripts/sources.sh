@@ -5,5 +5,5 @@
 our_sources() {
   local names=() ending
   for ending in "$@"; do names+=(-o -name "*.$ending"); done
-  find . \( -path ./build -o -path ./out -o -path './.*' \) -prune -o -type f \( "${names[@]:1}" \) -print0 | sort -z
+  find . \( -path './build*' -o -path ./out -o -path './.*' \) -prune -o -type f \( "${names[@]:1}" \) -print0 | sort -z
 }

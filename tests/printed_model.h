@@ -216,7 +216,6 @@ class PrintedModel {
     return out;
   }
 
- private:
   // Film on the lands: radial integrals of r and r^2 by Simpson's rule (exact for cubics).
   void add_film(const PortPressures& ports, Eigen::Vector3d& force, Eigen::Vector3d& moment) const {
     const PortPlate& q = *p_.port_plate;
@@ -243,6 +242,7 @@ class PrintedModel {
     }
   }
 
+ private:
   PumpParameters p_;
   Assumptions a_;
 };

@@ -6,8 +6,10 @@
 
 #include "bentaxis/analytic/port_plate.h"
 #include "bentaxis/multibody/land_pressure.h"
+#include "bentaxis/pump/case_writer.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
+#include "bentaxis/pump/inputs.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -444,6 +446,35 @@ TEST(OutputFolder, NamesThePathItCannotWrite) {
   scratch.file("taken", "x");
   EXPECT_THROW(OutputFolder(scratch.path() / "taken"), InputError);
   EXPECT_THROW(OutputFolder(scratch.path() / "taken" / "below"), InputError);
+}
+
+// ---- writing case files
+// --------------------------------------------------------------------------
+
+TEST(CaseWriter, EveryReferenceCaseReadsBackAsItself) {
+  for (const std::string& name : reference_cases()) {
+    Case the_case = reference_case(name);
+    const std::string text = case_text(the_case);
+    Case again = parse_case(text, "/written.toml");
+    EXPECT_EQ(case_text(again), text) << name;
+    EXPECT_EQ(again.name, the_case.name);
+    EXPECT_EQ(again.pump.geometry.pistons, the_case.pump.geometry.pistons);
+    EXPECT_EQ(again.operation.speed_rpm, the_case.operation.speed_rpm);
+    EXPECT_EQ(again.pressure.ports.delivery, the_case.pressure.ports.delivery);
+    EXPECT_EQ(again.pressure.curve.pressure, the_case.pressure.curve.pressure);
+    EXPECT_TRUE(again.analytic == the_case.analytic && again.multibody == the_case.multibody);
+    const auto before = continuous_inputs(the_case.pump);
+    const auto after = continuous_inputs(again.pump);
+    ASSERT_EQ(before.size(), after.size()) << name;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      EXPECT_EQ(*before[i].value, *after[i].value) << name << " " << before[i].name;
+  }
+}
+
+TEST(CaseWriter, NamesAreQuoted) {
+  Case the_case = reference_case("zero_tilt");
+  the_case.name = "a \"pump\" \\ of\ntwo lines\x01 \xc3\xbc";
+  EXPECT_EQ(parse_case(case_text(the_case), "/written.toml").name, the_case.name);
 }
 
 }  // namespace

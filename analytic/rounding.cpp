@@ -1,0 +1,154 @@
+#include "bentaxis/analytic/rounding.h"
+
+#include <algorithm>
+#include <cfenv>
+#include <cmath>
+#include <limits>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/inputs.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::analytic {
+namespace {
+
+// What an input may be off by, relative: half a unit in the last place for the number of the case
+// file and again for its conversion to SI.
+constexpr double kInputRounding = std::numeric_limits<double>::epsilon();
+// Relative change by which effects are measured: large against round-off, and small enough for
+// amplifications of up to 1e11 to be linear.
+constexpr double kChange = 0x1p-40;
+
+constexpr std::array<int, 3> kModes = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+
+class RoundingMode {
+ public:
+  explicit RoundingMode(int mode) : before_(std::fegetround()) { std::fesetround(mode); }
+  RoundingMode(const RoundingMode&) = delete;
+  RoundingMode& operator=(const RoundingMode&) = delete;
+  ~RoundingMode() { std::fesetround(before_); }
+
+ private:
+  int before_;
+};
+
+}  // namespace
+
+RoundingEstimate::RoundingEstimate(const PumpParameters& pump, const Assumptions& assumptions)
+    : pump_(pump), model_(pump, assumptions) {
+  PumpParameters changed = pump;
+  for (const PumpInput& input : continuous_inputs(changed)) {
+    const double before = *input.value;
+    if (before == 0) continue;
+    *input.value = before * (1 + kChange);
+    const double change = *input.value - before;
+    perturbed_.push_back({input.name, Model(changed, assumptions),
+                          kInputRounding * std::abs(before) / std::abs(change)});
+    *input.value = before;
+  }
+  for (const int mode : kModes) {
+    const RoundingMode scope(mode);
+    directed_.emplace_back(pump, assumptions);
+  }
+}
+
+void RoundingEstimate::estimate(const Instant& instant,
+                                const std::vector<double>& pressure_rounding, Parts& parts) const {
+  const std::size_t count = layout().reactions();
+  std::vector<double> base(layout().size());
+  std::vector<double> other(layout().size());
+  std::vector<double> largest(count, 0.0);
+  parts.inputs.assign(count, 0.0);
+  parts.arithmetic.assign(count, 0.0);
+  parts.worst_input.assign(count, "");
+  model_.reactions(instant, base);
+
+  const auto add = [&](const std::string& name, double factor) {
+    for (std::size_t c = 0; c < count; ++c) {
+      const double effect = std::abs(other[c] - base[c]) * factor;
+      if (!(effect > 0)) continue;  // not computed, or no effect
+      parts.inputs[c] += effect;
+      if (effect > largest[c]) {
+        largest[c] = effect;
+        parts.worst_input[c] = name;
+      }
+    }
+  };
+  for (const Perturbed& p : perturbed_) {
+    p.model.reactions(instant, other);
+    add(p.input, p.per_change);
+  }
+  Instant changed = instant;
+  const auto vary = [&](const std::string& name, double& value, double rounding, double step = 0) {
+    if (rounding == 0) return;
+    const double before = value;
+    if (step == 0) step = std::max(std::abs(before), rounding / kInputRounding) * kChange;
+    value = before + step;
+    model_.reactions(changed, other);
+    add(name, rounding / (value - before));
+    value = before;
+  };
+  // The angle of a piston is the shaft's and its phase. The step leaves a piston at a dead centre
+  // at rest in the sign law of friction (piston_rest_speed).
+  vary("theta", changed.theta, kInputRounding * std::max(std::abs(instant.theta), 2 * kPi),
+       0x1p-41);
+  vary("speed", changed.omega, kInputRounding * std::abs(instant.omega));
+  vary("ports.delivery", changed.ports.delivery, kInputRounding * std::abs(instant.ports.delivery));
+  vary("ports.suction", changed.ports.suction, kInputRounding * std::abs(instant.ports.suction));
+  for (std::size_t k = 0; k < pressure_rounding.size(); ++k)
+    vary("pressure", changed.chamber_pressure[k], pressure_rounding[k]);
+
+  for (std::size_t m = 0; m < kModes.size(); ++m) {
+    {
+      const RoundingMode scope(kModes[m]);
+      directed_[m].reactions(instant, other);
+    }
+    for (std::size_t c = 0; c < count; ++c) {
+      const double change = std::abs(other[c] - base[c]);
+      if (change > parts.arithmetic[c]) parts.arithmetic[c] = change;
+    }
+  }
+}
+
+double pressure_rounding(const PressureTrace& trace, double theta_k_deg) {
+  const double step = kInputRounding * 360;
+  const double here = trace(theta_k_deg);
+  return kInputRounding * std::abs(here) + std::max(std::abs(trace(theta_k_deg + step) - here),
+                                                    std::abs(trace(theta_k_deg - step) - here));
+}
+
+std::vector<GroupRounding> estimate_rounding(const Case& the_case, const Assumptions& assumptions,
+                                             const Samples& samples, const PressureTrace& trace,
+                                             std::size_t most_angles) {
+  const RoundingEstimate estimate(the_case.pump, assumptions);
+  const ChannelLayout& layout = estimate.layout();
+  std::vector<GroupRounding> groups;
+  Instant instant;
+  RoundingEstimate::Parts parts;
+  std::vector<double> pressure(samples.pistons);
+  const std::size_t rows = samples.theta_deg.size();
+  const std::size_t stride = std::max<std::size_t>(1, (rows + most_angles - 1) / most_angles);
+  for (std::size_t row = 0; row < rows; row += stride) {
+    samples.instant(row, instant);
+    for (int k = 1; k <= samples.pistons; ++k)
+      pressure[k - 1] =
+          pressure_rounding(trace, piston_angle_deg(samples.theta_deg[row], k, samples.pistons));
+    estimate.estimate(instant, pressure, parts);
+    for (std::size_t c = 0; c < layout.reactions(); ++c) {
+      const std::string& name = layout.channels()[c].group;
+      auto group = std::find_if(groups.begin(), groups.end(),
+                                [&](const GroupRounding& g) { return g.group == name; });
+      if (group == groups.end())
+        group = groups.insert(groups.end(), GroupRounding{name, 0, 0, 0, ""});
+      if (parts.inputs[c] + parts.arithmetic[c] > group->total()) {
+        group->theta_deg = samples.theta_deg[row];
+        group->input = parts.worst_input[c];
+        group->inputs = parts.inputs[c];
+        group->arithmetic = parts.arithmetic[c];
+      }
+    }
+  }
+  return groups;
+}
+
+}  // namespace bentaxis::analytic

@@ -1,0 +1,326 @@
+#include "hard_cases.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <sstream>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/rounding.h"
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/inputs.h"
+#include "console.h"
+
+namespace bentaxis::cli {
+namespace {
+
+// Copies of a pump with every input moved by one unit in its last place, for the spread of the
+// multibody model.
+constexpr int kDraws = 4;
+
+ResultTable read_reference(const HardCase& hard, const ChannelLayout& layout,
+                           const Samples& samples) {
+  const auto file = hard.folder / "reference.csv";
+  const NumericTable table = read_numeric_csv(file, true);
+  ResultTable result;
+  result.name = "reference";
+  for (std::size_t c = 0; c < layout.reactions(); ++c) {
+    result.channels.push_back(layout.channels()[c]);
+    if (c + 1 >= table.header.size() || table.header[c + 1] != result.channels[c].name)
+      throw InputError(file.string() + ":1: column " + std::to_string(c + 2) + " must be " +
+                       result.channels[c].name);
+  }
+  if (table.rows.size() != samples.theta_deg.size())
+    throw InputError(file.string() + ": must have " + std::to_string(samples.theta_deg.size()) +
+                     " angles");
+  result.theta_deg = samples.theta_deg;
+  for (const auto& row : table.rows)
+    result.values.insert(result.values.end(), row.begin() + 1, row.end());
+  return result;
+}
+
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
+  const LoadScale scale = load_scale(the_case, samples);
+  return {{"N", scale.force}, {"Nm", scale.moment}};
+}
+
+// Largest difference of each scale group over its peak in `first`.
+std::vector<GroupLoss> losses(const compare::Comparison& comparison) {
+  std::vector<GroupLoss> groups;
+  for (const auto& c : comparison.channels) {
+    if (c.channel.kind != ChannelKind::reaction) continue;
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const GroupLoss& g) { return g.group == c.channel.group; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {c.channel.group, 0, 0});
+    if (c.verdict != compare::Verdict::not_computed)
+      group->measured = std::max(group->measured, c.largest_over_peak());
+  }
+  return groups;
+}
+
+double measured_of(const std::vector<GroupLoss>& groups, const std::string& name) {
+  for (const GroupLoss& g : groups)
+    if (g.group == name) return g.measured;
+  return 0;
+}
+
+// A case with every input of its pump moved by one unit in the last place, up or down.
+Case moved(const Case& the_case, std::mt19937& engine) {
+  Case copy = the_case;
+  for (const PumpInput& input : continuous_inputs(copy.pump)) {
+    const double sign = (engine() & 1U) != 0 ? 1 : -1;
+    const double value = *input.value * (1 + sign * std::numeric_limits<double>::epsilon());
+    const bool share =
+        input.name == "piston.joint_mass_fraction" || input.name == "friction.shaft_torque_factor";
+    if (!share || value <= 1) *input.value = value;
+  }
+  return copy;
+}
+
+using Run = std::function<ResultTable(const Case&)>;
+
+void judge(HardOutcome& outcome) {
+  outcome.verdict = HardVerdict::accurate;
+  for (const GroupLoss& g : outcome.groups) {
+    if (g.measured <= std::max(kRoundOffLoss, kPredictionFactor * g.predicted)) continue;
+    outcome.verdict = HardVerdict::wrong;
+    outcome.message = g.group + " is off by " + number_text(g.measured) +
+                      " of its peak, predicted were " + number_text(g.predicted);
+  }
+}
+
+// Runs a model and fills all but the prediction. False where it refused.
+bool attempt(HardOutcome& outcome, const Case& the_case, const ResultTable& reference,
+             const compare::Options& options, const Run& run, ResultTable& table) {
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    table = run(the_case);
+  } catch (const std::runtime_error& error) {
+    if (dynamic_cast<const Interrupted*>(&error) != nullptr) throw;
+    const bool clear = dynamic_cast<const InputError*>(&error) != nullptr ||
+                       dynamic_cast<const ComputationError*>(&error) != nullptr;
+    outcome.message = error.what();
+    outcome.verdict = clear && outcome.refusal_expected ? HardVerdict::refused : HardVerdict::wrong;
+    return false;
+  }
+  outcome.seconds_per_angle =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
+      static_cast<double>(table.rows());
+  outcome.groups = losses(compare::compare_tables(reference, table, options));
+  return true;
+}
+
+}  // namespace
+
+const std::vector<std::string>& hard_models() {
+  static const std::vector<std::string> models = {"analytic", "multibody", "residual"};
+  return models;
+}
+
+const char* to_string(HardVerdict verdict) {
+  switch (verdict) {
+    case HardVerdict::accurate:
+      return "accurate";
+    case HardVerdict::refused:
+      return "refused";
+    case HardVerdict::wrong:
+      break;
+  }
+  return "WRONG";
+}
+
+const GroupLoss* HardOutcome::worst() const {
+  const auto it = std::max_element(
+      groups.begin(), groups.end(),
+      [](const GroupLoss& a, const GroupLoss& b) { return a.measured < b.measured; });
+  return it == groups.end() ? nullptr : &*it;
+}
+
+std::optional<double> HardOutcome::worst_ratio() const {
+  std::optional<double> worst;
+  for (const GroupLoss& g : groups) {
+    if (g.measured <= kNoticeableLoss) continue;
+    const double ratio = g.measured / std::max(g.predicted, 1e-300);
+    if (!worst || std::abs(std::log(ratio)) > std::abs(std::log(*worst))) worst = ratio;
+  }
+  return worst;
+}
+
+std::vector<HardCase> read_catalogue(const std::filesystem::path& folder,
+                                     const std::string& filter) {
+  const auto file = folder / "catalogue.toml";
+  std::vector<HardCase> cases;
+  toml::table root;
+  try {
+    root = toml::parse_file(file.string());
+  } catch (const toml::parse_error& error) {
+    throw InputError(file.string() + ":" + std::to_string(error.source().begin.line) + ": " +
+                     std::string(error.description()));
+  }
+  const toml::array* list = root["case"].as_array();
+  if (list == nullptr) throw InputError(file.string() + ": no [[case]]");
+  for (const toml::node& node : *list) {
+    const toml::table& entry = *node.as_table();
+    HardCase hard;
+    hard.name = entry["name"].value_or(std::string());
+    if (hard.name.find(filter) == std::string::npos) continue;
+    hard.group = entry["group"].value_or(std::string());
+    hard.hard = entry["hard"].value_or(std::string());
+    for (const std::string& model : hard_models())
+      if (entry[model].value_or(std::string()) == "refused") hard.refused.push_back(model);
+    if (const toml::table* change = entry["change"].as_table())
+      for (const auto& [key, value] : *change) {
+        std::ostringstream text;
+        if (value.is_floating_point())
+          text << number_text(value.as_floating_point()->get());
+        else
+          text << toml::default_formatter(value, toml::format_flags::none);
+        hard.changes.push_back(std::string(key.str()) + " = " + text.str());
+      }
+    hard.folder = folder / hard.name;
+    cases.push_back(std::move(hard));
+  }
+  if (cases.empty()) throw InputError(file.string() + ": no case named like \"" + filter + "\"");
+  return cases;
+}
+
+namespace {
+
+HardOutcome outcome_of(const HardCase& hard, const std::string& model) {
+  HardOutcome outcome;
+  outcome.model = model;
+  outcome.refusal_expected =
+      std::find(hard.refused.begin(), hard.refused.end(), model) != hard.refused.end();
+  return outcome;
+}
+
+// The largest loss of each group over copies of the pump with every input moved.
+std::vector<GroupLoss> spread_of(const Case& the_case, const ResultTable& table,
+                                 const compare::Options& options, const Run& run) {
+  std::mt19937 engine(1);
+  std::vector<GroupLoss> spread;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    try {
+      const auto comparison = compare::compare_tables(table, run(moved(the_case, engine)), options);
+      for (const GroupLoss& g : losses(comparison)) {
+        auto same = std::find_if(spread.begin(), spread.end(),
+                                 [&](const GroupLoss& s) { return s.group == g.group; });
+        if (same == spread.end())
+          spread.push_back(g);
+        else
+          same->measured = std::max(same->measured, g.measured);
+      }
+    } catch (const ComputationError&) {
+      // This copy was refused: it says nothing about the loss.
+    }
+  }
+  return spread;
+}
+
+}  // namespace
+
+std::vector<HardOutcome> run_hard_case(const HardCase& hard) {
+  const Case the_case = read_case(hard.folder / "case.toml");
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples = sample_case(the_case, pressure);
+  const ResultTable reference =
+      read_reference(hard, ChannelLayout(the_case.pump.geometry.pistons), samples);
+  compare::Options options;
+  options.zero_scales = zero_scales(the_case, samples);
+  const Progress progress = progress_of(hard.name);
+
+  HardOutcome analytic = outcome_of(hard, "analytic");
+  ResultTable table;
+  const Run run_analytic = [&](const Case& c) { return analytic::run(c, c.analytic, samples); };
+  std::vector<GroupLoss> of_inputs;  // over peak
+  if (attempt(analytic, the_case, reference, options, run_analytic, table)) {
+    const auto estimated = analytic::estimate_rounding(the_case, the_case.analytic, samples,
+                                                       pressure, samples.theta_deg.size());
+    const GroupLoss* worst = analytic.worst();
+    for (GroupLoss& g : analytic.groups) {
+      for (const auto& e : estimated) {
+        if (e.group != g.group) continue;
+        const auto channel = std::find_if(reference.channels.begin(), reference.channels.end(),
+                                          [&](const Channel& c) { return c.group == e.group; });
+        const double peak = compare::scale_of(reference, *channel, options.zero_scales);
+        if (!(peak > 0)) continue;
+        g.predicted = e.total() / peak;
+        of_inputs.push_back({g.group, e.inputs / peak, 0});
+        if (&g == worst) analytic.weak_point = e.input;
+      }
+    }
+    judge(analytic);
+  }
+  std::vector<HardOutcome> outcomes = {analytic};
+
+  for (const auto& [name, method] : {std::pair{"multibody", multibody::Method::multipliers},
+                                     std::pair{"residual", multibody::Method::residual}}) {
+    HardOutcome outcome = outcome_of(hard, name);
+    const Run run = [&, way = method](const Case& c) {
+      return multibody::run_driven(c, c.multibody, samples, progress, multibody::Scene::full, way);
+    };
+    if (attempt(outcome, the_case, reference, options, run, table)) {
+      outcome.weak_point = analytic.weak_point;
+      const auto spread = spread_of(the_case, table, options, run);
+      for (GroupLoss& g : outcome.groups)
+        g.predicted = measured_of(of_inputs, g.group) + measured_of(spread, g.group);
+      judge(outcome);
+    }
+    outcomes.push_back(std::move(outcome));
+  }
+  return outcomes;
+}
+
+bool LongRun::bounded() const {
+  constexpr double kGrowth = 2;
+  return position_error[1] <= kGrowth * position_error[0] &&
+         reaction_error[1] <= kGrowth * reaction_error[0];
+}
+
+LongRun run_long(const std::filesystem::path& catalogue, int turns, double accuracy) {
+  Case the_case = read_case(catalogue / "long_run" / "case.toml");
+  the_case.operation.revolutions = turns;
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples = sample_case(the_case, pressure, turns);
+  const ResultTable analytic = analytic::run(the_case, the_case.analytic, samples);
+  multibody::IntegrationOptions options;
+  options.accuracy = accuracy;
+  const auto run =
+      multibody::run_integrated(the_case, the_case.multibody, samples, pressure, options,
+                                progress_of(std::to_string(turns) + " turns"));
+  std::vector<double> peaks;
+  for (const Channel& channel : analytic.channels) peaks.push_back(analytic.peak(channel.group));
+  std::vector<double> errors(turns);
+  for (std::size_t row = 0; row < analytic.rows(); ++row) {
+    double& error = errors[row / the_case.operation.samples_per_revolution];
+    for (std::size_t c = 0; c < analytic.columns(); ++c)
+      if (analytic.channels[c].kind == ChannelKind::reaction)
+        error = std::max(error, std::abs(run.table.at(row, c) - analytic.at(row, c)) / peaks[c]);
+  }
+  LongRun result;
+  result.turns = turns;
+  result.accuracy = accuracy;
+  result.seconds = run.record.seconds;
+  result.work_of_loads = run.record.work_of_loads;
+  int next = 1;
+  for (int turn = 0; turn < turns; ++turn) {
+    const int half = 2 * turn < turns ? 0 : 1;
+    const auto& record = run.record.turns[turn];
+    result.position_error[half] = std::max(result.position_error[half], record.position_error);
+    result.reaction_error[half] = std::max(result.reaction_error[half], errors[turn]);
+    if (turn + 1 != next && turn + 1 != turns) continue;
+    result.shown.push_back({turn + 1, record, errors[turn]});
+    const int leading = std::stoi(std::to_string(next).substr(0, 1));  // 1, 2, 5, 10, ..
+    next = leading == 2 ? next / 2 * 5 : next * 2;
+  }
+  return result;
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,111 @@
+#include "rounding_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bentaxis/analytic/rounding.h"
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis::cli {
+namespace {
+
+constexpr int kAngles = 24;
+constexpr double kWorthAWarning = 1e-9;  // of peak: the tolerance of a comparison
+
+Case at_few_angles(const Case& the_case) {
+  Case thin = the_case;
+  thin.operation.samples_per_revolution =
+      std::min(kAngles, the_case.operation.samples_per_revolution);
+  return thin;
+}
+
+compare::ZeroScales zero_scales_of(const Case& the_case, const Samples& samples) {
+  const LoadScale scale = load_scale(the_case, samples);
+  return {{"N", scale.force}, {"Nm", scale.moment}};
+}
+
+}  // namespace
+
+std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions& assumptions) {
+  const Case thin = at_few_angles(the_case);
+  const PressureTrace pressure(thin.pressure);
+  const Samples samples = sample_case(thin, pressure);
+  const ResultTable table = analytic::run(thin, assumptions, samples);
+  const compare::ZeroScales zero_scales = zero_scales_of(thin, samples);
+  std::vector<RoundingLine> lines;
+  for (const auto& g : analytic::estimate_rounding(thin, assumptions, samples, pressure, kAngles)) {
+    const auto channel = std::find_if(table.channels.begin(), table.channels.end(),
+                                      [&](const Channel& c) { return c.group == g.group; });
+    const double peak = compare::scale_of(table, *channel, zero_scales);
+    if (!(peak > 0)) continue;
+    lines.push_back({g.group, g.inputs / peak, g.arithmetic / peak, g.theta_deg, g.input});
+  }
+  return lines;
+}
+
+std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptions& assumptions) {
+  std::vector<std::string> warnings;
+  for (const RoundingLine& line : rounding_lines(the_case, assumptions))
+    if (line.total() > kWorthAWarning)
+      warnings.push_back(fmt::format(
+          "{} is known to {:.1e} of its peak only: rounding of {} to double, at {:g} deg",
+          line.group, line.total(),
+          line.arithmetic > line.inputs || line.input.empty() ? "intermediate results" : line.input,
+          line.theta_deg));
+  return warnings;
+}
+
+std::vector<std::string> multiplier_warnings(const Case& the_case, const Assumptions& assumptions) {
+  const Case thin = at_few_angles(the_case);
+  const PressureTrace pressure(thin.pressure);
+  const Samples samples = sample_case(thin, pressure);
+  const auto by = [&](multibody::Method method) {
+    return multibody::run_driven(thin, assumptions, samples, {}, multibody::Scene::full, method);
+  };
+  std::map<std::string, double> lost;
+  try {
+    compare::Options options;
+    options.zero_scales = zero_scales_of(thin, samples);
+    const auto comparison = compare::compare_tables(by(multibody::Method::residual),
+                                                    by(multibody::Method::multipliers), options);
+    for (const auto& c : comparison.channels)
+      if (c.channel.kind == ChannelKind::reaction && c.verdict != compare::Verdict::not_computed)
+        lost[c.channel.group] = std::max(lost[c.channel.group], c.largest_over_peak());
+  } catch (const ComputationError&) {
+    return {};
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [group, loss] : lost)
+    if (loss > kWorthAWarning)
+      warnings.push_back(fmt::format(
+          "{} of the multibody model is known to {:.1e} of its peak only: Simbody's constraint "
+          "multipliers differ by that from the same model's inverse dynamics; use --reactions "
+          "residual",
+          group, loss));
+  return warnings;
+}
+
+nlohmann::json rounding_block(const std::vector<RoundingLine>& lines) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const RoundingLine& line : lines)
+    rows.push_back({line.group, line.inputs, line.arithmetic,
+                    std::round(-10 * std::log10(std::max(line.total(), 1e-16))) / 10, line.input,
+                    line.theta_deg});
+  return {
+      {"title", "What rounding leaves of the digits"},
+      {"text",
+       "First-order estimate of the analytic model: the effect of one unit in the last place of "
+       "every input, and of rounding every operation the other way; shares of the reaction's "
+       "peak."},
+      {"table",
+       {{"columns",
+         {"reaction", "inputs", "arithmetic", "digits left", "weakest input", "at, deg"}},
+        {"rows", rows}}}};
+}
+
+}  // namespace bentaxis::cli

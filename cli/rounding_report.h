@@ -1,0 +1,36 @@
+// What rounding leaves of the digits of a case, in words and for the report.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "bentaxis/pump/case.h"
+
+namespace bentaxis::cli {
+
+/// Estimated rounding error of one group of reactions over its peak.
+struct RoundingLine {
+  std::string group;
+  double inputs = 0;      ///< share of the peak
+  double arithmetic = 0;  ///< share of the peak
+  double theta_deg = 0;
+  std::string input;  ///< the input that matters most
+  double total() const { return inputs + arithmetic; }
+};
+
+/// At up to 24 angles of a turn (docs/trust.md). Milliseconds.
+std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions& assumptions);
+
+/// One sentence per group that rounding may change by more than 1e-9 of its peak.
+std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptions& assumptions);
+
+/// One sentence per group that the multibody model's constraint multipliers, driven, have lost more
+/// of than 1e-9 of its peak: what they differ by from the same model's reactions by inverse
+/// dynamics, at up to 24 angles. Empty where the model refuses the case.
+std::vector<std::string> multiplier_warnings(const Case& the_case, const Assumptions& assumptions);
+
+/// A block for the report, as in its section "runs".
+nlohmann::json rounding_block(const std::vector<RoundingLine>& lines);
+
+}  // namespace bentaxis::cli

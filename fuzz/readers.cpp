@@ -1,0 +1,105 @@
+#include "readers.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/case_writer.h"
+#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/result_table.h"
+
+namespace bentaxis::fuzz {
+namespace {
+
+// Fails in every build type, with a place for the fuzzer to report.
+void require(bool condition, const char* what) {
+  if (condition) return;
+  std::fprintf(stderr, "fuzz: %s\n", what);
+  std::abort();
+}
+
+// A file that holds the bytes; it lives in memory, so that the disk does not set the pace.
+std::filesystem::path file_with(const std::uint8_t* data, std::size_t size) {
+  static const int handle = memfd_create("fuzz", 0);
+  require(handle >= 0 && ftruncate(handle, 0) == 0, "no scratch file");
+  require(pwrite(handle, data, size, 0) == static_cast<ssize_t>(size), "scratch file not written");
+  return "/proc/self/fd/" + std::to_string(handle);
+}
+
+void check_message(const std::exception& error) {
+  const std::string what = error.what();
+  require(!what.empty(), "message is empty");
+  require(what.find('\n') == std::string::npos, "message has more than one line");
+}
+
+}  // namespace
+
+void read_as_case(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  try {
+    const Case the_case = parse_case(text, "/fuzz/case.toml");
+    const std::string written = case_text(the_case);
+    const Case again = parse_case(written, "/fuzz/case.toml");
+    require(case_text(again) == written, "case is not the same after writing and reading");
+
+    if (the_case.hydraulics) return;  // their pressure is another library's
+    Case small = the_case;
+    small.operation.samples_per_revolution = 3;
+    const PressureTrace pressure(small.pressure);
+    analytic::run(small, small.analytic, sample_case(small, pressure));
+  } catch (const InputError& error) {
+    check_message(error);
+  } catch (const ComputationError& error) {
+    check_message(error);
+  }
+}
+
+void read_as_csv(const std::uint8_t* data, std::size_t size) {
+  const auto file = file_with(data, size);
+  for (const bool allow_empty : {false, true}) {
+    try {
+      const NumericTable table = read_numeric_csv(file, allow_empty);
+      for (const auto& row : table.rows) {
+        require(row.size() == table.header.size(), "row and header differ in length");
+        for (const double value : row)
+          require(std::isfinite(value) || (allow_empty && !is_computed(value)),
+                  "number is not finite");
+      }
+    } catch (const InputError& error) {
+      check_message(error);
+    }
+  }
+}
+
+void read_as_curve(const std::uint8_t* data, std::size_t size) {
+  try {
+    PressureSpec spec;
+    spec.kind = PressureKind::curve;
+    spec.file = file_with(data, size);
+    spec.curve = read_pressure_curve(spec.file);
+    const PressureTrace trace(spec);
+    for (const double angle : {-1e9, -0.5, 0.0, 33.0, 359.999, 720.0}) (void)trace(angle);
+    // Through its points, where they do not lie closer than round-off.
+    const auto& x = spec.curve.theta_deg;
+    bool apart = true;
+    for (std::size_t i = 1; i < x.size(); ++i) apart = apart && x[i] - x[i - 1] > 1e-3;
+    if (!apart || std::abs(x.front()) > 1e6) return;
+    double largest = 0;
+    for (const double p : spec.curve.pressure) largest = std::max(largest, std::abs(p));
+    if (!(largest > 1e-200 && largest < 1e200)) return;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      require(std::abs(trace(x[i]) - spec.curve.pressure[i]) <= 1e-2 * largest,
+              "spline misses a point");
+  } catch (const InputError& error) {
+    check_message(error);
+  }
+}
+
+}  // namespace bentaxis::fuzz

@@ -1,0 +1,20 @@
+// What is fuzzed: the readers of files that come from outside.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace bentaxis::fuzz {
+
+/// Reads bytes as a case file. Where it is accepted, the case is written, read again and must be
+/// the same; a small part of a turn must evaluate to finite numbers or end in a ComputationError.
+/// Anything but InputError and ComputationError escapes.
+void read_as_case(const std::uint8_t* data, std::size_t size);
+
+/// Reads bytes as a CSV file of numbers, with and without empty fields.
+void read_as_csv(const std::uint8_t* data, std::size_t size);
+
+/// Reads bytes as a pressure curve, makes its periodic spline and evaluates it.
+void read_as_curve(const std::uint8_t* data, std::size_t size);
+
+}  // namespace bentaxis::fuzz
