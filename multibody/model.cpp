@@ -67,6 +67,7 @@ struct Model::Implementation {
   PumpSystem system;
   ResidualSolver residual;
   Reactions reactions;
+  Reactions by_inverse_dynamics;  // what the multipliers are held to
   std::vector<double> pressure;
   std::vector<SimTK::Vec3> angular_accelerations;
   PumpSystem::Rank rank;
@@ -118,8 +119,9 @@ void Model::Implementation::place_and_solve(double theta, const Instant& instant
     if (scene == Scene::full) system.set_acceleration(state, instant.omega_dot);
     system.system().realize(state, Stage::Acceleration);
     check_rank();
-    require_accurate_forces(system, state, theta);
     reactions_from_multipliers(system, state, reactions);
+    residual.solve(by_inverse_dynamics);
+    require_accurate_forces(force_difference(system, reactions, by_inverse_dynamics), theta);
   } else {
     residual.solve(reactions);
     check_rank();

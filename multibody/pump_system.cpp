@@ -86,9 +86,12 @@ class TurningMotion : public SimTK::Motion::Custom::Implementation {
   bool is_ball_;
 };
 
-// A body that is symmetric about z with its centre of mass on z.
+// A body that is symmetric about z with its centre of mass on z. Simbody takes the centre's share
+// off again and refuses a body where rounding then leaves less than nothing.
 MassProperties symmetric_body(double mass, double centre_z, double transverse_about_origin,
                               double axial) {
+  const double of_centre = mass * centre_z * centre_z;
+  transverse_about_origin = std::max(transverse_about_origin, of_centre * (1 + 8 * SimTK::Eps));
   return {mass, Vec3(0, 0, centre_z),
           Inertia(transverse_about_origin, transverse_about_origin, axial)};
 }
@@ -259,6 +262,12 @@ void PumpSystem::add_pistons() {
   const Geometry& g = pump_.geometry;
   const PistonMass& mass = pump_.piston;
   const double length = g.piston_length;
+  if (assumptions_.inertia != PistonInertia::lumped && mass.mass == 0 && mass.real &&
+      (mass.real->transverse_inertia > 0 || mass.real->axial_inertia > 0))
+    throw ComputationError(
+        "multibody model: a piston with inertia (transverse_ or axial_inertia_kg_mm2) but without "
+        "mass "
+        "(mass_kg = 0) is no body in Simbody; the analytic model has no such limit");
   MassProperties properties;
   if (assumptions_.inertia == PistonInertia::lumped) {
     const double at_ring = (1 - mass.joint_mass_fraction) * mass.mass;

@@ -56,8 +56,32 @@ double estimated_force_error(const PumpSystem& pump, const SimTK::State& state) 
   return off > 0 ? off / scale : 0;
 }
 
-void require_accurate_forces(const PumpSystem& pump, const SimTK::State& state, double theta) {
-  const double error = estimated_force_error(pump, state);
+double force_difference(const PumpSystem& pump, const Reactions& reactions,
+                        const Reactions& others) {
+  double off = 0;
+  double largest = 0;
+  bool finite = true;
+  const auto look = [&](const SimTK::Vec3& a, const SimTK::Vec3& b) {
+    finite = finite && a.isFinite() && b.isFinite();
+    off = std::max(off, (a - b).norm());
+    largest = std::max(largest, b.norm());
+  };
+  for (std::size_t k = 0; k < others.pistons.size(); ++k) {
+    look(reactions.pistons[k].joint, others.pistons[k].joint);
+    look(reactions.pistons[k].bore, others.pistons[k].bore);
+  }
+  if (!pump.is_prescribed()) {
+    look(reactions.block_hold[1], others.block_hold[1]);
+    look(reactions.tapered, others.tapered);
+    look(reactions.cylindrical, others.cylindrical);
+    const double arm = 1 / pump.pump().geometry.joint_circle_radius;
+    look({arm * reactions.drive, reactions.tooth, 0}, {arm * others.drive, others.tooth, 0});
+  }
+  if (!finite) return SimTK::Infinity;
+  return off > 0 ? off / largest : 0;
+}
+
+void require_accurate_forces(double error, double theta) {
   if (error <= kLargestForceError) return;
   throw ComputationError(
       "multibody model: Simbody's constraint solver loses the reactions at theta = " +

@@ -5,6 +5,7 @@ usage: hardcases_test.py PROGRAM REPOSITORY
 import csv
 import json
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -85,6 +86,24 @@ class WarningTest(Temporary):
         self.assertIn("of its peak only", result.stderr)
         case = REPO / "reference_data" / "hard" / "tilt_45" / "case.toml"
         self.assertEqual(run("run", case, "--model", "analytic", "--out", self.folder).stderr, "")
+
+    def test_digits_lost_in_simbody_are_said(self):
+        """Pistons of 1e6 kg: the constraint multipliers lose the tooth force, inverse dynamics does not."""
+        case = REPO / "reference_data" / "hard" / "mass_1e6" / "case.toml"
+        arguments = ("run", case, "--model", "multibody", "--out", self.folder)
+        self.assertRegex(run(*arguments).stderr, "Rcs of the multibody model is known to .* --reactions residual")
+        self.assertEqual(run(*arguments, "--reactions", "residual").stderr, "")
+        self.assertIn(run("compare", case, "--out", self.folder).returncode, (0, 1))
+        warnings = json.loads((self.folder / "report.json").read_text())["warnings"]
+        self.assertIn("digits lost in Simbody", {w["name"] for w in warnings})
+
+    def test_a_body_that_cannot_be_is_refused(self):
+        text = (REPO / "reference_data" / "high_precision" / "noload_2350_real" / "case.toml").read_text()
+        case = self.folder / "case.toml"
+        case.write_text(re.sub(r"(?m)^mass_kg = .*", "mass_kg = 0", text, count=1))
+        result = run("run", case, "--model", "multibody", "--reactions", "residual", "--out", self.folder)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("without mass", result.stderr)
 
 
 class LongRunTest(Temporary):

@@ -70,7 +70,7 @@ class RandomCase {
     if (now_and_then()) p.piston.mass *= power(-9, 3);
     if (now_and_then()) p.piston.mass = 0;
     if (now_and_then()) p.piston.joint_mass_fraction = random_.in(0, 1) < 0.5 ? 0 : 1;
-    if (now_and_then() && p.piston.real)
+    if (p.piston.real && (now_and_then() || p.piston.mass == 0))
       p.piston.real->transverse_inertia = p.piston.real->axial_inertia = 0;
     if (now_and_then()) p.friction = {0, 0, 0.01, 0, 0, 1};
     if (now_and_then()) p.friction.regularization = 0;
