@@ -20,6 +20,7 @@
 #include "bentaxis/pump/files.h"
 #include "bentaxis/pump/units.h"
 #include "calibration.h"
+#include "channel_choice.h"
 #include "commands.h"
 #include "console.h"
 #include "hydraulic_case.h"
@@ -45,8 +46,9 @@ struct Options {
   multibody::IntegrationOptions integration;
   std::vector<double> accuracies;  // integrated: all are run, the last is reported in full
   multibody::SceneChoice scene;    // driven
-  ErrorTarget target;              // integrated: chooses integrator and accuracy instead
-  std::string choice;              // what was chosen for the target
+  ChannelChoice channels;
+  ErrorTarget target;  // integrated: chooses integrator and accuracy instead
+  std::string choice;  // what was chosen for the target
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
 };
 
@@ -246,6 +248,10 @@ int compare(Options options) {
     second = with_pressure(std::move(second)).the_case;
 
   const bool integrated = options.way == Way::integrated;
+  const ChannelLayout layout(first.pump.geometry.pistons);
+  if (!integrated) options.scene = options.channels.scene_for(layout, options.scene);
+  const auto wanted_channels = options.channels.of(layout);
+  const auto wanted = [&](const Channel& channel) { return options.channels.wants(channel); };
   PressureTrace pressure(first.pressure);
   PressureTrace second_pressure(second.pressure);
   Samples samples = samples_of(first, pressure, options.way);
@@ -284,6 +290,7 @@ int compare(Options options) {
     study.multibody = run_multibody(study, options, 0, nullptr);
 
   auto comparison = compare::compare_tables(study.analytic, study.multibody, comparison_options);
+  std::erase_if(comparison.channels, [&](const auto& c) { return !wanted(c.channel); });
   std::vector<compare::Check> checks =
       compare::judge_checks(study.analytic, comparison_options.zero_scales, study.tolerance);
   for (auto& check :
@@ -299,15 +306,16 @@ int compare(Options options) {
 
   // Fig. 32 with and without the block's viscous torque.
   std::vector<ResultTable> without_viscous;
-  if (the_case.pump.friction.block_viscous > 0 && !integrated) {
+  if (the_case.pump.friction.block_viscous > 0 && !integrated &&
+      options.scene.scene == multibody::Scene::full) {
     Case still = the_case;
     still.pump.friction.block_viscous = 0;
     without_viscous.push_back(analytic::run(still, the_case.analytic, study.samples));
     Case still_second = study.multibody_case;
     still_second.pump.friction.block_viscous = 0;
-    without_viscous.push_back(multibody::run_driven(still_second, still_second.multibody,
-                                                    study.multibody_samples,
-                                                    progress_of("multibody, Cc = 0")));
+    without_viscous.push_back(multibody::run_driven(
+        still_second, still_second.multibody, study.multibody_samples,
+        progress_of("multibody, Cc = 0"), options.scene.scene, options.scene.method));
   }
 
   const auto published =
@@ -350,7 +358,8 @@ int compare(Options options) {
       {"assumptions", nullptr},
       {"published", published ? published->json : Json()},
       {"runs", runs},
-      {"figures", figures_section(study.analytic, study.multibody, without_viscous)}};
+      {"figures", figures_of(wanted_channels,
+                             figures_section(study.analytic, study.multibody, without_viscous))}};
   if (ready.hydraulics) {
     report["runs"].push_back(hydraulic_block(the_case, *ready.hydraulics));
     for (Json& figure : hydraulic_figures(the_case, *ready.hydraulics))
@@ -378,8 +387,8 @@ int compare(Options options) {
   const Json curves = compare::curve_section(study.analytic, study.multibody);
   folder.add("report.html", compare::render_page(the_case.name, report, curves));
   folder.add("report.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  folder.add("analytic.csv", to_csv(study.analytic));
-  folder.add("multibody.csv", to_csv(study.multibody));
+  folder.add("analytic.csv", to_csv(select_channels(study.analytic, wanted)));
+  folder.add("multibody.csv", to_csv(select_channels(study.multibody, wanted)));
   const auto paths = folder.commit();
 
   std::printf("%s\n%s\n\n%s", the_case.name.c_str(),
@@ -412,7 +421,7 @@ Command add_compare_command(CLI::App& app) {
       ->check(positive_number())
       ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   add_way(*command, options->way);
-  add_scene(*command, options->scene);
+  options->channels.add_to(*command, add_scene(*command, options->scene));
   CLI::Option* integrator = add_integrator(*command, options->integration);
   CLI::Option* accuracy =
       command

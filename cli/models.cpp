@@ -44,17 +44,27 @@ ResultTable run_model(const std::string& model, const Case& the_case,
 }
 
 void stream_analytic(const Case& the_case, const Assumptions& assumptions,
-                     const PressureTrace& pressure, OutputFolder::Stream& out) {
+                     const PressureTrace& pressure,
+                     const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out) {
   const analytic::Model model(the_case.pump, assumptions);
   const Sampler sampler(the_case, pressure);
-  out.write(csv_header(model.layout().channels()));
+  std::vector<Channel> channels;
+  std::vector<std::size_t> columns;
+  for (std::size_t c = 0; c < model.layout().size(); ++c)
+    if (wanted(model.layout().channels()[c])) {
+      columns.push_back(c);
+      channels.push_back(model.layout().channels()[c]);
+    }
+  out.write(csv_header(channels));
   std::string line;
+  std::vector<double> values(columns.size());
   stream_rows(
       "analytic", model.layout(), sampler,
       [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
       [&](double theta_deg, const std::vector<double>& row) {
         line.clear();
-        append_csv_row(line, theta_deg, row.data(), row.size());
+        for (std::size_t i = 0; i < columns.size(); ++i) values[i] = row[columns[i]];
+        append_csv_row(line, theta_deg, values.data(), values.size());
         out.write(line);
       },
       progress_of("analytic"));

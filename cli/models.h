@@ -1,6 +1,7 @@
 // Runs either model on a case: the one place where a model's name becomes a model.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "bentaxis/compare/comparison.h"
@@ -30,8 +31,9 @@ ResultTable run_model(const std::string& model, const Case& the_case,
                       const multibody::SceneChoice& scene = {});
 
 /// Runs the analytic model over one turn and writes its curves as CSV, row by row: memory does not
-/// grow with the number of samples.
+/// grow with the number of samples. Only channels that are wanted.
 void stream_analytic(const Case& the_case, const Assumptions& assumptions,
-                     const PressureTrace& pressure, OutputFolder::Stream& out);
+                     const PressureTrace& pressure,
+                     const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out);
 
 }  // namespace bentaxis::cli

@@ -47,12 +47,14 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Enumeration&
 
 }  // namespace
 
-void add_scene(CLI::App& command, multibody::SceneChoice& choice) {
-  add_choice(command, "--scene", choice.scene, multibody::scene_names(),
-             "multibody, driven: what is built; what a scene does not compute stays empty");
+CLI::Option* add_scene(CLI::App& command, multibody::SceneChoice& choice) {
+  CLI::Option* scene =
+      add_choice(command, "--scene", choice.scene, multibody::scene_names(),
+                 "multibody, driven: what is built; what a scene does not compute stays empty");
   add_choice(command, "--reactions", choice.method, multibody::method_names(),
              "multibody, driven: by forward dynamics and its multipliers, or by inverse dynamics "
              "(faster; serves massless pistons too)");
+  return scene;
 }
 
 CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options) {

@@ -36,8 +36,8 @@ void add_error(CLI::App& command, ErrorTarget& target,
                CLI::Option* accuracy);
 /// A finite number in [low, high].
 CLI::Validator number_in(double low, double high);
-/// --scene and --reactions.
-void add_scene(CLI::App& command, multibody::SceneChoice& choice);
+/// --scene (returned) and --reactions.
+CLI::Option* add_scene(CLI::App& command, multibody::SceneChoice& choice);
 /// Accuracies that Simbody's integrators accept.
 CLI::Validator accuracy_range();
 /// A finite number above 0.

@@ -142,14 +142,15 @@ Json figures_section(const ResultTable& analytic, const ResultTable& multibody,
   add("rb2", "Cylindrical bearing force Rb2 on the shaft at C2, in S1", "Fig. 29", "N",
       {"Rb2_x1_N", "Rb2_y1_N"});
   Json& torque = add("td", "Drive torque Td", "Fig. 17, 30", "Nm", {"Td_z1_Nm"});
-  std::string means = "Mean torque:";
+  std::string means;
   for (const ResultTable* table : {&analytic, &multibody}) {
     double mean = 0;
     for (std::size_t row = 0; row < table->rows(); ++row)
       mean += table->at(row, table->find("Td_z1_Nm")) / static_cast<double>(table->rows());
-    means += fmt::format(" {} {:.5g} Nm{}", table->name, mean, table == &analytic ? "," : ".");
+    if (is_computed(mean))
+      means += fmt::format("{}{} {:.5g} Nm", means.empty() ? "" : ", ", table->name, mean);
   }
-  torque["note"] = means;
+  torque["note"] = "Mean torque: " + means + ".";
 
   const auto has = [](const ResultTable& table, const char* name) {
     const std::size_t column = table.find(name);
@@ -182,6 +183,17 @@ Json figures_section(const ResultTable& analytic, const ResultTable& multibody,
   add("film_point", "Point where Fh acts, from z2", "(53)", "mm", {"xh_x2_mm", "yh_y2_mm"});
   add("pin", "Pin force Rcn on the block", "(54)", "N", {"Rcn_x2_N", "Rcn_y2_N"});
   return figures;
+}
+
+Json figures_of(const std::vector<Channel>& channels, const Json& figures) {
+  Json shown = Json::array();
+  for (const Json& figure : figures)
+    if (std::any_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+          const Json& names = figure["channels"];
+          return std::find(names.begin(), names.end(), channel.name) != names.end();
+        }))
+      shown.push_back(figure);
+  return shown;
 }
 
 }  // namespace bentaxis::cli

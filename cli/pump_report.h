@@ -25,4 +25,7 @@ Json warnings_section(const std::vector<analytic::ValidityLimit>& limits);
 Json figures_section(const ResultTable& analytic, const ResultTable& multibody,
                      const std::vector<ResultTable>& without_viscous);
 
+/// The figures that show one of these channels.
+Json figures_of(const std::vector<Channel>& channels, const Json& figures);
+
 }  // namespace bentaxis::cli

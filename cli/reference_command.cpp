@@ -236,18 +236,7 @@ int make_new(const Options& options) {
 // What is worth keeping of a result: reactions and what follows from them, not the checks, which
 // are round-off.
 ResultTable kept(const ResultTable& table) {
-  ResultTable out;
-  out.name = table.name;
-  out.theta_deg = table.theta_deg;
-  std::vector<std::size_t> columns;
-  for (std::size_t c = 0; c < table.columns(); ++c)
-    if (table.channels[c].kind != ChannelKind::check) {
-      columns.push_back(c);
-      out.channels.push_back(table.channels[c]);
-    }
-  for (std::size_t row = 0; row < table.rows(); ++row)
-    for (const auto c : columns) out.values.push_back(table.at(row, c));
-  return out;
+  return select_channels(table, [](const Channel& c) { return c.kind != ChannelKind::check; });
 }
 
 int make_golden(const Options& options) {

@@ -5,6 +5,7 @@
 
 #include "bentaxis/pump/files.h"
 #include "calibration.h"
+#include "channel_choice.h"
 #include "commands.h"
 #include "hydraulic_case.h"
 #include "models.h"
@@ -17,6 +18,7 @@ struct Options {
   std::string case_file, model, out = "out";
   Way way = Way::driven;
   multibody::SceneChoice scene;
+  ChannelChoice channels;
   std::string gear;  ///< "", "mesh" or "imposed"
   multibody::IntegrationOptions integration;
   ErrorTarget target;
@@ -32,20 +34,27 @@ int run(const Options& options) {
   if (!options.gear.empty())
     assumptions.gear = options.gear == "imposed" ? GearScene::imposed : GearScene::mesh;
   if (options.target.error > 0) options.target.refuse_unless(way == Way::integrated);
+  const ChannelLayout layout(the_case.pump.geometry.pistons);
+  const bool driven = options.model == "multibody" && way == Way::driven;
+  const auto wanted = [&](const Channel& channel) { return options.channels.wants(channel); };
+  multibody::SceneChoice scene = options.scene;
+  if (driven)
+    scene = options.channels.scene_for(layout, scene);
+  else
+    options.channels.of(layout);  // refuses unknown names
   std::vector<std::string> warnings = rounding_warnings(the_case, assumptions);
-  if (options.model == "multibody" && way == Way::driven &&
-      options.scene.method == multibody::Method::multipliers)
+  if (driven && options.scene.method == multibody::Method::multipliers)
     for (auto& text : multiplier_warnings(the_case, assumptions)) warnings.push_back(text);
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
   if (options.model == "analytic") {
-    stream_analytic(the_case, assumptions, pressure, folder.open("analytic.csv"));
+    stream_analytic(the_case, assumptions, pressure, wanted, folder.open("analytic.csv"));
   } else if (options.target.error > 0) {
     const VerifiedRun verified =
         run_to_error(the_case, assumptions, samples_of(the_case, pressure, way), pressure,
                      options.target.error, options.target.integrators());
     std::fprintf(stderr, "chosen %s\n", verified.text().c_str());
-    folder.add("multibody.csv", to_csv(verified.run.table));
+    folder.add("multibody.csv", to_csv(select_channels(verified.run.table, wanted)));
   } else {
     folder.add("multibody.csv", to_csv(run_model(options.model, the_case, assumptions,
                                                  samples_of(the_case, pressure, way), pressure, way,
@@ -67,7 +76,7 @@ Command add_run_command(CLI::App& app) {
       ->option_text("analytic|multibody");
   add_out(*command, options->out, "the curves");
   add_way(*command, options->way);
-  add_scene(*command, options->scene);
+  options->channels.add_to(*command, add_scene(*command, options->scene));
   command
       ->add_option("--gear", options->gear,
                    "tooth force between shaft and block, or block speed imposed; overrides the "

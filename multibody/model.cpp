@@ -41,6 +41,17 @@ const std::vector<std::string>& method_names() {
   return names;
 }
 
+bool computes(Scene scene, const Channel& channel) {
+  return scene == Scene::full || channel.piston > 0;
+}
+
+Scene smallest_scene(const std::vector<Channel>& channels) {
+  const bool of_pistons = std::all_of(channels.begin(), channels.end(), [](const Channel& channel) {
+    return computes(Scene::piston, channel);
+  });
+  return of_pistons ? Scene::piston : Scene::full;
+}
+
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
                  Scene the_scene, Method the_method)

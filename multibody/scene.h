@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/channels.h"
+
 namespace bentaxis::multibody {
 
 /// What is built. A smaller scene computes fewer channels; the others are not_computed().
@@ -25,6 +27,11 @@ struct SceneChoice {
   Scene scene = Scene::full;
   Method method = Method::multipliers;
 };
+
+/// Whether a scene computes a channel: those of the pistons need neither bearings nor gear.
+bool computes(Scene scene, const Channel& channel);
+/// The smallest scene that computes all of these channels.
+Scene smallest_scene(const std::vector<Channel>& channels);
 
 /// Names as on the command line, in the order of the enumerations.
 const std::vector<std::string>& scene_names();

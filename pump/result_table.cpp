@@ -176,6 +176,23 @@ LoadScale load_scale(const Case& the_case, const Samples& samples) {
   return scale;
 }
 
+ResultTable select_channels(const ResultTable& table,
+                            const std::function<bool(const Channel&)>& wanted) {
+  ResultTable selected;
+  selected.name = table.name;
+  selected.theta_deg = table.theta_deg;
+  selected.provenance = table.provenance;
+  std::vector<std::size_t> columns;
+  for (std::size_t column = 0; column < table.columns(); ++column)
+    if (wanted(table.channels[column])) {
+      columns.push_back(column);
+      selected.channels.push_back(table.channels[column]);
+    }
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (const std::size_t column : columns) selected.values.push_back(table.at(row, column));
+  return selected;
+}
+
 std::string csv_header(const std::vector<Channel>& channels) {
   std::string text = "theta_deg";
   for (const Channel& channel : channels) text += "," + channel.name;

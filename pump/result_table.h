@@ -101,6 +101,10 @@ struct LoadScale {
 };
 LoadScale load_scale(const Case& the_case, const Samples& samples);
 
+/// The table with only those of its channels that are wanted.
+ResultTable select_channels(const ResultTable& table,
+                            const std::function<bool(const Channel&)>& wanted);
+
 /// The table as CSV text: theta_deg, then one column per channel; shortest text that reads back to
 /// the same double; not computed = empty.
 std::string to_csv(const ResultTable& table);
