@@ -56,9 +56,10 @@ int run(const Options& options) {
     std::fprintf(stderr, "chosen %s\n", verified.text().c_str());
     folder.add("multibody.csv", to_csv(select_channels(verified.run.table, wanted)));
   } else {
-    folder.add("multibody.csv", to_csv(run_model(options.model, the_case, assumptions,
-                                                 samples_of(the_case, pressure, way), pressure, way,
-                                                 options.integration, nullptr, options.scene)));
+    const ResultTable table =
+        run_model(options.model, the_case, assumptions, samples_of(the_case, pressure, way),
+                  pressure, way, options.integration, nullptr, scene);
+    folder.add("multibody.csv", to_csv(select_channels(table, wanted)));
   }
   for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
   return kDone;

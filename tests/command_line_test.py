@@ -259,6 +259,36 @@ class RunTest(ProgramTest):
                     self.assertEqual(heading[:len(wanted)], wanted)
                     self.assertEqual([float(row[0]) for row in rows], [360 * i / 7 for i in range(7)])
 
+    def test_only_the_channels_asked_for(self):
+        case = self.case()
+        self.run_program("run", case, "--model", "analytic", "--out", "all")
+        self.run_program("run", case, "--model", "multibody", "--scene", "piston", "--out", "all")
+        for model in self.MODELS:
+            with self.subTest(model):
+                result = self.run_program("run", case, "--model", model, "--channels", "Rc,Rs_2_z2_N,zB",
+                                          "--out", "some")
+                heading, rows = self.read_csv(f"some/{model}.csv")
+                wanted = [h for h in self.read_csv(f"all/{model}.csv")[0]
+                          if h in ("theta_deg", "Rs_2_z2_N") or h.startswith(("Rc_", "zB_"))]
+                self.assertEqual(heading, wanted)
+                self.assertEqual(len(heading), 1 + 10 + 1 + 5)
+                for name in heading[1:]:
+                    self.assertEqual(self.column(f"some/{model}.csv", name), self.column(f"all/{model}.csv", name))
+                # The multibody model built only one piston, and said so.
+                self.assertEqual(model == "multibody", 'scene "piston"' in result.err)
+        self.assertEqual(self.run_program("run", case, "--model", "multibody", "--channels", "Td,Rs", "--out",
+                                          "pump").err, "")
+        self.assertEqual(self.run_program("run", case, "--model", "multibody", "--channels", "Rs", "--scene", "full",
+                                          "--out", "pump").err, "")
+
+    def test_channels_that_are_none(self):
+        case = self.case()
+        for model in self.MODELS:
+            self.assert_mentions(self.refused("run", case, "--model", model, "--channels", "Rx"), "Rx", "Rs, Rc, Fh")
+        self.assert_mentions(self.refused("compare", case, "--channels", "Rs_6_z2_N"), "Rs_6_z2_N")
+        self.assert_mentions(self.refused("run", case, "--model", "multibody", "--channels", "Rs,Td", "--scene",
+                                          "pistons"), "--scene pistons", "Td_z1_Nm")
+
     def test_numbers_are_the_shortest_that_read_back(self):
         case = self.case()
         for model in self.MODELS:
@@ -356,6 +386,17 @@ class CompareTest(ProgramTest):
         for model in RunTest.MODELS:
             self.run_program("run", case, "--model", model, "--out", "each")
             self.assertEqual(*[(self.folder / out / f"{model}.csv").read_bytes() for out in ("both", "each")])
+
+    def test_only_the_channels_asked_for(self):
+        result = self.run_program("compare", self.case(), "--channels", "Rs,Tc", "--out", "out")
+        self.assertIn('scene "piston"', result.err)
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        self.assertEqual({c["name"].split("_")[0] for c in report["channels"]}, {"Rs", "Tc"})
+        self.assertEqual({f["id"] for f in report["figures"]}, {"rs", "rs_xy", "rs3", "shares"})
+        # What the scene does not compute has not been checked.
+        self.assertEqual([c["name"] for c in report["checks"] if c["model"] == "multibody"],
+                         ["moment about the piston's own axis"])
+        self.assertNotIn("not computed", result.out)
 
     def test_tolerance_decides_the_status(self):
         self.run_program("compare", self.case(), "--tolerance", "1e-25", "--out", "out", status=OUT_OF_TOLERANCE)

@@ -161,6 +161,10 @@ PROBE = r"""
              axes: labels(e, "text.axis").map(l => l.text), ticks: labels(e, "text:not(.axis)").length,
              overlaps: overlaps(labels(e, "text")) };
   });
+  const groups = () => [...document.querySelectorAll("table.comparison tbody.group > tr")].map(row => {
+    const cell = head => row.querySelector(`[data-head="${head}"] > div`).textContent;
+    return { name: row.querySelector("button").textContent, verdict: cell("Verdict"), of_peak: cell("of peak") };
+  });
   const spot = selector => {
     const e = document.querySelector(selector);
     if (!e || !shown(e)) return null;
@@ -172,7 +176,7 @@ PROBE = r"""
   const failure = [...document.querySelectorAll("[role=alert]")].map(e => e.textContent);
   const result = { errors: window.probeErrors.concat(failure), ready: root.dataset.ready };
   try {
-    Object.assign(result, { first: measure(), plots: plots(), bars: bars(), title: document.title,
+    Object.assign(result, { first: measure(), plots: plots(), bars: bars(), groups: groups(), title: document.title,
       heading: document.querySelector("h1") && document.querySelector("h1").textContent,
       figures: document.querySelectorAll("figure").length, word: spot(".banner .word"),
       headline: spot(".banner .headline"), images: document.images.length,
@@ -338,6 +342,16 @@ class PageTest(unittest.TestCase):
                     self.assertLess(place["top"], 600)
                 self.assertEqual(page["word"]["text"], REPORTS[name].word)
                 self.assertGreater(len(page["headline"]["text"]), 20)
+
+    def test_a_group_shows_its_worst_verdict(self):
+        """Unequal assumptions: what differs by a visible share of its peak is not said to agree."""
+        for width in WIDTHS:
+            groups = self.measured["unequal", width]["groups"]
+            self.assertGreater(len(groups), 5)
+            for group in groups:
+                if "%" in group["of_peak"]:
+                    self.assertEqual(group["verdict"], "explained", group)
+            self.assertIn("explained", [g["verdict"] for g in groups])
 
     def test_plots(self):
         for (name, width), page in self.measured.items():

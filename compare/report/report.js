@@ -254,7 +254,8 @@ function groupChannels(channels) {
     const missing = states.filter(s => s === "not computed").length;
     return Object.assign(group, { worst, unit: worst.unit, meaning: worst.meaning,
       theta_of_max_deg: worst.theta_of_max_deg,
-      state: states.includes("differs") ? "differs" : states.find(s => s !== "not computed") || "not computed",
+      state: ["differs", "explained"].find(s => states.includes(s)) || states.find(s => s !== "not computed") ||
+        "not computed",
       missing: missing < states.length ? missing : 0 });
   });
 }
