@@ -49,12 +49,12 @@ BENTAXIS_INLINE void stream(const xsimd::batch<double, A>& value, double* to) {
 
 template <class Real>
 struct Lanes {
-  static constexpr std::size_t count = Real::size;
+  static constexpr std::size_t kLanes = Real::size;
 
   BENTAXIS_INLINE static Real load(const double* from, std::size_t used) {
-    if (used == count) return Real::load_unaligned(from);
-    double padded[count];
-    for (std::size_t i = 0; i < count; ++i) padded[i] = from[i < used ? i : 0];
+    if (used == kLanes) return Real::load_unaligned(from);
+    double padded[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i) padded[i] = from[i < used ? i : 0];
     return Real::load_unaligned(padded);
   }
   BENTAXIS_INLINE static Real load(const BatchJob::Column& column, std::size_t at,
@@ -63,14 +63,14 @@ struct Lanes {
   }
   template <bool kStream>
   BENTAXIS_INLINE static void store(const Real& value, double* to, std::size_t used) {
-    if (used == count) {
+    if (used == kLanes) {
       if constexpr (kStream)
         stream(value, to);
       else
         value.store_unaligned(to);
       return;
     }
-    double padded[count];
+    double padded[kLanes];
     value.store_unaligned(padded);
     for (std::size_t i = 0; i < used; ++i) to[i] = padded[i];
   }
@@ -102,11 +102,11 @@ BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump
 template <class Real>
 BENTAXIS_INLINE closed_form::Pump<Real> load_pumps(const BatchJob& job, std::size_t at,
                                                    std::size_t used) {
-  constexpr std::size_t numbers = sizeof(closed_form::Pump<double>) / sizeof(double);
-  static_assert(sizeof(closed_form::Pump<Real>) == numbers * sizeof(Real));
+  constexpr std::size_t kNumbers = sizeof(closed_form::Pump<double>) / sizeof(double);
+  static_assert(sizeof(closed_form::Pump<Real>) == kNumbers * sizeof(Real));
   closed_form::Pump<Real> pump;
-  Real all[numbers];
-  for (std::size_t i = 0; i < numbers; ++i)
+  Real all[kNumbers];
+  for (std::size_t i = 0; i < kNumbers; ++i)
     all[i] = Lanes<Real>::load(job.pumps + i * job.pumps_stride + at, used);
   std::memcpy(&pump, all, sizeof pump);
   return pump;
@@ -114,16 +114,16 @@ BENTAXIS_INLINE closed_form::Pump<Real> load_pumps(const BatchJob& job, std::siz
 
 template <class Real, bool kStream>
 void run_lanes(const BatchJob& job, std::size_t begin, std::size_t end) {
-  constexpr std::size_t width = Real::size;
+  constexpr std::size_t kWidth = Real::size;
   std::size_t at = begin;
   if (job.pumps == nullptr) {
     const closed_form::Pump<double> pump = *job.pump;  // a copy: results cannot overlap it
-    for (; at + width <= end; at += width) evaluate_lanes<Real, kStream>(job, pump, at, width);
+    for (; at + kWidth <= end; at += kWidth) evaluate_lanes<Real, kStream>(job, pump, at, kWidth);
     if (at < end) evaluate_lanes<Real, kStream>(job, pump, at, end - at);
     return;
   }
-  for (; at < end; at += width) {
-    const std::size_t used = end - at < width ? end - at : width;
+  for (; at < end; at += kWidth) {
+    const std::size_t used = end - at < kWidth ? end - at : kWidth;
     evaluate_lanes<Real, kStream>(job, load_pumps<Real>(job, at, used), at, used);
   }
 }

@@ -47,10 +47,10 @@ namespace {
 
 // A pump's numbers in another type: Pump is an array of numbers with names.
 closed_form::Pump<long double> extended(const closed_form::Pump<double>& pump) {
-  constexpr std::size_t count = sizeof pump / sizeof(double);
-  double numbers[count];
+  constexpr std::size_t kCount = sizeof pump / sizeof(double);
+  double numbers[kCount];
   std::memcpy(numbers, &pump, sizeof numbers);
-  long double wide[count];
+  long double wide[kCount];
   std::copy(std::begin(numbers), std::end(numbers), std::begin(wide));
   closed_form::Pump<long double> result;
   static_assert(sizeof result == sizeof wide);

@@ -25,7 +25,7 @@ struct PreparedPump {
 };
 
 /// Fills in what depends on the geometry alone.
-void prepare_geometry(const Geometry& geometry, closed_form::Pump<double>& numbers);
+void prepare_geometry(const Geometry& g, closed_form::Pump<double>& p);
 
 /// @throws InputError if real pistons are asked for and the pump has no data of them.
 PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions);

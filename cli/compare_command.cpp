@@ -369,9 +369,9 @@ int compare(Options options) {
   report["runs"].push_back(rounding_block(rounding_lines(the_case, the_case.analytic)));
   for (const auto& text : rounding_warnings(the_case, the_case.analytic))
     report["warnings"].push_back({{"name", "digits lost to rounding"}, {"text", text}});
-  if (!integrated && options.scene.method == multibody::Method::multipliers)
+  if (!integrated)
     for (const auto& text :
-         multiplier_warnings(study.multibody_case, study.multibody_case.multibody))
+         multibody_warnings(study.multibody_case, study.multibody_case.multibody, options.scene))
       report["warnings"].push_back({{"name", "digits lost in Simbody"}, {"text", text}});
   if (split.split) {
     report["verdict"]["word"] = agrees ? "Explained" : "Not explained";

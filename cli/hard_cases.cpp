@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <random>
+#include <map>
 #include <sstream>
 
 #include "bentaxis/analytic/model.h"
@@ -15,15 +15,11 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/inputs.h"
 #include "console.h"
+#include "rounding_spread.h"
 
 namespace bentaxis::cli {
 namespace {
-
-// Copies of a pump with every input moved by one unit in its last place, for the spread of the
-// multibody model.
-constexpr int kDraws = 4;
 
 ResultTable read_reference(const HardCase& hard, const ChannelLayout& layout,
                            const Samples& samples) {
@@ -51,37 +47,11 @@ compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
   return {{"N", scale.force}, {"Nm", scale.moment}};
 }
 
-// Largest difference of each scale group over its peak in `first`.
 std::vector<GroupLoss> losses(const compare::Comparison& comparison) {
   std::vector<GroupLoss> groups;
-  for (const auto& c : comparison.channels) {
-    if (c.channel.kind != ChannelKind::reaction) continue;
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const GroupLoss& g) { return g.group == c.channel.group; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {c.channel.group, 0, 0});
-    if (c.verdict != compare::Verdict::not_computed)
-      group->measured = std::max(group->measured, c.largest_over_peak());
-  }
+  for (const auto& [group, largest] : largest_of_groups(comparison))
+    groups.push_back({group, largest, 0});
   return groups;
-}
-
-double measured_of(const std::vector<GroupLoss>& groups, const std::string& name) {
-  for (const GroupLoss& g : groups)
-    if (g.group == name) return g.measured;
-  return 0;
-}
-
-// A case with every input of its pump moved by one unit in the last place, up or down.
-Case moved(const Case& the_case, std::mt19937& engine) {
-  Case copy = the_case;
-  for (const PumpInput& input : continuous_inputs(copy.pump)) {
-    const double sign = (engine() & 1U) != 0 ? 1 : -1;
-    const double value = *input.value * (1 + sign * std::numeric_limits<double>::epsilon());
-    const bool share =
-        input.name == "piston.joint_mass_fraction" || input.name == "friction.shaft_torque_factor";
-    if (!share || value <= 1) *input.value = value;
-  }
-  return copy;
 }
 
 using Run = std::function<ResultTable(const Case&)>;
@@ -201,29 +171,6 @@ HardOutcome outcome_of(const HardCase& hard, const std::string& model) {
   return outcome;
 }
 
-// The largest loss of each group over copies of the pump with every input moved.
-std::vector<GroupLoss> spread_of(const Case& the_case, const ResultTable& table,
-                                 const compare::Options& options, const Run& run) {
-  std::mt19937 engine(1);
-  std::vector<GroupLoss> spread;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    try {
-      const auto comparison = compare::compare_tables(table, run(moved(the_case, engine)), options);
-      for (const GroupLoss& g : losses(comparison)) {
-        auto same = std::find_if(spread.begin(), spread.end(),
-                                 [&](const GroupLoss& s) { return s.group == g.group; });
-        if (same == spread.end())
-          spread.push_back(g);
-        else
-          same->measured = std::max(same->measured, g.measured);
-      }
-    } catch (const ComputationError&) {
-      // This copy was refused: it says nothing about the loss.
-    }
-  }
-  return spread;
-}
-
 }  // namespace
 
 std::vector<HardOutcome> run_hard_case(const HardCase& hard) {
@@ -239,7 +186,7 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard) {
   HardOutcome analytic = outcome_of(hard, "analytic");
   ResultTable table;
   const Run run_analytic = [&](const Case& c) { return analytic::run(c, c.analytic, samples); };
-  std::vector<GroupLoss> of_inputs;  // over peak
+  std::map<std::string, double> of_inputs;  // over peak
   if (attempt(analytic, the_case, reference, options, run_analytic, table)) {
     const auto estimated = analytic::estimate_rounding(the_case, the_case.analytic, samples,
                                                        pressure, samples.theta_deg.size());
@@ -252,7 +199,7 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard) {
         const double peak = compare::scale_of(reference, *channel, options.zero_scales);
         if (!(peak > 0)) continue;
         g.predicted = e.total() / peak;
-        of_inputs.push_back({g.group, e.inputs / peak, 0});
+        of_inputs[g.group] = e.inputs / peak;
         if (&g == worst) analytic.weak_point = e.input;
       }
     }
@@ -268,9 +215,8 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard) {
     };
     if (attempt(outcome, the_case, reference, options, run, table)) {
       outcome.weak_point = analytic.weak_point;
-      const auto spread = spread_of(the_case, table, options, run);
-      for (GroupLoss& g : outcome.groups)
-        g.predicted = measured_of(of_inputs, g.group) + measured_of(spread, g.group);
+      auto spread = rounding_spread(the_case, table, options, run);
+      for (GroupLoss& g : outcome.groups) g.predicted = of_inputs[g.group] + spread[g.group];
       judge(outcome);
     }
     outcomes.push_back(std::move(outcome));

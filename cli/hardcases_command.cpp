@@ -121,31 +121,26 @@ std::string markdown_of(const std::vector<Row>& rows) {
 // One block per group of cases, a row per case.
 Json page_runs(const std::vector<Row>& rows) {
   Json columns = {"case", "what is hard", "set to"};
-  for (const auto& model : hard_models())
-    for (const auto& column :
-         {model, model + ": digits", std::string("predicted"), std::string("least in")})
-      columns.push_back(column);
+  for (const auto& model : hard_models()) columns.push_back(model);
   columns.push_back("message");
   Json runs = Json::array();
-  const auto shown = [](double loss) { return Json(std::round(10 * digits(loss)) / 10); };
   for (std::size_t i = 0; i < rows.size(); i += hard_models().size()) {
     const HardCase& hard = rows[i].hard;
     auto block = std::find_if(runs.begin(), runs.end(),
                               [&](const Json& r) { return r["title"] == hard.group; });
     if (block == runs.end()) {
-      runs.push_back(
-          {{"title", hard.group}, {"table", {{"columns", columns}, {"rows", Json::array()}}}});
+      runs.push_back({{"title", hard.group},
+                      {"text",
+                       "Digits of the worst reaction, in brackets those predicted, and which "
+                       "reaction it is."},
+                      {"table", {{"columns", columns}, {"rows", Json::array()}}}});
       block = runs.end() - 1;
     }
     Json row = {hard.name, hard.hard, joined(hard.changes, ", ")};
     std::vector<std::string> messages;
     for (std::size_t m = 0; m < hard_models().size(); ++m) {
       const HardOutcome& o = rows[i + m].outcome;
-      const GroupLoss* worst = o.worst();
-      row.push_back(to_string(o.verdict));
-      row.push_back(worst ? shown(worst->measured) : Json());
-      row.push_back(worst ? shown(worst->predicted) : Json());
-      row.push_back(worst ? Json(worst->group) : Json());
+      row.push_back(cell(o) + (o.worst() ? " " + o.worst()->group : ""));
       if (!o.message.empty()) messages.push_back(o.model + ": " + o.message);
     }
     row.push_back(joined(messages, "; "));

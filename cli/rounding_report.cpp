@@ -10,12 +10,14 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
+#include "rounding_spread.h"
 
 namespace bentaxis::cli {
 namespace {
 
 constexpr int kAngles = 24;
-constexpr double kWorthAWarning = 1e-9;  // of peak: the tolerance of a comparison
+constexpr double kWorthAWarning = 1e-9;   // of peak: the tolerance of a comparison
+constexpr double kMoreThanEstimated = 3;  // an estimate of the first order is no closer than that
 
 Case at_few_angles(const Case& the_case) {
   Case thin = the_case;
@@ -60,33 +62,35 @@ std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptio
   return warnings;
 }
 
-std::vector<std::string> multiplier_warnings(const Case& the_case, const Assumptions& assumptions) {
+std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
+                                            const multibody::SceneChoice& scene) {
   const Case thin = at_few_angles(the_case);
   const PressureTrace pressure(thin.pressure);
   const Samples samples = sample_case(thin, pressure);
-  const auto by = [&](multibody::Method method) {
-    return multibody::run_driven(thin, assumptions, samples, {}, multibody::Scene::full, method);
+  const auto run = [&](const Case& c) {
+    return multibody::run_driven(c, assumptions, samples, {}, scene.scene, scene.method);
   };
   std::map<std::string, double> lost;
   try {
     compare::Options options;
     options.zero_scales = zero_scales_of(thin, samples);
-    const auto comparison = compare::compare_tables(by(multibody::Method::residual),
-                                                    by(multibody::Method::multipliers), options);
-    for (const auto& c : comparison.channels)
-      if (c.channel.kind == ChannelKind::reaction && c.verdict != compare::Verdict::not_computed)
-        lost[c.channel.group] = std::max(lost[c.channel.group], c.largest_over_peak());
+    lost = rounding_spread(thin, run(thin), options, run);
   } catch (const ComputationError&) {
     return {};
   }
+  for (const RoundingLine& line : rounding_lines(the_case, assumptions))
+    if (lost[line.group] < kMoreThanEstimated * line.total()) lost.erase(line.group);
   std::vector<std::string> warnings;
+  const bool multipliers = scene.method == multibody::Method::multipliers;
   for (const auto& [group, loss] : lost)
     if (loss > kWorthAWarning)
       warnings.push_back(fmt::format(
-          "{} of the multibody model is known to {:.1e} of its peak only: Simbody's constraint "
-          "multipliers differ by that from the same model's inverse dynamics; use --reactions "
-          "residual",
-          group, loss));
+          "{} of the multibody model is known to {:.1e} of its peak only: moving every input by "
+          "one unit in the last place changes it by that{}",
+          group, loss,
+          multipliers ? "; Simbody's constraint multipliers may be the cause: try --reactions "
+                        "residual"
+                      : "; the analytic model loses less"));
   return warnings;
 }
 

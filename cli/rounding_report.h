@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 
 namespace bentaxis::cli {
@@ -25,10 +26,11 @@ std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions
 /// One sentence per group that rounding may change by more than 1e-9 of its peak.
 std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptions& assumptions);
 
-/// One sentence per group that the multibody model's constraint multipliers, driven, have lost more
-/// of than 1e-9 of its peak: what they differ by from the same model's reactions by inverse
-/// dynamics, at up to 24 angles. Empty where the model refuses the case.
-std::vector<std::string> multiplier_warnings(const Case& the_case, const Assumptions& assumptions);
+/// One sentence per group that the driven multibody model has lost more of than 1e-9 of its peak,
+/// and more than the estimate above: what moving every input by one unit in the last place changes,
+/// at up to 24 angles. Empty where the model refuses the case.
+std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
+                                            const multibody::SceneChoice& scene);
 
 /// A block for the report, as in its section "runs".
 nlohmann::json rounding_block(const std::vector<RoundingLine>& lines);

@@ -43,8 +43,8 @@ int run(const Options& options) {
   else
     options.channels.of(layout);  // refuses unknown names
   std::vector<std::string> warnings = rounding_warnings(the_case, assumptions);
-  if (driven && options.scene.method == multibody::Method::multipliers)
-    for (auto& text : multiplier_warnings(the_case, assumptions)) warnings.push_back(text);
+  if (driven)
+    for (auto& text : multibody_warnings(the_case, assumptions, scene)) warnings.push_back(text);
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
   if (options.model == "analytic") {

@@ -484,7 +484,7 @@ void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t
 void PumpSystem::remember_placement(const std::vector<Vec3>& angular_acceleration) {
   Track& track = tracks_[placed_track_];
   std::swap(track.before, track.last);
-  if (!track.last) track.last.emplace();
+  if (!track.last) track.last = Placement{};
   track.last->theta = placed_theta_;
   track.last->pistons.resize(bodies_.pistons.size());
   const Rotation& shaft = shaft_.getBodyRotation(dynamics_);

@@ -217,21 +217,21 @@ TEST(Batch, WritesWhatWasAskedForAndNothingElse) {
   const Arrays arrays(instants);
   const BatchModel model(the_case.pump, the_case.analytic);
   const std::size_t reactions = model.layout().reactions();
-  constexpr double untouched = 4321;
+  constexpr double kUntouched = 4321;
   for (const InstructionSet set : available_instruction_sets()) {
     BatchColumns all(reactions, instants.size());
     model.reactions(arrays.instants, outputs_of(model.layout(), ChannelGroup::all, all), {set, 1});
     for (const ChannelGroup group : {ChannelGroup::pistons, ChannelGroup::bearings}) {
       BatchColumns part(reactions, instants.size());
       for (std::size_t c = 0; c < reactions; ++c)
-        std::fill_n(part.column(c), instants.size() + 1, untouched);  // and one beyond the end
+        std::fill_n(part.column(c), instants.size() + 1, kUntouched);  // and one beyond the end
       const BatchOutputs outputs = outputs_of(model.layout(), group, part);
       model.reactions(arrays.instants, outputs, {set, 1});
       for (std::size_t c = 0; c < reactions; ++c) {
         for (std::size_t i = 0; i < instants.size(); ++i)
-          ASSERT_EQ(part.column(c)[i], outputs[c] != nullptr ? all.column(c)[i] : untouched)
+          ASSERT_EQ(part.column(c)[i], outputs[c] != nullptr ? all.column(c)[i] : kUntouched)
               << model.layout().channels()[c].name << " " << to_string(set);
-        ASSERT_EQ(part.column(c)[instants.size()], untouched);
+        ASSERT_EQ(part.column(c)[instants.size()], kUntouched);
       }
     }
   }

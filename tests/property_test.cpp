@@ -169,10 +169,13 @@ Failure size_scales(const Look& look) {
 
 // Nothing jumps where an angle is special: dead centres, quarter turns, k3_y = 0.
 Failure is_continuous(const Look& look) {
-  const auto& [c, theta_deg, instant, at, values, scales] = look;
+  const Case& c = look.c;
+  const ChannelLayout& at = look.at;
+  const Scales& scales = look.scales;
+  const auto& values = look.values;
   if (c.pump.friction.regularization == 0) return {};  // jumps at dead centres, as it should
-  Instant i = instant;
-  for (const double middle : {i.theta, radians(90 * std::floor(theta_deg / 90))}) {
+  Instant i = look.i;
+  for (const double middle : {i.theta, radians(90 * std::floor(look.theta_deg / 90))}) {
     // Over a distance h the reactions change by about h/H of what they change over H. Sliding
     // friction smooths over v_reg: H is within that.
     const double speed = std::abs(i.omega) * c.pump.geometry.joint_circle_radius;

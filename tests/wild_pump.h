@@ -137,10 +137,10 @@ inline Case shrink(Case the_case, const std::function<bool(const Case&)>& fails)
       [](Case& c) { c.pump.piston.mass = 0; },
       [](Case& c) { c.pump.shaft.mass = c.pump.block.mass = 0; }};
   for (int n = 1; n < the_case.pump.geometry.pistons; ++n)
-    steps.push_back(
+    steps.emplace_back(
         [n](Case& c) { c.pump.geometry.pistons = std::min(n, c.pump.geometry.pistons); });
   for (std::size_t i = 0; i < continuous_inputs(the_case.pump).size(); ++i)
-    steps.push_back([i](Case& c) {  // fewer digits
+    steps.emplace_back([i](Case& c) {  // fewer digits
       const auto inputs = continuous_inputs(c.pump);
       if (i >= inputs.size()) return;
       double& value = *inputs[i].value;

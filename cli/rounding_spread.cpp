@@ -1,0 +1,58 @@
+#include "rounding_spread.h"
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/inputs.h"
+
+namespace bentaxis::cli {
+namespace {
+
+constexpr int kDraws = 4;
+
+// A case with every input of its pump moved by one unit in the last place, up or down.
+Case moved(const Case& the_case, std::mt19937& engine) {
+  Case copy = the_case;
+  for (const PumpInput& input : continuous_inputs(copy.pump)) {
+    const double sign = (engine() & 1U) != 0 ? 1 : -1;
+    const double value = *input.value * (1 + sign * std::numeric_limits<double>::epsilon());
+    const bool share =
+        input.name == "piston.joint_mass_fraction" || input.name == "friction.shaft_torque_factor";
+    if (!share || value <= 1) *input.value = value;
+  }
+  return copy;
+}
+
+}  // namespace
+
+std::map<std::string, double> largest_of_groups(const compare::Comparison& comparison) {
+  std::map<std::string, double> groups;
+  for (const auto& c : comparison.channels) {
+    if (c.channel.kind != ChannelKind::reaction) continue;
+    double& largest = groups[c.channel.group];
+    if (c.verdict != compare::Verdict::not_computed)
+      largest = std::max(largest, c.largest_over_peak());
+  }
+  return groups;
+}
+
+std::map<std::string, double> rounding_spread(const Case& the_case, const ResultTable& table,
+                                              const compare::Options& options,
+                                              const std::function<ResultTable(const Case&)>& run) {
+  std::mt19937 engine(1);
+  std::map<std::string, double> spread;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    try {
+      const auto comparison = compare::compare_tables(table, run(moved(the_case, engine)), options);
+      for (const auto& [group, change] : largest_of_groups(comparison))
+        spread[group] = std::max(spread[group], change);
+    } catch (const ComputationError&) {
+      // This copy was refused.
+    }
+  }
+  return spread;
+}
+
+}  // namespace bentaxis::cli
