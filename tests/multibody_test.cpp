@@ -264,5 +264,55 @@ TEST(Integrated, AnalyticTorqueHoldsTheSpeedOfAFreeShaft) {
   EXPECT_GT(run(), 1e-3);
 }
 
+// ---- rank of the constraints ------------------------------------------------------------------
+
+std::string fact(const Provenance& provenance, const std::string& name) {
+  for (const auto& [key, value] : provenance.facts)
+    if (key == name) return value;
+  return "";
+}
+
+Provenance provenance_of(const PumpParameters& pump, const Assumptions& assumptions,
+                         multibody::Method method = multibody::Method::multipliers) {
+  multibody::Model model(pump, assumptions, 1, multibody::Scene::full, method);
+  Instant instant;
+  instant.omega = 1;
+  instant.chamber_pressure.assign(pump.geometry.pistons, 1e5);
+  std::vector<double> values(model.layout().size());
+  model.evaluate(instant, values);
+  return model.provenance();
+}
+
+// Nothing missing, nothing twice: as many independent equations as mobilities, but for the spins
+// that real pistons keep.
+TEST(Rank, EveryMobilityIsHeldOnce) {
+  for (const char* name : {"bap63_rated", "noload_2350_real"}) {
+    const Case the_case = reference_case(name);
+    const Provenance p = provenance_of(the_case.pump, the_case.multibody);
+    const int n = the_case.pump.geometry.pistons;
+    const bool spins = the_case.multibody.inertia == PistonInertia::real;
+    EXPECT_EQ(fact(p, "rank of the constraint matrix"), fact(p, "constraint equations")) << name;
+    EXPECT_EQ(std::stoi(fact(p, "mobilities")) - std::stoi(fact(p, "constraint equations")),
+              spins ? n : 0)
+        << name;
+  }
+}
+
+// A bearing that repeats what the other does: its equations are none, its forces anybody's guess.
+TEST(Rank, RedundantConstraintsAreRefusedByName) {
+  Case the_case = reference_case("bap63_rated");
+  the_case.pump.bearings.cylindrical_z = the_case.pump.bearings.tapered_z;
+  for (const auto method : {multibody::Method::multipliers, multibody::Method::residual}) {
+    try {
+      provenance_of(the_case.pump, the_case.multibody, method);
+      FAIL() << "not refused";
+    } catch (const ComputationError& error) {
+      EXPECT_NE(std::string(error.what()).find("14 constraint equations have rank 12"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bentaxis::test
