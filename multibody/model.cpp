@@ -9,6 +9,7 @@
 #include "bentaxis/multibody/reactions.h"
 #include "bentaxis/multibody/solver_guard.h"
 #include "bentaxis/multibody/versions.h"
+#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 
@@ -82,6 +83,7 @@ struct Model::Implementation {
   std::vector<double> pressure;
   std::vector<SimTK::Vec3> angular_accelerations;
   PumpSystem::Rank rank;
+  long placements = 0;
   double sign;
 };
 
@@ -124,6 +126,7 @@ void Model::Implementation::place_and_solve(double theta, const Instant& instant
   system.inputs().rest_speed = instant.omega == 0
                                    ? std::numeric_limits<double>::infinity()
                                    : piston_rest_speed(system.pump().geometry, instant.omega);
+  ++placements;
   system.place(theta, instant.omega, instant.omega_dot, track);
   SimTK::State& state = system.dynamics();
   if (method == Method::multipliers) {
@@ -234,6 +237,16 @@ Provenance Model::provenance() const {
   facts.emplace_back("mobilities", std::to_string(self.rank.mobilities));
   facts.emplace_back("constraint equations", std::to_string(self.rank.equations));
   facts.emplace_back("rank of the constraint matrix", std::to_string(self.rank.rank));
+  const auto& simbody = self.system.system();
+  const auto per_angle = [&](Stage stage) {
+    return number_text(std::round(100.0 * simbody.getNumRealizationsOfThisStage(stage) /
+                                  static_cast<double>(std::max(self.placements, 1L))) /
+                       100);
+  };
+  facts.emplace_back("realizations per angle", "positions " + per_angle(Stage::Position) +
+                                                   ", velocities " + per_angle(Stage::Velocity) +
+                                                   ", accelerations " +
+                                                   per_angle(Stage::Acceleration));
   return provenance;
 }
 

@@ -2,6 +2,7 @@
 // full pump, and right answers or a clear refusal where a piston has no inertia.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <tuple>
 
 #include "bentaxis/multibody/model.h"
@@ -254,6 +255,33 @@ TEST(DynamicallyEquivalent, NeedsTheCentreOfMassBetweenTheEnds) {
   the_case.pump.piston.real->transverse_inertia = the_case.pump.piston.real->axial_inertia = 0;
   EXPECT_NO_THROW(analytic::Model(the_case.pump, masses));
   EXPECT_NO_THROW(multibody::Model(the_case.pump, masses, 1));
+}
+
+// ---- counts -----------------------------------------------------------------------------------
+
+// What an angle costs, as counts that no busy machine changes: one Newton step from the
+// extrapolated placement and the check of it, velocities once, accelerations once or not at all.
+TEST(Counts, RealizationsPerAngle) {
+  Case the_case = reference_case("bap63_rated");
+  the_case.operation.samples_per_revolution = 720;
+  for (const Method method : {Method::multipliers, Method::residual})
+    for (const Scene scene : {Scene::full, Scene::pistons, Scene::piston}) {
+      const ResultTable table = multibody::run_driven(the_case, the_case.multibody,
+                                                      one_turn(the_case), {}, scene, method);
+      std::string found;
+      for (const auto& [name, value] : table.provenance.facts)
+        if (name == "realizations per angle") found = value;
+      double positions = 0;
+      double velocities = 0;
+      double accelerations = 0;
+      ASSERT_EQ(std::sscanf(found.c_str(), "positions %lf, velocities %lf, accelerations %lf",
+                            &positions, &velocities, &accelerations),
+                3)
+          << found;
+      EXPECT_LE(positions, 2.1);
+      EXPECT_LE(velocities, 1.1);
+      EXPECT_LE(accelerations, method == Method::multipliers ? 1.0 : 0.0);
+    }
 }
 
 }  // namespace
