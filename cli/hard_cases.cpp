@@ -1,13 +1,10 @@
 #include "hard_cases.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
-#include <sstream>
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/rounding.h"
@@ -15,6 +12,7 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/toml_reader.h"
 #include "console.h"
 #include "rounding_spread.h"
 
@@ -126,37 +124,26 @@ std::optional<double> HardOutcome::worst_ratio() const {
 std::vector<HardCase> read_catalogue(const std::filesystem::path& folder,
                                      const std::string& filter) {
   const auto file = folder / "catalogue.toml";
+  const TomlFile toml = TomlFile::read(file, "catalogue of hard cases");
+  TableReader root = toml.root();
+  root.text("base");                                  // of the generator
+  root.integer("samples_per_revolution", 1, 100000);  // likewise
   std::vector<HardCase> cases;
-  toml::table root;
-  try {
-    root = toml::parse_file(file.string());
-  } catch (const toml::parse_error& error) {
-    throw InputError(file.string() + ":" + std::to_string(error.source().begin.line) + ": " +
-                     std::string(error.description()));
-  }
-  const toml::array* list = root["case"].as_array();
-  if (list == nullptr) throw InputError(file.string() + ": no [[case]]");
-  for (const toml::node& node : *list) {
-    const toml::table& entry = *node.as_table();
+  for (TableReader& entry : root.tables("case")) {
     HardCase hard;
-    hard.name = entry["name"].value_or(std::string());
-    if (hard.name.find(filter) == std::string::npos) continue;
-    hard.group = entry["group"].value_or(std::string());
-    hard.hard = entry["hard"].value_or(std::string());
+    hard.name = entry.text("name");
+    hard.group = entry.text("group");
+    hard.hard = entry.text("hard");
     for (const std::string& model : hard_models())
-      if (entry[model].value_or(std::string()) == "refused") hard.refused.push_back(model);
-    if (const toml::table* change = entry["change"].as_table())
-      for (const auto& [key, value] : *change) {
-        std::ostringstream text;
-        if (value.is_floating_point())
-          text << number_text(value.as_floating_point()->get());
-        else
-          text << toml::default_formatter(value, toml::format_flags::none);
-        hard.changes.push_back(std::string(key.str()) + " = " + text.str());
-      }
+      if (entry.choice(model, {"accurate", "refused"}, 0) == 1) hard.refused.push_back(model);
+    TableReader change = entry.optional_table("change");
+    for (const std::string& key : change.keys())
+      hard.changes.push_back(key + " = " + change.any(key));
+    entry.finish();
     hard.folder = folder / hard.name;
-    cases.push_back(std::move(hard));
+    if (hard.name.find(filter) != std::string::npos) cases.push_back(std::move(hard));
   }
+  root.finish();
   if (cases.empty()) throw InputError(file.string() + ": no case named like \"" + filter + "\"");
   return cases;
 }

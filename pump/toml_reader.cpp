@@ -106,6 +106,12 @@ std::string TableReader::text(const std::string& key, std::optional<std::string>
   return node->node->as_string()->get();
 }
 
+std::string TableReader::any(const std::string& key) {
+  const auto node = find(key, "a value", false);
+  const auto* number = node->node->as_floating_point();
+  return number != nullptr ? number_text(number->get()) : quoted(*node->node);
+}
+
 bool TableReader::flag(const std::string& key, bool fallback) {
   const auto node = find(key, "true or false", true);
   if (!node) return fallback;

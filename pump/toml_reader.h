@@ -46,6 +46,8 @@ class TableReader {
   int integer(const std::string& key, int low, int high, std::optional<int> fallback = {});
   std::string text(const std::string& key, std::optional<std::string> fallback = {});
   bool flag(const std::string& key, bool fallback);
+  /// Any value, as text: for those who pass it on.
+  std::string any(const std::string& key);
   /// One of a few words; returns its index.
   std::size_t choice(const std::string& key, const std::vector<std::string>& words,
                      std::optional<std::size_t> fallback = {});

@@ -72,6 +72,20 @@ class CatalogueTest(Temporary):
         result = run("hardcases", "--catalogue", catalogue, "--filter", "mass_1e-9", "--out", self.folder / "out")
         self.assertEqual(result.returncode, 1, result.stdout)
 
+    def test_catalogues_that_are_none(self):
+        top = 'base = "x"\nsamples_per_revolution = 8\n'
+        for text, said in (("case = [1]", "base"), (top + "case = [1]", "case"), (top + "[[case]]\nname = 3\n", "name"),
+                           ("[[case]", ":1:"), (top + '[[case]]\nname = "a"\ngroup = "g"\nhard = "h"\nanalytic = "?"\n',
+                                                'analytic = "?"')):
+            with self.subTest(text):
+                (self.folder / "catalogue.toml").write_text(text)
+                result = run("hardcases", "--catalogue", self.folder, "--out", self.folder / "out")
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assertEqual(len(result.stderr.splitlines()), 1)
+                self.assertIn("catalogue.toml", result.stderr)
+                self.assertIn(said, result.stderr)
+                self.assertFalse((self.folder / "out").exists())
+
     def test_unknown_name(self):
         result = run("hardcases", "--filter", "no such case", "--out", self.folder / "out")
         self.assertEqual(result.returncode, 2)
