@@ -80,18 +80,18 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
   }
   for (const RoundingLine& line : rounding_lines(the_case, assumptions))
     if (lost[line.group] < kMoreThanEstimated * line.total()) lost.erase(line.group);
-  std::vector<std::string> warnings;
-  const bool multipliers = scene.method == multibody::Method::multipliers;
+  std::string groups;
   for (const auto& [group, loss] : lost)
     if (loss > kWorthAWarning)
-      warnings.push_back(fmt::format(
-          "{} of the multibody model is known to {:.1e} of its peak only: moving every input by "
-          "one unit in the last place changes it by that{}",
-          group, loss,
-          multipliers ? "; Simbody's constraint multipliers may be the cause: try --reactions "
-                        "residual"
-                      : "; the analytic model loses less"));
-  return warnings;
+      groups += fmt::format("{}{} {:.1e}", groups.empty() ? "" : ", ", group, loss);
+  if (groups.empty()) return {};
+  return {fmt::format(
+      "the multibody model's reactions are known to these shares of their peaks only: {} (what "
+      "moving every input by one unit in the last place changes); {}",
+      groups,
+      scene.method == multibody::Method::multipliers
+          ? "Simbody's constraint multipliers may be the cause: try --reactions residual"
+          : "the analytic model loses less")};
 }
 
 nlohmann::json rounding_block(const std::vector<RoundingLine>& lines) {

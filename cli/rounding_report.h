@@ -26,9 +26,9 @@ std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions
 /// One sentence per group that rounding may change by more than 1e-9 of its peak.
 std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptions& assumptions);
 
-/// One sentence per group that the driven multibody model has lost more of than 1e-9 of its peak,
-/// and more than the estimate above: what moving every input by one unit in the last place changes,
-/// at up to 24 angles. Empty where the model refuses the case.
+/// One sentence that names every group of which the driven multibody model has lost more than 1e-9
+/// of its peak, and more than the estimate above: what moving every input by one unit in the last
+/// place changes, at up to 24 angles. None where nothing is lost or the model refuses the case.
 std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
                                             const multibody::SceneChoice& scene);
 
