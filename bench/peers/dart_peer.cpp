@@ -263,26 +263,16 @@ int main() {
   for (int repeat = 0; repeat < 5; ++repeat) best = std::min(best, inverse());
   rows.add("DART", "inverse dynamics", "computeInverseDynamics on the shaft's tree", best,
            the_pump.error(), PumpCase::kSamples);
-  // Steps per turn are multiples of 180: then every edge of the pressure ends a step. Of the error
-  // reductions the one with the smallest error counts (README.md).
   for (const bool block_per_piston : {false, true})
-    for (const int steps : {180, 360, 720, 1440, 2880, 5760}) {
-      double least = 1e300;
-      double seconds = 0;
-      double chosen = 0;
-      for (const double error_reduction : {0.2, 0.5, 1.0}) {
-        best = 1e9;
-        for (int repeat = 0; repeat < 3; ++repeat)
-          best = std::min(best, integrate(steps, error_reduction, block_per_piston));
-        if (the_pump.error() >= least) continue;
-        least = the_pump.error();
-        seconds = best;
-        chosen = error_reduction;
-      }
+    for (const int steps : kStepsPerTurn) {
+      const Tuned best_run = tuned(the_pump, {0.2, 0.5, 1.0}, [&](double error_reduction) {
+        return integrate(steps, error_reduction, block_per_piston);
+      });
       rows.add("DART", "integrated",
                fmt::format("{}, {} steps, error reduction {}",
-                           block_per_piston ? "a block per piston" : "one block", steps, chosen),
-               seconds, least, PumpCase::kSamples);
+                           block_per_piston ? "a block per piston" : "one block", steps,
+                           best_run.setting),
+               best_run.seconds, best_run.error, PumpCase::kSamples);
     }
   rows.print();
   return 0;

@@ -220,24 +220,13 @@ int main() {
   for (int repeat = 0; repeat < 5; ++repeat) best = std::min(best, inverse());
   rows.add("MuJoCo", "inverse dynamics", "mj_inverse on the tree", best, the_pump.error(),
            PumpCase::kSamples);
-  // Steps per turn are multiples of 180: then every edge of the pressure ends a step. Of the time
-  // constants the one with the smaller error counts (README.md).
-  for (const int steps : {180, 360, 720, 1440, 2880, 5760}) {
-    double least = 1e300;
-    double seconds = 0;
-    double chosen = 0;
-    for (const double time_constant : {1.0, 2.0, 3.0}) {
-      best = 1e9;
-      for (int repeat = 0; repeat < 3; ++repeat)
-        best = std::min(best, integrate(steps, time_constant));
-      if (the_pump.error() >= least) continue;
-      least = the_pump.error();
-      seconds = best;
-      chosen = time_constant;
-    }
+  for (const int steps : kStepsPerTurn) {
+    const Tuned best_run = tuned(the_pump, {1.0, 2.0, 3.0}, [&](double time_constant) {
+      return integrate(steps, time_constant);
+    });
     rows.add("MuJoCo", "integrated",
-             fmt::format("RK4, {} steps, time constant {} steps", steps, chosen), seconds, least,
-             PumpCase::kSamples);
+             fmt::format("RK4, {} steps, time constant {} steps", steps, best_run.setting),
+             best_run.seconds, best_run.error, PumpCase::kSamples);
   }
   rows.print();
   return 0;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,26 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Steps per turn of integrated runs: multiples of 180, so that every pressure edge ends a step.
+inline constexpr int kStepsPerTurn[] = {180, 360, 720, 1440, 2880, 5760};
+
+/// What an engine's free setting achieves: the shortest of three runs at the value with the
+/// smallest error.
+struct Tuned {
+  double setting = 0, seconds = 0, error = 1e300;
+};
+/// @param run  runs a turn with a setting and returns its time; the pump case has its error then
+template <class Run>
+Tuned tuned(const PumpCase& pump, std::initializer_list<double> settings, const Run& run) {
+  Tuned best;
+  for (const double setting : settings) {
+    double seconds = 1e300;
+    for (int repeat = 0; repeat < 3; ++repeat) seconds = std::min(seconds, run(setting));
+    if (pump.error() < best.error) best = {setting, seconds, pump.error()};
+  }
+  return best;
+}
 
 /// Collects the rows that scripts/write_performance_page reads.
 class Rows {
