@@ -152,8 +152,7 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
     for (int k = 0; k < n; ++k) {
       pressure.assign(1, instant.chamber_pressure[k]);
       place_and_solve(instant.theta - 2 * kPi * k / n, instant, k);
-      read_piston_channels(system, system.dynamics(), reactions, 0, k, instant.chamber_pressure[k],
-                           layout, values);
+      read_piston_channels(system, reactions, 0, k, instant.chamber_pressure[k], layout, values);
     }
     return;
   }
@@ -161,8 +160,7 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
   place_and_solve(instant.theta, instant, 0);
   const SimTK::State& state = system.dynamics();
   for (int k = 0; k < n; ++k)
-    read_piston_channels(system, state, reactions, k, k, instant.chamber_pressure[k], layout,
-                         values);
+    read_piston_channels(system, reactions, k, k, instant.chamber_pressure[k], layout, values);
   if (scene != Scene::full) return;
   // At standstill the power balance is taken with a virtual turn of 1 rad/s.
   if (instant.omega == 0) system.assemble(instant.theta, 1);
@@ -182,8 +180,8 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   translate_simbody_errors([&] {
     self.pressure.assign(1, instant.chamber_pressure[0]);
     self.place_and_solve(instant.theta, instant, 0);
-    read_piston_channels(self.system, self.system.dynamics(), self.reactions, 0, 0,
-                         instant.chamber_pressure[0], self.layout, values);
+    read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
+                         self.layout, values);
   });
 }
 

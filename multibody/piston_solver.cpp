@@ -94,6 +94,7 @@ double PistonSolver::solve_positions(State& state) {
     before = worst;
     if (turned_ > kStale) find_matrices(state);
     double largest = 0;
+    const Rotation& shaft = shaft_.getBodyRotation(state);
     changes_.clear();
     for (const Piston& piston : pistons_) {
       const Vec3 change = piston.inverse * Vec3(-error[piston.row], -error[piston.row + 1], 0);
@@ -102,7 +103,7 @@ double PistonSolver::solve_positions(State& state) {
       Vec3 turn(0);
       for (int j = 0; j < piston.nu; ++j)
         turn += change[j] * piston.body.getHCol(state, SimTK::MobilizerUIndex(j))[0];
-      changes_.push_back(~shaft_.getBodyRotation(state) * turn);
+      changes_.push_back(~shaft * turn);
     }
     turned_ += largest;
     Vector& q = state.updQ();
@@ -155,11 +156,13 @@ void PistonSolver::solve_accelerations(const State& state, Vector& udot) {
   const Vec3 shaft_acceleration(udot[first], udot[first + 1], udot[first + 2]);
   const Vec3 shaft_rate = shaft_.getBodyAngularVelocity(state);
   for (const Piston& piston : pistons_) {
-    // The spin stays: no part of the absolute angular acceleration lies along the axis.
-    const Vec3 axis(piston.body.getBodyRotation(state).z());
-    const Vec3 rate = piston.body.getBodyAngularVelocity(state);
-    const double own =
-        piston.nu == 3 ? -dot(axis, shaft_acceleration + shaft_rate % (rate - shaft_rate)) : 0;
+    double own = 0;
+    if (piston.nu == 3) {
+      // The spin stays: no part of the absolute angular acceleration lies along the axis.
+      const Vec3 axis(piston.body.getBodyRotation(state).z());
+      const Vec3 rate = piston.body.getBodyAngularVelocity(state);
+      own = -dot(axis, shaft_acceleration + shaft_rate % (rate - shaft_rate));
+    }
     const Vec3 value = piston.inverse * Vec3(-rates_[piston.row], -rates_[piston.row + 1], own);
     for (int j = 0; j < piston.nu; ++j) udot[piston.u + j] = value[j];
   }

@@ -125,9 +125,12 @@ ComputationError no_assembly(double theta) {
   return ComputationError("multibody model: no assembly found at theta = " +
                           std::to_string(theta / kRadPerDegree) + " deg");
 }
-// Nor does a mass on a fixed axis act but by its weight: one of 0 gets any, without weight, because
+// Nor does a mass on a fixed axis act but by its weight: one of 0 gets next to nothing, because
 // Simbody has no inertia without mass.
-double nominal_mass(double given) { return given > 0 ? given : 1; }
+double nominal_mass(double given) {
+  constexpr double kNextToNothing = 1e-30;  // kg
+  return given > 0 ? given : kNextToNothing;
+}
 
 }  // namespace
 
@@ -176,9 +179,7 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
     std::fill(p.begin(), p.end(), 0.0);
   };
   add_shaft_and_block(omega);
-  SimTK::Force::Gravity gravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
-  gravity.setDefaultBodyIsExcluded(shaft_, pump_.shaft.mass == 0);
-  gravity.setDefaultBodyIsExcluded(block_, pump_.block.mass == 0);
+  SimTK::Force::UniformGravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
   add_pistons();
   PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_,
             is_prescribed() ? LoadedBodies::pistons : LoadedBodies::all);

@@ -64,7 +64,8 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
     on.bore = block * pump.bores()[k].force_in_base(state);
     on.acceleration = piston.getBodyAcceleration(state);
     // Where the joint leaves the spin free, a moment about the axis would change it.
-    const Vec3 axis(piston.getBodyRotation(state).z());
+    on.place = piston.getBodyTransform(state);
+    const Vec3 axis(on.place.z());
     on.axis_moment = dot(joint[0], axis);
     if (pump.pistons_free_to_spin())
       on.axis_moment -= pump.pump().piston.real->axial_inertia * dot(on.acceleration[0], axis);
@@ -85,7 +86,7 @@ SpatialVec ResidualSolver::needed(const MobilizedBody& body) const {
   const SimTK::MobilizedBodyIndex index = body.getMobilizedBodyIndex();
   const SpatialVec inertia = body.getBodySpatialInertiaInGround(state) * accelerations_[index] +
                              pump_.matter().getGyroscopicForce(state, index);
-  return inertia - pump_.system().getRigidBodyForces(state, SimTK::Stage::Dynamics)[index];
+  return inertia - (*loads_)[index];
 }
 
 void ResidualSolver::solve(Reactions& reactions) {
@@ -93,10 +94,11 @@ void ResidualSolver::solve(Reactions& reactions) {
   const SimTK::SimbodyMatterSubsystem& matter = pump_.matter();
   const PumpBodies& bodies = pump_.bodies();
   pump_.system().realize(state, SimTK::Stage::Dynamics);
+  loads_ = &pump_.system().getRigidBodyForces(state, SimTK::Stage::Dynamics);
   pump_.constrained_accelerations(udot_);
   matter.calcResidualForceIgnoringConstraints(
-      state, pump_.system().getMobilityForces(state, SimTK::Stage::Dynamics),
-      pump_.system().getRigidBodyForces(state, SimTK::Stage::Dynamics), udot_, residual_);
+      state, pump_.system().getMobilityForces(state, SimTK::Stage::Dynamics), *loads_, udot_,
+      residual_);
   matter.calcBodyAccelerationFromUDot(state, udot_, accelerations_);
   pump_.piston_solver().solve_forces(residual_, bore_);
 
@@ -106,11 +108,12 @@ void ResidualSolver::solve(Reactions& reactions) {
     const MobilizedBody& piston = bodies.pistons[k];
     Reactions::OnPiston& on = reactions.pistons[k];
     on.acceleration = accelerations_[piston.getMobilizedBodyIndex()];
+    on.place = piston.getBodyTransform(state);
     on.bore = block * pump_.bores()[k].force_in_base(bore_[k][0], bore_[k][1]);
     const SpatialVec total = needed(piston);
     on.joint = total[1] - on.bore;
     // B is on the axis through A: the bore force has no moment about it.
-    on.axis_moment = dot(total[0], Vec3(piston.getBodyRotation(state).z()));
+    on.axis_moment = dot(total[0], Vec3(on.place.z()));
   }
   if (!pump_.is_prescribed()) solve_block_and_shaft(reactions);
 }
@@ -131,10 +134,9 @@ void ResidualSolver::solve_block_and_shaft(Reactions& reactions) {
   on_shaft[0] += (bodies.shaft.getBodyOriginLocation(state) - c1) % on_shaft[1];
   for (std::size_t k = 0; k < bodies.pistons.size(); ++k) {
     const Reactions::OnPiston& on = reactions.pistons[k];
-    const SimTK::Transform& place = bodies.pistons[k].getBodyTransform(state);
-    const Vec3 ring = place.p() + pump_.pump().geometry.piston_length * Vec3(place.z());
+    const Vec3 ring = on.place.p() + pump_.pump().geometry.piston_length * Vec3(on.place.z());
     hold += SpatialVec((ring - o2) % on.bore, on.bore);
-    on_shaft += SpatialVec((place.p() - c1) % on.joint, on.joint);
+    on_shaft += SpatialVec((on.place.p() - c1) % on.joint, on.joint);
   }
   if (pump_.has_gear()) {
     const Vec3& line = pump_.gear().line();
@@ -155,21 +157,20 @@ void ResidualSolver::solve_block_and_shaft(Reactions& reactions) {
   reactions.drive = on_shaft[0][2];
 }
 
-void read_piston_channels(const PumpSystem& pump, const State& state, const Reactions& reactions,
-                          std::size_t index, int channel, double pressure,
-                          const ChannelLayout& layout, std::vector<double>& values) {
+void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, std::size_t index,
+                          int channel, double pressure, const ChannelLayout& layout,
+                          std::vector<double>& values) {
   const PumpBodies& bodies = pump.bodies();
   const Rotation& s2 = bodies.block_frame;
-  const SimTK::Transform& place = bodies.pistons[index].getBodyTransform(state);
   const Reactions::OnPiston& on = reactions.pistons[index];
   const Vec3 rs = ~s2 * on.joint;
   const Vec3 rc = ~s2 * on.bore;
   for (int axis = 0; axis < 3; ++axis) values[layout.Rs(channel, axis)] = rs[axis];
   for (int axis = 0; axis < 2; ++axis) values[layout.Rc(channel, axis)] = rc[axis];
 
-  const Vec3 k3(place.z());
+  const Vec3 k3(on.place.z());
   const Vec3 ring =
-      ~s2 * Vec3(place.p() + pump.pump().geometry.piston_length * k3 - bodies.block_origin);
+      ~s2 * Vec3(on.place.p() + pump.pump().geometry.piston_length * k3 - bodies.block_origin);
   values[layout.pressure(channel)] = pressure;
   values[layout.zB(channel)] = ring[2];
   values[layout.Tc(channel)] = ring[1] * rc[0] - ring[0] * rc[1];
@@ -241,7 +242,7 @@ void read_channels(const PumpSystem& pump, const State& state, const WorkRate& r
   Reactions reactions;
   reactions_from_multipliers(pump, state, reactions);
   for (int k = 0; k < layout.pistons(); ++k)
-    read_piston_channels(pump, state, reactions, k, k, pressure[k], layout, values);
+    read_piston_channels(pump, reactions, k, k, pressure[k], layout, values);
   read_pump_channels(pump, state, reactions, rate, omega_dot, pressure, layout, values);
 }
 

@@ -17,6 +17,7 @@ struct Reactions {
     SimTK::Vec3 bore;        ///< by the block, at B
     double axis_moment = 0;  ///< about its own axis, that would have to be supplied: must vanish
     SimTK::SpatialVec acceleration;  ///< of the body at A: angular, linear
+    SimTK::Transform place;          ///< of the body: A and its axes
   };
   std::vector<OnPiston> pistons;
   // Not found where shaft and block are prescribed:
@@ -46,6 +47,7 @@ class ResidualSolver {
   SimTK::SpatialVec needed(const SimTK::MobilizedBody& body) const;
 
   PumpSystem& pump_;
+  const SimTK::Vector_<SimTK::SpatialVec>* loads_ = nullptr;  // on the bodies, at the placement
   SimTK::Vector udot_, residual_;
   SimTK::Vector_<SimTK::SpatialVec> accelerations_;
   std::vector<SimTK::Vec3> bore_;
@@ -61,9 +63,8 @@ struct WorkRate {
 /// Fills the channels of one piston (SI, ordered by `layout`).
 /// @param index    of the piston in the pump system
 /// @param channel  of the piston in the layout
-void read_piston_channels(const PumpSystem& pump, const SimTK::State& state,
-                          const Reactions& reactions, std::size_t index, int channel,
-                          double pressure, const ChannelLayout& layout,
+void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, std::size_t index,
+                          int channel, double pressure, const ChannelLayout& layout,
                           std::vector<double>& values);
 
 /// Fills the channels of block and shaft and the power balance. Channels of the pistons first.
