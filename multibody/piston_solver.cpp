@@ -67,6 +67,7 @@ void PistonSolver::find_matrices(const State& state) {
     piston.matrix = Mat33(0);
     for (int j = 0; j < piston.nu; ++j) {
       const SimTK::SpatialVec partial = piston.body.getHCol(state, SimTK::MobilizerUIndex(j));
+      piston.turn[j] = partial[0];
       const Vec3 at_ring = partial[1] + partial[0] % ring;
       piston.matrix(0, j) = dot(x, at_ring);
       piston.matrix(1, j) = dot(y, at_ring);
@@ -101,8 +102,7 @@ double PistonSolver::solve_positions(State& state) {
       largest = std::max(largest, change.norm());
       // The turn of the piston in its joint that these changes of its speeds stand for.
       Vec3 turn(0);
-      for (int j = 0; j < piston.nu; ++j)
-        turn += change[j] * piston.body.getHCol(state, SimTK::MobilizerUIndex(j))[0];
+      for (int j = 0; j < piston.nu; ++j) turn += change[j] * piston.turn[j];
       changes_.push_back(~shaft * turn);
     }
     turned_ += largest;

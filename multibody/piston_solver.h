@@ -55,6 +55,7 @@ class PistonSolver {
     int u = 0, nu = 0;             // mobilities
     int q = 0;                     // its quaternion
     SimTK::Mat33 matrix, inverse;  // equations (and spin) by mobilities, padded to 3x3
+    SimTK::Vec3 turn[3];           // angular velocity per unit of speed of each mobility
   };
 
   void find_matrices(const SimTK::State& state);
