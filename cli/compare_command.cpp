@@ -19,7 +19,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
 #include "bentaxis/pump/units.h"
-#include "calibration.h"
+#include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/calibration.h"
 #include "channel_choice.h"
 #include "commands.h"
 #include "console.h"
@@ -136,7 +137,7 @@ Json integrate_all(Study& study, const Options& options,
                         "the analytic model over the peak. In the torque-driven run the shaft is "
                         "free and fed the analytic Td; its speed error is relative to omega. Facts "
                         "are of the last accuracy.",
-                        name_of(options.integration.integrator),
+                        study::name_of(options.integration.integrator),
                         study.multibody_case.operation.revolutions)},
            {"facts", facts},
            {"table",
@@ -223,9 +224,9 @@ void check_same_run(const Case& first, const Case& second) {
 // Integrator and accuracy for the error asked for, verified over the whole run.
 void choose_integration(const Study& study, Options& options) {
   const Case& the_case = study.multibody_case;
-  const VerifiedRun verified =
-      run_to_error(the_case, the_case.multibody, study.multibody_samples, study.multibody_pressure,
-                   options.target.error, options.target.integrators());
+  const study::VerifiedRun verified = study::run_to_error(
+      the_case, the_case.multibody, study.multibody_samples, study.multibody_pressure,
+      options.target.error, options.target.integrators(), progress_of);
   options.integration = verified.calibration.chosen;
   options.accuracies = {verified.calibration.chosen.accuracy};
   options.choice = verified.text();
@@ -279,7 +280,7 @@ int compare(Options options) {
   compare::Options comparison_options;
   comparison_options.tolerance = study.tolerance;
   comparison_options.orders = {n, 2 * n};
-  comparison_options.zero_scales = zero_scales(the_case, study.samples);
+  comparison_options.zero_scales = study::zero_scales(the_case, study.samples);
 
   study.analytic =
       analytic::run(the_case, the_case.analytic, study.samples, progress_of("analytic"));

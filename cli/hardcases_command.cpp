@@ -12,16 +12,24 @@
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
+#include "bentaxis/study/hard_cases.h"
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
-#include "hard_cases.h"
 #include "options.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
 
+using study::GroupLoss;
+using study::hard_models;
+using study::HardCase;
+using study::HardOutcome;
+using study::HardVerdict;
+using study::kNoticeableLoss;
+using study::kPredictionFactor;
+using study::LongRun;
 using Json = nlohmann::json;
 
 struct Options {
@@ -188,13 +196,13 @@ int run(const Options& options) {
     throw InputError("no catalogue is installed with this program: name one with --catalogue");
   const std::filesystem::path folder =
       options.catalogue.empty() ? *shipped / "hard" : std::filesystem::path(options.catalogue);
-  const auto cases = read_catalogue(folder, options.filter);
+  const auto cases = study::read_catalogue(folder, options.filter);
   OutputFolder out(options.out);
   std::vector<Row> rows;
   std::printf("%-24s %-10s %-9s %7s %10s %9s  %s\n", "case", "model", "verdict", "digits",
               "predicted", "us/angle", "least in, message");
   for (const HardCase& hard : cases) {
-    for (HardOutcome& o : run_hard_case(hard)) {
+    for (HardOutcome& o : study::run_hard_case(hard, progress_of)) {
       const GroupLoss* worst = o.worst();
       std::printf("%-24s %-10s %-9s", hard.name.c_str(), o.model.c_str(), to_string(o.verdict));
       if (worst != nullptr)
@@ -219,7 +227,7 @@ int run(const Options& options) {
   std::optional<LongRun> long_run;
   if (options.turns > 0 && options.filter.empty()) {
     constexpr double kAccuracy = 1e-6;
-    long_run = run_long(folder, options.turns, kAccuracy);
+    long_run = study::run_long(folder, options.turns, kAccuracy, progress_of);
     print(*long_run);
   }
   const bool bounded = !long_run || long_run->bounded();

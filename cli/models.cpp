@@ -16,13 +16,6 @@ Samples samples_of(const Case& the_case, const PressureTrace& pressure, Way way)
                      the_case.operation.speed_rpm < 0);
 }
 
-compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
-  const LoadScale scale = load_scale(the_case, samples);
-  const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
-                                 the_case.pump.geometry.bore_circle_radius);
-  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
-}
-
 ResultTable run_model(const std::string& model, const Case& the_case,
                       const Assumptions& assumptions, const Samples& samples,
                       const PressureTrace& pressure, Way way,

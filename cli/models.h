@@ -4,7 +4,6 @@
 #include <functional>
 #include <string>
 
-#include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/files.h"
@@ -15,9 +14,6 @@ namespace bentaxis::cli {
 
 /// Samples of a run: one turn where driven, all revolutions (falling backwards) where integrated.
 Samples samples_of(const Case& the_case, const PressureTrace& pressure, Way way);
-
-/// What channels are held to whose peak is zero, per unit: the largest applied load of the case.
-compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples);
 
 /// Runs "analytic" or "multibody" under the given assumptions.
 /// @param integration  used where way is integrated (multibody only)

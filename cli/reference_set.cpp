@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bentaxis/pump/pressure.h"
+#include "bentaxis/study/achieved_error.h"
 #include "hydraulic_case.h"
 #include "models.h"
 
@@ -43,7 +44,7 @@ ReferenceRun run_for_reference(const std::string& model, const Case& the_case) {
   const Samples samples = samples_of(the_case, pressure, Way::driven);
   const Assumptions& assumptions = model == "analytic" ? the_case.analytic : the_case.multibody;
   return {run_model(model, the_case, assumptions, samples, pressure, Way::driven, {}),
-          zero_scales(the_case, samples)};
+          study::zero_scales(the_case, samples)};
 }
 
 }  // namespace bentaxis::cli

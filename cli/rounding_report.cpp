@@ -10,7 +10,8 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
-#include "rounding_spread.h"
+#include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/rounding_spread.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -26,11 +27,6 @@ Case at_few_angles(const Case& the_case) {
   return thin;
 }
 
-compare::ZeroScales zero_scales_of(const Case& the_case, const Samples& samples) {
-  const LoadScale scale = load_scale(the_case, samples);
-  return {{"N", scale.force}, {"Nm", scale.moment}};
-}
-
 }  // namespace
 
 std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions& assumptions) {
@@ -38,7 +34,7 @@ std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions
   const PressureTrace pressure(thin.pressure);
   const Samples samples = sample_case(thin, pressure);
   const ResultTable table = analytic::run(thin, assumptions, samples);
-  const compare::ZeroScales zero_scales = zero_scales_of(thin, samples);
+  const compare::ZeroScales zero_scales = study::zero_scales(thin, samples);
   std::vector<RoundingLine> lines;
   for (const auto& g : analytic::estimate_rounding(thin, assumptions, samples, pressure, kAngles)) {
     const auto channel = std::find_if(table.channels.begin(), table.channels.end(),
@@ -73,8 +69,8 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
   std::map<std::string, double> lost;
   try {
     compare::Options options;
-    options.zero_scales = zero_scales_of(thin, samples);
-    lost = rounding_spread(thin, run(thin), options, run);
+    options.zero_scales = study::zero_scales(thin, samples);
+    lost = study::rounding_spread(thin, run(thin), options, run);
   } catch (const ComputationError&) {
     return {};
   }

@@ -4,9 +4,10 @@
 #include <utility>
 
 #include "bentaxis/pump/files.h"
-#include "calibration.h"
+#include "bentaxis/study/calibration.h"
 #include "channel_choice.h"
 #include "commands.h"
+#include "console.h"
 #include "hydraulic_case.h"
 #include "models.h"
 #include "rounding_report.h"
@@ -50,9 +51,9 @@ int run(const Options& options) {
   if (options.model == "analytic") {
     stream_analytic(the_case, assumptions, pressure, wanted, folder.open("analytic.csv"));
   } else if (options.target.error > 0) {
-    const VerifiedRun verified =
-        run_to_error(the_case, assumptions, samples_of(the_case, pressure, way), pressure,
-                     options.target.error, options.target.integrators());
+    const study::VerifiedRun verified =
+        study::run_to_error(the_case, assumptions, samples_of(the_case, pressure, way), pressure,
+                            options.target.error, options.target.integrators(), progress_of);
     std::fprintf(stderr, "chosen %s\n", verified.text().c_str());
     folder.add("multibody.csv", to_csv(select_channels(verified.run.table, wanted)));
   } else {

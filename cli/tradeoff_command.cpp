@@ -10,13 +10,13 @@
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/files.h"
-#include "calibration.h"
+#include "bentaxis/study/calibration.h"
+#include "bentaxis/study/tradeoff.h"
 #include "commands.h"
 #include "console.h"
 #include "hydraulic_case.h"
 #include "options.h"
 #include "pump_report.h"
-#include "tradeoff.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -24,7 +24,7 @@ namespace {
 
 struct Options {
   std::string case_file, out = "out";
-  TradeoffOptions tradeoff;
+  study::TradeoffOptions tradeoff;
 };
 
 // A pressure with transitions and one with steps: the case's own and its counterpart.
@@ -45,9 +45,9 @@ std::vector<Variant> variants(const Case& the_case) {
   return {{"smooth", the_case}, {"step", other}};
 }
 
-bool is_integrated(const TradeoffRun& run) { return run.method == "integrated"; }
+bool is_integrated(const study::TradeoffRun& run) { return run.method == "integrated"; }
 
-std::string name_of_run(const TradeoffRun& run) {
+std::string name_of_run(const study::TradeoffRun& run) {
   std::string name = run.model + " " + run.method;
   if (!run.variant.empty()) name += " " + run.variant;
   if (run.accuracy) name += " " + number_text(*run.accuracy);
@@ -61,13 +61,13 @@ std::string time_text(double seconds) {
 }
 
 // What to use for which error, in words.
-std::vector<std::string> recommendations(const std::vector<TradeoffRun>& runs) {
+std::vector<std::string> recommendations(const std::vector<study::TradeoffRun>& runs) {
   std::vector<std::string> lines;
-  const TradeoffRun* previous = nullptr;
+  const study::TradeoffRun* previous = nullptr;
   std::string previous_target;
   for (int digits = 2; digits <= 10; ++digits) {
     const double target = std::pow(10.0, -digits);
-    const TradeoffRun* run = fastest_within(runs, target);
+    const study::TradeoffRun* run = study::fastest_within(runs, target);
     if (run == nullptr) {
       lines.push_back(fmt::format("For 1e-{} none of the integrated runs is good enough.", digits));
       break;
@@ -83,12 +83,12 @@ std::vector<std::string> recommendations(const std::vector<TradeoffRun>& runs) {
       lines.push_back(text);
     previous = run;
   }
-  for (const TradeoffRun& run : runs)
+  for (const study::TradeoffRun& run : runs)
     if (run.done() && run.method == "driven")
       lines.push_back(fmt::format(
           "Without integrating, the driven scene \"{}\" takes {} a turn and is right to {:.0e}.",
           run.variant, time_text(run.seconds_per_turn), run.error.worst));
-  for (const TradeoffRun& run : runs)
+  for (const study::TradeoffRun& run : runs)
     if (run.model == "analytic" &&
         (run.method == "scalar" || &run == &runs.back() || (&run)[1].method != "batch"))
       lines.push_back(fmt::format("The closed form, {}{}, takes {} a turn and is right to {:.0e}.",
@@ -100,36 +100,36 @@ std::vector<std::string> recommendations(const std::vector<TradeoffRun>& runs) {
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 // The columns of the table, the CSV and the JSON.
-using Cell = Json (*)(const TradeoffRun&);
+using Cell = Json (*)(const study::TradeoffRun&);
 struct Column {
   const char* key;
   const char* heading;
   Cell cell;
 };
-template <double AchievedError::*member>
-Json error_cell(const TradeoffRun& run) {
+template <double study::AchievedError::*member>
+Json error_cell(const study::TradeoffRun& run) {
   return run.done() ? number_or_null(run.error.*member) : Json();
 }
 template <auto member>
-Json record_cell(const TradeoffRun& run) {
+Json record_cell(const study::TradeoffRun& run) {
   return run.record ? Json((*run.record).*member) : Json();
 }
 const std::vector<Column>& columns() {
   static const std::vector<Column> list = {
-      {"pressure", "pressure", [](const TradeoffRun& r) { return Json(r.pressure); }},
-      {"model", "model", [](const TradeoffRun& r) { return Json(r.model); }},
-      {"method", "method", [](const TradeoffRun& r) { return Json(r.method); }},
-      {"variant", "scene, integrator", [](const TradeoffRun& r) { return Json(r.variant); }},
+      {"pressure", "pressure", [](const study::TradeoffRun& r) { return Json(r.pressure); }},
+      {"model", "model", [](const study::TradeoffRun& r) { return Json(r.model); }},
+      {"method", "method", [](const study::TradeoffRun& r) { return Json(r.method); }},
+      {"variant", "scene, integrator", [](const study::TradeoffRun& r) { return Json(r.variant); }},
       {"accuracy", "accuracy asked",
-       [](const TradeoffRun& r) { return r.accuracy ? Json(*r.accuracy) : Json(); }},
+       [](const study::TradeoffRun& r) { return r.accuracy ? Json(*r.accuracy) : Json(); }},
       {"seconds_per_turn", "time per turn, s",
-       [](const TradeoffRun& r) { return r.done() ? Json(r.seconds_per_turn) : Json(); }},
-      {"error_worst", "error, worst", error_cell<&AchievedError::worst>},
-      {"error_Rs", "error Rs", error_cell<&AchievedError::rs>},
-      {"error_Rc", "error Rc", error_cell<&AchievedError::rc>},
-      {"error_bearings", "error Rb", error_cell<&AchievedError::bearings>},
-      {"error_Rcs", "error Rcs", error_cell<&AchievedError::rcs>},
-      {"error_Td", "error Td", error_cell<&AchievedError::td>},
+       [](const study::TradeoffRun& r) { return r.done() ? Json(r.seconds_per_turn) : Json(); }},
+      {"error_worst", "error, worst", error_cell<&study::AchievedError::worst>},
+      {"error_Rs", "error Rs", error_cell<&study::AchievedError::rs>},
+      {"error_Rc", "error Rc", error_cell<&study::AchievedError::rc>},
+      {"error_bearings", "error Rb", error_cell<&study::AchievedError::bearings>},
+      {"error_Rcs", "error Rcs", error_cell<&study::AchievedError::rcs>},
+      {"error_Td", "error Td", error_cell<&study::AchievedError::td>},
       {"position_drift_m", "constraint error, m",
        record_cell<&multibody::IntegrationRecord::worst_position_error>},
       {"velocity_drift_m_per_s", "constraint rate error, m/s",
@@ -138,8 +138,9 @@ const std::vector<Column>& columns() {
        record_cell<&multibody::IntegrationRecord::worst_gear_phase>},
       {"steps", "steps", record_cell<&multibody::IntegrationRecord::steps>},
       {"evaluations", "evaluations", record_cell<&multibody::IntegrationRecord::evaluations>},
-      {"status", "status",
-       [](const TradeoffRun& r) { return Json(r.done() ? "done" : "failed: " + r.failure); }}};
+      {"status", "status", [](const study::TradeoffRun& r) {
+         return Json(r.done() ? "done" : "failed: " + r.failure);
+       }}};
   return list;
 }
 
@@ -154,12 +155,12 @@ std::string csv_field(const Json& value) {
   return quoted + "\"";
 }
 
-std::string csv_of(const std::vector<TradeoffRun>& runs) {
+std::string csv_of(const std::vector<study::TradeoffRun>& runs) {
   std::string text;
   for (const Column& column : columns())
     text += (text.empty() ? "" : ",") + std::string(column.key);
   text += "\n";
-  for (const TradeoffRun& run : runs) {
+  for (const study::TradeoffRun& run : runs) {
     bool first = true;
     for (const Column& column : columns()) {
       if (!first) text += ',';
@@ -171,10 +172,10 @@ std::string csv_of(const std::vector<TradeoffRun>& runs) {
   return text;
 }
 
-Json json_of(const std::vector<TradeoffRun>& runs) {
+Json json_of(const std::vector<study::TradeoffRun>& runs) {
   std::vector<std::size_t> front;  // of each pressure
   for (const char* pressure : {"smooth", "step"})
-    for (const std::size_t i : pareto_front(runs, [&](const TradeoffRun& run) {
+    for (const std::size_t i : study::pareto_front(runs, [&](const study::TradeoffRun& run) {
            return is_integrated(run) && run.pressure == pressure;
          }))
       front.push_back(i);
@@ -190,12 +191,12 @@ Json json_of(const std::vector<TradeoffRun>& runs) {
   return rows;
 }
 
-Json table_of(const std::vector<TradeoffRun>& runs, const TradeoffOptions& options,
+Json table_of(const std::vector<study::TradeoffRun>& runs, const study::TradeoffOptions& options,
               const std::string& pressure) {
   Json headings = Json::array();
   Json rows = Json::array();
   for (std::size_t c = 1; c < columns().size(); ++c) headings.push_back(columns()[c].heading);
-  for (const TradeoffRun& run : runs) {
+  for (const study::TradeoffRun& run : runs) {
     Json row = Json::array();
     for (std::size_t c = 1; c < columns().size(); ++c) row.push_back(columns()[c].cell(run));
     rows.push_back(std::move(row));
@@ -210,11 +211,11 @@ Json table_of(const std::vector<TradeoffRun>& runs, const TradeoffOptions& optio
       {"table", {{"columns", headings}, {"rows", rows}}}};
 }
 
-Json orders_of(const std::vector<TradeoffRun>& runs, const TradeoffOptions& options,
+Json orders_of(const std::vector<study::TradeoffRun>& runs, const study::TradeoffOptions& options,
                const std::string& pressure) {
   Json rows = Json::array();
   for (const auto integrator : options.integrators) {
-    const Order order = order_of(runs, name_of(integrator));
+    const study::Order order = study::order_of(runs, study::name_of(integrator));
     rows.push_back({order.integrator, order.runs, order.last_pair ? Json(*order.last_pair) : Json(),
                     order.least_squares ? Json(*order.least_squares) : Json()});
   }
@@ -230,12 +231,12 @@ Json orders_of(const std::vector<TradeoffRun>& runs, const TradeoffOptions& opti
             {"rows", rows}}}};
 }
 
-Json point_of(const TradeoffRun& run, double x) {
+Json point_of(const study::TradeoffRun& run, double x) {
   return {{"x", x}, {"y", run.error.worst}, {"note", name_of_run(run)}};
 }
 
 // The same symbol for the same series in every figure: what is not integrated comes first.
-int style_of(const TradeoffRun& run) {
+int style_of(const study::TradeoffRun& run) {
   if (run.model == "analytic") return run.method == "scalar" ? 0 : 1;
   if (!is_integrated(run)) return 2;
   const auto& names = multibody::integrator_names();
@@ -243,11 +244,11 @@ int style_of(const TradeoffRun& run) {
 }
 
 // Runs of the same kind and variant make one series each.
-Json figure_of(const std::vector<TradeoffRun>& runs, const std::string& pressure,
+Json figure_of(const std::vector<study::TradeoffRun>& runs, const std::string& pressure,
                bool by_accuracy) {
   std::map<std::string, Json> by_name;
   std::vector<std::string> names;
-  for (const TradeoffRun& run : runs) {
+  for (const study::TradeoffRun& run : runs) {
     if (!run.done() || (by_accuracy && !run.accuracy)) continue;
     const std::string name =
         is_integrated(run)
@@ -270,7 +271,7 @@ Json figure_of(const std::vector<TradeoffRun>& runs, const std::string& pressure
                   {"line", true},
                   {"emphasis", true},
                   {"points", Json::array()}};
-    for (const std::size_t i : pareto_front(runs, is_integrated))
+    for (const std::size_t i : study::pareto_front(runs, is_integrated))
       front["points"].push_back(point_of(runs[i], runs[i].seconds_per_turn));
     series.push_back(front);
   }
@@ -302,7 +303,7 @@ int tradeoff(Options options) {
   const Progress progress = progress_of("tradeoff");
   const std::vector<Variant> both = variants(the_case);
 
-  std::vector<TradeoffRun> all;
+  std::vector<study::TradeoffRun> all;
   Json tables = Json::array();
   Json figures = Json::array();
   Json summary = {{"text",
@@ -310,8 +311,8 @@ int tradeoff(Options options) {
                    "of this machine; compare them within this report only."},
                   {"groups", Json::array()}};
   for (std::size_t v = 0; v < both.size(); ++v) {
-    const auto runs =
-        measure_tradeoff(both[v].the_case, both[v].name, options.tradeoff, [&](double fraction) {
+    const auto runs = study::measure_tradeoff(
+        both[v].the_case, both[v].name, options.tradeoff, [&](double fraction) {
           progress((static_cast<double>(v) + fraction) / static_cast<double>(both.size()));
         });
     summary["groups"].push_back(
@@ -338,7 +339,7 @@ int tradeoff(Options options) {
   }
   std::printf("\n%-8s %-44s %12s %9s %9s %8s %8s\n", "pressure", "run", "time a turn", "error",
               "drift, m", "steps", "evals");
-  for (const TradeoffRun& run : all) {
+  for (const study::TradeoffRun& run : all) {
     if (!run.done()) {
       std::printf("%-8s %-44s failed: %s\n", run.pressure.c_str(), name_of_run(run).c_str(),
                   run.failure.c_str());
@@ -364,7 +365,7 @@ Command add_tradeoff_command(CLI::App& app) {
       "tradeoff", "Time every model, scene, integrator and accuracy on a case against its error");
   add_case(*command, options->case_file);
   add_out(*command, options->out, "tradeoff.html, tradeoff.json and tradeoff.csv");
-  TradeoffOptions& tradeoff_options = options->tradeoff;
+  study::TradeoffOptions& tradeoff_options = options->tradeoff;
   add_integrators(*command, tradeoff_options.integrators);
   command->add_option("--accuracies", tradeoff_options.accuracies, "accuracies of integrated runs")
       ->delimiter(',')
@@ -381,7 +382,7 @@ Command add_tradeoff_command(CLI::App& app) {
       ->check(positive_number())
       ->option_text("NUMBER [10]");
   return {command, [options] {
-            TradeoffOptions& o = options->tradeoff;
+            study::TradeoffOptions& o = options->tradeoff;
             if (o.integrators.empty()) o.integrators = all_integrators();
             if (o.accuracies.empty())
               o.accuracies = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};

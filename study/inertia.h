@@ -9,11 +9,9 @@
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/result_table.h"
+#include "bentaxis/study/progress.h"
 
 namespace bentaxis::study {
-
-/// Progress of a named part of the study.
-using PartProgress = std::function<Progress(const std::string& part)>;
 
 /// The case with nothing but inertia acting: pressures, weight, spring and friction off, as in the
 /// paper's appendix.

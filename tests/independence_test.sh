@@ -24,6 +24,8 @@ for room in analytic multibody hydraulics; do forbid_include "$source_dir/compar
 for room in analytic multibody compare cli; do forbid_include "$source_dir/hydraulics" $room || status=1; done
 for room in analytic multibody; do forbid_include "$source_dir/$room" hydraulics || status=1; done
 for room in analytic multibody hydraulics compare cli; do forbid_include "$source_dir/pump" $room || status=1; done
+for room in pump analytic multibody hydraulics compare; do forbid_include "$source_dir/$room" study || status=1; done
+for room in hydraulics cli; do forbid_include "$source_dir/study" $room || status=1; done
 forbid_symbol "$analytic" multibody || status=1
 forbid_symbol "$multibody" analytic || status=1
 

@@ -12,4 +12,5 @@ cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; ex
 "$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml"
 cd "$scratch"
 usr/bin/bentaxis compare usr/share/bentaxis/cases/bap63_rated.toml --out out > /dev/null
-ls out/report.html
+usr/bin/bentaxis hardcases --filter tilt_45 --out out > /dev/null
+ls out/report.html out/hardcases.html

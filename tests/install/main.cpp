@@ -5,6 +5,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/model.h"
+#include "bentaxis/study/calibration.h"
 
 int main(int, char** argv) {
   const bentaxis::Case the_case = bentaxis::read_case(argv[1]);
@@ -21,5 +22,6 @@ int main(int, char** argv) {
   const double torque = a[analytic.layout().Td()];
   const double difference = std::abs(m[analytic.layout().Td()] - torque);
   std::printf("Td = %.6f Nm, difference %.1e Nm\n", torque, difference);
-  return difference < 1e-9 ? 0 : 1;
+  const auto& integrator = bentaxis::study::name_of(bentaxis::multibody::Integrator{});
+  return difference < 1e-9 && !integrator.empty() ? 0 : 1;
 }

@@ -1,9 +1,8 @@
-#include "tradeoff.h"
+#include "bentaxis/study/tradeoff.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -12,16 +11,11 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
-#include "calibration.h"
+#include "bentaxis/study/calibration.h"
+#include "bentaxis/study/stopwatch.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // A run is repeated as long as that takes no longer than this, s.
 constexpr double kRepeatFor = 0.3;
@@ -295,4 +289,4 @@ const TradeoffRun* fastest_within(const std::vector<TradeoffRun>& runs, double e
   return fastest;
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -1,11 +1,15 @@
-#include "achieved_error.h"
+#include "bentaxis/study/achieved_error.h"
 
 #include <algorithm>
 
-#include "bentaxis/compare/comparison.h"
-#include "models.h"
+namespace bentaxis::study {
 
-namespace bentaxis::cli {
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
+  const LoadScale scale = load_scale(the_case, samples);
+  const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
+                                 the_case.pump.geometry.bore_circle_radius);
+  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
+}
 
 AchievedError achieved_error(const Case& the_case, const Samples& samples,
                              const ResultTable& reference, const ResultTable& table) {
@@ -34,4 +38,4 @@ AchievedError achieved_error(const Case& the_case, const Samples& samples,
   return error;
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

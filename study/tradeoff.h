@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "achieved_error.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/study/achieved_error.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// One way to compute a turn, what it cost and what it achieved.
 struct TradeoffRun {
@@ -57,4 +57,4 @@ Order order_of(const std::vector<TradeoffRun>& runs, const std::string& integrat
 /// The fastest integrated run whose error is at most `error`; nullptr if there is none.
 const TradeoffRun* fastest_within(const std::vector<TradeoffRun>& runs, double error);
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

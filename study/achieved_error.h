@@ -3,10 +3,11 @@
 
 #include <string>
 
+#include "bentaxis/compare/comparison.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/result_table.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// Largest differences over the peak of each group of reactions; not_computed() where either table
 /// has no value.
@@ -20,8 +21,11 @@ struct AchievedError {
   std::string worst_channel;  ///< where
 };
 
+/// What channels are held to whose peak is zero, per unit: the largest applied load of the case.
+compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples);
+
 /// @param reference  the right curves at the same angles
 AchievedError achieved_error(const Case& the_case, const Samples& samples,
                              const ResultTable& reference, const ResultTable& table);
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

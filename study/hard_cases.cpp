@@ -1,4 +1,4 @@
-#include "hard_cases.h"
+#include "bentaxis/study/hard_cases.h"
 
 #include <algorithm>
 #include <chrono>
@@ -13,10 +13,10 @@
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/toml_reader.h"
-#include "console.h"
-#include "rounding_spread.h"
+#include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/rounding_spread.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 namespace {
 
 ResultTable read_reference(const HardCase& hard, const ChannelLayout& layout,
@@ -38,11 +38,6 @@ ResultTable read_reference(const HardCase& hard, const ChannelLayout& layout,
   for (const auto& row : table.rows)
     result.values.insert(result.values.end(), row.begin() + 1, row.end());
   return result;
-}
-
-compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
-  const LoadScale scale = load_scale(the_case, samples);
-  return {{"N", scale.force}, {"Nm", scale.moment}};
 }
 
 std::vector<GroupLoss> losses(const compare::Comparison& comparison) {
@@ -160,7 +155,7 @@ HardOutcome outcome_of(const HardCase& hard, const std::string& model) {
 
 }  // namespace
 
-std::vector<HardOutcome> run_hard_case(const HardCase& hard) {
+std::vector<HardOutcome> run_hard_case(const HardCase& hard, const PartProgress& progress_of) {
   const Case the_case = read_case(hard.folder / "case.toml");
   const PressureTrace pressure(the_case.pressure);
   const Samples samples = sample_case(the_case, pressure);
@@ -217,7 +212,8 @@ bool LongRun::bounded() const {
          reaction_error[1] <= kGrowth * reaction_error[0];
 }
 
-LongRun run_long(const std::filesystem::path& catalogue, int turns, double accuracy) {
+LongRun run_long(const std::filesystem::path& catalogue, int turns, double accuracy,
+                 const PartProgress& progress_of) {
   Case the_case = read_case(catalogue / "long_run" / "case.toml");
   the_case.operation.revolutions = turns;
   const PressureTrace pressure(the_case.pressure);
@@ -256,4 +252,4 @@ LongRun run_long(const std::filesystem::path& catalogue, int turns, double accur
   return result;
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

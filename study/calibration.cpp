@@ -1,9 +1,8 @@
-#include "calibration.h"
+#include "bentaxis/study/calibration.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -12,17 +11,10 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
-#include "console.h"
-#include "models.h"
+#include "bentaxis/study/stopwatch.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // A trial must leave room for what errors do in the rest of the run.
 constexpr double kMargin = 0.5;
@@ -80,7 +72,8 @@ std::string VerifiedRun::text() const {
 
 Calibration calibrate(const Case& the_case, const Assumptions& assumptions,
                       const PressureTrace& pressure, double asked,
-                      const std::vector<multibody::Integrator>& among) {
+                      const std::vector<multibody::Integrator>& among,
+                      const PartProgress& progress_of) {
   const auto start = Clock::now();
   Case trial_case;
   const Samples samples = pitch_samples(the_case, pressure, trial_case);
@@ -145,9 +138,10 @@ Calibration calibrate(const Case& the_case, const Assumptions& assumptions,
 
 VerifiedRun run_to_error(const Case& the_case, const Assumptions& assumptions,
                          const Samples& samples, const PressureTrace& pressure, double asked,
-                         const std::vector<multibody::Integrator>& among) {
+                         const std::vector<multibody::Integrator>& among,
+                         const PartProgress& progress_of) {
   VerifiedRun result;
-  result.calibration = calibrate(the_case, assumptions, pressure, asked, among);
+  result.calibration = calibrate(the_case, assumptions, pressure, asked, among, progress_of);
   const ResultTable reference = analytic::run(the_case, assumptions, samples);
   for (;;) {
     result.run = multibody::run_integrated(the_case, assumptions, samples, pressure,
@@ -165,4 +159,4 @@ VerifiedRun run_to_error(const Case& the_case, const Assumptions& assumptions,
   }
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

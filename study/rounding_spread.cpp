@@ -1,4 +1,4 @@
-#include "rounding_spread.h"
+#include "bentaxis/study/rounding_spread.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 namespace {
 
 constexpr int kDraws = 4;
@@ -55,4 +55,4 @@ std::map<std::string, double> rounding_spread(const Case& the_case, const Result
   return spread;
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

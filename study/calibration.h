@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "achieved_error.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/progress.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// What was chosen and what it was seen to do.
 struct Calibration {
@@ -33,7 +34,8 @@ const std::string& name_of(multibody::Integrator integrator);
 /// @throws ComputationError if none of them reaches it
 Calibration calibrate(const Case& the_case, const Assumptions& assumptions,
                       const PressureTrace& pressure, double asked,
-                      const std::vector<multibody::Integrator>& among);
+                      const std::vector<multibody::Integrator>& among,
+                      const PartProgress& progress_of);
 
 /// Calibrates, runs the case, and tightens the accuracy until the error of the whole run is at most
 /// `asked`.
@@ -47,6 +49,7 @@ struct VerifiedRun {
 };
 VerifiedRun run_to_error(const Case& the_case, const Assumptions& assumptions,
                          const Samples& samples, const PressureTrace& pressure, double asked,
-                         const std::vector<multibody::Integrator>& among);
+                         const std::vector<multibody::Integrator>& among,
+                         const PartProgress& progress_of);
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

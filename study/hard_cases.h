@@ -9,8 +9,9 @@
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/result_table.h"
+#include "bentaxis/study/progress.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// One entry of reference_data/hard/catalogue.toml with what its folder holds.
 struct HardCase {
@@ -67,7 +68,7 @@ inline constexpr double kRoundOffLoss = 1e-12;
 
 /// Runs all models on a case and holds them against its high-precision curve.
 /// @return one outcome for each of hard_models(), in their order
-std::vector<HardOutcome> run_hard_case(const HardCase& hard);
+std::vector<HardOutcome> run_hard_case(const HardCase& hard, const PartProgress& progress_of);
 
 /// A long integrated run of the rated pump with real, spinning pistons: does anything grow?
 struct LongRun {
@@ -87,6 +88,7 @@ struct LongRun {
   /// Nothing is worse in the second half by more than a factor of 2.
   bool bounded() const;
 };
-LongRun run_long(const std::filesystem::path& catalogue, int turns, double accuracy);
+LongRun run_long(const std::filesystem::path& catalogue, int turns, double accuracy,
+                 const PartProgress& progress_of);
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -10,7 +10,7 @@
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/result_table.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// Largest difference of each scale group of reactions over its peak; 0 where nobody computed it.
 std::map<std::string, double> largest_of_groups(const compare::Comparison& comparison);
@@ -24,4 +24,4 @@ std::map<std::string, double> rounding_spread(const Case& the_case, const Result
                                               const compare::Options& options,
                                               const std::function<ResultTable(const Case&)>& run);
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study
