@@ -280,7 +280,7 @@ Command add_hardcases_command(CLI::App& app) {
   command
       ->add_option("--turns", options->turns,
                    "length of the integrated run; 0 leaves it out, as --filter does")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0, 100000))
       ->option_text("NUMBER [20]");
   command
       ->add_option("--catalogue", options->catalogue,

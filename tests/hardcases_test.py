@@ -86,6 +86,15 @@ class CatalogueTest(Temporary):
                 self.assertIn(said, result.stderr)
                 self.assertFalse((self.folder / "out").exists())
 
+    def test_number_of_turns(self):
+        for turns in ("-1", "1.5", "many", "1000000"):
+            result = run("hardcases", "--turns", turns, "--out", self.folder / "out")
+            self.assertEqual(result.returncode, 2)
+            self.assertEqual(len(result.stderr.splitlines()), 1)
+            self.assertLess(len(result.stderr), 120)
+            self.assertIn("--turns", result.stderr)
+            self.assertFalse((self.folder / "out").exists())
+
     def test_unknown_name(self):
         result = run("hardcases", "--filter", "no such case", "--out", self.folder / "out")
         self.assertEqual(result.returncode, 2)
