@@ -301,6 +301,8 @@ void PumpSystem::add_pistons() {
     const Rotation phase(-2 * kPi * k / g.pistons, SimTK::ZAxis);
     const Vec3 joint = phase * Vec3(0, g.joint_circle_radius, 0);
     const Vec3 bore = phase * Vec3(0, g.bore_circle_radius, 0);
+    joint_points_.push_back(joint);
+    bore_points_.push_back(bore);
     const SimTK::Body::Rigid body(properties);
     SimTK::MobilizedBody piston;
     // A body without inertia about its own axis must not have that freedom.
@@ -416,6 +418,31 @@ bool PumpSystem::solve_placement() {
   return true;
 }
 
+// Newton's method for a piston alone: B on its bore's axis, with shaft and block turned by theta.
+// Only a better guess: the assembly is judged, and finished where need be, by Simbody's own
+// equations.
+void PumpSystem::polish(std::size_t piston, double theta, Vec3& axis) const {
+  constexpr int kMostSteps = 3;
+  constexpr double kGood = 1e-8;   // of the length: the next step is round-off
+  constexpr double kSteep = 1e-2;  // least share of the axis along the bore
+  const double length = pump_.geometry.piston_length;
+  const Rotation shaft(theta, SimTK::ZAxis);
+  const Rotation block = bodies_.block_frame * Rotation(theta, SimTK::ZAxis);
+  const Rotation to_block(~block * shaft);
+  const Vec3 joint =
+      to_block * joint_points_[piston] - ~block * bodies_.block_origin - bore_points_[piston];
+  Vec3 local = to_block * axis / axis.norm();
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (!(local[2] > kSteep)) return;
+    const double x = -joint[0] / length - local[0];
+    const double y = -joint[1] / length - local[1];
+    local += Vec3(x, y, -(x * local[0] + y * local[1]) / local[2]);
+    local /= local.norm();
+    if (std::abs(x) + std::abs(y) < kGood) break;
+  }
+  axis = ~to_block * local;
+}
+
 // From the last two placements of a track the polynomial that has their values and two derivatives
 // (degree 5), or from the last one alone its Taylor polynomial.
 bool PumpSystem::extrapolate(const Track& track, double theta) {
@@ -444,6 +471,7 @@ bool PumpSystem::extrapolate(const Track& track, double theta) {
       const Vec3 c5 = -6 * value - 3 * first - second / 2;
       axis += t * t * t * (c3 + t * (c4 + t * c5));
     }
+    polish(k, theta, axis);
     // The turn that takes z to the axis the shortest way; a turn about the piston's own axis
     // changes nothing.
     SimTK::Vec4 quaternion(axis.norm() + axis[2], -axis[1], axis[0], 0);

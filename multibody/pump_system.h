@@ -164,6 +164,8 @@ class PumpSystem {
     std::optional<Placement> last, before;
   };
   bool extrapolate(const Track& track, double theta);
+  void polish(std::size_t piston, double theta, SimTK::Vec3& axis) const;
+  std::vector<SimTK::Vec3> joint_points_, bore_points_;  // A in the shaft, the bores in the block
   std::vector<Track> tracks_;
   double placed_theta_ = 0, placed_omega_ = 0, placed_omega_dot_ = 0;
   std::size_t placed_track_ = 0;

@@ -413,8 +413,14 @@ function tickLabels(values) {
     : scientific(v, 1 + Math.max(0, digit(Math.abs(v) * (1 + 1e-12)) - digit(step))));
 }
 
+// At least two ticks within the axis: a low plot may have room for one only, which says nothing of the scale.
 function valueTicks(low, high, pixels, options, graph) {
-  const ticks = Dygraph.numericTicks(low, high, pixels, options, graph);
+  let ticks = [];
+  for (let finer = 1; finer <= 4; finer *= 2) {
+    const denser = name => (name === "pixelsPerLabel" ? options(name) / finer : options(name));
+    ticks = Dygraph.numericTicks(low, high, pixels, denser, graph);
+    if (ticks.filter(t => t.v >= low && t.v <= high).length >= 2) break;
+  }
   const labels = tickLabels(ticks.map(t => t.v));
   return ticks.map((t, i) => ({ v: t.v, label: labels[i] }));
 }
