@@ -227,7 +227,7 @@ Provenance Model::provenance() const {
   provenance.facts = scene_facts(self.parameters, self.system.assumptions(), self.scene);
   auto& facts = provenance.facts;
   facts.insert(facts.begin() + 1,
-               {"way", "driven: pistons assembled at each angle from the constraint equations, " +
+               {"way", "driven: pistons placed at each angle until the constraint equations hold to round-off, " +
                            std::string(self.method == Method::multipliers
                                            ? "accelerations and reactions solved together"
                                            : "accelerations too, reactions by inverse dynamics") +
