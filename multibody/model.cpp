@@ -226,12 +226,14 @@ Provenance Model::provenance() const {
   Provenance provenance;
   provenance.facts = scene_facts(self.parameters, self.system.assumptions(), self.scene);
   auto& facts = provenance.facts;
-  facts.insert(facts.begin() + 1,
-               {"way", "driven: pistons placed at each angle until the constraint equations hold to round-off, " +
-                           std::string(self.method == Method::multipliers
-                                           ? "accelerations and reactions solved together"
-                                           : "accelerations too, reactions by inverse dynamics") +
-                           ", no time integration"});
+  facts.insert(
+      facts.begin() + 1,
+      {"way",
+       "driven: pistons placed at each angle until the constraint equations hold to round-off, " +
+           std::string(self.method == Method::multipliers
+                           ? "accelerations and reactions solved together"
+                           : "accelerations too, reactions by inverse dynamics") +
+           ", no time integration"});
   facts.emplace_back("mobilities", std::to_string(self.rank.mobilities));
   facts.emplace_back("constraint equations", std::to_string(self.rank.equations));
   facts.emplace_back("rank of the constraint matrix", std::to_string(self.rank.rank));
