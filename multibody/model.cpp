@@ -69,7 +69,7 @@ struct Model::Implementation {
 
   void check(const Instant& instant) const;
   void evaluate(const Instant& instant, std::vector<double>& values);
-  void place_and_solve(double theta, const Instant& instant, std::size_t track);
+  void place_and_solve(double theta, const Instant& instant);
   void check_rank();
 
   ChannelLayout layout;
@@ -81,7 +81,6 @@ struct Model::Implementation {
   Reactions reactions;
   Reactions by_inverse_dynamics;  // what the multipliers are held to
   std::vector<double> pressure;
-  std::vector<SimTK::Vec3> angular_accelerations;
   PumpSystem::Rank rank;
   long placements = 0;
   double sign;
@@ -119,15 +118,14 @@ void Model::Implementation::check_rank() {
 }
 
 // Finds the reactions at an angle under the pressures in `pressure`.
-void Model::Implementation::place_and_solve(double theta, const Instant& instant,
-                                            std::size_t track) {
+void Model::Implementation::place_and_solve(double theta, const Instant& instant) {
   system.inputs().ports = instant.ports;
   // At standstill the pistons' velocities are round-off of the projection, with any sign.
   system.inputs().rest_speed = instant.omega == 0
                                    ? std::numeric_limits<double>::infinity()
                                    : piston_rest_speed(system.pump().geometry, instant.omega);
   ++placements;
-  system.place(theta, instant.omega, instant.omega_dot, track);
+  system.place(theta, instant.omega, instant.omega_dot);
   SimTK::State& state = system.dynamics();
   if (method == Method::multipliers) {
     if (scene == Scene::full) system.set_acceleration(state, instant.omega_dot);
@@ -140,9 +138,6 @@ void Model::Implementation::place_and_solve(double theta, const Instant& instant
     residual.solve(reactions);
     check_rank();
   }
-  angular_accelerations.clear();
-  for (const auto& on : reactions.pistons) angular_accelerations.push_back(on.acceleration[0]);
-  system.remember_placement(angular_accelerations);
 }
 
 void Model::Implementation::evaluate(const Instant& instant, std::vector<double>& values) {
@@ -151,13 +146,13 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
   if (scene == Scene::piston) {
     for (int k = 0; k < n; ++k) {
       pressure.assign(1, instant.chamber_pressure[k]);
-      place_and_solve(instant.theta - 2 * kPi * k / n, instant, k);
+      place_and_solve(instant.theta - 2 * kPi * k / n, instant);
       read_piston_channels(system, reactions, 0, k, instant.chamber_pressure[k], layout, values);
     }
     return;
   }
   pressure = instant.chamber_pressure;
-  place_and_solve(instant.theta, instant, 0);
+  place_and_solve(instant.theta, instant);
   const SimTK::State& state = system.dynamics();
   for (int k = 0; k < n; ++k)
     read_piston_channels(system, reactions, k, k, instant.chamber_pressure[k], layout, values);
@@ -179,7 +174,7 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
     throw std::logic_error("evaluate_one() is of the one-piston scene");
   translate_simbody_errors([&] {
     self.pressure.assign(1, instant.chamber_pressure[0]);
-    self.place_and_solve(instant.theta, instant, 0);
+    self.place_and_solve(instant.theta, instant);
     read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
                          self.layout, values);
   });

@@ -33,11 +33,6 @@ constexpr double kAssemblyTolerance = 1e-12;
 constexpr double kRankTolerance = 1e-11;
 // A step in theta up to which the last assembly is a better start than a fresh guess.
 constexpr double kNearby = 0.2;
-// Speed, rad/s, below which derivatives with respect to theta are not taken from those in time.
-constexpr double kSlowest = 1e-6;
-// Two placements closer than this (rad) are extrapolated together, up to so many of their steps.
-constexpr double kSmooth = 0.05;
-constexpr double kFarthest = 1.5;
 
 // Prescribes rotation about the joint's z axis, for a pin (1 coordinate) or a ball (quaternion).
 class TurningMotion : public SimTK::Motion::Custom::Implementation {
@@ -418,60 +413,21 @@ bool PumpSystem::solve_placement() {
   return true;
 }
 
-// Newton's method for a piston alone: B on its bore's axis, with shaft and block turned by theta.
-// Only a better guess: the assembly is judged, and finished where need be, by Simbody's own
-// equations.
-void PumpSystem::polish(std::size_t piston, double theta, Vec3& axis) const {
-  constexpr int kMostSteps = 3;
-  constexpr double kGood = 1e-8;   // of the length: the next step is round-off
-  constexpr double kSteep = 1e-2;  // least share of the axis along the bore
-  const double length = pump_.geometry.piston_length;
+// A's distance from its bore's axis fixes the piston's direction across that axis, its length the
+// rest; of the two roots the one along z2. A guess: Simbody's own equations judge it, and where
+// they do not hold to round-off its placement goes on from there.
+bool PumpSystem::guess_placement(double theta) {
   const Rotation shaft(theta, SimTK::ZAxis);
   const Rotation block = bodies_.block_frame * Rotation(theta, SimTK::ZAxis);
   const Rotation to_block(~block * shaft);
-  const Vec3 joint =
-      to_block * joint_points_[piston] - ~block * bodies_.block_origin - bore_points_[piston];
-  Vec3 local = to_block * axis / axis.norm();
-  for (int step = 0; step < kMostSteps; ++step) {
-    if (!(local[2] > kSteep)) return;
-    const double x = -joint[0] / length - local[0];
-    const double y = -joint[1] / length - local[1];
-    local += Vec3(x, y, -(x * local[0] + y * local[1]) / local[2]);
-    local /= local.norm();
-    if (std::abs(x) + std::abs(y) < kGood) break;
-  }
-  axis = ~to_block * local;
-}
-
-// From the last two placements of a track the polynomial that has their values and two derivatives
-// (degree 5), or from the last one alone its Taylor polynomial.
-bool PumpSystem::extrapolate(const Track& track, double theta) {
-  if (!track.last) return false;
-  const double ahead = std::remainder(theta - track.last->theta, 2 * kPi);
-  if (!(std::abs(ahead) < kNearby)) return false;
-  const double step =
-      track.before ? std::remainder(track.last->theta - track.before->theta, 2 * kPi) : 0;
-  // Close to the step between them: farther out a polynomial of this degree magnifies round-off.
-  const double t = step != 0 ? ahead / step : 0;
-  const bool both = std::abs(step) < kSmooth && t > 0 && t < kFarthest;
+  const Vec3 origin = ~block * bodies_.block_origin;
   Vector& q = dynamics_.updQ();
   for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
-    const Direction& last = track.last->pistons[k];
-    Vec3 axis = last.value + ahead * (last.first + ahead / 2 * last.second);
-    if (both) {
-      // Backward difference form: what Taylor's polynomial of degree 2 missed at `before`, as
-      // c3 x^3 + c4 x^4 + c5 x^5 with x in steps from `last`.
-      const Direction& before = track.before->pistons[k];
-      const Vec3 value =
-          before.value - (last.value - step * last.first + step * step / 2 * last.second);
-      const Vec3 first = step * (before.first - (last.first - step * last.second));
-      const Vec3 second = step * step * (before.second - last.second);
-      const Vec3 c3 = -10 * value - 4 * first - second / 2;
-      const Vec3 c4 = -15 * value - 7 * first - second;
-      const Vec3 c5 = -6 * value - 3 * first - second / 2;
-      axis += t * t * t * (c3 + t * (c4 + t * c5));
-    }
-    polish(k, theta, axis);
+    const Vec3 across =
+        (bore_points_[k] + origin - to_block * joint_points_[k]) / pump_.geometry.piston_length;
+    const double along = 1 - across[0] * across[0] - across[1] * across[1];
+    if (!(along > 0)) return false;
+    const Vec3 axis = ~to_block * Vec3(across[0], across[1], std::sqrt(along));
     // The turn that takes z to the axis the shortest way; a turn about the piston's own axis
     // changes nothing.
     SimTK::Vec4 quaternion(axis.norm() + axis[2], -axis[1], axis[0], 0);
@@ -482,13 +438,10 @@ bool PumpSystem::extrapolate(const Track& track, double theta) {
   return true;
 }
 
-void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t track) {
-  if (track >= tracks_.size()) tracks_.resize(track + 1);
-  placed_track_ = track;
+void PumpSystem::place(double theta, double omega, double omega_dot) {
   placed_theta_ = theta;
-  placed_omega_ = omega;
   placed_omega_dot_ = omega_dot;
-  if (!(extrapolate(tracks_[track], theta) && solve_placement())) {
+  if (!(guess_placement(theta) && solve_placement())) {
     assemble(theta, omega);
     copy_assembly_to_dynamics();
     if (!solve_placement()) throw no_assembly(theta);
@@ -508,35 +461,6 @@ void PumpSystem::place(double theta, double omega, double omega_dot, std::size_t
         "multibody model: no speeds found that keep the pistons in their bores at "
         "theta = " +
         std::to_string(theta / kRadPerDegree) + " deg");
-}
-
-void PumpSystem::remember_placement(const std::vector<Vec3>& angular_acceleration) {
-  Track& track = tracks_[placed_track_];
-  std::swap(track.before, track.last);
-  if (!track.last) track.last = Placement{};
-  track.last->theta = placed_theta_;
-  track.last->pistons.resize(bodies_.pistons.size());
-  const Rotation& shaft = shaft_.getBodyRotation(dynamics_);
-  const Vec3& shaft_rate = shaft_.getBodyAngularVelocity(dynamics_);
-  const Vec3 shaft_acceleration(0, 0, placed_omega_dot_);
-  const double omega = placed_omega_;
-  for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
-    const auto& piston = bodies_.pistons[k];
-    Direction& direction = track.last->pistons[k];
-    const Vec3 axis(piston.getBodyRotation(dynamics_).z());
-    direction.value = ~shaft * axis;
-    direction.first = direction.second = Vec3(0);
-    // Derivatives with respect to theta do not depend on the speed; at standstill there are none.
-    if (std::abs(omega) < kSlowest) continue;
-    const Vec3& rate = piston.getBodyAngularVelocity(dynamics_);
-    const Vec3 relative = rate - shaft_rate;
-    const Vec3 first = relative % axis;
-    const Vec3 second = (angular_acceleration[k] - shaft_acceleration) % axis +
-                        relative % (rate % axis) - shaft_rate % first;
-    direction.first = ~shaft * first / omega;
-    direction.second = (~shaft * second - placed_omega_dot_ * direction.first) / (omega * omega);
-  }
-  if (std::abs(omega) < kSlowest) track.before.reset();
 }
 
 void PumpSystem::constrained_accelerations(Vector& udot) {

@@ -60,13 +60,10 @@ class PumpSystem {
   void copy_assembly_to_dynamics();
 
   /// Puts the dynamics state at the given angle, speed and rate of speed: positions and speeds,
-  /// from an extrapolation of the last placement where that is near and from an assembly where not.
-  /// Leaves it realized to Velocity.
-  /// @param track  which of several interleaved sequences of angles this one continues
+  /// guessed, then brought to where the constraint equations hold to round-off. Leaves it realized
+  /// to Velocity.
   /// @throws ComputationError where no assembly is found.
-  void place(double theta, double omega, double omega_dot, std::size_t track = 0);
-  /// Keeps what place() extrapolates from. @param angular_acceleration  of each piston, in Ground
-  void remember_placement(const std::vector<SimTK::Vec3>& angular_acceleration);
+  void place(double theta, double omega, double omega_dot);
 
   /// Accelerations of all mobilities as the constraint equations have them at the last placement.
   void constrained_accelerations(SimTK::Vector& udot);
@@ -151,24 +148,9 @@ class PumpSystem {
   double piston_inertia_about_joint_ = 0;
   std::optional<double> assembled_theta_;
   std::unique_ptr<PistonSolver> solver_;
-  // Directions of the pistons in the shaft's frame at a placement, with their derivatives with
-  // respect to theta.
-  struct Direction {
-    SimTK::Vec3 value, first, second;
-  };
-  struct Placement {
-    double theta = 0;
-    std::vector<Direction> pistons;
-  };
-  struct Track {
-    std::optional<Placement> last, before;
-  };
-  bool extrapolate(const Track& track, double theta);
-  void polish(std::size_t piston, double theta, SimTK::Vec3& axis) const;
+  bool guess_placement(double theta);
   std::vector<SimTK::Vec3> joint_points_, bore_points_;  // A in the shaft, the bores in the block
-  std::vector<Track> tracks_;
-  double placed_theta_ = 0, placed_omega_ = 0, placed_omega_dot_ = 0;
-  std::size_t placed_track_ = 0;
+  double placed_theta_ = 0, placed_omega_dot_ = 0;
 };
 
 }  // namespace bentaxis::multibody

@@ -81,12 +81,12 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
     reactions.imposed = pump.imposed_block_torque(state);
 }
 
-SpatialVec ResidualSolver::needed(const MobilizedBody& body) const {
+SpatialVec ResidualSolver::needed(const MobilizedBody& body, const Loads& loads) const {
   const State& state = pump_.dynamics();
   const SimTK::MobilizedBodyIndex index = body.getMobilizedBodyIndex();
   const SpatialVec inertia = body.getBodySpatialInertiaInGround(state) * accelerations_[index] +
                              pump_.matter().getGyroscopicForce(state, index);
-  return inertia - (*loads_)[index];
+  return inertia - loads[index];
 }
 
 void ResidualSolver::solve(Reactions& reactions) {
@@ -94,10 +94,10 @@ void ResidualSolver::solve(Reactions& reactions) {
   const SimTK::SimbodyMatterSubsystem& matter = pump_.matter();
   const PumpBodies& bodies = pump_.bodies();
   pump_.system().realize(state, SimTK::Stage::Dynamics);
-  loads_ = &pump_.system().getRigidBodyForces(state, SimTK::Stage::Dynamics);
+  const Loads& loads = pump_.system().getRigidBodyForces(state, SimTK::Stage::Dynamics);
   pump_.constrained_accelerations(udot_);
   matter.calcResidualForceIgnoringConstraints(
-      state, pump_.system().getMobilityForces(state, SimTK::Stage::Dynamics), *loads_, udot_,
+      state, pump_.system().getMobilityForces(state, SimTK::Stage::Dynamics), loads, udot_,
       residual_);
   matter.calcBodyAccelerationFromUDot(state, udot_, accelerations_);
   pump_.piston_solver().solve_forces(residual_, bore_);
@@ -110,15 +110,15 @@ void ResidualSolver::solve(Reactions& reactions) {
     on.acceleration = accelerations_[piston.getMobilizedBodyIndex()];
     on.place = piston.getBodyTransform(state);
     on.bore = block * pump_.bores()[k].force_in_base(bore_[k][0], bore_[k][1]);
-    const SpatialVec total = needed(piston);
+    const SpatialVec total = needed(piston, loads);
     on.joint = total[1] - on.bore;
     // B is on the axis through A: the bore force has no moment about it.
     on.axis_moment = dot(total[0], Vec3(on.place.z()));
   }
-  if (!pump_.is_prescribed()) solve_block_and_shaft(reactions);
+  if (!pump_.is_prescribed()) solve_block_and_shaft(reactions, loads);
 }
 
-void ResidualSolver::solve_block_and_shaft(Reactions& reactions) {
+void ResidualSolver::solve_block_and_shaft(Reactions& reactions, const Loads& loads) {
   const State& state = pump_.dynamics();
   const PumpBodies& bodies = pump_.bodies();
   const Vec3& c1 = bodies.shaft_origin;
@@ -128,9 +128,9 @@ void ResidualSolver::solve_block_and_shaft(Reactions& reactions) {
   // Block: what it needs beyond the bores' forces is supplied by the gear (or the imposed motion)
   // about z2 and held by film and pin in all other directions.
   const Vec3& block_at = bodies.block.getBodyOriginLocation(state);
-  SpatialVec hold = needed(bodies.block);
+  SpatialVec hold = needed(bodies.block, loads);
   hold[0] += (block_at - o2) % hold[1];
-  SpatialVec on_shaft = needed(bodies.shaft);
+  SpatialVec on_shaft = needed(bodies.shaft, loads);
   on_shaft[0] += (bodies.shaft.getBodyOriginLocation(state) - c1) % on_shaft[1];
   for (std::size_t k = 0; k < bodies.pistons.size(); ++k) {
     const Reactions::OnPiston& on = reactions.pistons[k];

@@ -42,12 +42,12 @@ class ResidualSolver {
   void solve(Reactions& reactions);
 
  private:
-  void solve_block_and_shaft(Reactions& reactions);
+  using Loads = SimTK::Vector_<SimTK::SpatialVec>;  // on the bodies
+  void solve_block_and_shaft(Reactions& reactions, const Loads& loads);
   /// Force and moment about the body's origin that its motion needs beyond the applied loads.
-  SimTK::SpatialVec needed(const SimTK::MobilizedBody& body) const;
+  SimTK::SpatialVec needed(const SimTK::MobilizedBody& body, const Loads& loads) const;
 
   PumpSystem& pump_;
-  const SimTK::Vector_<SimTK::SpatialVec>* loads_ = nullptr;  // on the bodies, at the placement
   SimTK::Vector udot_, residual_;
   SimTK::Vector_<SimTK::SpatialVec> accelerations_;
   std::vector<SimTK::Vec3> bore_;
