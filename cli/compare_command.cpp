@@ -367,12 +367,13 @@ int compare(Options options) {
       report["figures"].push_back(std::move(figure));
     folder.add("pressure.csv", to_csv(ready.hydraulics->table));
   }
-  report["runs"].push_back(rounding_block(rounding_lines(the_case, the_case.analytic)));
-  for (const auto& text : rounding_warnings(the_case, the_case.analytic))
+  const auto rounding = rounding_lines(the_case, the_case.analytic);
+  report["runs"].push_back(rounding_block(rounding));
+  for (const auto& text : rounding_warnings(rounding))
     report["warnings"].push_back({{"name", "digits lost to rounding"}, {"text", text}});
   if (!integrated)
-    for (const auto& text :
-         multibody_warnings(study.multibody_case, study.multibody_case.multibody, options.scene))
+    for (const auto& text : multibody_warnings(study.multibody_case, study.multibody_case.multibody,
+                                               options.scene, rounding))
       report["warnings"].push_back({{"name", "digits lost in Simbody"}, {"text", text}});
   if (split.split) {
     report["verdict"]["word"] = agrees ? "Explained" : "Not explained";

@@ -46,9 +46,9 @@ std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions
   return lines;
 }
 
-std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptions& assumptions) {
+std::vector<std::string> rounding_warnings(const std::vector<RoundingLine>& lines) {
   std::vector<std::string> warnings;
-  for (const RoundingLine& line : rounding_lines(the_case, assumptions))
+  for (const RoundingLine& line : lines)
     if (line.total() > kWorthAWarning)
       warnings.push_back(fmt::format(
           "{} is known to {:.1e} of its peak only: rounding of {} to double, at {:g} deg",
@@ -59,7 +59,8 @@ std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptio
 }
 
 std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
-                                            const multibody::SceneChoice& scene) {
+                                            const multibody::SceneChoice& scene,
+                                            const std::vector<RoundingLine>& lines) {
   const Case thin = at_few_angles(the_case);
   const PressureTrace pressure(thin.pressure);
   const Samples samples = sample_case(thin, pressure);
@@ -74,7 +75,7 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
   } catch (const ComputationError&) {
     return {};
   }
-  for (const RoundingLine& line : rounding_lines(the_case, assumptions))
+  for (const RoundingLine& line : lines)
     if (lost[line.group] < kMoreThanEstimated * line.total()) lost.erase(line.group);
   std::string groups;
   for (const auto& [group, loss] : lost)

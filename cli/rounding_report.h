@@ -24,13 +24,14 @@ struct RoundingLine {
 std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions& assumptions);
 
 /// One sentence per group that rounding may change by more than 1e-9 of its peak.
-std::vector<std::string> rounding_warnings(const Case& the_case, const Assumptions& assumptions);
+std::vector<std::string> rounding_warnings(const std::vector<RoundingLine>& lines);
 
 /// One sentence that names every group of which the driven multibody model has lost more than 1e-9
-/// of its peak, and more than the estimate above: what moving every input by one unit in the last
+/// of its peak, and more than `lines` say: what moving every input by one unit in the last
 /// place changes, at up to 24 angles. None where nothing is lost or the model refuses the case.
 std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
-                                            const multibody::SceneChoice& scene);
+                                            const multibody::SceneChoice& scene,
+                                            const std::vector<RoundingLine>& lines);
 
 /// A block for the report, as in its section "runs".
 nlohmann::json rounding_block(const std::vector<RoundingLine>& lines);

@@ -43,9 +43,11 @@ int run(const Options& options) {
     scene = options.channels.scene_for(layout, scene);
   else
     options.channels.of(layout);  // refuses unknown names
-  std::vector<std::string> warnings = rounding_warnings(the_case, assumptions);
+  const auto lines = rounding_lines(the_case, assumptions);
+  std::vector<std::string> warnings = rounding_warnings(lines);
   if (driven)
-    for (auto& text : multibody_warnings(the_case, assumptions, scene)) warnings.push_back(text);
+    for (auto& text : multibody_warnings(the_case, assumptions, scene, lines))
+      warnings.push_back(text);
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
   if (options.model == "analytic") {
