@@ -12,10 +12,10 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-#include "bentaxis/analytic/batch_job.h"
+#include "batch_job.h"
 #include "bentaxis/analytic/prepared.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/result_table.h"
+#include "bentaxis/results/result_table.h"
 
 namespace bentaxis::analytic {
 namespace {

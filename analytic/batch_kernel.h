@@ -9,7 +9,7 @@
 #include <cstring>
 #include <xsimd/xsimd.hpp>
 
-#include "bentaxis/analytic/batch_job.h"
+#include "batch_job.h"
 #include "bentaxis/analytic/closed_form.h"
 
 namespace bentaxis::analytic::closed_form {

@@ -8,6 +8,8 @@
 #include <iterator>
 #include <limits>
 
+#include "bentaxis/pump/number.h"
+
 namespace bentaxis::analytic {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <functional>
 
+#include "bentaxis/pump/number.h"
+
 namespace bentaxis::analytic {
 namespace {
 

@@ -9,6 +9,7 @@
 
 #include "bentaxis/analytic/batch.h"
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/units.h"
 #include "printed_dense.h"

@@ -11,7 +11,7 @@
 
 #include "bentaxis/analytic/kinematics.h"
 #include "bentaxis/analytic/prepared.h"
-#include "bentaxis/pump/instant.h"
+#include "bentaxis/results/instant.h"
 
 namespace bentaxis::bench {
 

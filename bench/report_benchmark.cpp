@@ -3,9 +3,11 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/compare/comparison.h"
-#include "bentaxis/compare/page.h"
-#include "bentaxis/compare/report.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/report/page.h"
+#include "bentaxis/report/report.h"
 
 namespace bentaxis::bench {
 namespace {
@@ -41,9 +43,9 @@ BENCHMARK(write_csv)->Unit(benchmark::kMillisecond);
 void render_page(benchmark::State& state) {
   const auto comparison = compare::compare_tables(tables().first, tables().second, {});
   for (auto _ : state) {
-    const compare::Json report = {{"channels", compare::channel_rows(comparison)}};
+    const report::Json report = {{"channels", report::channel_rows(comparison)}};
     benchmark::DoNotOptimize(
-        compare::render_page("x", report, compare::curve_section(tables().first, tables().second)));
+        report::render_page("x", report, report::curve_section(tables().first, tables().second)));
   }
 }
 BENCHMARK(render_page)->Unit(benchmark::kMillisecond);

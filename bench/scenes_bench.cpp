@@ -2,6 +2,7 @@
 // comparable between machines.
 #include <benchmark/benchmark.h>
 
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/case.h"
 

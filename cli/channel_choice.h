@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bentaxis/multibody/scene.h"
-#include "bentaxis/pump/channels.h"
+#include "bentaxis/results/channels.h"
 
 namespace bentaxis::cli {
 

@@ -10,15 +10,16 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/compare/comparison.h"
-#include "bentaxis/compare/page.h"
-#include "bentaxis/compare/report.h"
 #include "bentaxis/compare/split.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/report/page.h"
+#include "bentaxis/report/report.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/calibration.h"
 #include "channel_choice.h"
@@ -102,7 +103,7 @@ double worst_of_group(const compare::Comparison& comparison, const std::string& 
 Json integrate_all(Study& study, const Options& options,
                    const compare::Options& comparison_options) {
   Json rows = Json::array();
-  compare::Lines facts;  // a list of pairs would become a JSON object
+  report::Lines facts;  // a list of pairs would become a JSON object
   const auto torque = analytic_torque(study, study.multibody_case.multibody);
   for (const double accuracy : options.accuracies) {
     multibody::IntegrationRecord record;
@@ -148,7 +149,7 @@ Json integrate_all(Study& study, const Options& options,
              {"rows", rows}}}}};
 }
 
-compare::Lines assumption_lines(const Assumptions& a) {
+report::Lines assumption_lines(const Assumptions& a) {
   return {{"piston friction", a.piston_friction ? "on" : "off"},
           {"piston inertia", to_string(a.inertia)},
           {"gear", to_string(a.gear)}};
@@ -156,7 +157,7 @@ compare::Lines assumption_lines(const Assumptions& a) {
 
 // Takes the difference apart where the models' assumptions differ.
 struct SplitResult {
-  std::vector<compare::AssumptionRow> rows;
+  std::vector<report::AssumptionRow> rows;
   std::optional<compare::Split> split;
 };
 
@@ -351,11 +352,11 @@ int compare(Options options) {
       {"common", common_section(the_case)},
       {"validity", validity_section(limits)},
       {"models",
-       Json::array({compare::model_section(study.analytic, assumption_lines(the_case.analytic)),
-                    compare::model_section(study.multibody,
-                                           assumption_lines(study.multibody_case.multibody))})},
-      {"channels", compare::channel_rows(comparison)},
-      {"checks", compare::check_rows(checks)},
+       Json::array({report::model_section(study.analytic, assumption_lines(the_case.analytic)),
+                    report::model_section(study.multibody,
+                                          assumption_lines(study.multibody_case.multibody))})},
+      {"channels", report::channel_rows(comparison)},
+      {"checks", report::check_rows(checks)},
       {"assumptions", nullptr},
       {"published", published ? published->json : Json()},
       {"runs", runs},
@@ -379,15 +380,15 @@ int compare(Options options) {
     report["verdict"]["word"] = agrees ? "Explained" : "Not explained";
     report["verdict"]["rest_over_peak"] = split.split->largest_rest();
     report["verdict"]["rest_tolerance"] = split.split->tolerance;
-    report["assumptions"] = compare::split_section(
+    report["assumptions"] = report::split_section(
         *split.split, split.rows,
         "The models were asked to assume different things. Each assumption's contribution is its "
         "effect in the analytic model, averaged over the orders in which the assumptions can be "
         "taken over; what is left is a difference between the models themselves.");
   }
 
-  const Json curves = compare::curve_section(study.analytic, study.multibody);
-  folder.add("report.html", compare::render_page(the_case.name, report, curves));
+  const Json curves = report::curve_section(study.analytic, study.multibody);
+  folder.add("report.html", report::render_page(the_case.name, report, curves));
   folder.add("report.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   folder.add("analytic.csv", to_csv(select_channels(study.analytic, wanted)));
   folder.add("multibody.csv", to_csv(select_channels(study.multibody, wanted)));
@@ -395,7 +396,7 @@ int compare(Options options) {
 
   std::printf("%s\n%s\n\n%s", the_case.name.c_str(),
               report["verdict"]["headline"].get<std::string>().c_str(),
-              compare::text_table(comparison).c_str());
+              report::text_table(comparison).c_str());
   if (!options.choice.empty()) std::printf("chosen %s\n", options.choice.c_str());
   for (const auto& check : checks)
     std::printf("%s: %s: %.1e of scale, %s\n", check.table.c_str(), check.name.c_str(),

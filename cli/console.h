@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "bentaxis/pump/result_table.h"
+#include "bentaxis/results/result_table.h"
 
 namespace bentaxis::cli {
 

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "bentaxis/compare/page.h"
-#include "bentaxis/pump/csv.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/report/page.h"
 #include "bentaxis/study/hard_cases.h"
 #include "commands.h"
 #include "console.h"
@@ -259,7 +259,7 @@ int run(const Options& options) {
     report["long_run"] = page["runs"].back();
     report["long_run"]["bounded"] = bounded;
   }
-  out.add("hardcases.html", compare::render_page("Hard cases", page, Json::object()));
+  out.add("hardcases.html", report::render_page("Hard cases", page, Json::object()));
   out.add("hardcases.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   out.add("hardcases.csv", csv_of(rows));
   out.add("hardcases.md", markdown_of(rows));

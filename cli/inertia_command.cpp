@@ -6,12 +6,13 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/compare/page.h"
-#include "bentaxis/compare/report.h"
-#include "bentaxis/pump/csv.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/report/page.h"
+#include "bentaxis/report/report.h"
 #include "bentaxis/study/inertia.h"
 #include "commands.h"
 #include "console.h"
@@ -290,7 +291,7 @@ double cost_of(const Study& s, const std::string& scene, const std::string& meth
 Json sections(const Case& the_case, const Study& s, double models, double scenes) {
   Json list = Json::array();
   const auto add = [&](const std::string& title, const std::string& text, const Json& table,
-                       const compare::Lines& facts = {}) {
+                       const report::Lines& facts = {}) {
     list.push_back({{"title", title}, {"text", text}, {"facts", facts}, {"table", table}});
   };
   add("Error of lumping on a piston's reactions",
@@ -320,7 +321,7 @@ Json sections(const Case& the_case, const Study& s, double models, double scenes
         {lumping.name,
          is_computed(lumping.joint_mass_fraction) ? Json(lumping.joint_mass_fraction) : Json(),
          lumping.error_rs, lumping.error_rc});
-  compare::Lines facts;
+  report::Lines facts;
   if (s.masses.exists)
     facts = {{"mass at A", fmt::format("{:.5g} kg", s.masses.at_joint)},
              {"mass at the centre", fmt::format("{:.5g} kg", s.masses.at_centre)},
@@ -342,11 +343,11 @@ Json sections(const Case& the_case, const Study& s, double models, double scenes
   add("Simbody: from the real piston to the lumped one",
       "Centre of mass, transverse and axial inertia go to those of the two masses with t.",
       {{"columns", {"t", "difference of Rs, N", "difference of Rc, N"}}, {"rows", rows}},
-      s.spin ? compare::Lines{{"spin at the start", fmt::format("{:g} rpm", s.spin->spin_rpm)},
-                              {"largest change over a turn integrated",
-                               fmt::format("{:.1e} rad/s (accuracy {:g} per step)",
-                                           s.spin->worst_change, s.spin->accuracy)}}
-             : compare::Lines{{"spin", "none: the piston has no axial inertia"}});
+      s.spin ? report::Lines{{"spin at the start", fmt::format("{:g} rpm", s.spin->spin_rpm)},
+                             {"largest change over a turn integrated",
+                              fmt::format("{:.1e} rad/s (accuracy {:g} per step)",
+                                          s.spin->worst_change, s.spin->accuracy)}}
+             : report::Lines{{"spin", "none: the piston has no axial inertia"}});
 
   rows = Json::array();
   const double full = cost_of(s, "full", "multipliers");
@@ -641,7 +642,7 @@ int run(const Options& options) {
       {"runs", sections(the_case, s, models, scenes)},
       {"published", published(s)},
       {"figures", figures}};
-  folder.add("inertia.html", compare::render_page(report["title"], report, curves.json()));
+  folder.add("inertia.html", report::render_page(report["title"], report, curves.json()));
   folder.add("inertia.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   folder.add("inertia.csv", curves_csv(s));
   folder.add("inertia_errors.csv", errors_csv(s));

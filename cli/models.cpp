@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "console.h"

@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
-#include "bentaxis/pump/files.h"
-#include "bentaxis/pump/result_table.h"
+#include "bentaxis/results/result_table.h"
 #include "options.h"
 
 namespace bentaxis::cli {

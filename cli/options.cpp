@@ -4,8 +4,8 @@
 #include <functional>
 #include <map>
 
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 
 namespace bentaxis::cli {
 

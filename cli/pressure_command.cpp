@@ -13,12 +13,14 @@
 #include <tuple>
 
 #include "bentaxis/compare/comparison.h"
-#include "bentaxis/compare/page.h"
-#include "bentaxis/compare/report.h"
-#include "bentaxis/pump/csv.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/report/page.h"
+#include "bentaxis/report/report.h"
 #include "commands.h"
 #include "console.h"
 #include "hydraulic_case.h"
@@ -359,8 +361,8 @@ int pressure(const Options& options) {
                  {"derived", derived_section(the_case)},
                  {"runs", Json::array({hydraulic_block(the_case, point.state())})},
                  {"figures", Json::array()},
-                 {"models", Json::array({compare::model_section(point.analytic, {}),
-                                         compare::model_section(point.multibody, {})})}};
+                 {"models", Json::array({report::model_section(point.analytic, {}),
+                                         report::model_section(point.multibody, {})})}};
   Verdicts verdicts;
   if (!published.empty()) {
     verdicts = set_against(published, point);
@@ -396,8 +398,8 @@ int pressure(const Options& options) {
     folder.add("transient.csv", bentaxis::to_csv(transient));
   }
 
-  const Json curves = compare::curve_section(point.analytic, point.multibody);
-  folder.add("pressure.html", compare::render_page(the_case.name, report, curves));
+  const Json curves = report::curve_section(point.analytic, point.multibody);
+  folder.add("pressure.html", report::render_page(the_case.name, report, curves));
   folder.add("pressure.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   folder.add("pressure.csv", bentaxis::to_csv(point.state().table));
   const auto paths = folder.commit();

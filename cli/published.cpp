@@ -9,6 +9,7 @@
 #include <set>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 
 namespace bentaxis::cli {
 namespace {

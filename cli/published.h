@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bentaxis/pump/result_table.h"
+#include "bentaxis/results/result_table.h"
 
 namespace bentaxis::cli {
 

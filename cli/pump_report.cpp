@@ -6,14 +6,15 @@
 #include <cmath>
 
 #include "bentaxis/analytic/derived.h"
-#include "bentaxis/compare/report.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/report/report.h"
 
 namespace bentaxis::cli {
 
 Json case_section(const Case& the_case) {
   Json entries = Json::array();
-  for (const CaseEntry& entry : the_case.entries)
+  for (const InputEntry& entry : the_case.entries)
     entries.push_back({{"table", entry.table},
                        {"key", entry.key},
                        {"value", entry.value},
@@ -163,7 +164,7 @@ Json figures_section(const ResultTable& analytic, const ResultTable& multibody,
     for (const ResultTable& table : without_viscous)
       if (has(table, channel))
         list.push_back(
-            {{"label", table.name + ", Cc = 0"}, {"values", compare::curve(table, channel)}});
+            {{"label", table.name + ", Cc = 0"}, {"values", report::curve(table, channel)}});
     return list;
   };
   if (has(analytic, "Rcs_z4_N") || has(multibody, "Rcs_z4_N"))

@@ -11,9 +11,10 @@
 #include <sstream>
 
 #include "bentaxis/compare/reference.h"
-#include "bentaxis/pump/csv.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
 #include "commands.h"
 #include "hydraulic_case.h"
 #include "reference_set.h"

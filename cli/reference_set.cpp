@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/pressure.h"
 #include "bentaxis/study/achieved_error.h"
 #include "hydraulic_case.h"

@@ -7,7 +7,7 @@
 
 #include "bentaxis/compare/reference.h"
 #include "bentaxis/pump/case.h"
-#include "bentaxis/pump/result_table.h"
+#include "bentaxis/results/result_table.h"
 
 namespace bentaxis::cli {
 

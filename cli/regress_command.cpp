@@ -7,13 +7,13 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/compare/junit.h"
-#include "bentaxis/compare/page.h"
 #include "bentaxis/compare/published.h"
 #include "bentaxis/compare/reference.h"
-#include "bentaxis/compare/report.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
+#include "bentaxis/report/junit.h"
+#include "bentaxis/report/page.h"
+#include "bentaxis/report/report.h"
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using compare::Finding;
-using compare::Json;
 using compare::ReferenceChannel;
+using report::Json;
 
 // A page with more figures than this is not read.
 constexpr std::size_t kMostFigures = 40;
@@ -301,19 +301,19 @@ std::string summary(const std::vector<Outcome>& outcomes) {
   return text + ".";
 }
 
-compare::TestSuite suite_of(const Outcome& outcome) {
-  compare::TestSuite suite;
+report::TestSuite suite_of(const Outcome& outcome) {
+  report::TestSuite suite;
   suite.name = outcome.name;
   suite.seconds = outcome.seconds;
   suite.properties = outcome.properties;
   suite.properties.insert(suite.properties.begin(), {"kind", outcome.kind});
   for (const auto& line : outcome.lines) {
-    compare::TestCase test;
+    report::TestCase test;
     test.name = line.group;
     test.class_name = outcome.name + "." + line.model;
     test.seconds = line.seconds;
     if (line.is_missing()) {
-      test.outcome = compare::TestOutcome::skipped;
+      test.outcome = report::TestOutcome::skipped;
       test.message = "the reference has no curve of this group";
     } else {
       const auto& c = line.worst()->comparison;
@@ -324,7 +324,7 @@ compare::TestSuite suite_of(const Outcome& outcome) {
           c.allowed, c.channel.unit, line.compared, line.missing);
       test.details = figures;
       if (line.failed > 0) {
-        test.outcome = compare::TestOutcome::failed;
+        test.outcome = report::TestOutcome::failed;
         test.message = describe(line);
         for (const auto& channel : line.channels)
           if (channel.failed())
@@ -337,13 +337,13 @@ compare::TestSuite suite_of(const Outcome& outcome) {
     suite.cases.push_back(std::move(test));
   }
   if (!outcome.error.empty() || outcome.lines.empty()) {
-    compare::TestCase test;
+    report::TestCase test;
     test.name = outcome.error.empty() ? "read" : "case";
     test.class_name = outcome.name;
     test.seconds = outcome.seconds;
     if (!outcome.error.empty()) {
-      test.outcome = outcome.status == kOutOfTolerance ? compare::TestOutcome::failed
-                                                       : compare::TestOutcome::error;
+      test.outcome = outcome.status == kOutOfTolerance ? report::TestOutcome::failed
+                                                       : report::TestOutcome::error;
       test.message = outcome.error;
     }
     suite.cases.push_back(std::move(test));
@@ -386,7 +386,7 @@ Json figures_of(const std::vector<Outcome>& outcomes) {
          {"channels", channels},
          {"note", describe(*line)},
          {"curves",
-          compare::curve_section(columns_of(reference, channels), columns_of(result, channels))}});
+          report::curve_section(columns_of(reference, channels), columns_of(result, channels))}});
   }
   return figures;
 }
@@ -436,7 +436,7 @@ std::string page(const std::vector<Outcome>& outcomes, const fs::path& root, int
       {"warnings", problems},
       {"runs", runs},
       {"figures", figures_of(outcomes)}};
-  return compare::render_page("Regression", report, Json::object());
+  return report::render_page("Regression", report, Json::object());
 }
 
 void write(const std::string& file, const std::string& content) {
@@ -471,9 +471,9 @@ int regress(const Options& options) {
   print(outcomes);
   std::printf("%s\n", summary(outcomes).c_str());
   if (!options.junit.empty()) {
-    std::vector<compare::TestSuite> suites;
+    std::vector<report::TestSuite> suites;
     for (const auto& outcome : outcomes) suites.push_back(suite_of(outcome));
-    write(options.junit, compare::junit_xml("bentaxis regress", suites));
+    write(options.junit, report::junit_xml("bentaxis regress", suites));
   }
   if (!options.html.empty())
     write(options.html, page(outcomes, fs::absolute(root / ".").parent_path(), status));

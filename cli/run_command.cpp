@@ -3,7 +3,9 @@
 #include <string>
 #include <utility>
 
-#include "bentaxis/pump/files.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/calibration.h"
 #include "channel_choice.h"
 #include "commands.h"

@@ -6,10 +6,11 @@
 #include <map>
 #include <memory>
 
-#include "bentaxis/compare/page.h"
-#include "bentaxis/pump/csv.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/report/page.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/tradeoff.h"
 #include "commands.h"
@@ -328,7 +329,7 @@ int tradeoff(Options options) {
                  {"summary", summary},    {"rows", json_of(all)},
                  {"runs", tables},        {"figures", figures}};
   folder.add("tradeoff.html",
-             compare::render_page(the_case.name + ": speed against error", report, Json::object()));
+             report::render_page(the_case.name + ": speed against error", report, Json::object()));
   folder.add("tradeoff.json", report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   folder.add("tradeoff.csv", csv_of(all));
   const auto paths = folder.commit();

@@ -1,5 +1,4 @@
 # What every target of the project has in common: standard, warnings as errors, include path.
-#   bentaxis_library(<name> STANDARD <17|20> SOURCES ... HEADERS ...)
 option(BENTAXIS_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
 option(BENTAXIS_SANITIZE_THREAD "Build with the thread sanitizer" OFF)
 option(BENTAXIS_BUILD_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
@@ -28,17 +27,30 @@ function(bentaxis_target name standard)
   endif()
 endfunction()
 
+# A room is a folder of the top level: include/bentaxis/ROOM/ is what others see (and what is
+# installed), everything beside it is the room's own. A target finds the headers of what it links and no
+# others, so that what is not in target_link_libraries cannot be included.
+#   bentaxis_library(<room> STANDARD <17|20> SOURCES ... [PRECOMPILE <header>...])
 function(bentaxis_library room)
-  cmake_parse_arguments(ARG "" "STANDARD" "SOURCES;HEADERS" ${ARGN})
+  cmake_parse_arguments(ARG "" "STANDARD" "SOURCES;PRECOMPILE" ${ARGN})
   set(name bentaxis_${room})
   add_library(${name} STATIC ${ARG_SOURCES})
   add_library(bentaxis::${room} ALIAS ${name})
   set_target_properties(${name} PROPERTIES EXPORT_NAME ${room})
   bentaxis_target(${name} ${ARG_STANDARD})
-  target_include_directories(${name} PUBLIC
-    $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${name}
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  if(ARG_PRECOMPILE)
+    target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
+  endif()
   install(TARGETS ${name} EXPORT bentaxisTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(FILES ${ARG_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bentaxis/${room})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+endfunction()
+
+# For tests that look inside a room: its internal headers too.
+function(bentaxis_see_inside target room)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/${room})
 endfunction()
 
 # For sources that include Simbody. Debian builds Simbody without NDEBUG, and the layout of classes

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <complex>
 
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::compare {

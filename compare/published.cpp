@@ -8,8 +8,9 @@
 #include <limits>
 #include <tuple>
 
+#include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/toml_reader.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::compare {

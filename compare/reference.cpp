@@ -10,10 +10,11 @@
 #include <map>
 #include <set>
 
-#include "bentaxis/pump/csv.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
-#include "bentaxis/pump/toml_reader.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::compare {

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "bentaxis/pump/number.h"
+
 namespace bentaxis::compare {
 
 bool Split::explained() const {

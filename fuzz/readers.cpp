@@ -9,11 +9,12 @@
 #include <string>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/case.h"
-#include "bentaxis/pump/case_writer.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/result_table.h"
+#include "bentaxis/results/result_table.h"
 
 namespace bentaxis::fuzz {
 namespace {

@@ -1,4 +1,4 @@
-#include "bentaxis/hydraulics/chamber.h"
+#include "chamber.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "bentaxis/hydraulics/fluid.h"
+#include "fluid.h"
 
 #include <cmath>
 

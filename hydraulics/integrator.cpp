@@ -1,4 +1,4 @@
-#include "bentaxis/hydraulics/integrator.h"
+#include "integrator.h"
 
 #include <cvodes/cvodes.h>
 #include <nvector/nvector_serial.h>
@@ -13,8 +13,8 @@
 #include <string>
 
 #include "bentaxis/hydraulics/versions.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 
 namespace bentaxis::hydraulics {
 namespace {

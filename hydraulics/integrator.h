@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "bentaxis/hydraulics/network.h"
+#include "network.h"
 
 namespace bentaxis::hydraulics {
 

@@ -1,10 +1,10 @@
-#include "bentaxis/hydraulics/network.h"
+#include "network.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::hydraulics {

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "bentaxis/hydraulics/chamber.h"
-#include "bentaxis/hydraulics/fluid.h"
-#include "bentaxis/hydraulics/port.h"
 #include "bentaxis/pump/case.h"
+#include "chamber.h"
+#include "fluid.h"
+#include "port.h"
 
 namespace bentaxis::hydraulics {
 

@@ -1,4 +1,4 @@
-#include "bentaxis/hydraulics/port.h"
+#include "port.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "bentaxis/hydraulics/integrator.h"
-#include "bentaxis/hydraulics/network.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "integrator.h"
+#include "network.h"
 
 namespace bentaxis::hydraulics {
 namespace {

@@ -1,4 +1,4 @@
-#include "bentaxis/multibody/conventions.h"
+#include "conventions.h"
 
 namespace bentaxis::multibody {
 

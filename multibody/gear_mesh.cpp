@@ -1,4 +1,4 @@
-#include "bentaxis/multibody/gear_mesh.h"
+#include "gear_mesh.h"
 
 #include <cmath>
 

@@ -8,12 +8,12 @@
 #include <memory>
 
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/multibody/pump_system.h"
-#include "bentaxis/multibody/reactions.h"
-#include "bentaxis/multibody/solver_guard.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "pump_system.h"
+#include "reactions.h"
+#include "solver_guard.h"
 
 namespace bentaxis::multibody {
 

@@ -1,4 +1,4 @@
-#include "bentaxis/multibody/land_pressure.h"
+#include "land_pressure.h"
 
 #include <array>
 #include <cmath>

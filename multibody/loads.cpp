@@ -1,8 +1,8 @@
-#include "bentaxis/multibody/loads.h"
+#include "loads.h"
 
-#include "bentaxis/multibody/gear_mesh.h"
-#include "bentaxis/multibody/land_pressure.h"
 #include "bentaxis/pump/units.h"
+#include "gear_mesh.h"
+#include "land_pressure.h"
 
 namespace bentaxis::multibody {
 

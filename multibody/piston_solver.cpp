@@ -1,4 +1,4 @@
-#include "bentaxis/multibody/piston_solver.h"
+#include "piston_solver.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "bentaxis/multibody/conventions.h"
+#include "conventions.h"
 
 namespace bentaxis::multibody {
 

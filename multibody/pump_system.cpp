@@ -1,11 +1,11 @@
-#include "bentaxis/multibody/pump_system.h"
+#include "pump_system.h"
 
 #include <cmath>
 #include <string>
 
-#include "bentaxis/multibody/conventions.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "conventions.h"
 
 namespace bentaxis::multibody {
 

@@ -17,10 +17,10 @@
 #include <optional>
 #include <vector>
 
-#include "bentaxis/multibody/gear_mesh.h"
-#include "bentaxis/multibody/loads.h"
-#include "bentaxis/multibody/piston_solver.h"
 #include "bentaxis/pump/parameters.h"
+#include "gear_mesh.h"
+#include "loads.h"
+#include "piston_solver.h"
 
 namespace bentaxis::multibody {
 

@@ -1,9 +1,9 @@
-#include "bentaxis/multibody/reactions.h"
+#include "reactions.h"
 
 #include <cmath>
 
-#include "bentaxis/multibody/conventions.h"
-#include "bentaxis/pump/result_table.h"
+#include "bentaxis/results/result_table.h"
+#include "conventions.h"
 
 namespace bentaxis::multibody {
 

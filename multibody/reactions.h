@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "bentaxis/multibody/pump_system.h"
-#include "bentaxis/pump/channels.h"
+#include "bentaxis/results/channels.h"
+#include "pump_system.h"
 
 namespace bentaxis::multibody {
 

@@ -1,12 +1,12 @@
-#include "bentaxis/multibody/solver_guard.h"
+#include "solver_guard.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::multibody {

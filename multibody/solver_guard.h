@@ -7,8 +7,8 @@
 
 #include <functional>
 
-#include "bentaxis/multibody/pump_system.h"
-#include "bentaxis/multibody/reactions.h"
+#include "pump_system.h"
+#include "reactions.h"
 
 namespace bentaxis::multibody {
 

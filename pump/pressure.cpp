@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 
@@ -69,29 +68,6 @@ double PressureTrace::ideal(double theta_k_deg) const {
     share = smooth_step((past - 360 + half) / width);
   }
   return ports_.suction + (ports_.delivery - ports_.suction) * share;
-}
-
-PressureCurve read_pressure_curve(const std::filesystem::path& file) {
-  const NumericTable table = read_numeric_csv(file);
-  const std::vector<std::string> wanted = {"theta_deg", "pressure_bar"};
-  if (table.header != wanted)
-    throw InputError(file.string() + ":1: header must be theta_deg,pressure_bar");
-  PressureCurve curve;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const double theta = table.rows[i][0];
-    const auto refuse = [&](const std::string& range) {
-      throw InputError(file.string() + ":" + std::to_string(table.lines[i]) +
-                       ": theta_deg = " + number_text(theta) + ": must be " + range);
-    };
-    if (i > 0 && !(theta > curve.theta_deg.back()))
-      refuse("> " + number_text(curve.theta_deg.back()) + " (angles increase strictly)");
-    if (i > 0 && !(theta - curve.theta_deg.front() < 360))
-      refuse("< " + number_text(curve.theta_deg.front() + 360) +
-             " (a turn after the first; the end point is not repeated)");
-    curve.theta_deg.push_back(theta);
-    curve.pressure.push_back(pascals(table.rows[i][1]));
-  }
-  return curve;
 }
 
 }  // namespace bentaxis

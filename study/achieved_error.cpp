@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bentaxis/pump/number.h"
+
 namespace bentaxis::study {
 
 compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {

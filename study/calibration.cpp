@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "bentaxis/analytic/model.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/study/stopwatch.h"
 
 namespace bentaxis::study {

@@ -8,8 +8,8 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::study {

@@ -9,8 +9,8 @@
 #include "bentaxis/analytic/batch.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/pump/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/stopwatch.h"
 

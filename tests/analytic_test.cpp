@@ -6,6 +6,8 @@
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/port_plate.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/pump/number.h"
 #include "printed_model.h"
 #include "support.h"
 

@@ -6,7 +6,9 @@
 
 #include "allocations.h"
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "support.h"
 
 namespace bentaxis::test {

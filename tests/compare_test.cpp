@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "bentaxis/compare/comparison.h"
-#include "bentaxis/compare/page.h"
-#include "bentaxis/compare/report.h"
 #include "bentaxis/compare/split.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/report/page.h"
+#include "bentaxis/report/report.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -168,8 +169,8 @@ TEST(Split, MarksOnlyExplainedChannels) {
 }
 
 TEST(Page, HoldsTheDataAndNeedsNoNetwork) {
-  const Json report = {{"title", "</script><b>x"}};
-  const std::string page = render_page("<T>", report, {{"theta_deg", {0, 1}}});
+  const report::Json report = {{"title", "</script><b>x"}};
+  const std::string page = report::render_page("<T>", report, {{"theta_deg", {0, 1}}});
   EXPECT_THAT(page, HasSubstr("&lt;T&gt;"));
   EXPECT_EQ(page.find("</script><b>x"), std::string::npos);
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(http"})
@@ -180,7 +181,7 @@ TEST(Curves, DifferencesAreTakenBeforeRounding) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto a = table("a", channels, {[](double) { return 11017.123456789; }});
   const auto b = table("b", channels, {[](double) { return 11017.123456789 + 1e-9; }});
-  const Json curves = curve_section(a, b);
+  const report::Json curves = report::curve_section(a, b);
   EXPECT_NEAR(curves["difference"]["X_N"][0].get<double>(), 1e-9, 3e-12);
   EXPECT_EQ(curves["tables"][0]["columns"]["X_N"][0], curves["tables"][1]["columns"]["X_N"][0]);
 }

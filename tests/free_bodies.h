@@ -8,10 +8,10 @@
 #include <cmath>
 #include <vector>
 
-#include "bentaxis/pump/channels.h"
-#include "bentaxis/pump/instant.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/channels.h"
+#include "bentaxis/results/instant.h"
 #include "printed_model.h"
 
 namespace bentaxis::test {

@@ -7,11 +7,12 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/kinematics.h"
-#include "bentaxis/hydraulics/integrator.h"
-#include "bentaxis/hydraulics/network.h"
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
+#include "integrator.h"
+#include "network.h"
 #include "support.h"
 
 namespace bentaxis::hydraulics {

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Fails if one model includes or links the other, or the comparison includes a model.
+# Fails if one model links the other, or reaches into its folder past the include path. That a target finds
+# no headers but those of what it links is the build's doing (cmake/BentaxisTarget.cmake).
 # usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY MULTIBODY_LIBRARY
 set -euo pipefail
 source_dir=$1 analytic=$2 multibody=$3
@@ -20,19 +21,13 @@ forbid_symbol() {  # library, forbidden namespace
 
 forbid_include "$source_dir/analytic" multibody || status=1
 forbid_include "$source_dir/multibody" analytic || status=1
-for room in analytic multibody hydraulics; do forbid_include "$source_dir/compare" $room || status=1; done
-for room in analytic multibody compare cli; do forbid_include "$source_dir/hydraulics" $room || status=1; done
-for room in analytic multibody; do forbid_include "$source_dir/$room" hydraulics || status=1; done
-for room in analytic multibody hydraulics compare cli; do forbid_include "$source_dir/pump" $room || status=1; done
-for room in pump analytic multibody hydraulics compare; do forbid_include "$source_dir/$room" study || status=1; done
-for room in hydraulics cli; do forbid_include "$source_dir/study" $room || status=1; done
 forbid_symbol "$analytic" multibody || status=1
 forbid_symbol "$multibody" analytic || status=1
 
 # The check itself must be able to fail.
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-echo '#include "bentaxis/analytic/model.h"' > "$scratch/x.cpp"
+echo '#include "../analytic/model.h"' > "$scratch/x.cpp"
 if forbid_include "$scratch" analytic > /dev/null; then
   echo "error: the check does not notice a forbidden include"; status=1
 fi

@@ -9,9 +9,11 @@
 #include <optional>
 
 #include "bentaxis/analytic/rounding.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/case_writer.h"
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/pump/case_writer.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "free_bodies.h"
 #include "printed_model.h"
 #include "support.h"

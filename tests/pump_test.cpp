@@ -5,11 +5,14 @@
 #include <fstream>
 
 #include "bentaxis/analytic/port_plate.h"
-#include "bentaxis/multibody/land_pressure.h"
-#include "bentaxis/pump/case_writer.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/files.h"
 #include "bentaxis/pump/inputs.h"
+#include "bentaxis/pump/number.h"
+#include "land_pressure.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -89,7 +92,7 @@ TEST(CaseFile, FillsInDefaults) {
   const Case bare = parse_case(with(default_text(), "samples_per_revolution = 72\n", ""), "x.toml");
   EXPECT_EQ(bare.operation.samples_per_revolution, 720);
   const auto is_default = [&](const std::string& key) {
-    for (const CaseEntry& entry : bare.entries)
+    for (const InputEntry& entry : bare.entries)
       if (entry.key == key) return entry.defaulted;
     return false;
   };

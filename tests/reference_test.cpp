@@ -8,11 +8,12 @@
 
 #include <fstream>
 
-#include "bentaxis/compare/junit.h"
 #include "bentaxis/compare/published.h"
+#include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
-#include "bentaxis/pump/toml_reader.h"
+#include "bentaxis/report/junit.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -312,12 +313,12 @@ TEST(PeriodicSplineTest, MeetsItsPointsAndIsPeriodic) {
 }
 
 TEST(Junit, HoldsTextThatIsNoMarkup) {
-  TestSuite suite{"a<b>&\"c\"", 0.5, {{"k", "v\x01"}}, {}};
-  suite.cases = {{"one", "c", 0.1, TestOutcome::passed, "", "fine"},
-                 {"two", "c", 0.1, TestOutcome::failed, "why <", "a\nb"},
-                 {"three", "c", 0.1, TestOutcome::error, "what", ""},
-                 {"four", "c", 0.1, TestOutcome::skipped, "", ""}};
-  const std::string xml = junit_xml("all", {suite});
+  report::TestSuite suite{"a<b>&\"c\"", 0.5, {{"k", "v\x01"}}, {}};
+  suite.cases = {{"one", "c", 0.1, report::TestOutcome::passed, "", "fine"},
+                 {"two", "c", 0.1, report::TestOutcome::failed, "why <", "a\nb"},
+                 {"three", "c", 0.1, report::TestOutcome::error, "what", ""},
+                 {"four", "c", 0.1, report::TestOutcome::skipped, "", ""}};
+  const std::string xml = report::junit_xml("all", {suite});
   EXPECT_THAT(xml, HasSubstr("a&lt;b>&amp;&quot;c&quot;"));
   EXPECT_THAT(xml, HasSubstr("tests=\"4\" failures=\"1\" errors=\"1\" skipped=\"1\""));
   EXPECT_EQ(xml.find('\x01'), std::string::npos);

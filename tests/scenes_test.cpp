@@ -7,6 +7,7 @@
 
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "support.h"
 
 namespace bentaxis::test {

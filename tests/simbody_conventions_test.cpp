@@ -3,8 +3,8 @@
 #include <SimTKsimbody.h>
 #include <gtest/gtest.h>
 
-#include "bentaxis/multibody/conventions.h"
-#include "bentaxis/multibody/gear_mesh.h"
+#include "conventions.h"
+#include "gear_mesh.h"
 
 namespace bentaxis::multibody {
 namespace {

@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/study/inertia.h"
 #include "support.h"
 

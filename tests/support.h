@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/case.h"
-#include "bentaxis/pump/csv.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::test {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/case.h"
-#include "bentaxis/pump/case_writer.h"
 #include "bentaxis/pump/inputs.h"
 #include "support.h"
 

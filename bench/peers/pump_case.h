@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/units.h"
 

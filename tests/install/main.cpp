@@ -4,6 +4,7 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/compare/comparison.h"
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/study/calibration.h"
 

@@ -1,0 +1,78 @@
+// The closed-form vector-algebra model of a bent-axis pump.
+//
+// A. Roccatello, N. Nervegna, "Mechanical modelling of a bent axis pump", International Journal of
+// Fluid Power 10 (2009) no. 2, pp. 57-72. Equation numbers are the paper's; docs/theory.md has the
+// derivation and every correction of a misprint.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "bentaxis/analytic/kinematics.h"
+#include "bentaxis/analytic/prepared.h"
+#include "bentaxis/pump/parameters.h"
+#include "bentaxis/results/channels.h"
+#include "bentaxis/results/instant.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::analytic {
+
+/// A pump prepared for evaluation at any instant. Immutable, so one object serves many threads.
+class Model {
+ public:
+  /// @throws InputError if `assumptions` ask for real pistons and the pump has no data of them.
+  Model(const PumpParameters& pump, const Assumptions& assumptions);
+
+  const ChannelLayout& layout() const { return layout_; }
+
+  /// All reactions and the drive torque at an instant, by force and moment equilibrium of pistons
+  /// (31)-(33), block (56), (57) and shaft (42), (43).
+  ///
+  /// @param instant  shaft angle, speed, its rate, and pressures; one pressure per piston
+  /// @param values   at least layout().reactions() long; SI, ordered by layout(). Rcs is
+  ///                 not_computed() where the block speed is imposed.
+  /// Allocates nothing. Many instants, or many pumps, at a time: batch.h.
+  void reactions(const Instant& instant, std::vector<double>& values) const;
+
+  /// The same algebra with `long double` (64 bits of mantissa on x86): what reactions() loses to
+  /// rounding is the difference. For judging errors, not for speed.
+  void reactions(const Instant& instant, std::vector<long double>& values) const;
+
+  /// Like reactions(), and the derived, input and check channels too: layout().size() values.
+  void evaluate(const Instant& instant, std::vector<double>& values) const;
+
+  /// What would change if the other tooth flank carried where the model's separating force pulls
+  /// the gears together: the part of the tooth force that pushes the gears apart is turned round.
+  struct FlankChange {
+    double pin = 0;          ///< |change of Rcn|, N
+    double tapered = 0;      ///< |change of Rb1|, N
+    double cylindrical = 0;  ///< |change of Rb2|, N
+  };
+  FlankChange other_flank(double tooth_force) const;
+
+  /// Power of the sources of friction at an instant, W; positive feeds energy in.
+  struct FrictionPower {
+    double pistons = 0;             ///< largest of any piston
+    double block = 0;               ///< viscous, Cc
+    double shaft_viscous = 0;       ///< Cs
+    double shaft_proportional = 0;  ///< -(1 - Ct) Td omega of (38)
+  };
+  FrictionPower friction_power(const Instant& instant, double drive_torque) const;
+
+ private:
+  struct PistonState;
+
+  PistonState piston_state(const Instant& instant, double sin_theta, double cos_theta, int k) const;
+
+  PumpParameters pump_;
+  ChannelLayout layout_;
+  Kinematics kinematics_;
+  PreparedPump prepared_;
+};
+
+/// One turn of a case under the assumptions it gives this model, as a table.
+/// @throws ComputationError where a value is not finite.
+ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
+                const Progress& progress = {});
+
+}  // namespace bentaxis::analytic

@@ -1,0 +1,32 @@
+// Limits within which the model's assumptions hold, checked over a turn.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::analytic {
+
+/// One limit of validity over a run.
+struct ValidityLimit {
+  std::string limit;          ///< what must hold
+  std::string name;           ///< short name of the violation
+  bool applicable = true;     ///< false where the run has nothing to check it by
+  double violated_share = 0;  ///< of the angles, 0..1
+  double worst = 0;           ///< worst value, in `unit`; meaningful where something was violated
+                              ///< or as the nearest approach
+  std::string unit;
+  double theta_deg = 0;     ///< of the worst value
+  std::string consequence;  ///< what a violation means, with figures
+};
+
+/// Checks a table of results (of either model) against the limits of what was modelled: tooth force
+/// on one flank, film force that only pushes, its point within the port plate, thrust of the
+/// tapered bearing, friction that only takes energy.
+std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumptions& assumptions,
+                                          const Samples& samples, const ResultTable& table);
+
+}  // namespace bentaxis::analytic

@@ -1,0 +1,107 @@
+// Compares two result tables channel by channel. Knows columns, units and scale groups; no physics.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::compare {
+
+enum class Verdict {
+  agrees,  ///< largest difference within tolerance x peak
+  differs,
+  explained,     ///< differs, and differing assumptions account for it
+  not_computed,  ///< at least one table has no value of this channel
+};
+
+/// One harmonic of the shaft angle: x = amplitude cos(order theta - phase).
+struct Harmonic {
+  int order = 0;
+  double amplitude[2] = {0, 0};        ///< of first and second table, channel's unit
+  std::optional<double> phase_deg[2];  ///< empty where the amplitude is round-off
+};
+
+/// How far apart two tables are in one channel. Differences are second minus first, in the
+/// channel's unit.
+struct ChannelComparison {
+  Channel channel;
+  Verdict verdict = Verdict::not_computed;
+  bool judged = false;  ///< counts for the overall verdict (reactions and what follows from them)
+  double peak = 0;      ///< largest magnitude of the channel's group in the first table, or the
+                        ///< case's load scale where that is zero
+  double largest = 0;   ///< largest magnitude of the difference
+  double theta_of_largest_deg = 0;
+  double rms = 0;
+  double mean[2] = {0, 0};
+  double mean_difference = 0;
+  std::vector<Harmonic> harmonics;
+  double digits = 0;     ///< of agreement: -log10(largest / peak), at most Options::most_digits
+  double tolerance = 0;  ///< over peak
+  double allowed = 0;    ///< absolute + tolerance x peak, channel's unit
+
+  double largest_over_peak() const { return peak > 0 ? largest / peak : (largest > 0 ? 1e300 : 0); }
+  double rms_over_peak() const { return peak > 0 ? rms / peak : (rms > 0 ? 1e300 : 0); }
+};
+
+/// Scale per unit ("N", "Nm", ...) for groups whose peak is zero to round-off.
+using ZeroScales = std::map<std::string, double>;
+
+/// Limits of a curve that is known only to lie between them: tables of the same shape as the first.
+struct Band {
+  const ResultTable* low = nullptr;
+  const ResultTable* high = nullptr;
+};
+
+struct Options {
+  double tolerance = 1e-9;                 ///< of peak
+  std::map<std::string, double> absolute;  ///< allowed on top, per unit
+  std::vector<int> orders;                 ///< harmonics to report
+  ZeroScales zero_scales;
+  double most_digits = 16;   ///< of agreement that can be claimed: those of the poorer table
+  std::optional<Band> band;  ///< a difference is then the distance from the band
+};
+
+struct Comparison {
+  std::string first, second;  ///< names of the tables
+  std::vector<ChannelComparison> channels;
+  double tolerance = 0;
+
+  bool agrees() const;
+  /// The judged channel with the largest difference over its peak; nullptr if none was compared.
+  const ChannelComparison* worst() const;
+  int compared() const;
+  const ChannelComparison* find(const std::string& channel_name) const;
+};
+
+/// Compares channels of the same name. Both tables must have the same angles.
+/// @throws InputError if the angles differ.
+Comparison compare_tables(const ResultTable& first, const ResultTable& second,
+                          const Options& options);
+
+/// A group's peak, or the scale of its unit where the peak is zero to round-off of that scale.
+double scale_of(const ResultTable& table, const Channel& channel, const ZeroScales& zero_scales);
+
+/// A channel that must vanish, over a whole table.
+struct Check {
+  std::string table;
+  std::string name;
+  std::string unit;
+  double worst = 0;
+  double theta_deg = 0;
+  double scale = 0;
+  double tolerance = 0;
+  double relative() const { return scale > 0 ? worst / scale : worst; }
+  bool holds() const { return relative() <= tolerance; }
+};
+
+/// Judges every check channel of a table, the pistons' together.
+/// @param scales  per unit
+std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scales,
+                                double tolerance);
+
+const char* to_string(Verdict verdict);
+
+}  // namespace bentaxis::compare

@@ -1,0 +1,115 @@
+// Printed numbers as data: what a publication says about a pump, and how results stand against it
+// (reference_data/published). Knows expressions over columns and named facts of a case; no physics.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::compare {
+
+/// Named numbers that describe a case and a model's assumptions ("speed_rpm", "piston_friction" as
+/// 0 or 1), in the unit of the name.
+using Facts = std::map<std::string, double>;
+/// What facts must be: name to [low, high].
+using FactRanges = std::map<std::string, std::pair<double, double>>;
+
+/// A case at which the publication gives numbers.
+struct PublishedCondition {
+  std::string name, text;
+  FactRanges facts;
+};
+
+/// A change of the case that the publication itself makes ("without viscous torque").
+struct PublishedVariant {
+  std::string name, text;
+  Facts set;
+};
+
+/// How a curve becomes the number that is compared.
+enum class Measure {
+  fact,  ///< no curve: a fact of the case
+  mean,  ///< over the turn, or over [from_deg, to_deg]
+  minimum,
+  maximum,
+  largest,       ///< largest magnitude
+  range,         ///< smallest to largest value: both must lie in the window
+  at,            ///< value at at_deg
+  sign_changes,  ///< how often the curve changes sign in a turn
+  main_order,    ///< order of the largest harmonic
+};
+
+struct PublishedNumber {
+  std::string quantity;   ///< in words
+  std::string where;      ///< page, section, table or figure
+  std::string status;     ///< "used to infer the geometry", "calibrated" or "predicted"
+  std::string condition;  ///< name, or "" where the case does not matter
+  std::string variant;    ///< name, or ""
+  std::string unit;
+  std::string note;
+  std::string not_comparable;  ///< why no result can be held to it, or ""
+  bool repeats = false;        ///< says what another row says: not counted
+  Measure measure = Measure::mean;
+  std::vector<std::string> channels;  ///< several: the magnitude of the vector
+  std::string fact;                   ///< of Measure::fact
+  double from_deg = 0, to_deg = 360, at_deg = 0;
+  double factor = 1;
+  std::string times;            ///< a fact that the curve is multiplied by, or ""
+  std::optional<double> value;  ///< printed; inside is within tolerance
+  double tolerance = 0;
+  double low, high;  ///< window, or value -+ tolerance
+
+  bool predicted() const { return status == "predicted"; }
+};
+
+struct Published {
+  std::string name;  ///< of the pump
+  FactRanges identity;
+  std::vector<PublishedCondition> conditions;
+  std::vector<PublishedVariant> variants;
+  std::vector<PublishedNumber> numbers;
+
+  /// Whether a case is one of this pump: by its facts, never by its name.
+  bool describes(const Facts& facts) const;
+};
+
+/// Reads a file of printed numbers. @throws InputError naming file, line and key.
+Published read_published(const std::filesystem::path& file);
+
+/// One model's result under a variant, with the facts that then hold. No table: not run.
+struct PublishedRun {
+  const ResultTable* table = nullptr;
+  Facts facts;
+};
+
+/// Where results stand against printed numbers.
+struct PublishedSummary {
+  int predicted = 0;             ///< rows that count as validation
+  int predicted_comparable = 0;  ///< of them, rows this case can be held to
+  int predicted_inside = 0;
+  int other_comparable = 0;  ///< rows used to infer the geometry, or calibrated
+  int other_inside = 0;
+  std::string text() const;
+};
+
+/// The report's section: {"text", "rows": [{quantity, at, paper, analytic, multibody, unit,
+/// verdict, status, where}]}; a model's column carries its name, `at` is condition and variant in
+/// words.
+/// @param run  (model, variant) -> its result; variant "" is the case as it was run
+struct PublishedSection {
+  nlohmann::json json;
+  PublishedSummary summary;
+};
+PublishedSection judge_published(
+    const Published& published, const std::vector<std::string>& models,
+    const std::function<PublishedRun(const std::string& model, const PublishedVariant& variant)>&
+        run);
+
+}  // namespace bentaxis::compare

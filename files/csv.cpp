@@ -1,0 +1,127 @@
+#include "bentaxis/files/csv.h"
+
+// Single-threaded reading keeps the library free of threads it does not need.
+#define CSV_IO_NO_THREAD
+#include <libfccp/csv.h>
+
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const auto comma = line.find(',');
+    fields.push_back(trimmed(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace
+
+NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty) {
+  if (std::filesystem::is_directory(file))
+    throw InputError(file.string() + ": is a folder, not a CSV file");
+  NumericTable table;
+  try {
+    io::LineReader reader(file.string());
+    while (char* text = reader.next_line()) {
+      const std::string where = file.string() + ":" + std::to_string(reader.get_file_line());
+      if (trimmed(text).empty()) continue;
+      const auto fields = split(text);
+      if (table.header.empty()) {
+        table.header.assign(fields.begin(), fields.end());
+        continue;
+      }
+      if (fields.size() != table.header.size())
+        throw InputError(where + ": " + std::to_string(fields.size()) + " fields, the header has " +
+                         std::to_string(table.header.size()));
+      std::vector<double> row;
+      row.reserve(fields.size());
+      for (std::size_t i = 0; i < fields.size(); ++i) {
+        const auto field = fields[i];
+        double value = 0;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (field.empty() && allow_empty) {
+          value = not_computed();
+        } else if (error != std::errc() || end != field.data() + field.size() ||
+                   !std::isfinite(value)) {
+          throw InputError(where + ": " + table.header[i] + " = \"" + std::string(field) +
+                           "\": must be a finite number");
+        }
+        row.push_back(value);
+      }
+      table.rows.push_back(std::move(row));
+      table.lines.push_back(reader.get_file_line());
+    }
+  } catch (const io::error::base& error) {
+    std::string what = error.what();
+    while (!what.empty() && (what.back() == '\n' || what.back() == '.')) what.pop_back();
+    throw InputError(file.string() + ": cannot be read: " + what);
+  }
+  if (table.header.empty()) throw InputError(file.string() + ": is empty");
+  return table;
+}
+
+PressureCurve read_pressure_curve(const std::filesystem::path& file) {
+  const NumericTable table = read_numeric_csv(file);
+  const std::vector<std::string> wanted = {"theta_deg", "pressure_bar"};
+  if (table.header != wanted)
+    throw InputError(file.string() + ":1: header must be theta_deg,pressure_bar");
+  PressureCurve curve;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const double theta = table.rows[i][0];
+    const auto refuse = [&](const std::string& range) {
+      throw InputError(file.string() + ":" + std::to_string(table.lines[i]) +
+                       ": theta_deg = " + number_text(theta) + ": must be " + range);
+    };
+    if (i > 0 && !(theta > curve.theta_deg.back()))
+      refuse("> " + number_text(curve.theta_deg.back()) + " (angles increase strictly)");
+    if (i > 0 && !(theta - curve.theta_deg.front() < 360))
+      refuse("< " + number_text(curve.theta_deg.front() + 360) +
+             " (a turn after the first; the end point is not repeated)");
+    curve.theta_deg.push_back(theta);
+    curve.pressure.push_back(pascals(table.rows[i][1]));
+  }
+  return curve;
+}
+
+std::string csv_header(const std::vector<Channel>& channels) {
+  std::string text = "theta_deg";
+  for (const Channel& channel : channels) text += "," + channel.name;
+  return text + "\n";
+}
+
+void append_csv_row(std::string& text, double theta_deg, const double* values, std::size_t count) {
+  append_number(text, theta_deg);
+  for (std::size_t column = 0; column < count; ++column) {
+    text += ',';
+    append_number(text, values[column]);
+  }
+  text += '\n';
+}
+
+std::string to_csv(const ResultTable& table) {
+  std::string text = csv_header(table.channels);
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    append_csv_row(text, table.theta_deg[row], table.values.data() + row * table.columns(),
+                   table.columns());
+  return text;
+}
+
+}  // namespace bentaxis

@@ -1,0 +1,18 @@
+// Cases read from case files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "bentaxis/pump/case.h"
+
+namespace bentaxis {
+
+/// Reads and validates a case file (TOML, schema 1; docs/case_file.md).
+/// @throws InputError with one line that names file, line, key, value and allowed range.
+Case read_case(const std::filesystem::path& file);
+
+/// The same for text already in memory; `file` is used in messages and to resolve a curve's path.
+Case parse_case(const std::string& text, const std::filesystem::path& file);
+
+}  // namespace bentaxis

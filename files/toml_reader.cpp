@@ -1,0 +1,315 @@
+#include "bentaxis/files/toml_reader.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis {
+namespace {
+
+std::string quoted(const toml::node& node) {
+  std::ostringstream out;
+  out << toml::default_formatter(node, toml::format_flags::none);
+  std::string text = out.str();
+  if (const auto newline = text.find('\n'); newline != std::string::npos) text.resize(newline);
+  return text;
+}
+
+int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+
+// Number of single-character edits between two words: to suggest the key that was meant.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row.back();
+}
+
+constexpr std::size_t kLikelyTypo = 3;  // edits
+
+}  // namespace
+
+bool NumberRange::contains(double value) const {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string NumberRange::text() const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (low == -kInfinity && high == kInfinity) return "a finite number";
+  if (high == kInfinity) return (low_open ? "> " : ">= ") + number_text(low);
+  return "in " + std::string(low_open ? "(" : "[") + number_text(low) + ", " + number_text(high) +
+         (high_open ? ")" : "]");
+}
+
+struct TableReader::Node {
+  std::shared_ptr<const toml::table> file;
+  const toml::node* node;
+
+  const toml::table* table() const { return node->as_table(); }
+};
+
+TableReader::TableReader(std::string file, std::string name, std::shared_ptr<const Node> table,
+                         int line, std::vector<InputEntry>* entries)
+    : file_(std::move(file)),
+      name_(std::move(name)),
+      table_(std::move(table)),
+      line_(line),
+      entries_(entries) {}
+
+bool TableReader::has(const std::string& key) {
+  known_.insert(key);
+  return table_ != nullptr && table_->table()->contains(key);
+}
+
+double TableReader::number(const std::string& key, NumberRange range,
+                           std::optional<double> fallback) {
+  const auto node = find(key, range.text(), fallback.has_value());
+  return node ? number_of(*node, key, range) : defaulted(key, *fallback);
+}
+
+int TableReader::integer(const std::string& key, int low, int high, std::optional<int> fallback) {
+  const NumberRange range{static_cast<double>(low), static_cast<double>(high)};
+  const std::string wanted =
+      "an integer " +
+      (high == std::numeric_limits<int>::max() ? ">= " + number_text(low) : range.text());
+  const auto node = find(key, wanted, fallback.has_value());
+  if (!node) return static_cast<int>(defaulted(key, *fallback));
+  if (!node->node->is_integer()) fail_at(*node, key, "must be " + wanted);
+  const auto value = node->node->as_integer()->get();
+  if (value < low || value > high) fail_at(*node, key, "must be " + wanted);
+  record(key, quoted(*node->node));
+  return static_cast<int>(value);
+}
+
+std::string TableReader::text(const std::string& key, std::optional<std::string> fallback) {
+  const auto node = find(key, "a text", fallback.has_value());
+  if (!node) {
+    record(key, *fallback, true);
+    return *fallback;
+  }
+  if (!node->node->is_string()) fail_at(*node, key, "must be a text in quotes");
+  record(key, node->node->as_string()->get());
+  return node->node->as_string()->get();
+}
+
+std::string TableReader::any(const std::string& key) {
+  const auto node = find(key, "a value", false);
+  const auto* number = node->node->as_floating_point();
+  return number != nullptr ? number_text(number->get()) : quoted(*node->node);
+}
+
+bool TableReader::flag(const std::string& key, bool fallback) {
+  const auto node = find(key, "true or false", true);
+  if (!node) return fallback;
+  if (!node->node->is_boolean()) fail_at(*node, key, "must be true or false");
+  record(key, quoted(*node->node));
+  return node->node->as_boolean()->get();
+}
+
+std::size_t TableReader::choice(const std::string& key, const std::vector<std::string>& words,
+                                std::optional<std::size_t> fallback) {
+  std::string wanted;
+  for (const auto& word : words) wanted += (wanted.empty() ? "\"" : " or \"") + word + "\"";
+  const auto node = find(key, wanted, fallback.has_value());
+  if (!node) {
+    record(key, words[*fallback], true);
+    return *fallback;
+  }
+  const auto* value = node->node->as_string();
+  const auto it = value == nullptr ? words.end() : std::find(words.begin(), words.end(), **value);
+  if (it == words.end()) fail_at(*node, key, "must be " + wanted);
+  record(key, **value);
+  return static_cast<std::size_t>(it - words.begin());
+}
+
+std::pair<double, double> TableReader::pair(const std::string& key, NumberRange range) {
+  const auto node = find(key, "a pair of numbers [a, b]", false);
+  const toml::array* array = node->node->as_array();
+  if (array == nullptr || array->size() != 2)
+    fail_at(*node, key, "must be a pair of numbers [a, b]");
+  const std::pair<double, double> values{number_of({node->file, &(*array)[0]}, key, range, false),
+                                         number_of({node->file, &(*array)[1]}, key, range, false)};
+  record(key, quoted(*node->node));
+  return values;
+}
+
+std::vector<std::string> TableReader::texts(const std::string& key) {
+  const auto node = find(key, "a list of texts", true);
+  std::vector<std::string> values;
+  if (!node) return values;
+  const toml::array* array = node->node->as_array();
+  if (array == nullptr) fail_at(*node, key, "must be a list of texts [\"a\", \"b\"]");
+  for (const toml::node& item : *array) {
+    if (!item.is_string()) fail_at(*node, key, "must be a list of texts [\"a\", \"b\"]");
+    values.push_back(item.as_string()->get());
+  }
+  record(key, quoted(*node->node));
+  return values;
+}
+
+TableReader TableReader::table(const std::string& key) {
+  if (!has(key))
+    throw InputError(place(line_) + "table [" + (name_.empty() ? "" : name_ + ".") + key +
+                     "] is missing" + misspelt(key));
+  return below(key, {table_->file, table_->table()->get(key)});
+}
+
+TableReader TableReader::optional_table(const std::string& key) {
+  if (has(key)) return table(key);
+  return {file_, (name_.empty() ? "" : name_ + ".") + key, nullptr, line_, entries_};
+}
+
+std::vector<TableReader> TableReader::tables(const std::string& key) {
+  std::vector<TableReader> list;
+  if (!has(key)) return list;
+  const Node all{table_->file, table_->table()->get(key)};
+  const toml::array* array = all.node->as_array();
+  if (array == nullptr) fail_at(all, key, "must be a list of tables [[" + key + "]]");
+  for (const toml::node& item : *array) list.push_back(below(key, {table_->file, &item}));
+  return list;
+}
+
+TableReader TableReader::below(const std::string& key, const Node& node) {
+  const std::string name = (name_.empty() ? "" : name_ + ".") + key;
+  if (!node.node->is_table())
+    throw InputError(place(line_of(*node.node)) + name + " = " + quoted(*node.node) +
+                     ": must be a table [" + name + "]");
+  return {file_, name, std::make_shared<const Node>(node), line_of(*node.node), entries_};
+}
+
+std::vector<std::string> TableReader::keys() const {
+  std::vector<std::string> names;
+  if (table_ != nullptr)
+    for (const auto& [key, node] : *table_->table()) names.emplace_back(key.str());
+  return names;
+}
+
+void TableReader::finish() const {
+  if (table_ == nullptr) return;
+  for (const auto& [key, node] : *table_->table()) {
+    const std::string word(key.str());
+    if (known_.count(word) > 0) continue;
+    std::string message =
+        node.is_table() && name_.empty()
+            ? "unknown table [" + word + "]"
+            : "unknown key \"" + word + "\"" + (name_.empty() ? "" : " in [" + name_ + "]");
+    const auto nearest =
+        std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
+          return edit_distance(word, a) < edit_distance(word, b);
+        });
+    if (nearest != known_.end() && edit_distance(word, *nearest) <= kLikelyTypo) {
+      message += "; did you mean \"" + *nearest + "\"?";
+    } else if (!known_.empty()) {
+      std::string allowed;
+      for (const auto& name : known_) allowed += (allowed.empty() ? "" : ", ") + name;
+      message += "; allowed: " + allowed;
+    }
+    throw InputError(place(line_of(node) > 0 ? line_of(node) : line_) + message);
+  }
+}
+
+void TableReader::fail(const std::string& key, const std::string& why) const {
+  const toml::node* node = table_ == nullptr ? nullptr : table_->table()->get(key);
+  if (node != nullptr) fail_at({table_->file, node}, key, why);
+  throw InputError(place(line_) + label(key) + ": " + why);
+}
+
+std::string TableReader::misspelt(const std::string& key) const {
+  if (table_ == nullptr) return "";
+  for (const auto& [found, node] : *table_->table()) {
+    const std::string word(found.str());
+    if (known_.count(word) == 0 && edit_distance(word, key) <= kLikelyTypo)
+      return "; is \"" + word + "\" in line " + std::to_string(line_of(node)) + " meant?";
+  }
+  return "";
+}
+
+std::string TableReader::place(int line) const {
+  return file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": ";
+}
+
+std::string TableReader::label(const std::string& key) const {
+  return (name_.empty() ? "" : "[" + name_ + "] ") + key;
+}
+
+void TableReader::fail_at(const Node& node, const std::string& key, const std::string& why) const {
+  throw InputError(place(line_of(*node.node)) + label(key) + " = " + quoted(*node.node) + ": " +
+                   why);
+}
+
+std::optional<TableReader::Node> TableReader::find(const std::string& key,
+                                                   const std::string& wanted, bool optional) {
+  known_.insert(key);
+  const toml::node* node = table_ == nullptr ? nullptr : table_->table()->get(key);
+  if (node != nullptr) return Node{table_->file, node};
+  if (!optional)
+    throw InputError(place(line_) + label(key) + " is missing: must be " + wanted + misspelt(key));
+  return std::nullopt;
+}
+
+double TableReader::number_of(const Node& node, const std::string& key, NumberRange range,
+                              bool recorded) {
+  double value = 0;
+  if (node.node->is_integer()) {
+    value = static_cast<double>(node.node->as_integer()->get());
+  } else if (node.node->is_floating_point()) {
+    value = node.node->as_floating_point()->get();
+  } else {
+    fail_at(node, key, "must be a number, " + range.text());
+  }
+  if (!std::isfinite(value)) fail_at(node, key, "must be a finite number, " + range.text());
+  if (!range.contains(value)) fail_at(node, key, "must be " + range.text());
+  if (recorded) record(key, quoted(*node.node));
+  return value;
+}
+
+double TableReader::defaulted(const std::string& key, double value) {
+  record(key, number_text(value), true);
+  return value;
+}
+
+void TableReader::record(const std::string& key, std::string value, bool by_default) {
+  if (entries_ != nullptr) entries_->push_back({name_, key, std::move(value), by_default});
+}
+
+TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(std::move(file)) {
+  try {
+    const auto table = std::make_shared<const toml::table>(toml::parse(text, file_.string()));
+    root_ = std::make_shared<const TableReader::Node>(TableReader::Node{table, table.get()});
+  } catch (const toml::parse_error& error) {
+    std::string what(error.description());
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    throw InputError(file_.string() + ":" + std::to_string(error.source().begin.line) + ": " +
+                     what);
+  }
+}
+
+TomlFile TomlFile::read(const std::filesystem::path& file, const std::string& what) {
+  if (std::filesystem::is_directory(file))
+    throw InputError(file.string() + ": is a folder, not a " + what);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return {text.str(), file};
+}
+
+TableReader TomlFile::root(std::vector<InputEntry>* entries) const {
+  return {file_.string(), "", root_, 0, entries};
+}
+
+}  // namespace bentaxis

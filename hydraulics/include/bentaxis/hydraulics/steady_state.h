@@ -1,0 +1,88 @@
+// Pressures in the chambers and in the delivery line of a running pump.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bentaxis/pump/case.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::hydraulics {
+
+/// What an engineer reads off a turn. SI, pressures gauge.
+struct Summary {
+  double displacement = 0;  ///< m3 per revolution, N A stroke
+  double ideal_flow = 0;    ///< m3/s, displacement x speed
+  double flow = 0;  ///< m3/s, mean mass flow to the load / density at mean delivery pressure
+  double flow_at_inlet = 0;          ///< m3/s, the same / density in the suction port
+  double volumetric_efficiency = 0;  ///< flow_at_inlet / ideal_flow
+  double leakage = 0;                ///< m3/s, mean, at inlet density
+  double delivery_mean = 0, delivery_least = 0,
+         delivery_greatest = 0;  ///< Pa, of the delivery volume
+  double flow_ripple = 0;        ///< (greatest - least)/mean of the flow through the delivery port
+  double chamber_least = 0, chamber_least_deg = 0;        ///< Pa; angle of the chamber
+  double chamber_greatest = 0, chamber_greatest_deg = 0;  ///< Pa
+  double overshoot = 0;                                   ///< Pa, chamber_greatest - delivery_mean
+  double undershoot = 0;                                  ///< Pa, suction pressure - chamber_least
+  double work = 0;  ///< J per turn, of the pistons on the oil at gauge pressure: sum of -p dV
+  double mass_in = 0, mass_out = 0;  ///< kg per turn: suction port; delivery port and leakage
+  double load_area = 0;              ///< m2, of the load orifice; 0 for an open line
+};
+
+/// How the periodic state was found.
+struct Convergence {
+  int iterations = 0;   ///< Newton steps
+  double residual = 0;  ///< largest difference of s = ln P between end and start, and of the mean
+  long steps = 0, evaluations = 0;  ///< of all time integrations
+  double seconds = 0;
+};
+
+/// The periodic steady state: every chamber has one and the same curve, shifted by 360/N degrees.
+struct SteadyState {
+  PressureCurve chamber;   ///< `points` per turn, from 0 degrees; Pa gauge
+  PressureCurve delivery;  ///< of the delivery volume, at the same angles
+  ResultTable table;       ///< pressures, flows, volume and openings at the same angles
+  Summary summary;
+  Convergence convergence;
+  std::vector<double>
+      log_pressures;  ///< ln(P/P0) of chambers 1..N and delivery volume at theta = 0
+};
+
+/// Where the search starts; the answer must not depend on it.
+struct Start {
+  double chambers = 0;   ///< Pa gauge, in all chambers
+  double line = 0;       ///< Pa gauge
+  double load_area = 0;  ///< m2
+};
+
+/// Finds the periodic state directly: Newton's method on the map of one N-th of a turn, after which
+/// chamber k must have the pressure chamber k-1 began with. Unknowns are the pressures at theta = 0
+/// and the size of the load orifice; the last equation is the mean delivery pressure asked for.
+/// Derivatives are the forward sensitivities of the same integration.
+/// @throws InputError at standstill, backwards (motoring), without stroke, or if the case has no
+///         [hydraulics]
+/// @throws ComputationError where no state is found, e.g. because leakage takes all of the flow
+SteadyState steady_state(const Case& the_case, const std::optional<Start>& start = {},
+                         const Progress& progress = {});
+
+/// From rest: at theta = 0 all chambers have the suction pressure and the line that of the
+/// surroundings; the shaft turns at full speed at once. Columns theta_deg (falls through all
+/// turns), p_1_bar, p_delivery_bar; `samples` rows per 360/N degrees.
+/// @param load_area  of the load orifice, m2; of the periodic state, say
+ResultTable transient_from_rest(const Case& the_case, double load_area, int revolutions,
+                                int samples = 72, const Progress& progress = {});
+
+/// Puts the computed curve into the case's pressure, where both mechanical models find it.
+void give_to(Case& the_case, const SteadyState& state);
+
+/// The summary as lines: name, value, unit.
+struct Line {
+  std::string name;
+  double value = 0;
+  std::string unit;
+};
+std::vector<Line> lines(const SteadyState& state);
+
+}  // namespace bentaxis::hydraulics

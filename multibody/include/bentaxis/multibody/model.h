@@ -1,0 +1,72 @@
+// The multibody model, evaluated at given instants without time integration ("driven").
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bentaxis/multibody/scene.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/parameters.h"
+#include "bentaxis/results/channels.h"
+#include "bentaxis/results/instant.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::multibody {
+
+/// A pump in Simbody. At each instant shaft and block are set to their angle, Simbody's constraint
+/// equations give the pistons, and reactions follow by the chosen method. Not thread-safe: use one
+/// object per thread.
+class Model {
+ public:
+  /// @param omega_sign  sign of the speed the model will be evaluated at: the gear's line of action
+  ///                    depends on it (22); 0 counts as positive
+  /// @throws InputError if real pistons are asked for and the pump has no data of them
+  /// @throws ComputationError if a piston has no inertia about its joint and the method is not
+  ///                          Method::residual
+  Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
+        Scene scene = Scene::full, Method method = Method::multipliers);
+  ~Model();
+  Model(Model&&) noexcept;
+  Model& operator=(Model&&) noexcept;
+
+  const ChannelLayout& layout() const;
+
+  /// All channels that the scene computes at an instant, SI, ordered by layout(); the others are
+  /// left as they are. In the one-piston scene the pistons take their turns: N evaluations.
+  /// @throws ComputationError where the pump cannot be assembled or constraints are redundant.
+  void evaluate(const Instant& instant, std::vector<double>& values);
+
+  /// The channels of piston 1 alone; only in the one-piston scene.
+  void evaluate_one(const Instant& instant, std::vector<double>& values);
+
+  /// Bodies, mobilities, constraint equations and their rank, for a report. After an evaluation.
+  Provenance provenance() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// What the multibody scene consists of, as lines for a report.
+std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
+                                                             const Assumptions& assumptions,
+                                                             Scene scene = Scene::full);
+
+/// Size of a scene: what is built and solved.
+struct SceneSize {
+  int bodies = 0;
+  int mobilities = 0;
+  int equations = 0;  ///< constraint equations solved at an instant
+};
+SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene);
+
+/// One turn of a case under the given assumptions, as a table. In the one-piston scene piston 1
+/// stands for all where the samples allow it (they divide by N, and every piston sees at its angle
+/// the pressure that piston 1 sees there); elsewhere the pistons are evaluated one by one.
+ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
+                       const Progress& progress = {}, Scene scene = Scene::full,
+                       Method method = Method::multipliers);
+
+}  // namespace bentaxis::multibody

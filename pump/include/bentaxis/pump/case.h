@@ -1,0 +1,41 @@
+// A case: a pump, how it runs, and the pressure in its chambers.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bentaxis/pump/hydraulic_data.h"
+#include "bentaxis/pump/parameters.h"
+#include "bentaxis/pump/pressure.h"
+
+namespace bentaxis {
+
+struct Operation {
+  double speed_rpm = 0;  ///< sign gives the direction
+  int revolutions = 1;   ///< of an integrated run
+  int samples_per_revolution = 720;
+};
+
+/// One key of an input file as read, for reports.
+struct InputEntry {
+  std::string table;  ///< "pump"; "" for the top level
+  std::string key;
+  std::string value;
+  bool defaulted = false;
+};
+
+struct Case {
+  std::filesystem::path file;
+  std::string name;
+  PumpParameters pump;
+  Operation operation;
+  PressureSpec pressure;
+  std::optional<HydraulicData> hydraulics;  ///< present where pressure.kind is hydraulic
+  Assumptions analytic;                     ///< what the analytic model assumes in this case
+  Assumptions multibody;                    ///< what the multibody model assumes
+  std::vector<InputEntry> entries;  ///< as read from a file; empty for a case made in memory
+};
+
+}  // namespace bentaxis

@@ -1,0 +1,41 @@
+#include "bentaxis/pump/number.h"
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+
+namespace bentaxis {
+namespace {
+
+constexpr std::uint64_t kNotComputedBits = 0x7ff8'0000'0000'be57;
+
+}  // namespace
+
+double not_computed() {
+  double value = 0;
+  std::memcpy(&value, &kNotComputedBits, sizeof value);
+  return value;
+}
+
+bool is_stray_nan(double value) {
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return !is_computed(value) && bits != kNotComputedBits;
+}
+
+void append_number(std::string& text, double value) {
+  if (!is_computed(value)) return;
+  std::array<char, 32> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
+                                    value == 0 ? 0.0 : value);  // no "-0"
+  text.append(buffer.data(), result.ptr);
+}
+
+std::string number_text(double value) {
+  std::string text;
+  append_number(text, value);
+  return text;
+}
+
+}  // namespace bentaxis
