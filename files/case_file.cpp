@@ -308,7 +308,8 @@ Case parse_case(const std::string& text, const std::filesystem::path& file) {
   return CaseReader(TomlFile(text, file)).read();
 }
 
-Case read_case(const std::filesystem::path& file) {
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& changes) {
+  if (!changes.empty()) throw InputError("--set " + changes.front() + ": not understood yet");
   return CaseReader(TomlFile::read(file, "case file")).read();
 }
 
