@@ -358,7 +358,7 @@ int compare(Options options) {
       {"channels", report::channel_rows(comparison)},
       {"checks", report::check_rows(checks)},
       {"assumptions", nullptr},
-      {"published", published ? published->json : Json()},
+      {"published", published ? report::published_section(*published) : Json()},
       {"runs", runs},
       {"figures", figures_of(wanted_channels,
                              figures_section(study.analytic, study.multibody, without_viscous))}};
@@ -404,7 +404,7 @@ int compare(Options options) {
   for (const auto& warning : report["warnings"])
     std::printf("warning: %s: %s\n", warning["name"].get<std::string>().c_str(),
                 warning["text"].get<std::string>().c_str());
-  if (published) std::printf("published numbers: %s\n", published->summary.text().c_str());
+  if (published) std::printf("published numbers: %s\n", published->section.summary.text().c_str());
   std::printf("\n");
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return agrees ? kDone : kOutOfTolerance;

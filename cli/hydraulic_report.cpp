@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
-
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::cli {
@@ -19,13 +17,6 @@ std::vector<double> column(const ResultTable& table, const std::string& name) {
 }
 
 }  // namespace
-
-Json plot_values(const std::vector<double>& values, double unit_in_si) {
-  Json out = Json::array();
-  for (const double value : values)
-    out.push_back(std::strtod(fmt::format("{:.9g}", value / unit_in_si).c_str(), nullptr));
-  return out;
-}
 
 Json own_figure(const std::string& id, const std::string& title, const std::string& paper,
                 const std::string& unit, const std::string& axis, const std::vector<double>& x) {

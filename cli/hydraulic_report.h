@@ -7,13 +7,12 @@
 
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/report/report.h"
 
 namespace bentaxis::cli {
 
+using report::plot_values;
 using Json = nlohmann::json;
-
-/// Numbers for a plot, to 9 digits.
-Json plot_values(const std::vector<double>& values, double unit_in_si = 1);
 
 /// A figure whose curves are over an axis of their own.
 Json own_figure(const std::string& id, const std::string& title, const std::string& paper,

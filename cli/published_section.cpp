@@ -54,8 +54,8 @@ compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
           {"real_pistons", assumptions.inertia == PistonInertia::real ? 1 : 0}};
 }
 
-std::optional<compare::PublishedSection> published_section(const PublishedInput& analytic,
-                                                           const PublishedInput& multibody) {
+std::optional<report::PublishedTable> published_section(const PublishedInput& analytic,
+                                                        const PublishedInput& multibody) {
   std::map<std::pair<std::string, std::string>, ResultTable> tables;
   const auto shipped = shipped_reference_data();
   if (!shipped || !std::filesystem::is_directory(*shipped / "published")) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<compare::PublishedSection> published_section(const PublishedInput&
     for (const auto* input : {&analytic, &multibody})
       described = described && published.describes(facts_of(*input->the_case, input->assumptions));
     if (!described) continue;
-    auto section = compare::judge_published(
+    compare::PublishedSection section = compare::judge_published(
         published, {"analytic", "multibody"},
         [&](const std::string& model, const compare::PublishedVariant& variant) {
           const PublishedInput& input = model == "analytic" ? analytic : multibody;
@@ -82,9 +82,11 @@ std::optional<compare::PublishedSection> published_section(const PublishedInput&
                             model, the_case, assumptions, samples, pressure, Way::driven, {}));
           return run;
         });
-    section.json["text"] =
-        published.name + ": " + description.source + ". " + section.json["text"].get<std::string>();
-    return section;
+    const std::string text =
+        published.name + ": " + description.source + ". " + section.summary.text() +
+        " A window is the range of a figure's axis, which the curve must not leave; it is not the "
+        "curve.";
+    return report::PublishedTable{text, std::move(section)};
   }
   return std::nullopt;
 }

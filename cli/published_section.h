@@ -5,6 +5,7 @@
 
 #include "bentaxis/compare/published.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/report/document.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::cli {
@@ -22,7 +23,7 @@ struct PublishedInput {
 /// The section for the first pump of the shipped published data that both cases are one of, by
 /// their facts; nothing where there is none. Recomputes the variants that the publication compares,
 /// driven.
-std::optional<compare::PublishedSection> published_section(const PublishedInput& analytic,
-                                                           const PublishedInput& multibody);
+std::optional<report::PublishedTable> published_section(const PublishedInput& analytic,
+                                                        const PublishedInput& multibody);
 
 }  // namespace bentaxis::cli

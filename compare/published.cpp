@@ -16,8 +16,6 @@
 namespace bentaxis::compare {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::vector<std::string> kStatuses = {"used to infer the geometry", "calibrated",
                                             "predicted"};
@@ -52,6 +50,9 @@ PublishedNumber read_number(TableReader in, const Published& published) {
   must_be_known(in, "condition", n.condition, published.conditions);
   n.variant = in.text("variant", "");
   must_be_known(in, "variant", n.variant, published.variants);
+  n.minus = in.text("minus", "");
+  must_be_known(in, "minus", n.minus, published.variants);
+  n.study = in.text("study", "");
   n.unit = in.text("unit", "");
   n.note = in.text("note", "");
   n.not_comparable = in.text("not_comparable", "");
@@ -88,6 +89,9 @@ PublishedNumber read_number(TableReader in, const Published& published) {
   } else {
     in.fail("value", "one of value, window, above, below must be given");
   }
+  n.find_pressure = in.flag("find_pressure", false);
+  if (n.find_pressure && !(n.low > 0 && n.high == kInfinity))
+    in.fail("find_pressure", "needs above > 0");
   in.finish();
   return n;
 }
@@ -123,100 +127,42 @@ std::string unmet(const FactRanges& ranges, const Facts& facts) {
   return "";
 }
 
-// The compared number or numbers of one model: [low, high], equal where it is one.
-struct Value {
-  double low = 0, high = 0;
-  Json json() const {
-    const auto short_number = [](double v) { return std::strtod(number_of(v).c_str(), nullptr); };
-    if (low == high) return short_number(low);
-    return fmt::format("{:.5g} to {:.5g}", low, high);
-  }
-};
+// How often a periodic curve changes sign.
+int sign_changes(const std::vector<double>& curve) {
+  int changes = 0;
+  for (std::size_t i = 0; i < curve.size(); ++i)
+    changes += (curve[i] < 0) != (curve[(i + 1) % curve.size()] < 0);
+  return changes;
+}
 
-std::optional<Value> value_of(const PublishedNumber& n, const PublishedRun& run) {
-  const auto fact = [&](const std::string& name) -> std::optional<double> {
-    const auto it = run.facts.find(name);
-    return it == run.facts.end() ? std::nullopt : std::optional(it->second);
-  };
-  double factor = n.factor;
-  if (!n.times.empty()) {
-    if (!fact(n.times)) return std::nullopt;
-    factor *= *fact(n.times);
+// Order of the largest harmonic.
+int main_order(const std::vector<double>& theta_deg, const std::vector<double>& curve) {
+  int best = 0;
+  double largest = -1;
+  for (int order = 1; 2 * order < static_cast<int>(curve.size()); ++order) {
+    std::complex<double> sum = 0;
+    for (std::size_t i = 0; i < curve.size(); ++i)
+      sum += curve[i] * std::polar(1.0, order * radians(theta_deg[i]));
+    if (std::abs(sum) > largest) {
+      largest = std::abs(sum);
+      best = order;
+    }
   }
-  if (n.measure == Measure::fact) {
-    const auto value = fact(n.fact);
-    if (!value) return std::nullopt;
-    return Value{factor * *value, factor * *value};
-  }
-  if (run.table == nullptr) return std::nullopt;
-  const ResultTable& table = *run.table;
-  std::vector<double> theta, curve;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double angle = wrap_degrees(table.theta_deg[row]);
-    if (angle < n.from_deg || angle > n.to_deg) continue;
-    double square = 0, value = 0;
-    for (const auto& name : n.channels) {
-      const std::size_t column = table.find(name);
-      value = column < table.columns() ? table.at(row, column) : not_computed();
-      if (!is_computed(value)) return std::nullopt;
-      square += value * value;
-    }
-    theta.push_back(angle);
-    curve.push_back(factor * (n.channels.size() > 1 ? std::sqrt(square) : value));
-  }
-  if (curve.empty()) return std::nullopt;
-  const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
-  const auto one = [](double v) { return Value{v, v}; };
-  switch (n.measure) {
-    case Measure::fact:
-      break;
-    case Measure::mean: {
-      double sum = 0;
-      for (const double v : curve) sum += v;
-      return one(sum / static_cast<double>(curve.size()));
-    }
-    case Measure::minimum:
-      return one(*low);
-    case Measure::maximum:
-      return one(*high);
-    case Measure::largest:
-      return one(std::max(std::abs(*low), std::abs(*high)));
-    case Measure::range:
-      return Value{*low, *high};
-    case Measure::at: {
-      // Straight line between the samples around the angle; the sample itself where it is one.
-      std::vector<std::pair<double, double>> points;
-      for (std::size_t i = 0; i < theta.size(); ++i) points.emplace_back(theta[i], curve[i]);
-      std::sort(points.begin(), points.end());
-      points.emplace_back(points.front().first + 360, points.front().second);
-      for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        const auto& [a, u] = points[i];
-        const auto& [b, v] = points[i + 1];
-        if (n.at_deg >= a && n.at_deg <= b && b > a)
-          return one(u + (v - u) * (n.at_deg - a) / (b - a));
-      }
-      return std::nullopt;
-    }
-    case Measure::sign_changes: {
-      int changes = 0;
-      for (std::size_t i = 0; i < curve.size(); ++i)
-        changes += (curve[i] < 0) != (curve[(i + 1) % curve.size()] < 0);
-      return one(changes);
-    }
-    case Measure::main_order: {
-      int best = 0;
-      double largest = -1;
-      for (int order = 1; 2 * order < static_cast<int>(curve.size()); ++order) {
-        std::complex<double> sum = 0;
-        for (std::size_t i = 0; i < curve.size(); ++i)
-          sum += curve[i] * std::polar(1.0, order * radians(theta[i]));
-        if (std::abs(sum) > largest) {
-          largest = std::abs(sum);
-          best = order;
-        }
-      }
-      return one(best);
-    }
+  return best;
+}
+
+// On the straight line between the samples around the angle, so that the number does not jump with
+// the number of samples; the sample itself where it is one.
+std::optional<double> value_at(double at_deg, const std::vector<double>& theta_deg,
+                               const std::vector<double>& curve) {
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t i = 0; i < theta_deg.size(); ++i) points.emplace_back(theta_deg[i], curve[i]);
+  std::sort(points.begin(), points.end());
+  points.emplace_back(points.front().first + 360, points.front().second);
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const auto& [a, u] = points[i];
+    const auto& [b, v] = points[i + 1];
+    if (at_deg >= a && at_deg <= b && b > a) return u + (v - u) * (at_deg - a) / (b - a);
   }
   return std::nullopt;
 }
@@ -261,55 +207,132 @@ std::string PublishedSummary::text() const {
       predicted_comparable, predicted, predicted_inside, other_comparable, other_inside);
 }
 
+std::optional<PublishedValue> value_of(const PublishedNumber& n, const PublishedRun& run) {
+  const auto fact = [&](const std::string& name) -> std::optional<double> {
+    const auto it = run.facts.find(name);
+    return it == run.facts.end() ? std::nullopt : std::optional(it->second);
+  };
+  double factor = n.factor;
+  if (!n.times.empty()) {
+    if (!fact(n.times)) return std::nullopt;
+    factor *= *fact(n.times);
+  }
+  if (n.measure == Measure::fact) {
+    const auto value = fact(n.fact);
+    if (!value) return std::nullopt;
+    return PublishedValue{factor * *value, factor * *value};
+  }
+  if (run.table == nullptr) return std::nullopt;
+  const ResultTable& table = *run.table;
+  std::vector<double> theta, curve;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double angle = wrap_degrees(table.theta_deg[row]);
+    if (angle < n.from_deg || angle > n.to_deg) continue;
+    double square = 0, value = 0;
+    for (const auto& name : n.channels) {
+      const std::size_t column = table.find(name);
+      value = column < table.columns() ? table.at(row, column) : not_computed();
+      if (!is_computed(value)) return std::nullopt;
+      square += value * value;
+    }
+    theta.push_back(angle);
+    curve.push_back(factor * (n.channels.size() > 1 ? std::sqrt(square) : value));
+  }
+  if (curve.empty()) return std::nullopt;
+  const auto [low, high] = std::minmax_element(curve.begin(), curve.end());
+  const auto one = [](double v) { return PublishedValue{v, v}; };
+  switch (n.measure) {
+    case Measure::fact:
+      break;
+    case Measure::mean: {
+      double sum = 0;
+      for (const double v : curve) sum += v;
+      return one(sum / static_cast<double>(curve.size()));
+    }
+    case Measure::minimum:
+      return one(*low);
+    case Measure::maximum:
+      return one(*high);
+    case Measure::largest:
+      return one(std::max(std::abs(*low), std::abs(*high)));
+    case Measure::range:
+      return PublishedValue{*low, *high};
+    case Measure::at:
+      if (const auto value = value_at(n.at_deg, theta, curve)) return one(*value);
+      return std::nullopt;
+    case Measure::sign_changes:
+      return one(sign_changes(curve));
+    case Measure::main_order:
+      return one(main_order(theta, curve));
+  }
+  return std::nullopt;
+}
+
+const char* to_string(PublishedVerdict verdict) {
+  switch (verdict) {
+    case PublishedVerdict::inside:
+      return "inside";
+    case PublishedVerdict::outside:
+      return "outside";
+    case PublishedVerdict::not_comparable:
+      break;
+  }
+  return "not comparable";
+}
+
 PublishedSection judge_published(
     const Published& published, const std::vector<std::string>& models,
-    const std::function<PublishedRun(const std::string&, const PublishedVariant&)>& run) {
+    const std::function<PublishedRun(const std::string&, const PublishedVariant&)>& run,
+    const std::string& study) {
   PublishedSection section;
-  PublishedSummary& summary = section.summary;
+  section.models = models;
   std::map<std::pair<std::string, std::string>, PublishedRun> runs;  // by model and variant
+  const auto variant_of = [&](const std::string& name) {
+    const auto it = std::find_if(published.variants.begin(), published.variants.end(),
+                                 [&](const PublishedVariant& v) { return v.name == name; });
+    return it == published.variants.end() ? PublishedVariant{} : *it;
+  };
   const auto run_of = [&](const std::string& model, const std::string& name) -> PublishedRun& {
     auto it = runs.find({model, name});
     if (it != runs.end()) return it->second;
-    PublishedVariant variant;
-    for (const auto& v : published.variants)
-      if (v.name == name) variant = v;
-    return runs.emplace(std::pair(model, name), run(model, variant)).first->second;
+    return runs.emplace(std::pair(model, name), run(model, variant_of(name))).first->second;
   };
-  Json rows = Json::array();
+  const auto number_of_model = [&](const PublishedNumber& n, const std::string& model) {
+    auto value = value_of(n, run_of(model, n.variant));
+    if (!value || n.minus.empty()) return value;
+    const auto other = value_of(n, run_of(model, n.minus));
+    if (!other) return other;
+    return std::optional(PublishedValue{value->low - other->high, value->high - other->low});
+  };
   for (const auto& n : published.numbers) {
-    const PublishedCondition* condition = nullptr;
-    for (const auto& c : published.conditions)
-      if (c.name == n.condition) condition = &c;
-    const PublishedVariant* variant = nullptr;
-    for (const auto& v : published.variants)
-      if (v.name == n.variant) variant = &v;
+    if (!n.study.empty() && n.study != study) continue;
+    const auto condition =
+        std::find_if(published.conditions.begin(), published.conditions.end(),
+                     [&](const PublishedCondition& c) { return c.name == n.condition; });
+    const bool conditional = condition != published.conditions.end();
+    const PublishedVariant variant = variant_of(n.variant);
     std::string why = n.not_comparable;
     // What a variant sets is not asked of the case.
-    FactRanges wanted = condition == nullptr ? FactRanges() : condition->facts;
-    if (variant != nullptr)
-      for (const auto& [name, value] : variant->set) wanted.erase(name);
-    std::string at = condition == nullptr ? "" : condition->text;
-    if (variant != nullptr) at += (at.empty() ? "" : "; ") + variant->text;
-    Json row = {{"quantity", n.quantity},
-                {"paper", printed(n)},
-                {"unit", n.unit},
-                {"status", n.status},
-                {"at", at},
-                {"condition", n.condition},
-                {"variant", n.variant},
-                {"counted", n.predicted() && !n.repeats}};
+    FactRanges wanted = conditional ? condition->facts : FactRanges();
+    for (const auto& [name, value] : variant.set) wanted.erase(name);
+    PublishedRow row;
+    row.number = n;
+    row.printed = printed(n);
+    row.at = conditional ? condition->text : "";
+    if (!variant.text.empty()) row.at += (row.at.empty() ? "" : "; ") + variant.text;
+    if (!n.minus.empty()) row.at += " minus " + variant_of(n.minus).text;
     bool any = false, inside = true;
     std::string reasons;
     for (const std::string& model : models) {
-      row[model] = nullptr;
+      row.values.emplace_back();
       if (!why.empty()) continue;
       // A case at another condition is not run under the variants of this one.
       std::string reason = unmet(wanted, run_of(model, "").facts);
       if (reason.empty()) {
-        if (const auto value = value_of(n, run_of(model, n.variant))) {
-          row[model] = value->json();
+        if (const auto value = number_of_model(n, model)) {
+          row.values.back() = value;
           any = true;
-          inside = inside && value->low >= n.low && value->high <= n.high;
+          inside = inside && value->inside(n);
           continue;
         }
         reason = "not computed";
@@ -318,26 +341,20 @@ PublishedSection judge_published(
         reasons += (reasons.empty() ? "" : "; ") + reason;
     }
     if (!any && why.empty()) why = reasons;
-    row["verdict"] = !any ? "not comparable" : inside ? "inside" : "outside";
-    std::string where = n.where;
-    if (!n.note.empty()) where += ". " + n.note;
-    if (n.repeats) where += ". Repeats another row: not counted";
-    if (!any && !why.empty()) where += ". Not comparable: " + why;
-    row["where"] = where;
-    rows.push_back(std::move(row));
+    row.verdict = !any     ? PublishedVerdict::not_comparable
+                  : inside ? PublishedVerdict::inside
+                           : PublishedVerdict::outside;
+    row.where = n.where;
+    if (!n.note.empty()) row.where += ". " + n.note;
+    if (n.repeats) row.where += ". Repeats another row: not counted";
+    if (!any && !why.empty()) row.where += ". Not comparable: " + why;
+    section.rows.push_back(std::move(row));
     if (n.repeats) continue;
+    PublishedSummary& summary = section.summary;
     summary.predicted += n.predicted();
     (n.predicted() ? summary.predicted_comparable : summary.other_comparable) += any;
     (n.predicted() ? summary.predicted_inside : summary.other_inside) += any && inside;
   }
-  section.json = {
-      {"text", summary.text() +
-                   " A window is the range of a figure's axis, which the curve must not "
-                   "leave; it is not the curve."},
-      {"rows", rows},
-      {"predicted", summary.predicted},
-      {"predicted_comparable", summary.predicted_comparable},
-      {"predicted_inside", summary.predicted_inside}};
   return section;
 }
 

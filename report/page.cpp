@@ -40,6 +40,10 @@ std::string script_safe(const nlohmann::json& value) {
 
 }  // namespace
 
+std::string render_page(const Document& document, const Curves& curves) {
+  return render_page(document.title, to_json(document), to_json(curves));
+}
+
 std::string render_page(const std::string& title, const nlohmann::json& report,
                         const nlohmann::json& curves) {
   const auto& parts = page_parts();

@@ -14,6 +14,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
 #include "bentaxis/report/junit.h"
+#include "bentaxis/report/report.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -346,7 +347,7 @@ class PublishedNumbers : public ReferenceFolder {
                                  for (const auto& [name, value] : variant.set) all[name] = value;
                                  return PublishedRun{&table_, all};
                                });
-    return section_.json["rows"][0];
+    return report::published_section({"", section_})["rows"][0];
   }
 
   ResultTable table_ = result(360);

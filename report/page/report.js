@@ -934,6 +934,7 @@ function mapFigure(figure, data) {
   return [key, drawnBox(figure, data, draw), figure.note ? el("p.note", {}, figure.note) : null];
 }
 
+// Every other kind is made of curves: "curves" (of the page) and "own_axis".
 const DRAWN = { piston_bars: barsFigure, xy: xyFigure, map: mapFigure, scatter: scatterFigure };
 
 // A figure may bring curves of its own, at angles of its own.
@@ -945,7 +946,7 @@ function figures(report, data) {
     || f.kind === "scatter" || data.order.length);
   if (!figures.length) return null;
   return el("div", {},
-    figures.some(f => !f.kind) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
+    figures.some(f => !DRAWN[f.kind]) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
       + "double-click to see all again. Point at a curve to read the values in the table above it.") : null,
     figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
       f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -52,10 +51,13 @@ struct PublishedNumber {
   std::string status;     ///< "used to infer the geometry", "calibrated" or "predicted"
   std::string condition;  ///< name, or "" where the case does not matter
   std::string variant;    ///< name, or ""
+  std::string minus;      ///< a variant whose number is taken off, or ""
+  std::string study;      ///< the study that can judge it; "" is a comparison of two models
   std::string unit;
   std::string note;
   std::string not_comparable;  ///< why no result can be held to it, or ""
   bool repeats = false;        ///< says what another row says: not counted
+  bool find_pressure = false;  ///< the delivery pressure at which `low` is reached is of interest
   Measure measure = Measure::mean;
   std::vector<std::string> channels;  ///< several: the magnitude of the vector
   std::string fact;                   ///< of Measure::fact
@@ -99,17 +101,46 @@ struct PublishedSummary {
   std::string text() const;
 };
 
-/// The report's section: {"text", "rows": [{quantity, at, paper, analytic, multibody, unit,
-/// verdict, status, where}]}; a model's column carries its name, `at` is condition and variant in
-/// words.
-/// @param run  (model, variant) -> its result; variant "" is the case as it was run
+/// A model's number under a row's measure: [low, high], equal where it is one number.
+struct PublishedValue {
+  double low = 0, high = 0;
+  bool inside(const PublishedNumber& number) const {
+    return low >= number.low && high <= number.high;
+  }
+};
+
+/// The number that one run gives for a row; nothing where the run did not compute it.
+std::optional<PublishedValue> value_of(const PublishedNumber& number, const PublishedRun& run);
+
+enum class PublishedVerdict { inside, outside, not_comparable };
+const char* to_string(PublishedVerdict verdict);
+
+/// A row and what the models make of it.
+struct PublishedRow {
+  PublishedNumber number;
+  std::string printed;                                ///< in words, with its unit
+  std::string at;                                     ///< condition and variant in words, or ""
+  std::vector<std::optional<PublishedValue>> values;  ///< by model; nothing where not comparable
+  PublishedVerdict verdict = PublishedVerdict::not_comparable;
+  std::string where;  ///< where printed, the row's note, why it is not comparable
+
+  /// Whether the row counts as validation.
+  bool counted() const { return number.predicted() && !number.repeats; }
+};
+
 struct PublishedSection {
-  nlohmann::json json;
+  std::vector<std::string> models;
+  std::vector<PublishedRow> rows;
   PublishedSummary summary;
 };
+
+/// Holds results to printed numbers.
+/// @param run  (model, variant) -> its result; variant "" is the case as it was run
+/// @param study  which numbers: those of this study and those of a comparison
 PublishedSection judge_published(
     const Published& published, const std::vector<std::string>& models,
     const std::function<PublishedRun(const std::string& model, const PublishedVariant& variant)>&
-        run);
+        run,
+    const std::string& study = "");
 
 }  // namespace bentaxis::compare

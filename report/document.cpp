@@ -1,0 +1,527 @@
+#include "bentaxis/report/document.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::report {
+namespace {
+
+constexpr int kPlotDigits = 9;
+constexpr int kDifferenceDigits = 4;  // differences are known to their order of magnitude
+
+const char* to_string(ChannelKind kind) {
+  switch (kind) {
+    case ChannelKind::reaction:
+      return "reaction";
+    case ChannelKind::derived:
+      return "derived";
+    case ChannelKind::input:
+      return "input";
+    case ChannelKind::check:
+      break;
+  }
+  return "check";
+}
+
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+template <class Value>
+Json value_or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+// The nearest number of so many decimal digits: a plot needs no more, and a page is a third
+// shorter.
+Json rounded(double value, int digits) {
+  if (!is_computed(value)) return nullptr;
+  return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+}
+
+Json rounded(const Values& values, int digits = kPlotDigits) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(rounded(value, digits));
+  return list;
+}
+
+Json exact(const Values& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number_or_null(value));
+  return list;
+}
+
+// Declared for list_of and add, which are templates.
+Json json_of(const Section&);
+Json json_of(const Record&);
+Json json_of(const Figure&);
+Json json_of(const CaseSection&);
+Json json_of(const DerivedQuantity&);
+Json json_of(const Verdict&);
+Json json_of(const Summary&);
+Json json_of(const Warning&);
+Json json_of(const CommonInput&);
+Json json_of(const ValidityRow&);
+Json json_of(const ModelSection&);
+Json json_of(const compare::Harmonic&);
+Json json_of(const compare::ChannelComparison&);
+Json json_of(const compare::Check&);
+Json json_of(const AssumptionSplit&);
+Json json_of(const PublishedTable&);
+Json json_of(const HardCaseRow::Model&);
+Json json_of(const HardCaseRow&);
+Json json_of(const LongRunSection&);
+
+// An array of what `one` makes of each item.
+template <class Items, class One>
+Json list_of(const Items& items, One one) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(one(item));
+  return list;
+}
+
+// An array of the items' JSON.
+template <class Items>
+Json list_of(const Items& items) {
+  return list_of(items, [](const auto& item) { return json_of(item); });
+}
+
+// ---- Blocks
+
+Json json_of(const Cell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  if (const auto* count = std::get_if<long>(&cell)) return *count;
+  if (const auto* number = std::get_if<double>(&cell)) return number_or_null(*number);
+  return nullptr;
+}
+
+Json json_of(const Section& section) {
+  return {{"title", section.title},
+          {"text", section.text},
+          {"facts", section.facts},
+          {"table",
+           {{"columns", section.table.columns},
+            {"rows", list_of(section.table.rows, [](const auto& row) {
+               return list_of(row, [](const Cell& cell) { return json_of(cell); });
+             })}}}};
+}
+
+Json json_of(const Record& record) {
+  Json row = Json::object();
+  for (const auto& [key, cell] : record) row[key] = json_of(cell);
+  return row;
+}
+
+// ---- Figures
+
+Json json_of(const Axis& axis) {
+  Json json = {{"label", axis.label}, {"unit", axis.unit}, {"log", axis.log}};
+  if (axis.from) json["from"] = *axis.from;
+  return json;
+}
+
+Json json_of(const Axis& axis, const Values& values) {
+  Json json = json_of(axis);
+  json["values"] = exact(values);
+  return json;
+}
+
+Json series_of(const std::vector<Series>& series) {
+  return list_of(series, [](const Series& s) {
+    return Json{{"label", s.label}, {"values", rounded(s.values)}};
+  });
+}
+
+Json json_of(const ChannelFigure& figure) {
+  Json json = {{"kind", "curves"},
+               {"unit", figure.unit},
+               {"channels", figure.channels},
+               {"extra", series_of(figure.extra)}};
+  if (figure.curves) json["curves"] = to_json(*figure.curves);
+  return json;
+}
+
+Json json_of(const PistonBars& figure) {
+  return {{"kind", "piston_bars"},
+          {"unit", figure.unit},
+          {"channels", figure.channels},
+          {"angles", figure.angles}};
+}
+
+Json json_of(const OwnFigure& figure) {
+  return {{"kind", "own_axis"},
+          {"unit", figure.unit},
+          {"x", {{"label", figure.axis}, {"angle", figure.angle}, {"values", rounded(figure.x)}}},
+          {"series", series_of(figure.series)}};
+}
+
+Json json_of(const XyFigure& figure) {
+  return {{"kind", "xy"},
+          {"x", json_of(figure.x)},
+          {"y", json_of(figure.y)},
+          {"series", list_of(figure.series, [](const XySeries& s) {
+             return Json{{"label", s.label}, {"x", exact(s.x)}, {"y", exact(s.y)}};
+           })}};
+}
+
+Json json_of(const MapFigure& figure) {
+  return {{"kind", "map"},
+          {"x", json_of(figure.x, figure.x_values)},
+          {"y", json_of(figure.y, figure.y_values)},
+          {"z", {{"label", figure.z.label}, {"unit", figure.z.unit}}},
+          {"values", list_of(figure.values, [](const Values& row) { return exact(row); })},
+          {"contours", figure.contours},
+          {"points", list_of(figure.points, [](const MapFigure::Point& p) {
+             return Json{{"label", p.label}, {"x", p.x}, {"y", p.y}};
+           })}};
+}
+
+Json json_of(const ScatterFigure& figure) {
+  return {{"kind", "scatter"},
+          {"x", json_of(figure.x)},
+          {"y", json_of(figure.y)},
+          {"series", list_of(figure.series, [](const ScatterSeries& s) {
+             return Json{{"name", s.name},
+                         {"style", value_or_null(s.style)},
+                         {"line", s.line},
+                         {"emphasis", s.emphasis},
+                         {"points", list_of(s.points, [](const ScatterPoint& p) {
+                            return Json{{"x", number_or_null(p.x)},
+                                        {"y", number_or_null(p.y)},
+                                        {"note", p.note}};
+                          })}};
+           })}};
+}
+
+Json json_of(const Figure& figure) {
+  Json json = std::visit([](const auto& content) { return json_of(content); }, figure.content);
+  json["id"] = figure.id;
+  json["title"] = figure.title;
+  json["paper"] = figure.paper;
+  json["note"] = figure.note;
+  return json;
+}
+
+// ---- Sections
+
+Json json_of(const CaseSection& section) {
+  return {{"file", section.file}, {"entries", list_of(section.entries, [](const InputEntry& entry) {
+                                     return Json{{"table", entry.table},
+                                                 {"key", entry.key},
+                                                 {"value", entry.value},
+                                                 {"defaulted", entry.defaulted}};
+                                   })}};
+}
+
+Json json_of(const DerivedQuantity& q) {
+  return {{"name", q.name},
+          {"symbol", q.symbol},
+          {"value", q.value},
+          {"unit", q.unit},
+          {"source", q.source}};
+}
+
+Json json_of(const Verdict& verdict) {
+  Json json = {{"agrees", verdict.agrees}, {"headline", verdict.headline}};
+  if (!verdict.word.empty()) json["word"] = verdict.word;
+  if (verdict.tolerance) json["tolerance"] = *verdict.tolerance;
+  if (verdict.compared) {
+    json["compared"] = *verdict.compared;
+    json["digits"] = value_or_null(verdict.digits);
+    json["worst"] = nullptr;
+  }
+  if (verdict.checks_hold) json["checks_hold"] = *verdict.checks_hold;
+  if (verdict.worst)
+    json["worst"] = {{"channel", verdict.worst->channel},
+                     {"max_over_peak", verdict.worst->over_peak},
+                     {"theta_deg", verdict.worst->theta_deg}};
+  if (verdict.rest_over_peak) json["rest_over_peak"] = *verdict.rest_over_peak;
+  if (verdict.rest_tolerance) json["rest_tolerance"] = *verdict.rest_tolerance;
+  return json;
+}
+
+Json json_of(const Summary& summary) {
+  return {{"text", summary.text},
+          {"groups", list_of(summary.groups, [](const Summary::Group& group) {
+             return Json{{"title", group.title}, {"lines", group.lines}};
+           })}};
+}
+
+Json json_of(const Warning& warning) { return {{"name", warning.name}, {"text", warning.text}}; }
+
+Json json_of(const CommonInput& common) {
+  return {{"input", common.input}, {"value", common.value}, {"caught_by", common.caught_by}};
+}
+
+Json json_of(const ValidityRow& row) {
+  const auto known = [&](double value) { return row.applicable ? Json(value) : Json(nullptr); };
+  return {{"limit", row.limit},
+          {"share_percent", known(100 * row.violated_share)},
+          {"worst", known(row.worst)},
+          {"unit", row.unit},
+          {"theta_deg", known(row.theta_deg)},
+          {"violated", row.applicable && row.violated_share > 0},
+          {"applicable", row.applicable},
+          {"consequence", row.consequence}};
+}
+
+Json json_of(const ModelSection& model) {
+  return {{"name", model.name},
+          {"assumptions", model.assumptions},
+          {"facts", model.facts},
+          {"seconds", model.seconds},
+          {"angles", model.angles}};
+}
+
+Json json_of(const compare::Harmonic& harmonic) {
+  return {{"order", harmonic.order},
+          {"amplitude", {harmonic.amplitude[0], harmonic.amplitude[1]}},
+          {"phase_deg", list_of(harmonic.phase_deg, value_or_null<double>)}};
+}
+
+Json json_of(const compare::ChannelComparison& c) {
+  const Channel& channel = c.channel;
+  Json row = {{"name", channel.name},
+              {"quantity", channel.quantity},
+              {"meaning", channel.meaning},
+              {"equation", channel.equation},
+              {"piston", channel.piston},
+              {"axis", channel.axis},
+              {"frame", channel.frame},
+              {"on_body", channel.on_body},
+              {"by_body", channel.by_body},
+              {"point", channel.point},
+              {"unit", channel.unit},
+              {"group", channel.group},
+              {"kind", to_string(channel.kind)},
+              {"compared", c.judged},
+              {"peak", c.peak},
+              {"verdict", compare::to_string(c.verdict)},
+              {"tolerance", c.tolerance}};
+  if (c.verdict == compare::Verdict::not_computed) {
+    for (const char* key : {"max_abs", "max_over_peak", "rms", "rms_over_peak", "theta_of_max_deg",
+                            "mean_difference", "digits"})
+      row[key] = nullptr;
+    row["mean"] = {nullptr, nullptr};
+    row["orders"] = Json::array();
+    return row;
+  }
+  row["max_abs"] = c.largest;
+  row["max_over_peak"] = number_or_null(c.largest_over_peak());
+  row["rms"] = c.rms;
+  row["rms_over_peak"] = number_or_null(c.rms_over_peak());
+  row["theta_of_max_deg"] = c.theta_of_largest_deg;
+  row["mean"] = {c.mean[0], c.mean[1]};
+  row["mean_difference"] = c.mean_difference;
+  row["digits"] = c.digits;
+  row["orders"] = list_of(c.harmonics);
+  return row;
+}
+
+Json json_of(const compare::Check& check) {
+  return {{"model", check.table},
+          {"name", check.name},
+          {"worst", check.worst},
+          {"unit", check.unit},
+          {"scale", check.scale},
+          {"relative", check.relative()},
+          {"tolerance", check.tolerance},
+          {"theta_deg", check.theta_deg},
+          {"verdict", check.holds() ? "holds" : "violated"}};
+}
+
+Json json_of(const compare::Split& split, const compare::ChannelSplit& channel) {
+  const auto over_peak = [&](double value) { return channel.peak > 0 ? value / channel.peak : 0; };
+  Json parts = Json::array();
+  for (std::size_t i = 0; i < split.assumptions.size(); ++i)
+    parts.push_back({{"assumption", split.assumptions[i]},
+                     {"max_abs", channel.contributions[i].largest},
+                     {"over_peak", over_peak(channel.contributions[i].largest)},
+                     {"mean", channel.contributions[i].mean}});
+  return {{"name", channel.channel.name},
+          {"group", channel.channel.group},
+          {"kind", to_string(channel.channel.kind)},
+          {"unit", channel.channel.unit},
+          {"peak", channel.peak},
+          {"max_abs", channel.largest_difference},
+          {"over_peak", over_peak(channel.largest_difference)},
+          {"contributions", parts},
+          {"rest", channel.rest},
+          {"rest_over_peak", channel.rest_over_peak()},
+          {"verdict", channel.rest_over_peak() <= split.tolerance ? "explained" : "unexplained"}};
+}
+
+Json json_of(const AssumptionSplit& assumptions) {
+  Json section = {
+      {"text", assumptions.text},
+      {"rows",
+       list_of(
+           assumptions.rows,
+           [](const AssumptionRow& row) {
+             return Json{{"name", row.name}, {"analytic", row.first}, {"multibody", row.second}};
+           })},
+      {"channels", Json::array()}};
+  for (const compare::ChannelSplit& channel : assumptions.split.channels)
+    if (channel.computed) section["channels"].push_back(json_of(assumptions.split, channel));
+  return section;
+}
+
+Json json_of(const std::optional<compare::PublishedValue>& value) {
+  if (!value) return nullptr;
+  if (value->low == value->high) return rounded(value->low, 6);
+  return fmt::format("{:.5g} to {:.5g}", value->low, value->high);
+}
+
+Json json_of(const PublishedTable& published) {
+  const compare::PublishedSection& section = published.section;
+  return {{"text", published.text},
+          {"rows", list_of(section.rows,
+                           [&](const compare::PublishedRow& row) {
+                             Json json = {{"quantity", row.number.quantity},
+                                          {"paper", row.printed},
+                                          {"unit", row.number.unit},
+                                          {"status", row.number.status},
+                                          {"at", row.at},
+                                          {"condition", row.number.condition},
+                                          {"variant", row.number.variant},
+                                          {"counted", row.counted()},
+                                          {"verdict", compare::to_string(row.verdict)},
+                                          {"where", row.where}};
+                             for (std::size_t m = 0; m < section.models.size(); ++m)
+                               json[section.models[m]] = json_of(row.values[m]);
+                             return json;
+                           })},
+          {"predicted", section.summary.predicted},
+          {"predicted_comparable", section.summary.predicted_comparable},
+          {"predicted_inside", section.summary.predicted_inside}};
+}
+
+// ---- Records of single commands
+
+Json json_of(const HardCaseRow::Model& model) {
+  return {{"model", model.model},
+          {"expected", model.expected},
+          {"verdict", model.verdict},
+          {"message", model.message},
+          {"digits", value_or_null(model.digits)},
+          {"groups", list_of(model.groups,
+                             [](const HardCaseRow::Group& g) {
+                               return Json{{"group", g.group},
+                                           {"loss_over_peak", g.loss_over_peak},
+                                           {"predicted", g.predicted}};
+                             })},
+          {"weak_point", model.weak_point},
+          {"measured_over_predicted", value_or_null(model.measured_over_predicted)},
+          {"microseconds_per_angle", model.microseconds_per_angle}};
+}
+
+Json json_of(const HardCaseRow& row) {
+  return {{"name", row.name},
+          {"group", row.group},
+          {"hard", row.hard},
+          {"changes", row.changes},
+          {"models", list_of(row.models)}};
+}
+
+Json json_of(const LongRunSection& run) {
+  Json json = json_of(run.section);
+  json["bounded"] = run.bounded;
+  return json;
+}
+
+// Adds a part that is there.
+template <class Part>
+void add(Json& json, const char* key, const std::optional<Part>& part) {
+  if (part) json[key] = json_of(*part);
+}
+template <class Item>
+void add(Json& json, const char* key, const std::optional<std::vector<Item>>& items) {
+  if (items) json[key] = list_of(*items);
+}
+
+}  // namespace
+
+ModelSection model_of(const ResultTable& table, const Lines& assumptions) {
+  return {table.name, assumptions, table.provenance.facts, table.provenance.seconds, table.rows()};
+}
+
+Json to_json(const Document& document) {
+  Json json = {{"schema", 1}, {"title", document.title}, {"program", document.program}};
+  add(json, "case", document.the_case);
+  add(json, "derived", document.derived);
+  add(json, "verdict", document.verdict);
+  if (!document.meaning.empty()) json["meaning"] = document.meaning;
+  add(json, "summary", document.summary);
+  add(json, "warnings", document.warnings);
+  add(json, "common", document.common);
+  add(json, "validity", document.validity);
+  add(json, "models", document.models);
+  if (document.comparison) {
+    json["channels"] = list_of(document.comparison->channels);
+    // A comparison says so where there is nothing to take apart and nothing printed to hold it to.
+    json["assumptions"] = nullptr;
+    json["published"] = nullptr;
+  }
+  add(json, "checks", document.checks);
+  add(json, "assumptions", document.assumptions);
+  add(json, "published", document.published);
+  add(json, "runs", document.runs);
+  add(json, "figures", document.figures);
+  add(json, "rows", document.records);
+  add(json, "cases", document.hard_cases);
+  add(json, "long_run", document.long_run);
+  return json;
+}
+
+std::string json_text(const Document& document) {
+  return to_json(document).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json to_json(const Curves& curves) {
+  const auto columns = [](const auto& named, int digits) {
+    Json json = Json::object();
+    for (const auto& [name, values] : named) json[name] = rounded(values, digits);
+    return json;
+  };
+  return {
+      {"theta_deg", exact(curves.theta_deg)},
+      {"tables",
+       list_of(
+           curves.tables,
+           [&](const Curves::Table& table) {
+             return Json{{"name", table.name}, {"columns", columns(table.columns, kPlotDigits)}};
+           })},
+      {"difference", columns(curves.difference, kDifferenceDigits)}};
+}
+
+Values values_of(const ResultTable& table, const std::string& channel_name) {
+  const std::size_t column = table.find(channel_name);
+  Values values;
+  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.at(row, column));
+  return values;
+}
+
+Curves curves_of(const ResultTable& first, const ResultTable& second) {
+  Curves curves{first.theta_deg, {}, {}};
+  for (const ResultTable* table : {&first, &second}) {
+    Curves::Table columns{table->name, {}};
+    for (const Channel& channel : table->channels)
+      if (channel.kind != ChannelKind::check)
+        columns.columns.emplace_back(channel.name, values_of(*table, channel.name));
+    curves.tables.push_back(std::move(columns));
+  }
+  for (std::size_t a = 0; a < first.columns(); ++a) {
+    const std::size_t b = second.find(first.channels[a].name);
+    const ChannelKind kind = first.channels[a].kind;
+    if (b == second.columns() || kind == ChannelKind::check || kind == ChannelKind::input) continue;
+    Values difference;
+    for (std::size_t row = 0; row < first.rows(); ++row)
+      difference.push_back(second.at(row, b) - first.at(row, a));
+    curves.difference.emplace_back(first.channels[a].name, std::move(difference));
+  }
+  return curves;
+}
+
+}  // namespace bentaxis::report

@@ -1,0 +1,297 @@
+// What a command has to report, as typed data. to_json makes the report's JSON of it
+// (docs/report_json.md, docs/report.schema.json), the page draws that. Whoever fills a document has
+// computed everything in it: nothing here computes.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/compare/published.h"
+#include "bentaxis/compare/split.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::report {
+
+using Json = nlohmann::json;
+/// Names and values of a short list of facts, in the order in which they are shown.
+using Lines = std::vector<std::pair<std::string, std::string>>;
+/// Values of a curve; what was not computed (pump/number.h) becomes null.
+using Values = std::vector<double>;
+
+// ---- Tables of the section "runs"
+
+/// A cell: nothing, a text, a count or a number (null where not computed).
+using Cell = std::variant<std::monostate, std::string, long, double>;
+
+struct Table {
+  std::vector<std::string> columns;
+  std::vector<std::vector<Cell>> rows;
+};
+
+/// A titled block: text, facts, table.
+struct Section {
+  std::string title, text;
+  Lines facts;
+  Table table;
+};
+
+// ---- Figures
+
+/// Curves of both models under the names of the page's curves, with their difference.
+struct Curves {
+  struct Table {
+    std::string name;  ///< of the model
+    std::vector<std::pair<std::string, Values>> columns;
+  };
+  Values theta_deg;
+  std::vector<Table> tables;
+  std::vector<std::pair<std::string, Values>> difference;  ///< second minus first table
+};
+
+/// A curve that a figure brings itself.
+struct Series {
+  std::string label;
+  Values values;
+};
+
+/// Curves of the page by their names, one colour each; both models and their difference.
+struct ChannelFigure {
+  std::string unit;
+  std::vector<std::string> channels;
+  std::vector<Series> extra = {};               ///< over the same angles
+  std::optional<Curves> curves = std::nullopt;  ///< instead of the page's, at angles of their own
+};
+
+/// Each piston's share at one angle that can be chosen; buttons lead to `angles` (deg).
+struct PistonBars {
+  std::string unit;
+  std::vector<std::string> channels;
+  std::vector<double> angles;
+};
+
+/// Curves over an axis of their own.
+struct OwnFigure {
+  std::string unit, axis;
+  bool angle = false;  ///< the axis is one of shaft angles, deg
+  Values x;
+  std::vector<Series> series = {};
+};
+
+/// An axis of a plane figure. `from` fixes its lower end.
+struct Axis {
+  std::string label, unit = {};
+  bool log = false;
+  std::optional<double> from = std::nullopt;
+};
+
+struct XySeries {
+  std::string label;
+  Values x, y;
+};
+
+/// Any quantity over any other.
+struct XyFigure {
+  Axis x, y;
+  std::vector<XySeries> series;
+};
+
+/// A quantity over two others: values[i][j] at y_values[i], x_values[j].
+struct MapFigure {
+  struct Point {
+    std::string label;
+    double x, y;
+  };
+  Axis x, y, z;
+  Values x_values, y_values;
+  std::vector<Values> values;
+  std::vector<double> contours;
+  std::vector<Point> points;
+};
+
+struct ScatterPoint {
+  double x, y;
+  std::string note;  ///< shown when pointed at
+};
+
+struct ScatterSeries {
+  std::string name;
+  std::optional<int> style;  ///< symbol and colour; the same for the same thing in every figure
+  bool line = false;
+  bool emphasis = false;  ///< broad and pale under the others
+  std::vector<ScatterPoint> points;
+};
+
+/// Points in a plane.
+struct ScatterFigure {
+  Axis x, y;
+  std::vector<ScatterSeries> series;
+};
+
+struct Figure {
+  std::string id, title;
+  std::string paper;  ///< figures of the paper that it answers, or ""
+  std::variant<ChannelFigure, PistonBars, OwnFigure, XyFigure, MapFigure, ScatterFigure> content;
+  std::string note = {};
+};
+
+// ---- Sections
+
+struct CaseSection {
+  std::string file;
+  std::vector<InputEntry> entries;
+};
+
+struct DerivedQuantity {
+  std::string name, symbol;
+  double value;
+  std::string unit, source;
+};
+
+/// The channel with the largest difference over its peak.
+struct WorstChannel {
+  std::string channel;
+  double over_peak, theta_deg;
+};
+
+/// What is absent does not apply to this report.
+struct Verdict {
+  bool agrees = false;
+  std::string headline;
+  std::string word = {};  ///< instead of "Agrees" or "Differs", or ""
+  std::optional<double> tolerance = std::nullopt;
+  std::optional<int> compared = std::nullopt;  ///< number of channels
+  std::optional<bool> checks_hold = std::nullopt;
+  std::optional<double> digits = std::nullopt;  ///< of the worst channel
+  std::optional<WorstChannel> worst = std::nullopt;
+  std::optional<double> rest_over_peak = std::nullopt;  ///< under unequal assumptions
+  std::optional<double> rest_tolerance = std::nullopt;
+};
+
+struct Warning {
+  std::string name, text;
+};
+
+/// An input that both models share.
+struct CommonInput {
+  std::string input, value, caught_by;
+};
+
+/// A limit of the models' validity over the turn. Where it does not apply, the numbers are absent.
+struct ValidityRow {
+  std::string limit, unit, consequence;
+  bool applicable = true;
+  double violated_share = 0, worst = 0, theta_deg = 0;
+};
+
+/// How a table was obtained.
+struct ModelSection {
+  std::string name;
+  Lines assumptions, facts;
+  double seconds = 0;
+  std::size_t angles = 0;
+};
+ModelSection model_of(const ResultTable& table, const Lines& assumptions);
+
+/// Contribution of each differing assumption to each channel.
+struct AssumptionRow {
+  std::string name, first, second;  ///< the assumption, its value in either model
+};
+struct AssumptionSplit {
+  std::string text;
+  std::vector<AssumptionRow> rows;
+  compare::Split split;
+};
+
+/// Where the results stand against printed numbers.
+struct PublishedTable {
+  std::string text;
+  compare::PublishedSection section;
+};
+
+/// What is to be said in words.
+struct Summary {
+  struct Group {
+    std::string title;
+    std::vector<std::string> lines;
+  };
+  std::string text;
+  std::vector<Group> groups;
+};
+
+// ---- Records of single commands
+
+/// One row of `tradeoff`: key and value.
+using Record = std::vector<std::pair<std::string, Cell>>;
+
+/// One case of `hardcases`.
+struct HardCaseRow {
+  struct Group {
+    std::string group;
+    double loss_over_peak, predicted;
+  };
+  struct Model {
+    std::string model, expected, verdict, message;
+    std::optional<double> digits;
+    std::vector<Group> groups;
+    std::string weak_point;
+    std::optional<double> measured_over_predicted;
+    double microseconds_per_angle;
+  };
+  std::string name, group, hard;
+  std::vector<std::string> changes;
+  std::vector<Model> models;
+};
+
+struct LongRunSection {
+  Section section;
+  bool bounded = true;
+};
+
+/// A report. A part that is absent is left out of the JSON and of the page; a list that is there
+/// may be empty.
+struct Document {
+  std::string title;
+  Lines program;  ///< versions
+  std::optional<CaseSection> the_case = std::nullopt;
+  std::optional<std::vector<DerivedQuantity>> derived = std::nullopt;
+  std::optional<Verdict> verdict = std::nullopt;
+  std::string meaning = {};  ///< what the verdict says and what not, or ""
+  std::optional<Summary> summary = std::nullopt;
+  std::optional<std::vector<Warning>> warnings = std::nullopt;
+  std::optional<std::vector<CommonInput>> common = std::nullopt;
+  std::optional<std::vector<ValidityRow>> validity = std::nullopt;
+  std::optional<std::vector<ModelSection>> models = std::nullopt;
+  std::optional<compare::Comparison> comparison = std::nullopt;  ///< "channels"
+  std::optional<std::vector<compare::Check>> checks = std::nullopt;
+  std::optional<AssumptionSplit> assumptions = std::nullopt;
+  std::optional<PublishedTable> published = std::nullopt;
+  std::optional<std::vector<Section>> runs = std::nullopt;
+  std::optional<std::vector<Figure>> figures = std::nullopt;
+  std::optional<std::vector<Record>> records = std::nullopt;          ///< "rows"
+  std::optional<std::vector<HardCaseRow>> hard_cases = std::nullopt;  ///< "cases"
+  std::optional<LongRunSection> long_run = std::nullopt;
+};
+
+/// The report as docs/report.schema.json describes it.
+Json to_json(const Document& document);
+
+/// The same as the text of a file. Text that is no UTF-8 is replaced, never refused.
+std::string json_text(const Document& document);
+
+/// Curves for the page, to 9 digits: enough for a plot; differences to 4.
+Json to_json(const Curves& curves);
+
+/// Curves of both tables, but for their checks, and the difference of what was computed.
+/// Differences are taken before rounding.
+Curves curves_of(const ResultTable& first, const ResultTable& second);
+
+/// One channel's values.
+Values values_of(const ResultTable& table, const std::string& channel_name);
+
+}  // namespace bentaxis::report
