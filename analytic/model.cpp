@@ -39,9 +39,9 @@ Model::PistonState Model::piston_state(const Instant& instant, double sin_theta,
   state.motion =
       closed_form::piston_motion(prepared_.numbers, sin_theta * phase_cos - cos_theta * phase_sin,
                                  cos_theta * phase_cos + sin_theta * phase_sin);
-  state.forces =
-      closed_form::piston_forces(prepared_.common(), prepared_.numbers, state.motion, instant.omega,
-                                 instant.omega_dot, instant.chamber_pressure[k]);
+  state.forces = closed_form::piston_forces(prepared_.common(), prepared_.numbers, state.motion,
+                                            instant.shaft.speed, instant.shaft.acceleration,
+                                            instant.chamber_pressure[k]);
   return state;
 }
 
@@ -63,11 +63,11 @@ closed_form::Pump<long double> extended(const closed_form::Pump<double>& pump) {
 template <class Real>
 void all_reactions(const closed_form::Common& common, const closed_form::Pump<Real>& pump,
                    const Instant& instant, Real* results) {
-  const Real theta = instant.theta;
+  const Real theta = instant.shaft.angle;
   const closed_form::State<Real> state = {std::sin(theta),
                                           std::cos(theta),
-                                          Real(instant.omega),
-                                          Real(instant.omega_dot),
+                                          Real(instant.shaft.speed),
+                                          Real(instant.shaft.acceleration),
                                           Real(instant.ports.suction),
                                           Real(instant.ports.delivery)};
   closed_form::reactions(
@@ -79,11 +79,13 @@ void all_reactions(const closed_form::Common& common, const closed_form::Pump<Re
 }  // namespace
 
 void Model::reactions(const Instant& instant, std::vector<double>& values) const {
+  require_locked(instant, "analytic");
   if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_.common(), prepared_.numbers, instant, values.data());
 }
 
 void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
+  require_locked(instant, "analytic");
   if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_.common(), extended(prepared_.numbers), instant, values.data());
 }
@@ -96,18 +98,18 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
   values[at.yh()] = fh == 0 ? not_computed() : values[at.Th(0)] / fh;
 
   const closed_form::Pump<double>& p = prepared_.numbers;
-  const double omega = instant.omega;
-  const double sin_theta = std::sin(instant.theta);
-  const double cos_theta = std::cos(instant.theta);
+  const double omega = instant.shaft.speed;
+  const double sin_theta = std::sin(instant.shaft.angle);
+  const double cos_theta = std::cos(instant.shaft.angle);
   const Vector3d gravity(0, p.gravity_y, p.gravity_z);
   const double length = pump_.geometry.piston_length;
   const double share_of_centre = p.mass > 0 ? p.static_moment / p.mass : 0;     // sG / b1
   const double inertia_centre = p.inertia - p.static_moment * share_of_centre;  // It / b1^2
-  double carry = p.block_viscous * omega + p.block_inertia * instant.omega_dot;
+  double carry = p.block_viscous * omega + p.block_inertia * instant.shaft.acceleration;
   // Virtual work per radian: every term of the power balance divided by omega.
   double work = pump_.friction.shaft_torque_factor * values[at.Td()] -
                 (p.shaft_viscous + p.block_viscous) * omega -
-                (p.shaft_inertia + p.block_inertia) * instant.omega_dot;
+                (p.shaft_inertia + p.block_inertia) * instant.shaft.acceleration;
   for (int k = 0; k < at.pistons(); ++k) {
     const PistonState state = piston_state(instant, sin_theta, cos_theta, k);
     const double axial = state.forces.axial;
@@ -159,8 +161,9 @@ Model::FlankChange Model::other_flank(double tooth_force) const {
 }
 
 Model::FrictionPower Model::friction_power(const Instant& instant, double drive_torque) const {
+  require_locked(instant, "analytic");
   const Friction& friction = pump_.friction;
-  const double omega = instant.omega;
+  const double omega = instant.shaft.speed;
   FrictionPower power;
   power.block = -friction.block_viscous * omega * omega;
   power.shaft_viscous = -friction.shaft_viscous * omega * omega;
@@ -168,7 +171,7 @@ Model::FrictionPower Model::friction_power(const Instant& instant, double drive_
   power.pistons = -std::numeric_limits<double>::infinity();
   for (int k = 0; k < layout_.pistons(); ++k) {
     const PistonState state =
-        piston_state(instant, std::sin(instant.theta), std::cos(instant.theta), k);
+        piston_state(instant, std::sin(instant.shaft.angle), std::cos(instant.shaft.angle), k);
     const double velocity = (state.motion.joint_first.z + state.motion.axis_first.z) * omega;
     power.pistons = std::max(power.pistons, state.forces.friction * velocity);
   }

@@ -84,15 +84,17 @@ void RoundingEstimate::estimate(const Instant& instant,
     const double before = value;
     if (step == 0) step = std::max(std::abs(before), rounding / kInputRounding) * kChange;
     value = before + step;
+    changed.block = changed.shaft;
     model_.reactions(changed, other);
     add(name, rounding / (value - before));
     value = before;
+    changed.block = changed.shaft;
   };
   // The angle of a piston is the shaft's and its phase. The step leaves a piston at a dead centre
   // at rest in the sign law of friction (piston_rest_speed).
-  vary("theta", changed.theta, kInputRounding * std::max(std::abs(instant.theta), 2 * kPi),
-       0x1p-41);
-  vary("speed", changed.omega, kInputRounding * std::abs(instant.omega));
+  vary("theta", changed.shaft.angle,
+       kInputRounding * std::max(std::abs(instant.shaft.angle), 2 * kPi), 0x1p-41);
+  vary("speed", changed.shaft.speed, kInputRounding * std::abs(instant.shaft.speed));
   vary("ports.delivery", changed.ports.delivery, kInputRounding * std::abs(instant.ports.delivery));
   vary("ports.suction", changed.ports.suction, kInputRounding * std::abs(instant.ports.suction));
   for (std::size_t k = 0; k < pressure_rounding.size(); ++k)

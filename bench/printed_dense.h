@@ -27,36 +27,39 @@ class PrintedDense {
     const auto eigen = [](const Vec3<double>& v) { return V(v.x, v.y, v.z); };
     const auto& p = prepared_.numbers;
     const auto common = prepared_.common();
-    const double st = std::sin(t.theta);
-    const double ct = std::cos(t.theta);
-    const double sign = t.omega < 0 ? -1 : 1;
+    const double st = std::sin(t.shaft.angle);
+    const double ct = std::cos(t.shaft.angle);
+    const double sign = t.shaft.speed < 0 ? -1 : 1;
     V block_force(
         0, p.block_force_y,
         p.block_force_z + p.delivery_force * t.ports.delivery + p.suction_force * t.ports.suction);
     V block_moment(p.block_moment_x + p.delivery_moment_x * t.ports.delivery +
                        p.suction_moment_x * t.ports.suction,
                    p.delivery_moment_y * t.ports.delivery + p.suction_moment_y * t.ports.suction,
-                   -p.block_viscous * t.omega - p.block_inertia * t.omega_dot);
+                   -p.block_viscous * t.shaft.speed - p.block_inertia * t.shaft.acceleration);
     V shaft_force(0, p.shaft_force_y, p.shaft_force_z);
-    V shaft_moment(p.shaft_moment_x, 0, -p.shaft_viscous * t.omega - p.shaft_inertia * t.omega_dot);
+    V shaft_moment(p.shaft_moment_x, 0,
+                   -p.shaft_viscous * t.shaft.speed - p.shaft_inertia * t.shaft.acceleration);
     Eigen::Matrix3d r12;
     r12 << 1, 0, 0, 0, p.cos_tilt, p.sin_tilt, 0, -p.sin_tilt, p.cos_tilt;
     for (int k = 0; k < common.pistons; ++k) {
       const double s = st * common.phase_cos[k] - ct * common.phase_sin[k];
       const double c = ct * common.phase_cos[k] + st * common.phase_sin[k];
       const auto m = analytic::closed_form::piston_motion(p, s, c);
-      const double velocity = (m.joint_first.z + m.axis_first.z) * t.omega;
-      const double friction = analytic::closed_form::friction_force(common, p, velocity, t.omega);
+      const double velocity = (m.joint_first.z + m.axis_first.z) * t.shaft.speed;
+      const double friction =
+          analytic::closed_form::friction_force(common, p, velocity, t.shaft.speed);
       const V axis = eigen(m.axis);
       const V joint = eigen(m.joint);
-      const V acc_a =
-          eigen(m.joint_second) * t.omega * t.omega + eigen(m.joint_first) * t.omega_dot;
-      const V acc_ab = eigen(m.axis_second) * t.omega * t.omega + eigen(m.axis_first) * t.omega_dot;
+      const V acc_a = eigen(m.joint_second) * t.shaft.speed * t.shaft.speed +
+                      eigen(m.joint_first) * t.shaft.acceleration;
+      const V acc_ab = eigen(m.axis_second) * t.shaft.speed * t.shaft.speed +
+                       eigen(m.axis_first) * t.shaft.acceleration;
       const V axial(0, 0, friction - p.piston_area * t.chamber_pressure[k]);
       const V fall = V(0, p.gravity_y, p.gravity_z) - acc_a;
       const V force = axial + p.mass * fall - p.static_moment * acc_ab;
       const V moment = axis.cross(axial) + axis.cross(p.static_moment * fall - p.inertia * acc_ab) -
-                       p.spin_momentum * t.omega * eigen(m.axis_first);
+                       p.spin_momentum * t.shaft.speed * eigen(m.axis_first);
       Eigen::Matrix<double, 5, 5> a = Eigen::Matrix<double, 5, 5>::Zero();
       a(0, 0) = a(1, 1) = a(2, 2) = a(0, 3) = a(1, 4) = 1;
       a(3, 4) = -axis.z();

@@ -77,11 +77,10 @@ std::function<double(double)> analytic_torque(const Study& study, const Assumpti
   auto model = std::make_shared<analytic::Model>(study.analytic_case.pump, assumptions);
   auto values = std::make_shared<std::vector<double>>(model->layout().size());
   auto instant = std::make_shared<Instant>();
-  instant->omega = study.samples.omega;
   instant->ports = study.samples.ports;
   instant->chamber_pressure.resize(study.samples.pistons);
   return [=, &study](double theta_deg) {
-    instant->theta = radians(std::fmod(theta_deg, 360.0));
+    instant->turn(radians(std::fmod(theta_deg, 360.0)), study.samples.omega);
     for (int k = 1; k <= study.samples.pistons; ++k)
       instant->chamber_pressure[k - 1] =
           study.pressure(piston_angle_deg(theta_deg, k, study.samples.pistons));

@@ -100,10 +100,11 @@ Model& Model::operator=(Model&&) noexcept = default;
 const ChannelLayout& Model::layout() const { return implementation_->layout; }
 
 void Model::Implementation::check(const Instant& instant) const {
+  require_locked(instant, "multibody");
   if (scene != Scene::full) return;
-  if (instant.omega * sign < 0)
+  if (instant.shaft.speed * sign < 0)
     throw InputError("multibody model: built for the other direction of rotation");
-  if (instant.omega_dot != 0 &&
+  if (instant.shaft.acceleration != 0 &&
       !(system.pump().shaft.axial_inertia > 0 && system.pump().block.axial_inertia > 0))
     throw InputError("multibody model: changing speed needs axial inertias above 0");
 }
@@ -121,14 +122,14 @@ void Model::Implementation::check_rank() {
 void Model::Implementation::place_and_solve(double theta, const Instant& instant) {
   system.inputs().ports = instant.ports;
   // At standstill the pistons' velocities are round-off of the projection, with any sign.
-  system.inputs().rest_speed = instant.omega == 0
+  system.inputs().rest_speed = instant.shaft.speed == 0
                                    ? std::numeric_limits<double>::infinity()
-                                   : piston_rest_speed(system.pump().geometry, instant.omega);
+                                   : piston_rest_speed(system.pump().geometry, instant.shaft.speed);
   ++placements;
-  system.place(theta, instant.omega, instant.omega_dot);
+  system.place(theta, instant.shaft.speed, instant.shaft.acceleration);
   SimTK::State& state = system.dynamics();
   if (method == Method::multipliers) {
-    if (scene == Scene::full) system.set_acceleration(state, instant.omega_dot);
+    if (scene == Scene::full) system.set_acceleration(state, instant.shaft.acceleration);
     system.system().realize(state, Stage::Acceleration);
     check_rank();
     reactions_from_multipliers(system, state, reactions);
@@ -146,22 +147,23 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
   if (scene == Scene::piston) {
     for (int k = 0; k < n; ++k) {
       pressure.assign(1, instant.chamber_pressure[k]);
-      place_and_solve(instant.theta - 2 * kPi * k / n, instant);
+      place_and_solve(instant.shaft.angle - 2 * kPi * k / n, instant);
       read_piston_channels(system, reactions, 0, k, instant.chamber_pressure[k], layout, values);
     }
     return;
   }
   pressure = instant.chamber_pressure;
-  place_and_solve(instant.theta, instant);
+  place_and_solve(instant.shaft.angle, instant);
   const SimTK::State& state = system.dynamics();
   for (int k = 0; k < n; ++k)
     read_piston_channels(system, reactions, k, k, instant.chamber_pressure[k], layout, values);
   if (scene != Scene::full) return;
   // At standstill the power balance is taken with a virtual turn of 1 rad/s.
-  if (instant.omega == 0) system.assemble(instant.theta, 1);
-  const WorkRate rate =
-      instant.omega == 0 ? WorkRate{system.assembly(), 1} : WorkRate{state, instant.omega};
-  read_pump_channels(system, state, reactions, rate, instant.omega_dot, pressure, layout, values);
+  if (instant.shaft.speed == 0) system.assemble(instant.shaft.angle, 1);
+  const WorkRate rate = instant.shaft.speed == 0 ? WorkRate{system.assembly(), 1}
+                                                 : WorkRate{state, instant.shaft.speed};
+  read_pump_channels(system, state, reactions, rate, instant.shaft.acceleration, pressure, layout,
+                     values);
 }
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values) {
@@ -173,8 +175,9 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   if (self.scene != Scene::piston)
     throw std::logic_error("evaluate_one() is of the one-piston scene");
   translate_simbody_errors([&] {
+    self.check(instant);
     self.pressure.assign(1, instant.chamber_pressure[0]);
-    self.place_and_solve(instant.theta, instant);
+    self.place_and_solve(instant.shaft.angle, instant);
     read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
                          self.layout, values);
   });

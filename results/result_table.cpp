@@ -56,9 +56,7 @@ double ResultTable::peak(const std::string& group) const {
 }
 
 void Samples::instant(std::size_t row, Instant& instant) const {
-  instant.theta = radians(std::fmod(theta_deg[row], 360.0));
-  instant.omega = omega;
-  instant.omega_dot = 0;
+  instant.turn(radians(std::fmod(theta_deg[row], 360.0)), omega);
   instant.ports = ports;
   const auto first = chamber_pressure.begin() + static_cast<std::ptrdiff_t>(row) * pistons;
   instant.chamber_pressure.assign(first, first + pistons);
@@ -79,9 +77,7 @@ double Sampler::theta_deg(long long row) const {
 void Sampler::instant(long long row, Instant& instant) const {
   const int n = case_.pump.geometry.pistons;
   const double theta = theta_deg(row);
-  instant.theta = radians(std::fmod(theta, 360.0));
-  instant.omega = rad_per_second(case_.operation.speed_rpm);
-  instant.omega_dot = 0;
+  instant.turn(radians(std::fmod(theta, 360.0)), rad_per_second(case_.operation.speed_rpm));
   instant.ports = case_.pressure.ports;
   instant.chamber_pressure.resize(n);
   for (int k = 1; k <= n; ++k)

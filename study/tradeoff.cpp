@@ -113,7 +113,7 @@ class Measurement {
     Instant instant;
     for (std::size_t i = 0; i < rows; ++i) {
       samples_.instant(i, instant);
-      theta[i] = instant.theta;
+      theta[i] = instant.shaft.angle;
       for (int k = 0; k < samples_.pistons; ++k) pressure[k][i] = instant.chamber_pressure[k];
     }
     std::vector<analytic::Varying> chambers;

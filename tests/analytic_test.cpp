@@ -1,4 +1,5 @@
 // The analytic model: high-precision curves, an independent twin, hand-solved cases, properties.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -7,6 +8,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/port_plate.h"
 #include "bentaxis/files/csv.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "printed_model.h"
 #include "support.h"
@@ -86,7 +88,7 @@ PumpParameters plain_pump(int pistons) {
 
 Instant still(int pistons, double pressure = 0) {
   Instant i;
-  i.theta = 0.3;
+  i.turn(0.3, 0);
   i.chamber_pressure.assign(pistons, pressure);
   return i;
 }
@@ -116,7 +118,7 @@ TEST(HandSolved, ParallelPistonsCarryPressureStraightThrough) {
   const ChannelLayout& at = model.layout();
   std::vector<double> v(at.size());
   Instant i = still(1, 1e7);
-  i.theta = 0;  // joint on +y
+  i.turn(0, 0);  // joint on +y
   model.evaluate(i, v);
   const double force = 1e7 * kPi * 1e-4;
   EXPECT_NEAR(v[at.Rs(0, 2)], force, 1e-9);
@@ -142,7 +144,7 @@ TEST(HandSolved, GearCarriesTheBlocksFriction) {
     const ChannelLayout& at = model.layout();
     std::vector<double> v(at.size());
     Instant i = still(3);
-    i.omega = omega;
+    i.turn(i.shaft.angle, omega);
     model.evaluate(i, v);
     const double tooth = 0.05 * 150 / (0.05 * std::cos(radians(20)));
     EXPECT_NEAR(v[at.Rcs()], tooth, 1e-10);
@@ -163,13 +165,12 @@ TEST(HandSolved, SinusoidalPumpHasTheClosedForm) {
   const ChannelLayout& at = model.layout();
   std::vector<double> v(at.size());
   Instant i = still(5);
-  i.omega = 100;
-  i.theta = 0.7;
+  i.turn(0.7, 100);
   i.chamber_pressure = {1e7, 2e6, 3e7, 0, 5e6};
   model.evaluate(i, v);
   double torque_on_block = 0;
   for (int k = 0; k < 5; ++k) {
-    const double angle = i.theta - 2 * kPi * k / 5;
+    const double angle = i.shaft.angle - 2 * kPi * k / 5;
     const double force = i.chamber_pressure[k] * kPi * 1e-4;
     EXPECT_NEAR(v[at.Rs(k, 0)], force * e * std::sin(angle) / h, 1e-9);
     EXPECT_NEAR(v[at.Rs(k, 1)], force * e * std::cos(angle) / h, 1e-9);
@@ -193,7 +194,7 @@ TEST(Properties, PowerBalanceAndPistonAxisMomentVanish) {
     const ChannelLayout& at = model.layout();
     std::vector<double> v(at.size());
     Instant i = random.instant(pump, true);
-    if (n % 10 == 0) i.omega = i.omega_dot = 0;
+    if (n % 10 == 0) i.turn(i.shaft.angle, 0);
     model.evaluate(i, v);
     double scale = 0;
     for (int k = 0; k < at.pistons(); ++k)
@@ -215,7 +216,7 @@ TEST(Properties, ForcesOnTheWholePumpAreInEquilibrium) {
     const ChannelLayout& at = model.layout();
     std::vector<double> v(at.size());
     Instant i = random.instant(p, false);
-    i.omega = 0;  // no inertia: what is left must balance by itself
+    i.turn(i.shaft.angle, 0);  // no inertia: what is left must balance by itself
     model.evaluate(i, v);
     using V = Eigen::Vector3d;
     const analytic::Kinematics kinematics(p.geometry);
@@ -248,7 +249,7 @@ TEST(Properties, ForcesOnTheWholePumpAreInEquilibrium) {
       }
     }
     for (int k = 0; k < at.pistons(); ++k) {
-      const double angle = i.theta - 2 * kPi * k / at.pistons();
+      const double angle = i.shaft.angle - 2 * kPi * k / at.pistons();
       const auto state = kinematics.piston(std::sin(angle), std::cos(angle));
       const V ring = state.ring();
       const double area = kPi / 4 * std::pow(p.geometry.bore_diameter, 2);
@@ -275,7 +276,7 @@ TEST(Properties, ShiftByOnePistonPermutesThePistons) {
     const int pistons = at.pistons();
     Instant i = random.instant(pump, true);
     Instant shifted = i;
-    shifted.theta += 2 * kPi / pistons;
+    shifted.turn(i.shaft.angle + 2 * kPi / pistons, i.shaft.speed, i.shaft.acceleration);
     for (int k = 0; k < pistons; ++k)
       shifted.chamber_pressure[(k + 1) % pistons] = i.chamber_pressure[k];
     std::vector<double> a(at.size());
@@ -306,7 +307,7 @@ TEST(Properties, PressureForcesScaleWithPressureAndInertiaForcesWithSpeedSquared
     std::vector<double> pressure_only(at.size());
     std::vector<double> doubled(at.size());
     Instant statics = i;
-    statics.omega = 0;
+    statics.turn(i.shaft.angle, 0);
     model.evaluate(statics, pressure_only);
     for (double& p : statics.chamber_pressure) p *= 2;
     statics.ports.delivery *= 2;
@@ -323,7 +324,7 @@ TEST(Properties, PressureForcesScaleWithPressureAndInertiaForcesWithSpeedSquared
     model.evaluate(inertia, slow);
     PumpParameters spun = pump;
     if (spun.piston.real) spun.piston.real->spin *= 2;
-    inertia.omega *= 2;
+    inertia.turn(i.shaft.angle, 2 * inertia.shaft.speed);
     Model(spun, assumptions).evaluate(inertia, fast);
     for (std::size_t c = 0; c < at.reactions(); ++c)
       EXPECT_DOUBLE_EQ(4 * slow[c], fast[c]) << at.channels()[c].name;
@@ -346,7 +347,7 @@ TEST(Properties, AxialInertiasDoNotActAtConstantSpeed) {
   for (std::size_t c = 0; c < model.layout().reactions(); ++c) EXPECT_EQ(a[c], b[c]);
   // The control: with changing speed they do act.
   Instant changing = i;
-  changing.omega_dot = 100;
+  changing.turn(i.shaft.angle, i.shaft.speed, 100);
   std::vector<double> c(model.layout().size());
   Model(pump, same).evaluate(changing, c);
   EXPECT_NE(b[model.layout().Td()], c[model.layout().Td()]);
@@ -369,7 +370,8 @@ TEST(Properties, ImposedBlockSpeedTakesTheGearTorqueOffTheShaft) {
     const double arm = pump.gear.pitch_diameter / 2 * std::cos(pump.gear.pressure_angle);
     const double scale = std::abs(a[at.Td()]) + std::abs(a[at.Tcs()]);
     EXPECT_FALSE(is_computed(b[at.Rcs()]));
-    EXPECT_NEAR(b[at.Tcs()], (i.omega < 0 ? -1 : 1) * a[at.Rcs()] * arm, scaled(1e-13) * scale);
+    EXPECT_NEAR(b[at.Tcs()], (i.shaft.speed < 0 ? -1 : 1) * a[at.Rcs()] * arm,
+                scaled(1e-13) * scale);
     EXPECT_NEAR(pump.friction.shaft_torque_factor * (a[at.Td()] - b[at.Td()]), b[at.Tcs()],
                 scaled(1e-12) * scale);
   }
@@ -413,15 +415,15 @@ TEST(Properties, KinematicRippleHasTheTextbookOrders) {
     std::vector<std::complex<double>> sum(3);
     Instant i = still(pistons);
     for (int s = 0; s < steps; ++s) {
-      i.theta = 2 * kPi * (s + 0.5) / steps;
+      i.turn(2 * kPi * (s + 0.5) / steps, 0);
       for (int k = 0; k < pistons; ++k) {
-        const double angle = std::fmod(i.theta - 2 * kPi * k / pistons + 4 * kPi, 2 * kPi);
+        const double angle = std::fmod(i.shaft.angle - 2 * kPi * k / pistons + 4 * kPi, 2 * kPi);
         i.chamber_pressure[k] = angle > kPi ? 1e7 : 0;
       }
       model.reactions(i, v);
       mean += v[at.Td()] / steps;
       for (int m = 0; m < 3; ++m)
-        sum[m] += v[at.Td()] * std::polar(2.0 / steps, -(m + 1.0) * pistons * i.theta);
+        sum[m] += v[at.Td()] * std::polar(2.0 / steps, -(m + 1.0) * pistons * i.shaft.angle);
     }
     const int first = pistons % 2 == 1 ? 2 * pistons : pistons;
     const double expected = 2.0 / (first * first - 1.0);
@@ -504,6 +506,25 @@ TEST(Derived, DefaultPumpIsABap63) {
   EXPECT_NEAR(d.displacement * 275e5 / (2 * kPi), 278.8, 0.1);
 }
 
+TEST(OneCallAtAnInstant, RefusesABlockThatMovesOnItsOwn) {
+  const Case the_case = reference_case("bap63_rated");
+  const Model model(the_case.pump, the_case.analytic);
+  std::vector<double> values(model.layout().size());
+  std::vector<long double> wide(model.layout().size());
+  const auto refused =
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("the block moves on its own"));
+  for (const auto part : {&AxisMotion::angle, &AxisMotion::speed, &AxisMotion::acceleration}) {
+    Instant i = still(5, 1e7);
+    EXPECT_TRUE(i.locked());
+    i.block.*part += 1e-3;
+    EXPECT_FALSE(i.locked());
+    EXPECT_THAT([&] { model.evaluate(i, values); }, refused);
+    EXPECT_THAT([&] { model.reactions(i, values); }, refused);
+    EXPECT_THAT([&] { model.reactions(i, wide); }, refused);
+    EXPECT_THAT([&] { model.friction_power(i, 100); }, refused);
+  }
+}
+
 TEST(OneCallAtAnInstant, DoesNotNeedARowPerCall) {
   // The same buffers serve every call: nothing is left over from the call before.
   const Case the_case = reference_case("bap63_rated");
@@ -511,12 +532,11 @@ TEST(OneCallAtAnInstant, DoesNotNeedARowPerCall) {
   std::vector<double> first(model.layout().size());
   std::vector<double> again(model.layout().size(), 12345.0);
   Instant a;
-  a.theta = 1;
-  a.omega = 100;
+  a.turn(1, 100);
   a.chamber_pressure.assign(5, 1e6);
   model.evaluate(a, first);
   Instant b = a;
-  b.theta = 4;
+  b.turn(4, 100);
   model.evaluate(b, again);
   model.evaluate(a, again);
   EXPECT_EQ(first, again);

@@ -21,9 +21,9 @@ struct Arrays {
   explicit Arrays(const std::vector<Instant>& list)
       : pressure(list.front().chamber_pressure.size()) {
     for (const Instant& i : list) {
-      theta.push_back(i.theta);
-      omega.push_back(i.omega);
-      omega_dot.push_back(i.omega_dot);
+      theta.push_back(i.shaft.angle);
+      omega.push_back(i.shaft.speed);
+      omega_dot.push_back(i.shaft.acceleration);
       suction.push_back(i.ports.suction);
       delivery.push_back(i.ports.delivery);
       for (std::size_t k = 0; k < pressure.size(); ++k)
@@ -177,8 +177,7 @@ TEST(Batch, SpecialInstantsEqualTheScalarModel) {
     for (const double theta : {0.0, -0.0, kPi, -kPi, 1e-300, 1e5, -3e7, 1e12, 2 * kPi}) {
       for (const double omega : {0.0, 157.0, -157.0, 1e-9}) {
         Instant instant;
-        instant.theta = theta;
-        instant.omega = omega;
+        instant.turn(theta, omega);
         instant.chamber_pressure = {0, 1e7, 2e7, 0, 3e7};
         instants.push_back(instant);
       }
@@ -190,7 +189,7 @@ TEST(Batch, SpecialInstantsEqualTheScalarModel) {
                       {set, 1});
       for (std::size_t i = 0; i < instants.size(); ++i)
         ASSERT_LT(worst_difference(scalar, instants[i], columns, i), scaled(kScalarTolerance))
-            << instants[i].theta << " " << instants[i].omega << " " << to_string(set);
+            << instants[i].shaft.angle << " " << instants[i].shaft.speed << " " << to_string(set);
     }
   }
 }
@@ -245,7 +244,7 @@ TEST(Batch, OneNumberForAllEqualsAnArrayOfIt) {
   const Arrays arrays(instants);
   const BatchModel model(the_case.pump, the_case.analytic);
   BatchInstants constant = arrays.instants;
-  constant.omega = {nullptr, instants[0].omega};
+  constant.omega = {nullptr, instants[0].shaft.speed};
   constant.omega_dot = {};
   constant.suction = {nullptr, instants[0].ports.suction};
   constant.delivery = {nullptr, instants[0].ports.delivery};

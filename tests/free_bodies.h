@@ -57,7 +57,7 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
   FreeBody shaft;
   double worst = 0;
   for (int k = 0; k < g.pistons; ++k) {
-    const double angle = t.theta - 2 * kPi * k / g.pistons;
+    const double angle = t.shaft.angle - 2 * kPi * k / g.pistons;
     const double s = std::sin(angle);
     const double c = std::cos(angle);
     const Jet js(s, c, -s);
@@ -76,7 +76,8 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
     const Jet axis[3] = {dx, dy, h};
     const auto part = [](const Jet* j, double Jet::*m) { return V(j[0].*m, j[1].*m, j[2].*m); };
     const auto rate2 = [&](const Jet* j) -> V {
-      return part(j, &Jet::dd) * t.omega * t.omega + part(j, &Jet::d) * t.omega_dot;
+      return part(j, &Jet::dd) * t.shaft.speed * t.shaft.speed +
+             part(j, &Jet::d) * t.shaft.acceleration;
     };
     const V a = part(a1, &Jet::v);
     const V ab = r12 * part(axis, &Jet::v);
@@ -85,10 +86,10 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
     const V acc_ab = r12 * rate2(axis);
     const V rs = r12 * V(values[at.Rs(k, 0)], values[at.Rs(k, 1)], values[at.Rs(k, 2)]);
     const V rc = r12 * V(values[at.Rc(k, 0)], values[at.Rc(k, 1)], 0);
-    const double v = (a2[2].d + h.d) * t.omega;
+    const double v = (a2[2].d + h.d) * t.shaft.speed;
     const double friction =
         assumptions.piston_friction
-            ? piston_friction_force(p.friction, v, piston_rest_speed(g, t.omega))
+            ? piston_friction_force(p.friction, v, piston_rest_speed(g, t.shaft.speed))
             : 0;
     // Moments about A: the lever of what acts at A is exactly 0.
     FreeBody piston;
@@ -105,7 +106,7 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
       const auto& real = *p.piston.real;
       const double length = g.piston_length;
       mass_at(p.piston.mass, real.centre_of_mass / length);
-      const V e_rate = r12 * part(axis, &Jet::d) * t.omega / length;
+      const V e_rate = r12 * part(axis, &Jet::d) * t.shaft.speed / length;
       piston.moment(-real.transverse_inertia / (length * length) * ab.cross(acc_ab));
       // Point masses on the axis do not spin.
       if (assumptions.inertia == PistonInertia::real)
@@ -123,7 +124,7 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
   const V o4(0, p.gear.pitch_diameter / 2,
              g.axis_offset - p.gear.pitch_diameter / 2 * std::tan(g.tilt / 2));
   const double ap = p.gear.pressure_angle;
-  const V k4 = (t.omega < 0 ? -1 : 1) *
+  const V k4 = (t.shaft.speed < 0 ? -1 : 1) *
                V(-std::cos(ap), std::sin(ap) * std::cos(delta), std::sin(ap) * std::sin(delta));
   block.force(o4 - o2, values[at.Rcs()] * k4);
   shaft.force(o4, -values[at.Rcs()] * k4);
@@ -132,7 +133,9 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
   block.moment(r12 * V(values[at.Th(0)], values[at.Th(1)], 0));
   block.force(p.block.pin_z * z2, r12 * V(values[at.Rcn(0)], values[at.Rcn(1)], 0));
   block.force(p.block.centre_of_mass_z * z2, weight(p.block.mass));
-  block.moment(-(p.friction.block_viscous * t.omega + p.block.axial_inertia * t.omega_dot) * z2);
+  block.moment(
+      -(p.friction.block_viscous * t.shaft.speed + p.block.axial_inertia * t.shaft.acceleration) *
+      z2);
   if (p.port_plate) {
     V force = V::Zero();
     V moment = V::Zero();
@@ -147,7 +150,8 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
   shaft.force({0, 0, p.shaft.centre_of_mass_z}, weight(p.shaft.mass));
   shaft.moment({0, 0,
                 p.friction.shaft_torque_factor * values[at.Td()] -
-                    p.friction.shaft_viscous * t.omega - p.shaft.axial_inertia * t.omega_dot});
+                    p.friction.shaft_viscous * t.shaft.speed -
+                    p.shaft.axial_inertia * t.shaft.acceleration});
   return std::max({worst, block.residual(), shaft.residual()});
 }
 

@@ -1,4 +1,5 @@
 // The multibody model against the analytic one, driven and integrated.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "bentaxis/multibody/integrated.h"
@@ -47,7 +48,7 @@ TEST(DrivenModel, AgreesOnRandomPumpsAndChangingSpeed) {
     if (n % 4 == 3) assumptions.gear = GearScene::imposed;
     const Instant instant = random.instant(pump, n % 2 == 0 && assumptions.gear == GearScene::mesh);
     const analytic::Model a(pump, assumptions);
-    multibody::Model m(pump, assumptions, instant.omega);
+    multibody::Model m(pump, assumptions, instant.shaft.speed);
     std::vector<double> va(a.layout().size());
     std::vector<double> vm(a.layout().size());
     a.evaluate(instant, va);
@@ -71,19 +72,37 @@ TEST(DrivenModel, DoesNotDependOnTheOrderOfCalls) {
   multibody::Model fresh(the_case.pump, the_case.multibody, 1);
   multibody::Model used(the_case.pump, the_case.multibody, 1);
   Instant i;
-  i.omega = 150;
   i.chamber_pressure.assign(5, 1e7);
   std::vector<double> a(fresh.layout().size());
   std::vector<double> b(fresh.layout().size());
   for (const double theta : {0.0, 0.05, 3.0, 6.2}) {
-    i.theta = theta;
+    i.turn(theta, 150);
     used.evaluate(i, b);
   }
-  i.theta = 2.0;
+  i.turn(2.0, 150);
   used.evaluate(i, b);
   fresh.evaluate(i, a);
   for (std::size_t c = 0; c < fresh.layout().reactions(); ++c)
     EXPECT_NEAR(a[c], b[c], scaled(1e-8)) << fresh.layout().channels()[c].name;  // N of 1e4
+}
+
+TEST(DrivenModel, RefusesABlockThatMovesOnItsOwn) {
+  const Case the_case = reference_case("bap63_rated");
+  const auto refused =
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("the block moves on its own"));
+  for (const auto scene : {multibody::Scene::full, multibody::Scene::piston}) {
+    multibody::Model model(the_case.pump, the_case.multibody, 1, scene);
+    std::vector<double> values(model.layout().size());
+    for (const auto part : {&AxisMotion::angle, &AxisMotion::speed, &AxisMotion::acceleration}) {
+      Instant i;
+      i.chamber_pressure.assign(5, 1e7);
+      i.turn(0.5, 150);
+      i.block.*part += 1e-3;
+      EXPECT_THAT([&] { model.evaluate(i, values); }, refused);
+      if (scene == multibody::Scene::full) continue;
+      EXPECT_THAT([&] { model.evaluate_one(i, values); }, refused);
+    }
+  }
 }
 
 TEST(DrivenModel, AxialInertiasDoNotActAtConstantSpeed) {
@@ -242,12 +261,11 @@ TEST(Integrated, AnalyticTorqueHoldsTheSpeedOfAFreeShaft) {
   const analytic::Model model(the_case.pump, the_case.analytic);
   std::vector<double> values(model.layout().size());
   Instant instant;
-  instant.omega = samples.omega;
   instant.ports = samples.ports;
   instant.chamber_pressure.resize(5);
   double factor = 1;
   const auto torque = [&](double theta_deg) {
-    instant.theta = radians(theta_deg);
+    instant.turn(radians(theta_deg), samples.omega);
     for (int k = 1; k <= 5; ++k)
       instant.chamber_pressure[k - 1] = pressure(piston_angle_deg(theta_deg, k, 5));
     model.reactions(instant, values);
@@ -277,7 +295,7 @@ Provenance provenance_of(const PumpParameters& pump, const Assumptions& assumpti
                          multibody::Method method = multibody::Method::multipliers) {
   multibody::Model model(pump, assumptions, 1, multibody::Scene::full, method);
   Instant instant;
-  instant.omega = 1;
+  instant.turn(0, 1);
   instant.chamber_pressure.assign(pump.geometry.pistons, 1e5);
   std::vector<double> values(model.layout().size());
   model.evaluate(instant, values);

@@ -47,12 +47,12 @@ class PrintedModel {
     const auto to_s2 = [&](const V& r1) -> V { return r12.transpose() * (r1 - o2); };
     const V gravity2 = r12.transpose() * V(0, -p_.gravity, 0);
     const double area = kPi * std::pow(g.bore_diameter / 2, 2);
-    const double sign = t.omega < 0 ? -1 : 1;
+    const double sign = t.shaft.speed < 0 ? -1 : 1;
 
     std::vector<V> joint1, joint2, ring2, rs, rc;
     std::vector<double> friction;
     for (int k = 0; k < g.pistons; ++k) {
-      const double angle = t.theta - 2 * kPi * k / g.pistons;
+      const double angle = t.shaft.angle - 2 * kPi * k / g.pistons;
       const double s = std::sin(angle);
       const double c = std::cos(angle);
       const Jet js(s, c, -s);
@@ -74,20 +74,20 @@ class PrintedModel {
       const auto value = [](const Jet* j) { return V(j[0].v, j[1].v, j[2].v); };
       const auto rate = [](const Jet* j) { return V(j[0].d, j[1].d, j[2].d); };
       const auto acceleration = [&](const Jet* j) -> V {
-        return V(j[0].dd, j[1].dd, j[2].dd) * t.omega * t.omega +
-               V(j[0].d, j[1].d, j[2].d) * t.omega_dot;
+        return V(j[0].dd, j[1].dd, j[2].dd) * t.shaft.speed * t.shaft.speed +
+               V(j[0].d, j[1].d, j[2].d) * t.shaft.acceleration;
       };
       const V a = value(a2);
       const V b = value(b2);
       const V acc_a = acceleration(a2);
       const V acc_b = acceleration(b2);
-      const double vb = bz.d * t.omega;
+      const double vb = bz.d * t.shaft.speed;
       double fpf = 0;
       if (a_.piston_friction)
         fpf = -(p_.friction.piston_coulomb *
                     (p_.friction.regularization > 0
                          ? std::tanh(vb / p_.friction.regularization)
-                         : (std::abs(vb) <= 1e-12 * std::abs(t.omega) * g.joint_circle_radius
+                         : (std::abs(vb) <= 1e-12 * std::abs(t.shaft.speed) * g.joint_circle_radius
                                 ? 0.0
                                 : (vb > 0 ? 1.0 : -1.0))) +
                 p_.friction.piston_viscous * vb);
@@ -109,7 +109,7 @@ class PrintedModel {
         const V centre = a + share * (b - a);
         const V fg = p_.piston.mass * (gravity2 - acc_a - share * (acc_b - acc_a));
         const V e = (b - a) / g.piston_length;
-        const V e_rate = (rate(b2) - rate(a2)) / g.piston_length * t.omega;
+        const V e_rate = (rate(b2) - rate(a2)) / g.piston_length * t.shaft.speed;
         const V e_acc = (acc_b - acc_a) / g.piston_length;
         force += fg;
         moment += centre.cross(fg) - real.transverse_inertia * e.cross(e_acc) -
@@ -148,8 +148,9 @@ class PrintedModel {
     // Block (56), (57): unknown Fh, Thx, Thy, Rcnx, Rcny, Rcs.
     {
       V force(0, 0, p_.block.spring_force);
-      V moment =
-          V(0, 0, -p_.friction.block_viscous * t.omega - p_.block.axial_inertia * t.omega_dot);
+      V moment = V(0, 0,
+                   -p_.friction.block_viscous * t.shaft.speed -
+                       p_.block.axial_inertia * t.shaft.acceleration);
       for (int k = 0; k < g.pistons; ++k) {
         const V on = -rc[k] + V(0, 0, p_.block.bottom_area * t.chamber_pressure[k] - friction[k]);
         force += on;
@@ -195,7 +196,8 @@ class PrintedModel {
       const V weight(0, -p_.shaft.mass * p_.gravity, 0);
       force += weight;
       moment += V(0, 0, p_.shaft.centre_of_mass_z).cross(weight);
-      moment.z() -= p_.friction.shaft_viscous * t.omega + p_.shaft.axial_inertia * t.omega_dot;
+      moment.z() -=
+          p_.friction.shaft_viscous * t.shaft.speed + p_.shaft.axial_inertia * t.shaft.acceleration;
       Eigen::Matrix<double, 6, 6> m = Eigen::Matrix<double, 6, 6>::Zero();
       for (int i = 0; i < 3; ++i) {
         m(i, i) = 1;

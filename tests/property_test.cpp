@@ -31,8 +31,7 @@ using Failure = std::optional<std::string>;
 Instant instant_at(const Case& c, double theta_deg) {
   const PressureTrace trace(c.pressure);
   Instant i;
-  i.theta = radians(std::fmod(theta_deg, 360.0));
-  i.omega = rad_per_second(c.operation.speed_rpm);
+  i.turn(radians(std::fmod(theta_deg, 360.0)), rad_per_second(c.operation.speed_rpm));
   i.ports = c.pressure.ports;
   const int n = c.pump.geometry.pistons;
   for (int k = 1; k <= n; ++k)
@@ -135,7 +134,7 @@ Failure shift_permutes(const Look& look) {
   const auto& [c, theta_deg, i, at, a, scales] = look;
   const int n = at.pistons();
   Instant shifted = i;
-  shifted.theta += 2 * kPi / n;
+  shifted.turn(i.shaft.angle + 2 * kPi / n, i.shaft.speed);
   for (int k = 0; k < n; ++k) shifted.chamber_pressure[(k + 1) % n] = i.chamber_pressure[k];
   const auto b = evaluate(c, shifted);
   for (std::size_t column = 0; column < at.reactions(); ++column) {
@@ -158,7 +157,7 @@ Failure size_scales(const Look& look) {
   Case twice = c;
   scale_pump(twice.pump, 2);
   Instant i = instant;
-  i.omega /= 2;
+  i.turn(i.shaft.angle, i.shaft.speed / 2);
   const auto large = evaluate(twice, i);
   for (std::size_t column = 0; column < at.reactions(); ++column) {
     const double factor = at.channels()[column].unit == "Nm" ? 8 : 4;
@@ -177,17 +176,17 @@ Failure is_continuous(const Look& look) {
   const auto& values = look.values;
   if (c.pump.friction.regularization == 0) return {};  // jumps at dead centres, as it should
   Instant i = look.i;
-  for (const double middle : {i.theta, radians(90 * std::floor(look.theta_deg / 90))}) {
+  for (const double middle : {i.shaft.angle, radians(90 * std::floor(look.theta_deg / 90))}) {
     // Over a distance h the reactions change by about h/H of what they change over H. Sliding
     // friction smooths over v_reg: H is within that.
-    const double speed = std::abs(i.omega) * c.pump.geometry.joint_circle_radius;
+    const double speed = std::abs(i.shaft.speed) * c.pump.geometry.joint_circle_radius;
     const double far =
         std::min(1e-4, speed > 0 ? 0.1 * c.pump.friction.regularization / speed : 1e-4);
     const double near = 1e-4 * far;
     const auto around = [&](double distance) {
-      i.theta = middle - distance;
+      i.turn(middle - distance, i.shaft.speed);
       auto before = evaluate(c, i);
-      i.theta = middle + distance;
+      i.turn(middle + distance, i.shaft.speed);
       const auto after = evaluate(c, i);
       for (std::size_t column = 0; column < at.size(); ++column) before[column] -= after[column];
       return before;
@@ -308,7 +307,7 @@ void expect_properties(multibody::Model& model, const RandomCase::Drawn& drawn, 
   std::vector<double> shifted(at.size());
   model.evaluate(i, values);
   Instant next = i;
-  next.theta += 2 * kPi / at.pistons();
+  next.turn(i.shaft.angle + 2 * kPi / at.pistons(), i.shaft.speed);
   for (int k = 0; k < at.pistons(); ++k)
     next.chamber_pressure[(k + 1) % at.pistons()] = i.chamber_pressure[k];
   model.evaluate(next, shifted);

@@ -405,7 +405,7 @@ TEST(Table, PeakIsThatOfTheVectorOverAllPistons) {
       tabulate("test", layout, samples, [&](const Instant& i, std::vector<double>& row) {
         std::fill(row.begin(), row.end(), 0.0);
         row[layout.Rs(1, 0)] = 3;
-        row[layout.Rs(1, 1)] = i.theta > 1 ? -4 : 0;
+        row[layout.Rs(1, 1)] = i.shaft.angle > 1 ? -4 : 0;
       });
   EXPECT_DOUBLE_EQ(t.peak("Rs"), 5);
 }
@@ -418,7 +418,7 @@ TEST(Samples, FallBackwardsAndReduceExactly) {
   EXPECT_EQ(s.theta_deg, expected);
   Instant i;
   s.instant(5, i);
-  EXPECT_DOUBLE_EQ(i.theta, -kPi / 2);
+  EXPECT_DOUBLE_EQ(i.shaft.angle, -kPi / 2);
 }
 
 // ---- output ------------------------------------------------------------------------------------

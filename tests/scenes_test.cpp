@@ -91,7 +91,7 @@ TEST(Scene, AgreesOnRandomPumpsAndChangingSpeed) {
     a.evaluate(instant, va);
     for (const Scene scene : {Scene::full, Scene::pistons, Scene::piston}) {
       for (const Method method : {Method::multipliers, Method::residual}) {
-        multibody::Model m(pump, assumptions, instant.omega, scene, method);
+        multibody::Model m(pump, assumptions, instant.shaft.speed, scene, method);
         std::vector<double> vm(a.layout().size(), not_computed());
         m.evaluate(instant, vm);
         double largest = 0;
@@ -155,10 +155,11 @@ TEST(Scene, DoesNotDependOnWhatWasEvaluatedBefore) {
     std::mt19937 engine(5);
     std::uniform_real_distribution<double> step(-0.3, 0.3);
     Instant i;
-    i.omega = 150;
     i.chamber_pressure.assign(7, 1e7);
+    double angle = 0;
     for (int n = 0; n < 300; ++n) {
-      i.theta += n % 20 == 0 ? 10 * step(engine) : step(engine) * std::pow(10.0, -(n % 7));
+      angle += n % 20 == 0 ? 10 * step(engine) : step(engine) * std::pow(10.0, -(n % 7));
+      i.turn(angle, 150);
       std::vector<double> va(a.layout().size());
       std::vector<double> vm(a.layout().size(), not_computed());
       a.evaluate(i, va);

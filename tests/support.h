@@ -126,9 +126,9 @@ class RandomPump {
   /// An instant for that pump; `with_rate` gives a changing speed too.
   Instant instant(const PumpParameters& p, bool with_rate) {
     Instant i;
-    i.theta = in(-4, 7);
-    i.omega = in(-300, 300);
-    i.omega_dot = with_rate ? in(-2000, 2000) : 0;
+    const double angle = in(-4, 7);
+    const double speed = in(-300, 300);
+    i.turn(angle, speed, with_rate ? in(-2000, 2000) : 0);
     i.ports = {in(-1e5, 1e6), in(0, 4e7)};
     for (int k = 0; k < p.geometry.pistons; ++k) i.chamber_pressure.push_back(in(0, 4e7));
     return i;

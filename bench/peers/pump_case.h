@@ -49,8 +49,7 @@ class PumpCase {
   /// Largest |Rs - right Rs| at a sample so far, and the peak of the right one.
   void judge(int sample, int k, const Vector& rs) {
     Instant instant;
-    instant.theta = 2 * kPi * sample / kSamples;
-    instant.omega = omega;
+    instant.turn(2 * kPi * sample / kSamples, omega);
     instant.ports = the_case.pressure.ports;
     for (int i = 1; i <= pistons(); ++i)
       instant.chamber_pressure.push_back(

@@ -13,8 +13,7 @@ int main(int, char** argv) {
   const bentaxis::analytic::Model analytic(the_case.pump, the_case.analytic);
   bentaxis::multibody::Model multibody(the_case.pump, the_case.multibody, 1);
   bentaxis::Instant now;
-  now.theta = 0.5;
-  now.omega = 157.0;
+  now.turn(0.5, 157.0);
   now.chamber_pressure.assign(the_case.pump.geometry.pistons, 100e5);
   std::vector<double> a(analytic.layout().size());
   std::vector<double> m(analytic.layout().size());

@@ -34,7 +34,8 @@ struct Varying {
   double all = 0;                ///< used where `each` is null
 };
 
-/// Instants of a batch; SI, as in Instant. Pressures are inputs: whoever calls has evaluated them.
+/// Instants of a batch; SI, as in an Instant whose block is locked to the shaft. Pressures are
+/// inputs: whoever calls has evaluated them.
 struct BatchInstants {
   std::size_t count = 0;
   Varying theta, omega, omega_dot;

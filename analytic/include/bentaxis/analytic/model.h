@@ -28,7 +28,8 @@ class Model {
   /// All reactions and the drive torque at an instant, by force and moment equilibrium of pistons
   /// (31)-(33), block (56), (57) and shaft (42), (43).
   ///
-  /// @param instant  shaft angle, speed, its rate, and pressures; one pressure per piston
+  /// @param instant  motion of the shaft, to which the block is locked, and pressures; one pressure
+  ///                 per piston
   /// @param values   at least layout().reactions() long; SI, ordered by layout(). Rcs is
   ///                 not_computed() where the block speed is imposed.
   /// Allocates nothing. Many instants, or many pumps, at a time: batch.h.

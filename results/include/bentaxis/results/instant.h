@@ -7,13 +7,35 @@
 
 namespace bentaxis {
 
-/// State of the shaft and pressures at an instant. Reused from call to call without allocation.
+/// How a body turns about its own fixed axis.
+struct AxisMotion {
+  double angle = 0;         ///< rad
+  double speed = 0;         ///< rad/s
+  double acceleration = 0;  ///< rad/s2
+};
+
+inline bool operator==(const AxisMotion& a, const AxisMotion& b) {
+  return a.angle == b.angle && a.speed == b.speed && a.acceleration == b.acceleration;
+}
+
+/// Motion of shaft and block, and pressures, at an instant. Constant speed is the instant without
+/// accelerations. Reused from call to call without allocation.
 struct Instant {
-  double theta = 0;                      ///< shaft angle, rad, positive about +z1
-  double omega = 0;                      ///< rad/s
-  double omega_dot = 0;                  ///< rad/s2; block and shaft turn alike
+  AxisMotion shaft;                      ///< theta, positive about +z1
+  AxisMotion block;                      ///< psi, positive about +z2
   std::vector<double> chamber_pressure;  ///< Pa gauge, one per piston
   PortPressures ports;                   ///< Pa gauge, load the port-plate lands
+
+  /// Turns shaft and block alike: the block is locked to the shaft.
+  void turn(double angle, double speed, double acceleration = 0) {
+    shaft = block = {angle, speed, acceleration};
+  }
+  /// Whether the block turns exactly as the shaft does.
+  bool locked() const { return shaft == block; }
 };
+
+/// @throws InputError naming `model` where the block moves on its own: for models of a block that
+/// is locked to the shaft.
+void require_locked(const Instant& instant, const char* model);
 
 }  // namespace bentaxis
