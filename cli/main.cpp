@@ -1,6 +1,9 @@
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <functional>
+#include <iostream>
 #include <vector>
 
 #include "bentaxis/pump/error.h"
@@ -29,9 +32,18 @@ int guarded(const std::function<int()>& job) {
   }
 }
 
-}  // namespace
+// What was printed is a result: if it did not arrive, the job is not done.
+int checked_output(int status) {
+  errno = 0;
+  std::cout.flush();
+  const bool arrived = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+  if (arrived || status == kBadInput || status == kComputationFailed) return status;
+  std::fprintf(stderr, "bentaxis: standard output cannot be written%s%s\n", errno != 0 ? ": " : "",
+               errno != 0 ? std::strerror(errno) : "");
+  return kBadInput;
+}
 
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   CLI::App app{
       "bentaxis: reaction forces and drive torque of bent-axis piston pumps by two independent "
       "models\n(analytic: closed form after Roccatello & Nervegna 2009; multibody: Simbody), and "
@@ -60,3 +72,7 @@ int main(int argc, char** argv) {
   std::fprintf(stderr, "bentaxis: a command is needed, such as compare (see bentaxis --help)\n");
   return kBadInput;
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return checked_output(run_program(argc, argv)); }

@@ -48,6 +48,12 @@ function(bentaxis_library room)
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 endfunction()
 
+# For what runs once a command and is long to compile (documents, JSON, option parsing): less optimisation
+# costs nothing there. Never for what computes at angles.
+function(bentaxis_compile_fast target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # For tests that look inside a room: its internal headers too.
 function(bentaxis_see_inside target room)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/${room})

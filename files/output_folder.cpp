@@ -4,10 +4,14 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "bentaxis/pump/error.h"
 
@@ -57,7 +61,7 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  for (const auto& [temporary, final_path] : pending_) fs::remove(temporary, ignored);
+  for (const Pending& file : pending_) fs::remove(file.temporary, ignored);
   if (created_.empty()) return;
   // A folder made for a run that produced nothing goes too, unless somebody else put something in.
   fs::path folder = fs::absolute(folder_, ignored).lexically_normal();
@@ -78,13 +82,16 @@ void OutputFolder::Stream::finish() {
 }
 
 OutputFolder::Stream& OutputFolder::open(const std::string& name) {
+  // Other objects of this process write to the same folder under names of their own.
+  static std::atomic<unsigned> count = 0;
   const fs::path final_path = folder_ / name;
-  const fs::path temporary = folder_ / ("." + name + ".part-" + std::to_string(getpid()));
+  const std::string own = std::to_string(getpid()) + "-" + std::to_string(count++);
+  const fs::path temporary = folder_ / ("." + name + ".part-" + own);
   auto stream = std::make_unique<Stream>();
   stream->shown_ = final_path;
   stream->file_.reset(std::fopen(temporary.c_str(), "wb"));
   if (!stream->file_) fail(final_path, std::strerror(errno));
-  pending_.emplace_back(temporary, final_path);
+  pending_.push_back({temporary, final_path, folder_ / ("." + name + ".before-" + own)});
   streams_.push_back(std::move(stream));
   return *streams_.back();
 }
@@ -95,18 +102,80 @@ void OutputFolder::add(const std::string& name, const std::string& content) {
   stream.finish();
 }
 
-std::vector<fs::path> OutputFolder::commit() {
+std::vector<std::string> OutputFolder::names() const {
+  std::vector<std::string> names;
+  for (const Pending& file : pending_) names.push_back(file.final_path.filename());
+  return names;
+}
+
+// Files of an earlier set, as its record names them.
+std::vector<fs::path> OutputFolder::superseded(const std::string& record) const {
+  std::vector<fs::path> files;
+  std::error_code error;
+  const fs::path old_record = folder_ / record;
+  const auto written = fs::last_write_time(old_record, error);
+  if (record.empty() || error) return files;
+  std::ifstream in(old_record, std::ios::binary);
+  const auto json = nlohmann::json::parse(in, nullptr, false);
+  if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) return files;
+  for (const auto& entry : json["files"]) {
+    if (!entry.is_string()) continue;
+    const fs::path name = entry.get<std::string>();
+    if (name.empty() || name != name.filename() || name == "." || name == "..") continue;
+    const fs::path file = folder_ / name;
+    const bool in_this_set =
+        std::any_of(pending_.begin(), pending_.end(),
+                    [&](const Pending& pending) { return pending.final_path == file; });
+    if (in_this_set || !fs::is_regular_file(fs::symlink_status(file, error))) continue;
+    // The record is written last: what is younger is somebody else's.
+    const auto changed = fs::last_write_time(file, error);
+    if (!error && changed <= written) files.push_back(file);
+  }
+  return files;
+}
+
+// Takes back what commit() has put in place so far.
+void OutputFolder::put_back() noexcept {
+  std::error_code ignored;
+  for (const Pending& file : pending_) {
+    const bool in_place = !fs::exists(file.temporary, ignored);
+    if (fs::exists(fs::symlink_status(file.before, ignored)))
+      fs::rename(file.before, file.final_path, ignored);
+    else if (in_place)
+      fs::remove(file.final_path, ignored);
+    fs::remove(file.before, ignored);  // the same file under both names is not renamed
+  }
+}
+
+std::vector<fs::path> OutputFolder::commit(const std::string& record) {
   for (const auto& stream : streams_) stream->finish();
   const FolderLock lock(folder_);
-  for (const auto& [temporary, final_path] : pending_)
-    if (fs::is_directory(final_path)) fail(final_path, "is a folder");
+  for (const Pending& file : pending_)
+    if (fs::is_directory(file.final_path)) fail(file.final_path, "is a folder");
+  const std::vector<fs::path> old = superseded(record);
   std::vector<fs::path> paths;
-  for (const auto& [temporary, final_path] : pending_) {
+  const auto move = [&](const fs::path& from, const fs::path& to, const fs::path& shown) {
     std::error_code error;
-    fs::rename(temporary, final_path, error);
-    if (error) fail(final_path, error.message());
-    paths.push_back(final_path);
+    fs::rename(from, to, error);
+    if (!error) return;
+    put_back();
+    fail(shown, error.message());
+  };
+  // All that is replaced gets a second name first, so that a failure in the middle can be taken
+  // back; where the file system has no second names it steps aside.
+  for (const Pending& file : pending_) {
+    std::error_code error;
+    if (!fs::exists(fs::symlink_status(file.final_path, error))) continue;
+    fs::create_hard_link(file.final_path, file.before, error);
+    if (error) move(file.final_path, file.before, file.final_path);
   }
+  for (const Pending& file : pending_) {
+    move(file.temporary, file.final_path, file.final_path);
+    paths.push_back(file.final_path);
+  }
+  std::error_code ignored;
+  for (const Pending& file : pending_) fs::remove(file.before, ignored);
+  for (const fs::path& file : old) fs::remove(file, ignored);
   pending_.clear();
   created_.clear();
   return paths;

@@ -8,7 +8,6 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
-#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/number.h"
@@ -419,36 +418,6 @@ TEST(Samples, FallBackwardsAndReduceExactly) {
   Instant i;
   s.instant(5, i);
   EXPECT_DOUBLE_EQ(i.shaft.angle, -kPi / 2);
-}
-
-// ---- output ------------------------------------------------------------------------------------
-
-TEST(OutputFolder, LeavesNothingUnlessCommitted) {
-  const Scratch scratch;
-  const fs::path target = scratch.path() / "a" / "b";
-  {
-    OutputFolder folder(target);
-    folder.add("x.txt", "hello");
-    EXPECT_FALSE(fs::exists(target / "x.txt"));
-  }
-  EXPECT_FALSE(fs::exists(scratch.path() / "a"));
-  {
-    OutputFolder folder(target);
-    folder.add("x.txt", "hello");
-    folder.commit();
-  }
-  std::ifstream in(target / "x.txt");
-  std::string text;
-  in >> text;
-  EXPECT_EQ(text, "hello");
-  EXPECT_EQ(std::distance(fs::directory_iterator(target), fs::directory_iterator()), 1);
-}
-
-TEST(OutputFolder, NamesThePathItCannotWrite) {
-  const Scratch scratch;
-  scratch.file("taken", "x");
-  EXPECT_THROW(OutputFolder(scratch.path() / "taken"), InputError);
-  EXPECT_THROW(OutputFolder(scratch.path() / "taken" / "below"), InputError);
 }
 
 // ---- writing case files

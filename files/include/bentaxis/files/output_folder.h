@@ -10,9 +10,10 @@
 
 namespace bentaxis {
 
-/// Collects the files of a run and puts them in place together: each is written under a temporary
-/// name first, and only when all are complete are they renamed. On any failure nothing is left. Of
-/// two programs that write the same files, all files are those of the one that ends last.
+/// Collects the files of a run and puts them in place as a set: each is written under a temporary
+/// name first, and only when all are complete are they renamed. On any failure nothing is left, and
+/// what was there before is there again. Of two programs, or two objects of one program, that write
+/// the same files, all files are those of the one that ends last.
 class OutputFolder {
  public:
   /// Creates the folder where it is missing and checks that it can be written to, so that a long
@@ -44,14 +45,26 @@ class OutputFolder {
   /// Opens such a file; it is complete at commit(). @throws InputError
   Stream& open(const std::string& name);
 
-  /// Puts all files in place; returns their paths. @throws InputError
-  std::vector<std::filesystem::path> commit();
+  /// Names of the files so far, in the order in which they were added.
+  std::vector<std::string> names() const;
+
+  /// Puts all files in place; returns their paths.
+  /// @param record  one of the files, JSON whose list "files" names the whole set. Files that the
+  ///                record of an earlier run names and that this set lacks are removed: they belong
+  ///                to a result that is no longer there. Not those changed since.
+  /// @throws InputError
+  std::vector<std::filesystem::path> commit(const std::string& record = "");
 
  private:
   std::filesystem::path folder_;
   std::filesystem::path created_;  // topmost folder that did not exist before; empty if none
-  std::vector<std::pair<std::filesystem::path, std::filesystem::path>>
-      pending_;  // temporary, final
+  struct Pending {
+    std::filesystem::path temporary, final_path, before;  // before: where what it replaces waits
+  };
+  std::vector<std::filesystem::path> superseded(const std::string& record) const;
+  void put_back() noexcept;
+
+  std::vector<Pending> pending_;
   std::vector<std::unique_ptr<Stream>> streams_;
 };
 

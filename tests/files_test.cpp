@@ -1,0 +1,147 @@
+// Sets of output files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include "bentaxis/files/output_folder.h"
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::UnorderedElementsAre;
+
+class OutputFolderTest : public testing::Test {
+ protected:
+  OutputFolderTest() {
+    std::string name = (fs::temp_directory_path() / "bentaxis_test_XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~OutputFolderTest() override { fs::remove_all(folder_); }
+
+  void file(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  std::string text(const std::string& name) const {
+    std::ifstream in(folder_ / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  // Names of everything in the folder, hidden files too.
+  std::set<std::string> contents() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path().filename());
+    return names;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(OutputFolderTest, LeavesNothingUnlessCommitted) {
+  const fs::path target = folder_ / "a" / "b";
+  {
+    OutputFolder folder(target);
+    folder.add("x.txt", "hello");
+    EXPECT_FALSE(fs::exists(target / "x.txt"));
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
+  {
+    OutputFolder folder(target);
+    folder.add("x.txt", "hello");
+    folder.commit();
+  }
+  EXPECT_EQ(text("a/b/x.txt"), "hello");
+  EXPECT_EQ(std::distance(fs::directory_iterator(target), fs::directory_iterator()), 1);
+}
+
+TEST_F(OutputFolderTest, NamesThePathItCannotWrite) {
+  file("taken", "x");
+  EXPECT_THROW(OutputFolder(folder_ / "taken"), InputError);
+  EXPECT_THROW(OutputFolder(folder_ / "taken" / "below"), InputError);
+}
+
+TEST_F(OutputFolderTest, AFailureInTheMiddleLeavesTheOldSet) {
+  file("one", "old one");
+  file("two", "old two");
+  {
+    OutputFolder folder(folder_);
+    folder.add("one", "new one");
+    folder.add("new", "was not there before");
+    folder.add("two", "new two");
+    // The last file's temporary is gone: its renaming fails when the others are in place.
+    for (const auto& name : contents())
+      if (name.rfind(".two.part-", 0) == 0) fs::remove(folder_ / name);
+    EXPECT_THROW(folder.commit(), InputError);
+  }
+  EXPECT_THAT(contents(), UnorderedElementsAre("one", "two"));
+  EXPECT_EQ(text("one"), "old one");
+  EXPECT_EQ(text("two"), "old two");
+}
+
+TEST_F(OutputFolderTest, TwoWritersOfOneProcessDoNotMix) {
+  OutputFolder first(folder_);
+  OutputFolder second(folder_);
+  first.add("a", "of the first");
+  second.add("a", "of the second");
+  first.add("b", "of the first");
+  second.add("b", "of the second");
+  second.commit();
+  first.commit();
+  EXPECT_EQ(text("a"), "of the first");
+  EXPECT_EQ(text("b"), "of the first");
+  EXPECT_THAT(contents(), UnorderedElementsAre("a", "b"));
+}
+
+TEST_F(OutputFolderTest, WhatAnEarlierSetHasLeftIsRemoved) {
+  {
+    OutputFolder folder(folder_);
+    folder.add("pressure.csv", "1");
+    folder.add("curve.csv", "1");
+    folder.add("report.json", R"({"files": ["pressure.csv", "curve.csv", "report.json"]})");
+    folder.commit("report.json");
+  }
+  file("mine.csv", "not of any set");
+  {
+    OutputFolder folder(folder_);
+    folder.add("curve.csv", "2");
+    folder.add("report.json", R"({"files": ["curve.csv", "report.json"]})");
+    EXPECT_THAT(folder.names(), testing::ElementsAre("curve.csv", "report.json"));
+    folder.commit("report.json");
+  }
+  EXPECT_THAT(contents(), UnorderedElementsAre("mine.csv", "curve.csv", "report.json"));
+  EXPECT_EQ(text("curve.csv"), "2");
+}
+
+TEST_F(OutputFolderTest, WhatIsNotOfTheEarlierSetStays) {
+  const auto write_with = [&](const std::string& record) {
+    OutputFolder folder(folder_);
+    folder.add("report.json", record);
+    folder.commit("report.json");
+  };
+  file("changed.csv", "1");
+  fs::create_directory(folder_ / "folder");
+  file("outside.csv", "1");
+  write_with(
+      R"({"files": ["changed.csv", "folder", "../outside.csv", "..", "", 7, "missing.csv"]})");
+  // Changed since: somebody else's now.
+  fs::last_write_time(folder_ / "changed.csv",
+                      fs::last_write_time(folder_ / "report.json") + std::chrono::seconds(1));
+  write_with("not JSON");
+  EXPECT_THAT(contents(),
+              UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.json"));
+  write_with(R"({"files": "none"})");
+  write_with("{}");
+  EXPECT_THAT(contents(),
+              UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.json"));
+}
+
+}  // namespace
+}  // namespace bentaxis
