@@ -363,7 +363,7 @@ SpinRun spin_run(const Case& the_case, double speed_rpm, double spin_rpm,
   options.accuracy = kSpinAccuracy;
   const auto run = multibody::run_integrated(spinning, with(spinning.analytic, PistonInertia::real),
                                              samples, pressure, options, progress);
-  return {spin_rpm, run.record.worst_spin, options.accuracy};
+  return {spin_rpm, run.record.whole.spin_error, options.accuracy};
 }
 
 std::vector<SceneCost> scene_costs(const Case& the_case) {

@@ -6,6 +6,7 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "loads/friction.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -235,8 +236,8 @@ TEST(Integrated, ErrorShrinksWithTheAccuracyAskedFor) {
     // Measured: 3e-5, 3e-5 (held by the step between samples), 8e-7.
     EXPECT_LT(error.reactions, std::max(100 * accuracy, 1e-6)) << accuracy;
     EXPECT_LE(error.reactions, before);
-    EXPECT_LT(std::abs(error.record.worst_gear_phase), 1e-6);
-    EXPECT_LT(std::abs(error.record.work_residual()), 1e-4);  // J of 5434 J
+    EXPECT_LT(std::abs(error.record.whole.gear_phase), 1e-6);
+    EXPECT_LT(std::abs(error.record.whole.work_residual), 1e-4);  // J of 5434 J
     before = error.reactions;
   }
   EXPECT_LT(before, 5e-6);
@@ -276,11 +277,32 @@ TEST(Integrated, AnalyticTorqueHoldsTheSpeedOfAFreeShaft) {
   const auto run = [&] {
     return multibody::run_torque_driven(the_case, the_case.multibody, samples, pressure, torque,
                                         options)
-        .worst_speed;
+        .whole.speed_error;
   };
   EXPECT_LT(run(), 1e-7);
   factor = 1.01;
   EXPECT_GT(run(), 1e-3);
+}
+
+// ---- friction ----------------------------------------------------------------------------------
+
+// (25), by hand: against the motion, smoothed or by the sign, and none of it at rest.
+TEST(PistonFriction, OpposesMotionAndRestsAtRest) {
+  Friction f;
+  f.piston_coulomb = 25;
+  f.piston_viscous = 10;
+  f.regularization = 0.01;
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 0.01, 0), -(25 * std::tanh(1.0) + 0.1));
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, -0.01, 0), 25 * std::tanh(1.0) + 0.1);
+  f.regularization = 0;
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 1e-3, 1e-12), -(25 + 0.01));
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, -1e-3, 1e-12), 25 + 0.01);
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 1e-13, 1e-12), -1e-12);
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 0, 0), 0);
+  // At rest up to 1e-12 |omega| Ra.
+  Geometry g;
+  g.joint_circle_radius = 0.04;
+  EXPECT_DOUBLE_EQ(multibody::rest_speed_at(g, -150), 6e-12);
 }
 
 // ---- rank of the constraints ------------------------------------------------------------------

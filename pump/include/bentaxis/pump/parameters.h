@@ -142,14 +142,6 @@ inline std::string to_string(GearScene gear) {
 /// transverse inertia need the centre of mass strictly between A and B.
 std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& pump);
 
-/// Applies the law of piston friction Fpf = -(Fc tanh(v/v_reg) + cv v), N, along z2 at B.
-/// With v_reg = 0 the tanh is sign(v), and |v| <= `rest_speed` counts as rest.
-/// @param velocity  z2-velocity of B, m/s.
-double piston_friction_force(const Friction& friction, double velocity, double rest_speed);
-
-/// The speed below which a piston counts as at rest in the sign law: 1e-12 |omega| R_a, m/s.
-double piston_rest_speed(const Geometry& geometry, double omega);
-
 /// Ideal gap between the longest distance from a joint A to the axis of its bore and the piston
 /// length that has to span it: where it is not positive the pump cannot be assembled.
 struct AssemblyMargin {

@@ -74,7 +74,7 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard, const PartProgress&
 struct LongRun {
   struct Turn {
     int number = 0;  ///< from 1
-    multibody::TurnRecord record;
+    multibody::WorstErrors record;
     double reaction_error = 0;  ///< largest difference from the analytic model within this turn,
                                 ///< over the peak of the reaction
   };
