@@ -6,6 +6,7 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/worst.h"
 #include "loads/friction.h"
 #include "support.h"
 
@@ -282,6 +283,30 @@ TEST(Integrated, AnalyticTorqueHoldsTheSpeedOfAFreeShaft) {
   EXPECT_LT(run(), 1e-7);
   factor = 1.01;
   EXPECT_GT(run(), 1e-3);
+}
+
+// A state that is no longer made of numbers ends the run: std::max dropped its errors, and the run
+// seemed to hold its speed.
+TEST(Integrated, ATorqueThatIsNoNumberEndsTheRun) {
+  const Case the_case = reference_case("bap63_rated");
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples = sample_case(the_case, pressure, 1);
+  for (const double from : {0.0, 90.0}) {
+    const auto torque = [&](double theta_deg) { return theta_deg >= from ? std::nan("") : 290.0; };
+    EXPECT_THROW(
+        multibody::run_torque_driven(the_case, the_case.multibody, samples, pressure, torque, {}),
+        ComputationError);
+  }
+}
+
+TEST(Worst, KeepsTheLargestMagnitudeAndEveryNaN) {
+  double worst = 0;
+  keep_worst(worst, -2);
+  keep_worst(worst, 1);
+  EXPECT_EQ(worst, 2);
+  keep_worst(worst, std::nan(""));
+  keep_worst(worst, 3);
+  EXPECT_TRUE(std::isnan(worst));
 }
 
 // ---- friction ----------------------------------------------------------------------------------
