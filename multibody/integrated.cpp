@@ -1,9 +1,12 @@
 #include "bentaxis/multibody/integrated.h"
 
+#include <cmath>
+
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/stopwatch.h"
+#include "bentaxis/results/worst.h"
 #include "integration/time_run.h"
 #include "reactions/solver_guard.h"
 
@@ -19,6 +22,19 @@ void refuse_standstill(const Case& the_case) {
 }
 
 }  // namespace
+
+void WorstErrors::keep(const WorstErrors& later) {
+  for (const auto error :
+       {&WorstErrors::position_error, &WorstErrors::velocity_error, &WorstErrors::gear_phase,
+        &WorstErrors::shaft_angle, &WorstErrors::speed_error, &WorstErrors::spin_error})
+    keep_worst(this->*error, later.*error);
+  work_residual = later.work_residual;
+}
+
+bool WorstErrors::is_finite() const {
+  return std::isfinite(position_error + velocity_error + gear_phase + shaft_angle + speed_error +
+                       spin_error + work_residual);
+}
 
 const std::vector<std::string>& integrator_names() {
   static const std::vector<std::string> names = {"rk-merson", "rk-feldberg",         "rk3",

@@ -285,8 +285,35 @@ TEST(Integrated, AnalyticTorqueHoldsTheSpeedOfAFreeShaft) {
   EXPECT_GT(run(), 1e-3);
 }
 
-// A state that is no longer made of numbers ends the run: std::max dropped its errors, and the run
-// seemed to hold its speed.
+// The errors of a run are those of its worst sample; one that is no number must not be lost among
+// the others.
+TEST(Integrated, ErrorsOfARunKeepEveryNaN) {
+  multibody::WorstErrors run;
+  multibody::WorstErrors sample;
+  sample.position_error = 3;
+  sample.work_residual = -2;
+  run.keep(sample);
+  sample.position_error = -1;
+  sample.work_residual = 1;
+  run.keep(sample);
+  EXPECT_EQ(run.position_error, 3);
+  EXPECT_EQ(run.work_residual, 1);
+  EXPECT_TRUE(run.is_finite());
+  for (const auto error :
+       {&multibody::WorstErrors::position_error, &multibody::WorstErrors::velocity_error,
+        &multibody::WorstErrors::gear_phase, &multibody::WorstErrors::shaft_angle,
+        &multibody::WorstErrors::speed_error, &multibody::WorstErrors::spin_error}) {
+    multibody::WorstErrors broken;
+    broken.*error = std::nan("");
+    multibody::WorstErrors all = run;
+    all.keep(broken);
+    all.keep(sample);
+    EXPECT_TRUE(std::isnan(all.*error));
+    EXPECT_FALSE(all.is_finite());
+  }
+}
+
+// Whoever notices, Simbody's step control or the account of errors: such a run ends with a message.
 TEST(Integrated, ATorqueThatIsNoNumberEndsTheRun) {
   const Case the_case = reference_case("bap63_rated");
   const PressureTrace pressure(the_case.pressure);

@@ -75,20 +75,6 @@ std::vector<double> edge_distances(const Case& the_case, const Assumptions& assu
   return distances;
 }
 
-void keep_worst(WorstErrors& worst, const WorstErrors& errors) {
-  for (const auto part :
-       {&WorstErrors::position_error, &WorstErrors::velocity_error, &WorstErrors::gear_phase,
-        &WorstErrors::shaft_angle, &WorstErrors::speed_error, &WorstErrors::spin_error})
-    bentaxis::keep_worst(worst.*part, errors.*part);
-  worst.work_residual = errors.work_residual;
-}
-
-bool is_finite(const WorstErrors& errors) {
-  return std::isfinite(errors.position_error + errors.velocity_error + errors.gear_phase +
-                       errors.shaft_angle + errors.speed_error + errors.spin_error +
-                       errors.work_residual);
-}
-
 }  // namespace
 
 TimeRun::TimeRun(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
@@ -191,24 +177,19 @@ void TimeRun::enter_segment(double from) {
 // Errors of the state at a sample, and the work lost until there.
 WorstErrors TimeRun::errors_at(std::size_t row, const SimTK::State& state) const {
   WorstErrors errors;
-  for (int i = 0; i < state.getNQErr(); ++i)
-    bentaxis::keep_worst(errors.position_error, state.getQErr()[i]);
-  for (int i = 0; i < state.getNUErr(); ++i)
-    bentaxis::keep_worst(errors.velocity_error, state.getUErr()[i]);
-  bentaxis::keep_worst(errors.gear_phase, system_.gear_phase(state));
+  for (int i = 0; i < state.getNQErr(); ++i) keep_worst(errors.position_error, state.getQErr()[i]);
+  for (int i = 0; i < state.getNUErr(); ++i) keep_worst(errors.velocity_error, state.getUErr()[i]);
+  keep_worst(errors.gear_phase, system_.gear_phase(state));
   const SimTK::MobilizedBody& shaft = system_.bodies().shaft;
   const double angle = turn_angle(shaft.getBodyRotation(state), SimTK::Rotation());
-  bentaxis::keep_worst(
-      errors.shaft_angle,
-      std::remainder(angle - radians(std::fmod(samples_.theta_deg[row], 360.0)), 2 * kPi));
-  bentaxis::keep_worst(errors.speed_error,
-                       shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
+  keep_worst(errors.shaft_angle,
+             std::remainder(angle - radians(std::fmod(samples_.theta_deg[row], 360.0)), 2 * kPi));
+  keep_worst(errors.speed_error, shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
   if (system_.pistons_free_to_spin())
     for (const auto& piston : system_.bodies().pistons)
-      bentaxis::keep_worst(errors.spin_error,
-                           SimTK::dot(piston.getBodyAngularVelocity(state),
-                                      SimTK::Vec3(piston.getBodyRotation(state).z())) -
-                               system_.pump().piston.real->spin);
+      keep_worst(errors.spin_error, SimTK::dot(piston.getBodyAngularVelocity(state),
+                                               SimTK::Vec3(piston.getBodyRotation(state).z())) -
+                                        system_.pump().piston.real->spin);
   errors.work_residual = system_.work().of_loads(state) + system_.work().of_drives(state) -
                          (system_.system().calcKineticEnergy(state) - energy_at_start_);
   return errors;
@@ -220,9 +201,9 @@ void TimeRun::note(std::size_t row) {
   const WorstErrors errors = errors_at(row, state);
   const auto turn = static_cast<std::size_t>(std::abs(samples_.theta_deg[row]) / 360);
   record_.turns.resize(std::max(record_.turns.size(), turn + 1));
-  keep_worst(record_.turns[turn], errors);
-  keep_worst(record_.whole, errors);
-  if (!is_finite(errors))
+  record_.turns[turn].keep(errors);
+  record_.whole.keep(errors);
+  if (!errors.is_finite())
     throw ComputationError("multibody model: integration stopped near theta = " +
                            number_text(samples_.theta_deg[row]) +
                            " deg: the state is no longer made of numbers");

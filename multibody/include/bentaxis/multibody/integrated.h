@@ -37,8 +37,13 @@ struct WorstErrors {
   double shaft_angle = 0;     ///< rad, shaft minus omega t
   double speed_error = 0;     ///< of the shaft, relative to omega
   double spin_error = 0;      ///< rad/s, change of a real piston's spin about its axis
-  double work_residual = 0;  ///< J, that constraints and integration created or destroyed since the
-                             ///< start
+  double work_residual =
+      0;  ///< J since the start, that constraints and integration created or lost
+
+  /// Takes in the errors at a later sample: the larger ones, and a NaN for good; the work as it is
+  /// there.
+  void keep(const WorstErrors& later);
+  bool is_finite() const;
 };
 
 /// What the integration cost and how well it kept the constraints.
