@@ -18,6 +18,10 @@ std::size_t row_of_piston_one(std::size_t row, int k, std::size_t rows, int pist
 // the angle they were evaluated at.
 constexpr double kSamePressure = 1e-13;
 
+// An angle this near to one of an even division of the turn, degrees, is that one: the tolerance
+// within which an angle counts as on an edge of the pressure.
+constexpr double kSameAngle = 1e-9;
+
 // Does every piston see, at each of its angles, the pressure that piston 1 sees there? Then piston
 // 1 stands for all.
 bool one_stands_for_all(const Samples& samples) {
@@ -29,7 +33,7 @@ bool one_stands_for_all(const Samples& samples) {
     largest = std::max(largest, std::abs(pressure));
   for (std::size_t row = 0; row < rows; ++row) {
     const double angle = 360.0 * static_cast<double>(row) / static_cast<double>(rows);
-    if (std::abs(samples.theta_deg[row] - angle) > 1e-9) return false;
+    if (std::abs(samples.theta_deg[row] - angle) > kSameAngle) return false;
     for (int k = 1; k < n; ++k)
       if (std::abs(samples.chamber_pressure[row * n + k] -
                    samples.chamber_pressure[row_of_piston_one(row, k, rows, n) * n]) >
