@@ -42,7 +42,7 @@ Scene smallest_scene(const std::vector<Channel>& channels) {
 std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
                                                              const Assumptions& assumptions,
                                                              Scene scene) {
-  const bool mesh = assumptions.gear == GearScene::mesh;
+  const bool mesh = assumptions.gear == BlockDrive::mesh;
   const int n = scene == Scene::piston ? 1 : pump.geometry.pistons;
   const std::string pistons = n == 1 ? "1 piston" : std::to_string(n) + " pistons";
   const std::string bodies = std::to_string(n + 2) + " (shaft, block, " + pistons + ")";

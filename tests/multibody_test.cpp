@@ -47,8 +47,9 @@ TEST(DrivenModel, AgreesOnRandomPumpsAndChangingSpeed) {
   for (int n = 0; n < 60; ++n) {
     const PumpParameters pump = random.pump();
     Assumptions assumptions = random.assumptions(pump);
-    if (n % 4 == 3) assumptions.gear = GearScene::imposed;
-    const Instant instant = random.instant(pump, n % 2 == 0 && assumptions.gear == GearScene::mesh);
+    if (n % 4 == 3) assumptions.gear = BlockDrive::imposed;
+    const Instant instant =
+        random.instant(pump, n % 2 == 0 && assumptions.gear == BlockDrive::mesh);
     const analytic::Model a(pump, assumptions);
     multibody::Model m(pump, assumptions, instant.shaft.speed);
     std::vector<double> va(a.layout().size());

@@ -161,8 +161,8 @@ TEST(CaseFile, EachModelMayHaveItsOwnAssumptions) {
   const std::string extra =
       "\n[assumptions.multibody]\npiston_friction = false\ngear = \"imposed\"\n";
   const Case c = parse_case(default_text() + extra, "x.toml");
-  EXPECT_TRUE(c.analytic == (Assumptions{true, PistonInertia::lumped, GearScene::mesh}));
-  EXPECT_TRUE(c.multibody == (Assumptions{false, PistonInertia::lumped, GearScene::imposed}));
+  EXPECT_TRUE(c.analytic == (Assumptions{true, PistonInertia::lumped, BlockDrive::mesh}));
+  EXPECT_TRUE(c.multibody == (Assumptions{false, PistonInertia::lumped, BlockDrive::imposed}));
   EXPECT_THAT(message(default_text() + "\n[assumptions.simscape]\n"), HasSubstr("simscape"));
   EXPECT_THAT(message(default_text() + "\n[assumptions.analytic]\ninertia = \"real\"\n"),
               HasSubstr("needs centre_of_mass_mm"));

@@ -132,7 +132,7 @@ TEST(SolverGuard, NeitherIsBlamedWhereTheEstimateExplainsAPart) {
 // A torque an imposed block is moved with is a reaction like the others.
 TEST(SolverGuard, TheTorqueOfAnImposedBlockCounts) {
   Case the_case = case_of("high_precision/bap63_rated");
-  the_case.multibody.gear = GearScene::imposed;
+  the_case.multibody.gear = BlockDrive::imposed;
   Solved solved(the_case);
   EXPECT_LT(solved.difference(), 1e-12);
   solved.multipliers.imposed += 1;  // Nm

@@ -60,7 +60,7 @@ class PumpSystem {
   const InlineJoint& cylindrical_bearing() const { return cylindrical_; }
   const GearMesh& gear() const { return *gear_; }
   const ShaftDrive& drive() const { return *shaft_drive_; }
-  bool has_gear() const { return !is_prescribed() && assumptions_.gear == GearScene::mesh; }
+  bool has_gear() const { return !is_prescribed() && assumptions_.gear == BlockDrive::mesh; }
   bool is_prescribed() const { return drive_ == Drive::prescribed; }
 
   /// Whether the pistons are rigid bodies that can turn about their own axis.

@@ -113,7 +113,7 @@ struct PumpParameters {
 };
 
 /// How the block is carried round.
-enum class GearScene {
+enum class BlockDrive {
   mesh,     ///< the shaft drives it by the tooth force R_cs along z4 at O4
   imposed,  ///< its speed is imposed on its own joint, as in the paper's ADAMS run; no R_cs
 };
@@ -123,7 +123,7 @@ enum class GearScene {
 struct Assumptions {
   bool piston_friction = true;
   PistonInertia inertia = PistonInertia::lumped;
-  GearScene gear = GearScene::mesh;
+  BlockDrive gear = BlockDrive::mesh;
 };
 
 inline bool operator==(const Assumptions& a, const Assumptions& b) {
@@ -133,8 +133,8 @@ inline bool operator==(const Assumptions& a, const Assumptions& b) {
 inline std::string to_string(PistonInertia inertia) {
   return piston_inertia_names()[static_cast<std::size_t>(inertia)];
 }
-inline std::string to_string(GearScene gear) {
-  return gear == GearScene::mesh ? "mesh" : "imposed";
+inline std::string to_string(BlockDrive gear) {
+  return gear == BlockDrive::mesh ? "mesh" : "imposed";
 }
 
 /// Why this piston cannot be treated as `inertia` asks, as the end of a message; empty where it
