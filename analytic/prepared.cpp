@@ -132,7 +132,7 @@ PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions)
   prepare_block(pump, p);
   prepare_gear(pump, p);
   prepare_shaft(pump, p);
-  result.imposed = assumptions.gear == GearScene::imposed;
+  result.imposed = assumptions.gear == BlockDrive::imposed;
   for (int k = 0; k < pump.geometry.pistons; ++k) {
     result.phase_sin.push_back(std::sin(2 * kPi * k / pump.geometry.pistons));
     result.phase_cos.push_back(std::cos(2 * kPi * k / pump.geometry.pistons));

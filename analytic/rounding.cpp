@@ -91,7 +91,7 @@ void RoundingEstimate::estimate(const Instant& instant,
     changed.block = changed.shaft;
   };
   // The angle of a piston is the shaft's and its phase. The step leaves a piston at a dead centre
-  // at rest in the sign law of friction (piston_rest_speed).
+  // at rest in the sign law of friction.
   vary("theta", changed.shaft.angle,
        kInputRounding * std::max(std::abs(instant.shaft.angle), 2 * kPi), 0x1p-41);
   vary("speed", changed.shaft.speed, kInputRounding * std::abs(instant.shaft.speed));

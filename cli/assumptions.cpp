@@ -27,7 +27,7 @@ void apply_assumption(const std::string& text, const PumpParameters& pump,
     if (const std::string why = piston_inertia_refusal(assumptions.inertia, pump); !why.empty())
       throw InputError("assumption \"" + text + "\": " + why);
   } else if (key == "gear") {
-    assumptions.gear = pick("mesh", "imposed") ? GearScene::imposed : GearScene::mesh;
+    assumptions.gear = pick("mesh", "imposed") ? BlockDrive::imposed : BlockDrive::mesh;
   } else {
     throw InputError("assumption \"" + text +
                      "\": must be piston_friction=on|off, inertia=lumped|real|"

@@ -117,18 +117,18 @@ Json integrate_all(Study& study, const Options& options,
     rows.push_back({accuracy, worst_of_group(comparison, "Rs"), worst_of_group(comparison, "Rc"),
                     std::max(worst_of_group(comparison, "Rb1"), worst_of_group(comparison, "Rb2")),
                     worst_of_group(comparison, "Rcs"), worst_of_group(comparison, "Td"),
-                    record.worst_position_error, record.worst_velocity_error,
-                    record.worst_gear_phase / kRadPerDegree, record.work_residual(),
-                    free_shaft.worst_speed, record.steps, record.evaluations});
+                    record.whole.position_error, record.whole.velocity_error,
+                    record.whole.gear_phase / kRadPerDegree, record.whole.work_residual,
+                    free_shaft.whole.speed_error, record.steps, record.evaluations});
     facts = Json::array(
         {{"gear phase, worst (block minus shaft)",
-          fmt::format("{:.2e} deg", record.worst_gear_phase / kRadPerDegree)},
+          fmt::format("{:.2e} deg", record.whole.gear_phase / kRadPerDegree)},
          {"shaft angle against omega t, worst",
-          fmt::format("{:.2e} deg", record.worst_shaft_angle / kRadPerDegree)},
+          fmt::format("{:.2e} deg", record.whole.shaft_angle / kRadPerDegree)},
          {"work of loads", fmt::format("{:.6g} J", record.work_of_loads)},
          {"work of the drive", fmt::format("{:.6g} J", record.work_of_drives)},
          {"kinetic energy gained", fmt::format("{:.3g} J", record.kinetic_energy_gained)},
-         {"work unaccounted for", fmt::format("{:.3g} J", record.work_residual())}});
+         {"work unaccounted for", fmt::format("{:.3g} J", record.whole.work_residual)}});
   }
   if (!options.choice.empty()) facts.push_back(Json::array({"chosen", options.choice}));
   return {{{"title", "Integrated run and torque-driven run"},

@@ -666,6 +666,10 @@ int run(const Options& options) {
                     ? fmt::format("{:.5f}", lumping.joint_mass_fraction).c_str()
                     : "-",
                 lumping.error_rs, lumping.error_rc);
+  for (const PistonInertia inertia : s.full.front().by_inverse_dynamics)
+    std::printf(
+        "%s pistons have no inertia about A: their multibody reactions are by inverse dynamics\n",
+        to_string(inertia).c_str());
   std::printf("\nscene     reactions by  bodies  equations  us per angle\n");
   for (const auto& cost : s.costs)
     std::printf("%-9s %-13s %6d  %9d  %12.1f\n", cost.scene.c_str(), cost.method.c_str(),

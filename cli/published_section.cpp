@@ -21,7 +21,7 @@ void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions
     else if (name == "piston_friction")
       assumptions.piston_friction = value != 0;
     else if (name == "gear_imposed")
-      assumptions.gear = value != 0 ? GearScene::imposed : GearScene::mesh;
+      assumptions.gear = value != 0 ? BlockDrive::imposed : BlockDrive::mesh;
     else
       throw InputError("published variant \"" + variant.name + "\": " + name +
                        " cannot be set; allowed: block_viscous_Nm_per_rpm, piston_friction, "
@@ -50,7 +50,7 @@ compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
           {"block_viscous_Nm_per_rpm", block_viscous},
           {"block_viscous_torque_Nm", block_viscous * speed},
           {"piston_friction", friction ? 1 : 0},
-          {"gear_imposed", assumptions.gear == GearScene::imposed ? 1 : 0},
+          {"gear_imposed", assumptions.gear == BlockDrive::imposed ? 1 : 0},
           {"real_pistons", assumptions.inertia == PistonInertia::real ? 1 : 0}};
 }
 

@@ -72,8 +72,10 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
     compare::Options options;
     options.zero_scales = study::zero_scales(thin, samples);
     lost = study::rounding_spread(thin, run(thin), options, run);
+  } catch (const study::NoEstimate& none) {
+    return {std::string("the multibody model: ") + none.what()};
   } catch (const ComputationError&) {
-    return {};
+    return {};  // the run itself will say why
   }
   for (const RoundingLine& line : lines)
     if (lost[line.group] < kMoreThanEstimated * line.total()) lost.erase(line.group);

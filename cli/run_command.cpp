@@ -35,7 +35,7 @@ int run(const Options& options) {
   const Way way = options.model == "multibody" ? options.way : Way::driven;
   Assumptions assumptions = options.model == "analytic" ? the_case.analytic : the_case.multibody;
   if (!options.gear.empty())
-    assumptions.gear = options.gear == "imposed" ? GearScene::imposed : GearScene::mesh;
+    assumptions.gear = options.gear == "imposed" ? BlockDrive::imposed : BlockDrive::mesh;
   if (options.target.error > 0) options.target.refuse_unless(way == Way::integrated);
   const ChannelLayout layout(the_case.pump.geometry.pistons);
   const bool driven = options.model == "multibody" && way == Way::driven;

@@ -115,6 +115,10 @@ template <auto member>
 Json record_cell(const study::TradeoffRun& run) {
   return run.record ? Json((*run.record).*member) : Json();
 }
+template <auto member>
+Json drift_cell(const study::TradeoffRun& run) {
+  return run.record ? Json(run.record->whole.*member) : Json();
+}
 const std::vector<Column>& columns() {
   static const std::vector<Column> list = {
       {"pressure", "pressure", [](const study::TradeoffRun& r) { return Json(r.pressure); }},
@@ -132,11 +136,10 @@ const std::vector<Column>& columns() {
       {"error_Rcs", "error Rcs", error_cell<&study::AchievedError::rcs>},
       {"error_Td", "error Td", error_cell<&study::AchievedError::td>},
       {"position_drift_m", "constraint error, m",
-       record_cell<&multibody::IntegrationRecord::worst_position_error>},
+       drift_cell<&multibody::WorstErrors::position_error>},
       {"velocity_drift_m_per_s", "constraint rate error, m/s",
-       record_cell<&multibody::IntegrationRecord::worst_velocity_error>},
-      {"gear_phase_rad", "gear phase, rad",
-       record_cell<&multibody::IntegrationRecord::worst_gear_phase>},
+       drift_cell<&multibody::WorstErrors::velocity_error>},
+      {"gear_phase_rad", "gear phase, rad", drift_cell<&multibody::WorstErrors::gear_phase>},
       {"steps", "steps", record_cell<&multibody::IntegrationRecord::steps>},
       {"evaluations", "evaluations", record_cell<&multibody::IntegrationRecord::evaluations>},
       {"status", "status", [](const study::TradeoffRun& r) {
@@ -349,7 +352,7 @@ int tradeoff(Options options) {
     std::printf("%-8s %-44s %12s %9.1e", run.pressure.c_str(), name_of_run(run).c_str(),
                 time_text(run.seconds_per_turn).c_str(), run.error.worst);
     if (run.record)
-      std::printf(" %9.1e %8ld %8ld", run.record->worst_position_error, run.record->steps,
+      std::printf(" %9.1e %8ld %8ld", run.record->whole.position_error, run.record->steps,
                   run.record->evaluations);
     std::printf("\n");
   }

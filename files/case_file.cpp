@@ -276,7 +276,7 @@ class CaseReader {
 
   // [assumptions.analytic] and [assumptions.multibody]: what a model leaves out or does otherwise.
   void read_assumptions(TableReader& top) {
-    const auto fallback = Assumptions{true, result_.pump.piston.inertia, GearScene::mesh};
+    const auto fallback = Assumptions{true, result_.pump.piston.inertia, BlockDrive::mesh};
     result_.analytic = result_.multibody = fallback;
     if (!top.has("assumptions")) return;
     TableReader both = top.table("assumptions");
@@ -288,7 +288,7 @@ class CaseReader {
       target->inertia = static_cast<PistonInertia>(
           in.choice("inertia", piston_inertia_names(), static_cast<std::size_t>(fallback.inertia)));
       target->gear =
-          in.choice("gear", {"mesh", "imposed"}, 0) == 1 ? GearScene::imposed : GearScene::mesh;
+          in.choice("gear", {"mesh", "imposed"}, 0) == 1 ? BlockDrive::imposed : BlockDrive::mesh;
       if (const std::string why = piston_inertia_refusal(target->inertia, result_.pump);
           !why.empty())
         in.fail("inertia", why);

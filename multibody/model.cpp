@@ -1,57 +1,25 @@
 #include "bentaxis/multibody/model.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
-#include "bentaxis/multibody/versions.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "pump_system.h"
-#include "reactions.h"
-#include "solver_guard.h"
+#include "bentaxis/results/worst.h"
+#include "loads/friction.h"
+#include "placement/placement.h"
+#include "reactions/channels.h"
+#include "reactions/inverse_dynamics.h"
+#include "reactions/reactions.h"
+#include "reactions/solver_guard.h"
+#include "scene/pump_system.h"
+#include "scene_facts.h"
 
 namespace bentaxis::multibody {
 
 using SimTK::Stage;
-
-namespace {
-
-Drive drive_of(Scene scene) {
-  return scene == Scene::full ? Drive::given_acceleration : Drive::prescribed;
-}
-
-// The one-piston scene is the scene of a pump with one piston.
-PumpParameters built_pump(const PumpParameters& pump, Scene scene) {
-  PumpParameters built = pump;
-  if (scene == Scene::piston) built.geometry.pistons = 1;
-  return built;
-}
-
-}  // namespace
-
-const std::vector<std::string>& scene_names() {
-  static const std::vector<std::string> names = {"full", "pistons", "piston"};
-  return names;
-}
-
-const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names = {"multipliers", "residual"};
-  return names;
-}
-
-bool computes(Scene scene, const Channel& channel) {
-  return scene == Scene::full || channel.piston > 0;
-}
-
-Scene smallest_scene(const std::vector<Channel>& channels) {
-  const bool of_pistons = std::all_of(channels.begin(), channels.end(), [](const Channel& channel) {
-    return computes(Scene::piston, channel);
-  });
-  return of_pistons ? Scene::piston : Scene::full;
-}
 
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
@@ -61,7 +29,8 @@ struct Model::Implementation {
         method(the_method),
         parameters(pump),
         system(built_pump(pump, the_scene), assumptions, omega_sign, drive_of(the_scene)),
-        residual(system),
+        placement(system),
+        inverse_dynamics(system, placement),
         sign(omega_sign < 0 ? -1 : 1) {
     system.inputs().chamber_pressure = [this](double, std::vector<double>& p) { p = pressure; };
     if (method == Method::multipliers) system.require_piston_inertia();
@@ -77,12 +46,14 @@ struct Model::Implementation {
   Method method;
   PumpParameters parameters;
   PumpSystem system;
-  ResidualSolver residual;
+  Placement placement;
+  InverseDynamics inverse_dynamics;
   Reactions reactions;
   Reactions by_inverse_dynamics;  // what the multipliers are held to
   std::vector<double> pressure;
-  PumpSystem::Rank rank;
+  Rank rank;
   long placements = 0;
+  double worst_difference = 0;  // of multipliers from inverse dynamics, of the largest force
   double sign;
 };
 
@@ -111,7 +82,7 @@ void Model::Implementation::check(const Instant& instant) const {
 
 void Model::Implementation::check_rank() {
   if (rank.equations > 0) return;
-  rank = system.constraint_rank(system.dynamics());
+  rank = constraint_rank(system, system.dynamics());
   if (rank.rank < rank.equations)
     throw ComputationError("multibody model: " + std::to_string(rank.equations) +
                            " constraint equations have rank " + std::to_string(rank.rank) +
@@ -124,19 +95,22 @@ void Model::Implementation::place_and_solve(double theta, const Instant& instant
   // At standstill the pistons' velocities are round-off of the projection, with any sign.
   system.inputs().rest_speed = instant.shaft.speed == 0
                                    ? std::numeric_limits<double>::infinity()
-                                   : piston_rest_speed(system.pump().geometry, instant.shaft.speed);
+                                   : rest_speed_at(system.pump().geometry, instant.shaft.speed);
   ++placements;
-  system.place(theta, instant.shaft.speed, instant.shaft.acceleration);
+  placement.place(theta, instant.shaft.speed, instant.shaft.acceleration);
   SimTK::State& state = system.dynamics();
   if (method == Method::multipliers) {
-    if (scene == Scene::full) system.set_acceleration(state, instant.shaft.acceleration);
+    if (scene == Scene::full) system.drive().set_acceleration(state, instant.shaft.acceleration);
     system.system().realize(state, Stage::Acceleration);
     check_rank();
     reactions_from_multipliers(system, state, reactions);
-    residual.solve(by_inverse_dynamics);
-    require_accurate_forces(force_difference(system, reactions, by_inverse_dynamics), theta);
+    inverse_dynamics.solve(by_inverse_dynamics);
+    const double difference = force_difference(system, reactions, by_inverse_dynamics);
+    require_agreement(
+        difference, [&] { return estimated_force_error(system, state); }, theta);
+    keep_worst(worst_difference, difference);
   } else {
-    residual.solve(reactions);
+    inverse_dynamics.solve(reactions);
     check_rank();
   }
 }
@@ -159,7 +133,7 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
     read_piston_channels(system, reactions, k, k, instant.chamber_pressure[k], layout, values);
   if (scene != Scene::full) return;
   // At standstill the power balance is taken with a virtual turn of 1 rad/s.
-  if (instant.shaft.speed == 0) system.assemble(instant.shaft.angle, 1);
+  if (instant.shaft.speed == 0) placement.assemble(instant.shaft.angle, 1);
   const WorkRate rate = instant.shaft.speed == 0 ? WorkRate{system.assembly(), 1}
                                                  : WorkRate{state, instant.shaft.speed};
   read_pump_channels(system, state, reactions, rate, instant.shaft.acceleration, pressure, layout,
@@ -181,42 +155,6 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
     read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
                          self.layout, values);
   });
-}
-
-std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
-                                                             const Assumptions& assumptions,
-                                                             Scene scene) {
-  const bool mesh = assumptions.gear == GearScene::mesh;
-  const int n = scene == Scene::piston ? 1 : pump.geometry.pistons;
-  const std::string pistons = n == 1 ? "1 piston" : std::to_string(n) + " pistons";
-  const std::string bodies = std::to_string(n + 2) + " (shaft, block, " + pistons + ")";
-  if (scene != Scene::full)
-    return {{"method", "multibody, Simbody " + simbody_version()},
-            {"scene", scene == Scene::pistons ? "pistons; shaft and block move as prescribed"
-                                              : "one piston; shaft and block move as prescribed"},
-            {"bodies", bodies},
-            {"joints", "pistons spherical at A to the shaft"},
-            {"constraints", "B on its bore axis (2 per piston)"}};
-  return {
-      {"method", "multibody, Simbody " + simbody_version()},
-      {"scene", std::string("full pump, gear ") +
-                    (mesh ? "in mesh (tooth force along z4 at O4)"
-                          : "replaced by a speed imposed on the block's joint")},
-      {"bodies", bodies},
-      {"joints", "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
-      {"constraints",
-       std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
-           (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
-}
-
-SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {
-  const PumpSystem system(built_pump(pump, scene), assumptions, 1, drive_of(scene));
-  const SimTK::State& state = system.dynamics();
-  SceneSize size;
-  size.bodies = system.matter().getNumBodies() - 1;  // without Ground
-  size.mobilities = state.getNU();
-  size.equations = state.getNMultipliers();
-  return size;
 }
 
 Provenance Model::provenance() const {
@@ -245,84 +183,15 @@ Provenance Model::provenance() const {
                                                    ", velocities " + per_angle(Stage::Velocity) +
                                                    ", accelerations " +
                                                    per_angle(Stage::Acceleration));
+  if (self.method == Method::multipliers && self.placements > 0) {
+    const double estimated = estimated_force_error(self.system, self.system.dynamics());
+    facts.emplace_back(
+        "difference from inverse dynamics",
+        short_text(self.worst_difference) + " of the largest force, the worst of all angles");
+    facts.emplace_back("estimated error of the multipliers",
+                       short_text(estimated) + " of the largest force, at the last angle");
+  }
   return provenance;
-}
-
-namespace {
-
-// Row of the samples at which piston 1 stands where piston k + 1 stands in `row`.
-std::size_t row_of_piston_one(std::size_t row, int k, std::size_t rows, int pistons) {
-  return (row + rows - rows / pistons * k) % rows;
-}
-
-// Pressures that differ by less than this share of the largest are equal but for the rounding of
-// the angle they were evaluated at.
-constexpr double kSamePressure = 1e-13;
-
-// Does every piston see, at each of its angles, the pressure that piston 1 sees there? Then piston
-// 1 stands for all.
-bool one_stands_for_all(const Samples& samples) {
-  const std::size_t rows = samples.theta_deg.size();
-  const int n = samples.pistons;
-  if (rows == 0 || rows % n != 0) return false;
-  double largest = 0;
-  for (const double pressure : samples.chamber_pressure)
-    largest = std::max(largest, std::abs(pressure));
-  for (std::size_t row = 0; row < rows; ++row) {
-    const double angle = 360.0 * static_cast<double>(row) / static_cast<double>(rows);
-    if (std::abs(samples.theta_deg[row] - angle) > 1e-9) return false;
-    for (int k = 1; k < n; ++k)
-      if (std::abs(samples.chamber_pressure[row * n + k] -
-                   samples.chamber_pressure[row_of_piston_one(row, k, rows, n) * n]) >
-          kSamePressure * largest)
-        return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
-                       const Progress& progress, Scene scene, Method method) {
-  const auto start = std::chrono::steady_clock::now();
-  Model model(the_case.pump, assumptions, samples.omega, scene, method);
-  const bool shared = scene == Scene::piston && one_stands_for_all(samples);
-  std::vector<std::vector<double>> of_one;
-  if (shared) {
-    Instant instant;
-    for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
-      samples.instant(row, instant);
-      of_one.emplace_back(model.layout().size(), not_computed());
-      model.evaluate_one(instant, of_one.back());
-    }
-  }
-  std::size_t next = 0;
-  const ChannelLayout& at = model.layout();
-  const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {
-    if (!shared) {
-      model.evaluate(instant, row);
-      return;
-    }
-    for (int k = 0; k < at.pistons(); ++k) {
-      const auto& one = of_one[row_of_piston_one(next, k, samples.theta_deg.size(), at.pistons())];
-      for (int axis = 0; axis < 3; ++axis) row[at.Rs(k, axis)] = one[at.Rs(0, axis)];
-      for (int axis = 0; axis < 2; ++axis) row[at.Rc(k, axis)] = one[at.Rc(0, axis)];
-      for (int axis = 0; axis < 3; ++axis) row[at.Rs3(k, axis)] = one[at.Rs3(0, axis)];
-      row[at.pressure(k)] = instant.chamber_pressure[k];
-      row[at.zB(k)] = one[at.zB(0)];
-      row[at.Tc(k)] = one[at.Tc(0)];
-      row[at.axis_moment(k)] = one[at.axis_moment(0)];
-    }
-    ++next;
-  };
-  ResultTable table = tabulate("multibody", at, samples, evaluate, progress);
-  table.provenance = model.provenance();
-  if (scene == Scene::piston)
-    table.provenance.facts.emplace_back("pistons",
-                                        shared ? "one stands for all" : "evaluated one by one");
-  table.provenance.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return table;
 }
 
 }  // namespace bentaxis::multibody

@@ -19,20 +19,6 @@ std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& 
   return "";
 }
 
-double piston_friction_force(const Friction& friction, double velocity, double rest_speed) {
-  double direction = 0;
-  if (friction.regularization > 0) {
-    direction = std::tanh(velocity / friction.regularization);
-  } else if (std::abs(velocity) > rest_speed) {
-    direction = velocity > 0 ? 1 : -1;
-  }
-  return -(friction.piston_coulomb * direction + friction.piston_viscous * velocity);
-}
-
-double piston_rest_speed(const Geometry& geometry, double omega) {
-  return 1e-12 * std::abs(omega) * geometry.joint_circle_radius;
-}
-
 AssemblyMargin assembly_margin(const Geometry& g) {
   // With u = cos theta the squared distance of A from its bore axis is
   // (Rd - Ra)^2 (1 - u^2) + (q u - s)^2: its maximum is at u = -1, at u = 1 or at the vertex.

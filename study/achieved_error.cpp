@@ -1,8 +1,10 @@
 #include "bentaxis/study/achieved_error.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/worst.h"
 
 namespace bentaxis::study {
 
@@ -20,7 +22,10 @@ AchievedError achieved_error(const Case& the_case, const Samples& samples,
   const compare::Comparison comparison = compare::compare_tables(reference, table, options);
   AchievedError error;
   const auto keep = [](double& worst, double value) {
-    worst = is_computed(worst) ? std::max(worst, value) : value;
+    if (is_computed(worst))
+      keep_worst(worst, value);
+    else
+      worst = value;
   };
   for (const compare::ChannelComparison& c : comparison.channels) {
     if (c.channel.kind != ChannelKind::reaction || c.verdict == compare::Verdict::not_computed)
@@ -32,7 +37,7 @@ AchievedError achieved_error(const Case& the_case, const Samples& samples,
     if (quantity == "Rb1" || quantity == "Rb2") keep(error.bearings, value);
     if (quantity == "Rcs") keep(error.rcs, value);
     if (quantity == "Td") keep(error.td, value);
-    if (error.worst_channel.empty() || value > error.worst) {
+    if (error.worst_channel.empty() || value > error.worst || std::isnan(value)) {
       error.worst = value;
       error.worst_channel = c.channel.name;
     }

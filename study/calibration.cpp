@@ -11,7 +11,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/stopwatch.h"
+#include "bentaxis/results/stopwatch.h"
 
 namespace bentaxis::study {
 namespace {
@@ -74,7 +74,7 @@ Calibration calibrate(const Case& the_case, const Assumptions& assumptions,
                       const PressureTrace& pressure, double asked,
                       const std::vector<multibody::Integrator>& among,
                       const PartProgress& progress_of) {
-  const auto start = Clock::now();
+  const Stopwatch stopwatch;
   Case trial_case;
   const Samples samples = pitch_samples(the_case, pressure, trial_case);
   const ResultTable reference = analytic::run(trial_case, assumptions, samples);
@@ -91,13 +91,13 @@ Calibration calibrate(const Case& the_case, const Assumptions& assumptions,
   for (std::size_t i = 0; i < among.size(); ++i) {
     const auto attempt = [&](double accuracy) -> std::optional<Trial> {
       ++best.trials;
-      const auto begun = Clock::now();
+      const Stopwatch since;
       struct TooSlow {};
       try {
         const auto run = multibody::run_integrated(
             trial_case, assumptions, samples, pressure, {among[i], accuracy}, [&](double done) {
               progress((static_cast<double>(i) + done) / static_cast<double>(among.size() + 1));
-              if (seconds_since(begun) > limit) throw TooSlow();
+              if (since.seconds() > limit) throw TooSlow();
             });
         const double error = achieved_error(trial_case, samples, reference, run.table).worst;
         if (error < closest) closest = error;
@@ -128,7 +128,7 @@ Calibration calibrate(const Case& the_case, const Assumptions& assumptions,
     }
   }
   progress(1);
-  best.seconds_spent = fmt::format("{:.2g} s", seconds_since(start));
+  best.seconds_spent = fmt::format("{:.2g} s", stopwatch.seconds());
   if (!std::isfinite(best.seconds_per_turn))
     throw ComputationError(fmt::format(
         "no integrator reaches an error of {:g} of peak; the closest was {:.1e}{}", asked, closest,

@@ -1,7 +1,6 @@
 #include "bentaxis/study/hard_cases.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -15,6 +14,8 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/stopwatch.h"
+#include "bentaxis/results/worst.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/rounding_spread.h"
 
@@ -52,19 +53,20 @@ std::vector<GroupLoss> losses(const compare::Comparison& comparison) {
 using Run = std::function<ResultTable(const Case&)>;
 
 void judge(HardOutcome& outcome) {
-  outcome.verdict = HardVerdict::accurate;
+  outcome.verdict = HardVerdict::as_predicted;
   for (const GroupLoss& g : outcome.groups) {
     if (g.measured <= std::max(kRoundOffLoss, kPredictionFactor * g.predicted)) continue;
     outcome.verdict = HardVerdict::wrong;
-    outcome.message = g.group + " is off by " + number_text(g.measured) +
-                      " of its peak, predicted were " + number_text(g.predicted);
+    if (!outcome.message.empty()) outcome.message += "; ";
+    outcome.message += g.group + " is off by " + number_text(g.measured) +
+                       " of its peak, predicted were " + number_text(g.predicted);
   }
 }
 
 // Runs a model and fills all but the prediction. False where it refused.
 bool attempt(HardOutcome& outcome, const Case& the_case, const ResultTable& reference,
              const compare::Options& options, const Run& run, ResultTable& table) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   try {
     table = run(the_case);
   } catch (const std::runtime_error& error) {
@@ -75,9 +77,7 @@ bool attempt(HardOutcome& outcome, const Case& the_case, const ResultTable& refe
     outcome.verdict = clear && outcome.refusal_expected ? HardVerdict::refused : HardVerdict::wrong;
     return false;
   }
-  outcome.seconds_per_angle =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
-      static_cast<double>(table.rows());
+  outcome.seconds_per_angle = stopwatch.seconds() / static_cast<double>(table.rows());
   outcome.groups = losses(compare::compare_tables(reference, table, options));
   return true;
 }
@@ -91,7 +91,7 @@ const std::vector<std::string>& hard_models() {
 
 const char* to_string(HardVerdict verdict) {
   switch (verdict) {
-    case HardVerdict::accurate:
+    case HardVerdict::as_predicted:
       return "accurate";
     case HardVerdict::refused:
       return "refused";
@@ -102,9 +102,10 @@ const char* to_string(HardVerdict verdict) {
 }
 
 const GroupLoss* HardOutcome::worst() const {
-  const auto it = std::max_element(
-      groups.begin(), groups.end(),
-      [](const GroupLoss& a, const GroupLoss& b) { return a.measured < b.measured; });
+  const auto it =
+      std::max_element(groups.begin(), groups.end(), [](const GroupLoss& a, const GroupLoss& b) {
+        return std::isnan(b.measured) ? !std::isnan(a.measured) : a.measured < b.measured;
+      });
   return it == groups.end() ? nullptr : &*it;
 }
 
@@ -199,7 +200,12 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard, const PartProgress&
     };
     if (attempt(outcome, the_case, reference, options, run, table)) {
       outcome.weak_point = analytic.weak_point;
-      auto spread = rounding_spread(the_case, table, options, run);
+      std::map<std::string, double> spread;
+      try {
+        spread = rounding_spread(the_case, table, options, run);
+      } catch (const NoEstimate& none) {
+        outcome.message = none.what();
+      }
       for (GroupLoss& g : outcome.groups) g.predicted = of_inputs[g.group] + spread[g.group];
       judge(outcome);
     }
@@ -214,6 +220,21 @@ bool LongRun::bounded() const {
          reaction_error[1] <= kGrowth * reaction_error[0];
 }
 
+std::vector<double> errors_of_turns(const ResultTable& reference, const ResultTable& table,
+                                    const compare::ZeroScales& zero_scales, int samples_per_turn) {
+  std::vector<double> errors((reference.rows() + samples_per_turn - 1) / samples_per_turn);
+  for (std::size_t c = 0; c < reference.columns(); ++c) {
+    const Channel& channel = reference.channels[c];
+    if (channel.kind != ChannelKind::reaction) continue;
+    const double scale = compare::scale_of(reference, channel, zero_scales);
+    for (std::size_t row = 0; row < reference.rows(); ++row) {
+      const double off = table.at(row, c) - reference.at(row, c);
+      if (off != 0) keep_worst(errors[row / samples_per_turn], off / scale);
+    }
+  }
+  return errors;
+}
+
 LongRun run_long(const std::filesystem::path& catalogue, int turns, double accuracy,
                  const PartProgress& progress_of) {
   Case the_case = read_case(catalogue / "long_run" / "case.toml");
@@ -221,20 +242,14 @@ LongRun run_long(const std::filesystem::path& catalogue, int turns, double accur
   const PressureTrace pressure(the_case.pressure);
   const Samples samples = sample_case(the_case, pressure, turns);
   const ResultTable analytic = analytic::run(the_case, the_case.analytic, samples);
+  const compare::ZeroScales scales = zero_scales(the_case, samples);
   multibody::IntegrationOptions options;
   options.accuracy = accuracy;
   const auto run =
       multibody::run_integrated(the_case, the_case.multibody, samples, pressure, options,
                                 progress_of(std::to_string(turns) + " turns"));
-  std::vector<double> peaks;
-  for (const Channel& channel : analytic.channels) peaks.push_back(analytic.peak(channel.group));
-  std::vector<double> errors(turns);
-  for (std::size_t row = 0; row < analytic.rows(); ++row) {
-    double& error = errors[row / the_case.operation.samples_per_revolution];
-    for (std::size_t c = 0; c < analytic.columns(); ++c)
-      if (analytic.channels[c].kind == ChannelKind::reaction)
-        error = std::max(error, std::abs(run.table.at(row, c) - analytic.at(row, c)) / peaks[c]);
-  }
+  const std::vector<double> errors =
+      errors_of_turns(analytic, run.table, scales, the_case.operation.samples_per_revolution);
   LongRun result;
   result.turns = turns;
   result.accuracy = accuracy;
@@ -244,8 +259,8 @@ LongRun run_long(const std::filesystem::path& catalogue, int turns, double accur
   for (int turn = 0; turn < turns; ++turn) {
     const int half = 2 * turn < turns ? 0 : 1;
     const auto& record = run.record.turns[turn];
-    result.position_error[half] = std::max(result.position_error[half], record.position_error);
-    result.reaction_error[half] = std::max(result.reaction_error[half], errors[turn]);
+    keep_worst(result.position_error[half], record.position_error);
+    keep_worst(result.reaction_error[half], errors[turn]);
     if (turn + 1 != next && turn + 1 != turns) continue;
     result.shown.push_back({turn + 1, record, errors[turn]});
     const int leading = std::stoi(std::to_string(next).substr(0, 1));  // 1, 2, 5, 10, ..

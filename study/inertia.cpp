@@ -1,8 +1,10 @@
 #include "bentaxis/study/inertia.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <ctime>
+#include <limits>
 #include <utility>
 
 #include "bentaxis/analytic/model.h"
@@ -71,31 +73,11 @@ Lumping error_of(const std::string& name, const Case& the_case, PistonInertia in
       peak_difference(lumped, real, "Rs"), peak_difference(lumped, real, "Rc")};
 }
 
-// Smallest value of a convex function on [0, 1] by golden sections.
+// Where a convex function is smallest on [0, 1].
 double smallest_at(const std::function<double(double)>& value) {
-  const double ratio = (std::sqrt(5.0) - 1) / 2;
-  double low = 0;
-  double high = 1;
-  double left = high - ratio * (high - low);
-  double right = low + ratio * (high - low);
-  double at_left = value(left);
-  double at_right = value(right);
-  while (high - low > 1e-7) {
-    if (at_left < at_right) {
-      high = right;
-      right = left;
-      at_right = at_left;
-      left = high - ratio * (high - low);
-      at_left = value(left);
-    } else {
-      low = left;
-      left = right;
-      at_left = at_right;
-      right = low + ratio * (high - low);
-      at_right = value(right);
-    }
-  }
-  return (low + high) / 2;
+  // Half of a double's digits: nearer to its minimum a function is flat to round-off.
+  constexpr int kBits = std::numeric_limits<double>::digits / 2;
+  return boost::math::tools::brent_find_minima(value, 0.0, 1.0, kBits).first;
 }
 
 // A case with few pistons and samples: every piston has the same curve, so one is enough.
@@ -103,12 +85,6 @@ Case one_piston(Case the_case, int samples) {
   the_case.pump.geometry.pistons = 1;
   the_case.operation.samples_per_revolution = samples;
   return the_case;
-}
-
-// Has a real piston equations of motion? Otherwise only inverse dynamics serves it.
-bool has_piston_inertia(const PumpParameters& pump) {
-  const PistonMass::Real& real = *pump.piston.real;
-  return real.transverse_inertia + pump.piston.mass * real.centre_of_mass * real.centre_of_mass > 0;
 }
 
 }  // namespace
@@ -142,14 +118,12 @@ InertiaRun run_both_pistons(const Case& the_case, double speed_rpm, bool loaded,
   run.speed_rpm = speed_rpm;
   run.loaded = loaded;
   const auto multibody_run = [&](PistonInertia inertia) {
-    const Assumptions assumptions = with(at.analytic, inertia);
-    try {
-      return multibody::run_driven(at, assumptions, samples, progress, scene);
-    } catch (const ComputationError&) {
-      // Massless pistons have no equations of motion; inverse dynamics needs none.
-      return multibody::run_driven(at, assumptions, samples, progress, scene,
-                                   multibody::Method::residual);
-    }
+    // Inverse dynamics needs no equation of motion; for what has one it would hide a failure.
+    const bool by_multipliers = multibody::has_equation_of_motion(at.pump, inertia);
+    if (!by_multipliers) run.by_inverse_dynamics.push_back(inertia);
+    return multibody::run_driven(
+        at, with(at.analytic, inertia), samples, progress, scene,
+        by_multipliers ? multibody::Method::multipliers : multibody::Method::residual);
   };
   run.analytic_lumped = analytic::run(at, with(at.analytic, PistonInertia::lumped), samples);
   run.analytic_real = analytic::run(at, with(at.analytic, PistonInertia::real), samples);
@@ -363,7 +337,7 @@ SpinRun spin_run(const Case& the_case, double speed_rpm, double spin_rpm,
   options.accuracy = kSpinAccuracy;
   const auto run = multibody::run_integrated(spinning, with(spinning.analytic, PistonInertia::real),
                                              samples, pressure, options, progress);
-  return {spin_rpm, run.record.worst_spin, options.accuracy};
+  return {spin_rpm, run.record.whole.spin_error, options.accuracy};
 }
 
 std::vector<SceneCost> scene_costs(const Case& the_case) {
@@ -375,7 +349,9 @@ std::vector<SceneCost> scene_costs(const Case& the_case) {
     for (std::size_t s = 0; s < multibody::scene_names().size(); ++s) {
       const auto scene = static_cast<multibody::Scene>(s);
       const auto method = static_cast<multibody::Method>(m);
-      if (method == multibody::Method::multipliers && !has_piston_inertia(the_case.pump)) continue;
+      if (method == multibody::Method::multipliers &&
+          !multibody::has_equation_of_motion(the_case.pump, PistonInertia::real))
+        continue;
       multibody::Model model(the_case.pump, assumptions, samples.omega, scene, method);
       std::vector<double> values(model.layout().size());
       Instant instant;

@@ -1,11 +1,10 @@
 #include "bentaxis/study/rounding_spread.h"
 
-#include <algorithm>
 #include <limits>
 #include <random>
 
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
+#include "bentaxis/results/worst.h"
 
 namespace bentaxis::study {
 namespace {
@@ -32,8 +31,7 @@ std::map<std::string, double> largest_of_groups(const compare::Comparison& compa
   for (const auto& c : comparison.channels) {
     if (c.channel.kind != ChannelKind::reaction) continue;
     double& largest = groups[c.channel.group];
-    if (c.verdict != compare::Verdict::not_computed)
-      largest = std::max(largest, c.largest_over_peak());
+    if (c.verdict != compare::Verdict::not_computed) keep_worst(largest, c.largest_over_peak());
   }
   return groups;
 }
@@ -43,15 +41,20 @@ std::map<std::string, double> rounding_spread(const Case& the_case, const Result
                                               const std::function<ResultTable(const Case&)>& run) {
   std::mt19937 engine(1);
   std::map<std::string, double> spread;
+  std::string refusal;
   for (int draw = 0; draw < kDraws; ++draw) {
     try {
       const auto comparison = compare::compare_tables(table, run(moved(the_case, engine)), options);
       for (const auto& [group, change] : largest_of_groups(comparison))
-        spread[group] = std::max(spread[group], change);
-    } catch (const ComputationError&) {
-      // This copy was refused.
+        keep_worst(spread[group], change);
+    } catch (const ComputationError& error) {
+      refusal = error.what();
     }
   }
+  if (spread.empty())
+    throw NoEstimate("what rounding decides could not be estimated: all " + std::to_string(kDraws) +
+                     " copies with inputs moved by one unit in the last place were refused (" +
+                     refusal + ")");
   return spread;
 }
 

@@ -11,8 +11,8 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/stopwatch.h"
 #include "bentaxis/study/calibration.h"
-#include "bentaxis/study/stopwatch.h"
 
 namespace bentaxis::study {
 namespace {
@@ -25,12 +25,12 @@ double time_of(const std::function<void()>& job) {
   double best = std::numeric_limits<double>::infinity();
   for (int stretch = 0; stretch < 3; ++stretch) {
     long repeats = 0;
-    const auto start = Clock::now();
+    const Stopwatch stopwatch;
     do {
       job();
       ++repeats;
-    } while (seconds_since(start) < 0.02);
-    best = std::min(best, seconds_since(start) / static_cast<double>(repeats));
+    } while (stopwatch.seconds() < 0.02);
+    best = std::min(best, stopwatch.seconds() / static_cast<double>(repeats));
   }
   return best;
 }
@@ -175,16 +175,16 @@ class Measurement {
     struct TooLong {
       double turn;
     };
-    const auto start = Clock::now();
+    const Stopwatch stopwatch;
     const auto watch = [&](double fraction) {
       report(fraction);
-      if (seconds_since(start) > options_.max_seconds_per_run && fraction < 1)
+      if (stopwatch.seconds() > options_.max_seconds_per_run && fraction < 1)
         throw TooLong{fraction};
     };
     try {
       // Short runs are timed more than once: the best counts.
       run.seconds_per_turn = std::numeric_limits<double>::infinity();
-      for (int repeat = 0; repeat < 3 && seconds_since(start) < kRepeatFor; ++repeat) {
+      for (int repeat = 0; repeat < 3 && stopwatch.seconds() < kRepeatFor; ++repeat) {
         const auto result = multibody::run_integrated(case_, assumptions_, samples_, pressure_,
                                                       {integrator, accuracy}, watch);
         run.seconds_per_turn = std::min(run.seconds_per_turn, result.record.seconds);
@@ -195,10 +195,10 @@ class Measurement {
       run.failure = error.what();
     } catch (const TooLong& stopped) {
       run.failure = fmt::format("stopped after {:.3g} s at {:.0f} % of the turn",
-                                seconds_since(start), 100 * stopped.turn);
+                                stopwatch.seconds(), 100 * stopped.turn);
       return false;
     }
-    return seconds_since(start) <= options_.max_seconds_per_run;
+    return stopwatch.seconds() <= options_.max_seconds_per_run;
   }
 
   const Case& case_;

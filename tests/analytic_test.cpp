@@ -189,7 +189,7 @@ TEST(Properties, PowerBalanceAndPistonAxisMomentVanish) {
   for (int n = 0; n < 300; ++n) {
     const PumpParameters pump = random.pump();
     Assumptions assumptions = random.assumptions(pump);
-    if (n % 3 == 0) assumptions.gear = GearScene::imposed;
+    if (n % 3 == 0) assumptions.gear = BlockDrive::imposed;
     const Model model(pump, assumptions);
     const ChannelLayout& at = model.layout();
     std::vector<double> v(at.size());
@@ -339,7 +339,7 @@ TEST(Properties, AxialInertiasDoNotActAtConstantSpeed) {
   std::vector<double> a(model.layout().size());
   std::vector<double> b(model.layout().size());
   model.evaluate(i, a);
-  const Assumptions same = {true, pump.piston.inertia, GearScene::mesh};
+  const Assumptions same = {true, pump.piston.inertia, BlockDrive::mesh};
   Model(pump, same).evaluate(i, a);
   pump.shaft.axial_inertia *= 10;
   pump.block.axial_inertia *= 10;
@@ -359,7 +359,7 @@ TEST(Properties, ImposedBlockSpeedTakesTheGearTorqueOffTheShaft) {
     const PumpParameters pump = random.pump();
     Assumptions mesh = random.assumptions(pump);
     Assumptions imposed = mesh;
-    imposed.gear = GearScene::imposed;
+    imposed.gear = BlockDrive::imposed;
     const Instant i = random.instant(pump, true);
     const Model with_gear(pump, mesh);
     const ChannelLayout& at = with_gear.layout();

@@ -144,7 +144,7 @@ TEST(Batch, ManyPumpsEqualTheScalarModel) {
   RandomPump random(32);
   for (const int count : {1, 2, 3, 7, 8, 9, 31}) {
     for (const PistonInertia inertia : {PistonInertia::lumped, PistonInertia::real}) {
-      for (const GearScene gear : {GearScene::mesh, GearScene::imposed}) {
+      for (const BlockDrive gear : {BlockDrive::mesh, BlockDrive::imposed}) {
         const Assumptions assumptions = {true, inertia, gear};
         const auto pumps = pumps_of(random, 5, count);
         const PumpBatch model(pumps, assumptions);

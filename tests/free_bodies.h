@@ -87,10 +87,15 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
     const V rs = r12 * V(values[at.Rs(k, 0)], values[at.Rs(k, 1)], values[at.Rs(k, 2)]);
     const V rc = r12 * V(values[at.Rc(k, 0)], values[at.Rc(k, 1)], 0);
     const double v = (a2[2].d + h.d) * t.shaft.speed;
-    const double friction =
-        assumptions.piston_friction
-            ? piston_friction_force(p.friction, v, piston_rest_speed(g, t.shaft.speed))
-            : 0;
+    // (25), written once more: no model's law judges itself.
+    const double rest = 1e-12 * std::abs(t.shaft.speed) * g.joint_circle_radius;
+    const double sign = p.friction.regularization > 0 ? std::tanh(v / p.friction.regularization)
+                        : v > rest                    ? 1
+                        : v < -rest                   ? -1
+                                                      : 0;
+    const double friction = assumptions.piston_friction
+                                ? -p.friction.piston_coulomb * sign - p.friction.piston_viscous * v
+                                : 0;
     // Moments about A: the lever of what acts at A is exactly 0.
     FreeBody piston;
     piston.force(V::Zero(), rs);

@@ -6,6 +6,8 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/worst.h"
+#include "loads/friction.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -45,8 +47,9 @@ TEST(DrivenModel, AgreesOnRandomPumpsAndChangingSpeed) {
   for (int n = 0; n < 60; ++n) {
     const PumpParameters pump = random.pump();
     Assumptions assumptions = random.assumptions(pump);
-    if (n % 4 == 3) assumptions.gear = GearScene::imposed;
-    const Instant instant = random.instant(pump, n % 2 == 0 && assumptions.gear == GearScene::mesh);
+    if (n % 4 == 3) assumptions.gear = BlockDrive::imposed;
+    const Instant instant =
+        random.instant(pump, n % 2 == 0 && assumptions.gear == BlockDrive::mesh);
     const analytic::Model a(pump, assumptions);
     multibody::Model m(pump, assumptions, instant.shaft.speed);
     std::vector<double> va(a.layout().size());
@@ -235,8 +238,8 @@ TEST(Integrated, ErrorShrinksWithTheAccuracyAskedFor) {
     // Measured: 3e-5, 3e-5 (held by the step between samples), 8e-7.
     EXPECT_LT(error.reactions, std::max(100 * accuracy, 1e-6)) << accuracy;
     EXPECT_LE(error.reactions, before);
-    EXPECT_LT(std::abs(error.record.worst_gear_phase), 1e-6);
-    EXPECT_LT(std::abs(error.record.work_residual()), 1e-4);  // J of 5434 J
+    EXPECT_LT(std::abs(error.record.whole.gear_phase), 1e-6);
+    EXPECT_LT(std::abs(error.record.whole.work_residual), 1e-4);  // J of 5434 J
     before = error.reactions;
   }
   EXPECT_LT(before, 5e-6);
@@ -276,11 +279,83 @@ TEST(Integrated, AnalyticTorqueHoldsTheSpeedOfAFreeShaft) {
   const auto run = [&] {
     return multibody::run_torque_driven(the_case, the_case.multibody, samples, pressure, torque,
                                         options)
-        .worst_speed;
+        .whole.speed_error;
   };
   EXPECT_LT(run(), 1e-7);
   factor = 1.01;
   EXPECT_GT(run(), 1e-3);
+}
+
+// The errors of a run are those of its worst sample; one that is no number must not be lost among
+// the others.
+TEST(Integrated, ErrorsOfARunKeepEveryNaN) {
+  multibody::WorstErrors run;
+  multibody::WorstErrors sample;
+  sample.position_error = 3;
+  sample.work_residual = -2;
+  run.keep(sample);
+  sample.position_error = -1;
+  sample.work_residual = 1;
+  run.keep(sample);
+  EXPECT_EQ(run.position_error, 3);
+  EXPECT_EQ(run.work_residual, 1);
+  EXPECT_TRUE(run.is_finite());
+  for (const auto error :
+       {&multibody::WorstErrors::position_error, &multibody::WorstErrors::velocity_error,
+        &multibody::WorstErrors::gear_phase, &multibody::WorstErrors::shaft_angle,
+        &multibody::WorstErrors::speed_error, &multibody::WorstErrors::spin_error}) {
+    multibody::WorstErrors broken;
+    broken.*error = std::nan("");
+    multibody::WorstErrors all = run;
+    all.keep(broken);
+    all.keep(sample);
+    EXPECT_TRUE(std::isnan(all.*error));
+    EXPECT_FALSE(all.is_finite());
+  }
+}
+
+// Whoever notices, Simbody's step control or the account of errors: such a run ends with a message.
+TEST(Integrated, ATorqueThatIsNoNumberEndsTheRun) {
+  const Case the_case = reference_case("bap63_rated");
+  const PressureTrace pressure(the_case.pressure);
+  const Samples samples = sample_case(the_case, pressure, 1);
+  for (const double from : {0.0, 90.0}) {
+    const auto torque = [&](double theta_deg) { return theta_deg >= from ? std::nan("") : 290.0; };
+    EXPECT_THROW(
+        multibody::run_torque_driven(the_case, the_case.multibody, samples, pressure, torque, {}),
+        ComputationError);
+  }
+}
+
+TEST(Worst, KeepsTheLargestMagnitudeAndEveryNaN) {
+  double worst = 0;
+  keep_worst(worst, -2);
+  keep_worst(worst, 1);
+  EXPECT_EQ(worst, 2);
+  keep_worst(worst, std::nan(""));
+  keep_worst(worst, 3);
+  EXPECT_TRUE(std::isnan(worst));
+}
+
+// ---- friction ----------------------------------------------------------------------------------
+
+// (25), by hand: against the motion, smoothed or by the sign, and none of it at rest.
+TEST(PistonFriction, OpposesMotionAndRestsAtRest) {
+  Friction f;
+  f.piston_coulomb = 25;
+  f.piston_viscous = 10;
+  f.regularization = 0.01;
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 0.01, 0), -(25 * std::tanh(1.0) + 0.1));
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, -0.01, 0), 25 * std::tanh(1.0) + 0.1);
+  f.regularization = 0;
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 1e-3, 1e-12), -(25 + 0.01));
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, -1e-3, 1e-12), 25 + 0.01);
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 1e-13, 1e-12), -1e-12);
+  EXPECT_DOUBLE_EQ(multibody::piston_friction(f, 0, 0), 0);
+  // At rest up to 1e-12 |omega| Ra.
+  Geometry g;
+  g.joint_circle_radius = 0.04;
+  EXPECT_DOUBLE_EQ(multibody::rest_speed_at(g, -150), 6e-12);
 }
 
 // ---- rank of the constraints ------------------------------------------------------------------

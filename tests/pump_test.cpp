@@ -11,7 +11,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/number.h"
-#include "land_pressure.h"
+#include "loads/film.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -161,8 +161,8 @@ TEST(CaseFile, EachModelMayHaveItsOwnAssumptions) {
   const std::string extra =
       "\n[assumptions.multibody]\npiston_friction = false\ngear = \"imposed\"\n";
   const Case c = parse_case(default_text() + extra, "x.toml");
-  EXPECT_TRUE(c.analytic == (Assumptions{true, PistonInertia::lumped, GearScene::mesh}));
-  EXPECT_TRUE(c.multibody == (Assumptions{false, PistonInertia::lumped, GearScene::imposed}));
+  EXPECT_TRUE(c.analytic == (Assumptions{true, PistonInertia::lumped, BlockDrive::mesh}));
+  EXPECT_TRUE(c.multibody == (Assumptions{false, PistonInertia::lumped, BlockDrive::imposed}));
   EXPECT_THAT(message(default_text() + "\n[assumptions.simscape]\n"), HasSubstr("simscape"));
   EXPECT_THAT(message(default_text() + "\n[assumptions.analytic]\ninertia = \"real\"\n"),
               HasSubstr("needs centre_of_mass_mm"));
@@ -256,20 +256,6 @@ TEST(Pressure, CurveIsRefusedWithTheReason) {
   EXPECT_THROW(PressureTrace{spec}, InputError);
   spec.curve = {{0, 100, 359.9}, {1, 2, 3}};
   EXPECT_NO_THROW(PressureTrace{spec});
-}
-
-// ---- friction ----------------------------------------------------------------------------------
-
-TEST(Friction, OpposesMotionAndRestsAtRest) {
-  Friction f;
-  f.piston_coulomb = 25;
-  f.piston_viscous = 10;
-  f.regularization = 0.01;
-  EXPECT_DOUBLE_EQ(piston_friction_force(f, 0.01, 0), -(25 * std::tanh(1.0) + 0.1));
-  EXPECT_DOUBLE_EQ(piston_friction_force(f, -0.01, 0), 25 * std::tanh(1.0) + 0.1);
-  f.regularization = 0;
-  EXPECT_DOUBLE_EQ(piston_friction_force(f, 1e-3, 1e-12), -(25 + 0.01));
-  EXPECT_DOUBLE_EQ(piston_friction_force(f, 1e-13, 1e-12), -1e-12);
 }
 
 // ---- port plate: closed form against quadrature ------------------------------------------------

@@ -84,7 +84,7 @@ TEST(Scene, AgreesOnRandomPumpsAndChangingSpeed) {
   for (int n = 0; n < 60; ++n) {
     const PumpParameters pump = random.pump();
     Assumptions assumptions = random.assumptions(pump);
-    if (n % 4 == 3) assumptions.gear = GearScene::imposed;
+    if (n % 4 == 3) assumptions.gear = BlockDrive::imposed;
     const Instant instant = random.instant(pump, n % 2 == 0);
     const analytic::Model a(pump, assumptions);
     std::vector<double> va(a.layout().size());

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "conventions.h"
-#include "gear_mesh.h"
+#include "scene/gear_mesh.h"
 
 namespace bentaxis::multibody {
 namespace {

@@ -6,7 +6,9 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/hard_cases.h"
 #include "bentaxis/study/inertia.h"
+#include "bentaxis/study/rounding_spread.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -204,6 +206,74 @@ TEST(InertiaStudy, MasslessPistonHasNoReactionsWithoutLoad) {
     EXPECT_LE(table->peak("Rs"), scaled(1e-15));
     EXPECT_LE(table->peak("Rc"), scaled(1e-15));
   }
+  EXPECT_EQ(run.by_inverse_dynamics,
+            (std::vector<PistonInertia>{PistonInertia::lumped, PistonInertia::real}));
+}
+
+// Only pistons without inertia about their joint are solved by inverse dynamics, and the run says
+// which; any other failure comes through instead of switching the method in silence.
+TEST(InertiaStudy, InverseDynamicsReplacesMissingInertiaAloneAndIsSaid) {
+  Case the_case = shipped_case();
+  EXPECT_TRUE(
+      study::run_both_pistons(the_case, 2350, false, Scene::piston).by_inverse_dynamics.empty());
+  the_case.pump.piston.joint_mass_fraction = 1;
+  EXPECT_EQ(study::run_both_pistons(the_case, 2350, false, Scene::piston).by_inverse_dynamics,
+            std::vector<PistonInertia>{PistonInertia::lumped});
+  // Simbody's multipliers lose the reactions between pistons of 1e-12 kg and bodies of 2 kg.
+  the_case = shipped_case();
+  the_case.pump.piston.mass = 1e-12;
+  the_case.pump.piston.real->transverse_inertia *= 1e-11;
+  the_case.pump.piston.real->axial_inertia *= 1e-11;
+  EXPECT_THROW(study::run_both_pistons(the_case, 2350, true, Scene::full), ComputationError);
+}
+
+// ---- what rounding decides
+// -----------------------------------------------------------------------
+
+TEST(RoundingSpread, CopiesThatAreAllRefusedAreNoEstimate) {
+  const Case the_case = shipped_case();
+  const Samples samples = one_turn(the_case);
+  const ResultTable table = analytic::run(the_case, the_case.analytic, samples);
+  int refused = 4;
+  const auto run = [&](const Case& c) {
+    if (refused-- > 0) throw ComputationError("no assembly found");
+    return analytic::run(c, c.analytic, samples);
+  };
+  try {
+    study::rounding_spread(the_case, table, {}, run);
+    FAIL() << "nothing lost";
+  } catch (const study::NoEstimate& none) {
+    EXPECT_NE(std::string(none.what()).find("no assembly found"), std::string::npos);
+  }
+  refused = 3;
+  const auto spread = study::rounding_spread(the_case, table, {}, run);
+  EXPECT_GT(spread.at("Rs"), 0);
+  EXPECT_LT(spread.at("Rs"), 1e-14);
+}
+
+// ---- long runs
+// -----------------------------------------------------------------------------------
+
+// Two turns of two samples of two groups, the second of which nothing loads.
+TEST(LongRun, AGroupThatNothingLoadsIsHeldToTheScaleOfItsUnit) {
+  const Case the_case = shipped_case();
+  Case idle = study::without_loads(the_case);
+  idle.operation.samples_per_revolution = 2;
+  const PressureTrace pressure(idle.pressure);
+  const Samples samples = sample_case(idle, pressure, 2);
+  ResultTable reference = analytic::run(idle, idle.analytic, samples);
+  const std::size_t column = reference.find("Rs_1_x2_N");
+  const std::string group = reference.channels[column].group;
+  for (std::size_t row = 0; row < reference.rows(); ++row)
+    for (std::size_t c = 0; c < reference.columns(); ++c)
+      if (reference.channels[c].group == group) reference.values[row * reference.columns() + c] = 0;
+  const compare::ZeroScales scales = {{"N", 1000}, {"Nm", 10}, {"mm", 1}};
+  ResultTable table = reference;
+  EXPECT_EQ(study::errors_of_turns(reference, table, scales, 2), (std::vector<double>{0, 0}));
+  table.values[2 * table.columns() + column] = 1;
+  EXPECT_EQ(study::errors_of_turns(reference, table, scales, 2), (std::vector<double>{0, 1e-3}));
+  table.values[column] = std::nan("");
+  EXPECT_TRUE(std::isnan(study::errors_of_turns(reference, table, scales, 2)[0]));
 }
 
 }  // namespace

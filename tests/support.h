@@ -135,7 +135,7 @@ class RandomPump {
   }
 
   Assumptions assumptions(const PumpParameters& p) {
-    return {in(0, 1) < 0.7, p.piston.inertia, GearScene::mesh};
+    return {in(0, 1) < 0.7, p.piston.inertia, BlockDrive::mesh};
   }
 
   double in(double low, double high) {

@@ -105,7 +105,7 @@ class RandomCase {
     c.pressure.ports = {random_.in(-1e5, 1e6), random_.in(0, 4e7)};
     c.pressure.transition_deg = random_.in(1, 40);
     c.pressure.delivery_start_deg = random_.in(160, 200);
-    c.analytic = {random_.in(0, 1) < 0.7, p.piston.inertia, GearScene::mesh};
+    c.analytic = {random_.in(0, 1) < 0.7, p.piston.inertia, BlockDrive::mesh};
     c.multibody = c.analytic;
     drawn.theta_deg = random_.in(-400, 400);
     return drawn;

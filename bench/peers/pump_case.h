@@ -44,7 +44,10 @@ class PumpCase {
   /// Pressure and friction on piston k along z2 at B, N.
   double axial(double theta, int k, double velocity) const {
     const double pressure = trace(piston_angle_deg(theta / kRadPerDegree, k + 1, pistons()));
-    return piston_friction_force(the_case.pump.friction, velocity, 0) - area() * pressure;
+    const Friction& f = the_case.pump.friction;
+    const double sign = f.regularization > 0 ? std::tanh(velocity / f.regularization)
+                                             : static_cast<double>((velocity > 0) - (velocity < 0));
+    return -(f.piston_coulomb * sign + f.piston_viscous * velocity) - area() * pressure;
   }
   /// Largest |Rs - right Rs| at a sample so far, and the peak of the right one.
   void judge(int sample, int k, const Vector& rs) {

@@ -29,33 +29,33 @@ struct IntegrationOptions {
   double accuracy = 1e-6;  ///< Simbody's relative accuracy per step; not the achieved error
 };
 
-/// Worst errors within one revolution of an integrated run, and what it lost until its end.
-struct TurnRecord {
-  double position_error = 0;  ///< m, of all constraint equations at the samples
-  double velocity_error = 0;  ///< m/s
+/// Worst errors at the samples of a stretch of an integrated run, and the work lost until its end.
+struct WorstErrors {
+  double position_error = 0;  ///< m, largest of all constraint equations
+  double velocity_error = 0;  ///< m/s (rad/s for the speed of the shaft)
   double gear_phase = 0;      ///< rad, block minus shaft
-  double spin_error = 0;      ///< rad/s, of pistons that are free to spin
-  double work_residual = 0;   ///< J, since the start
+  double shaft_angle = 0;     ///< rad, shaft minus omega t
+  double speed_error = 0;     ///< of the shaft, relative to omega
+  double spin_error = 0;      ///< rad/s, change of a real piston's spin about its axis
+  double work_residual =
+      0;  ///< J since the start, that constraints and integration created or lost
+
+  /// Takes in the errors at a later sample: the larger ones, and a NaN for good; the work as it is
+  /// there.
+  void keep(const WorstErrors& later);
+  bool is_finite() const;
 };
 
 /// What the integration cost and how well it kept the constraints.
 struct IntegrationRecord {
-  double worst_position_error = 0;   ///< m, largest of all constraint equations at the samples
-  double worst_velocity_error = 0;   ///< m/s (rad/s for the speed of the shaft)
-  double worst_gear_phase = 0;       ///< rad, block minus shaft
-  double worst_shaft_angle = 0;      ///< rad, shaft minus omega t
-  double worst_speed = 0;            ///< relative to omega
-  double worst_spin = 0;             ///< rad/s, change of a real piston's spin about its axis
+  WorstErrors whole;                 ///< of the whole run
+  std::vector<WorstErrors> turns;    ///< one per revolution
   double work_of_loads = 0;          ///< J, pressure, friction, weight, viscous
   double work_of_drives = 0;         ///< J, drive (and imposed block motion)
   double kinetic_energy_gained = 0;  ///< J
   long steps = 0;
   long evaluations = 0;  ///< realizations of the equations of motion
   double seconds = 0;
-  std::vector<TurnRecord> turns;  ///< one per revolution
-
-  /// Work that constraints and integration error created or destroyed, J.
-  double work_residual() const { return work_of_loads + work_of_drives - kinetic_energy_gained; }
 };
 
 struct IntegratedRun {
@@ -72,7 +72,7 @@ IntegratedRun run_integrated(const Case& the_case, const Assumptions& assumption
                              const IntegrationOptions& options, const Progress& progress = {});
 
 /// Integrates with the shaft free under a given drive torque: if the torque is right, the shaft
-/// holds its speed. The error of the speed is IntegrationRecord::worst_speed.
+/// holds its speed. The error of the speed is WorstErrors::speed_error.
 /// @param drive_torque  Td, Nm, as a function of the shaft angle in degrees
 IntegrationRecord run_torque_driven(const Case& the_case, const Assumptions& assumptions,
                                     const Samples& samples, const PressureTrace& pressure,

@@ -49,6 +49,10 @@ class Model {
   std::unique_ptr<Implementation> implementation_;
 };
 
+/// Whether a piston has inertia about its joint A. Without it there are equilibrium equations but
+/// no equation of motion, and only Method::residual serves.
+bool has_equation_of_motion(const PumpParameters& pump, PistonInertia inertia);
+
 /// What the multibody scene consists of, as lines for a report.
 std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
                                                              const Assumptions& assumptions,

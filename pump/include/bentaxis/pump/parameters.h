@@ -113,7 +113,7 @@ struct PumpParameters {
 };
 
 /// How the block is carried round.
-enum class GearScene {
+enum class BlockDrive {
   mesh,     ///< the shaft drives it by the tooth force R_cs along z4 at O4
   imposed,  ///< its speed is imposed on its own joint, as in the paper's ADAMS run; no R_cs
 };
@@ -123,7 +123,7 @@ enum class GearScene {
 struct Assumptions {
   bool piston_friction = true;
   PistonInertia inertia = PistonInertia::lumped;
-  GearScene gear = GearScene::mesh;
+  BlockDrive gear = BlockDrive::mesh;
 };
 
 inline bool operator==(const Assumptions& a, const Assumptions& b) {
@@ -133,22 +133,14 @@ inline bool operator==(const Assumptions& a, const Assumptions& b) {
 inline std::string to_string(PistonInertia inertia) {
   return piston_inertia_names()[static_cast<std::size_t>(inertia)];
 }
-inline std::string to_string(GearScene gear) {
-  return gear == GearScene::mesh ? "mesh" : "imposed";
+inline std::string to_string(BlockDrive gear) {
+  return gear == BlockDrive::mesh ? "mesh" : "imposed";
 }
 
 /// Why this piston cannot be treated as `inertia` asks, as the end of a message; empty where it
 /// can. Real and dynamically equivalent pistons need their data; three point masses with a
 /// transverse inertia need the centre of mass strictly between A and B.
 std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& pump);
-
-/// Applies the law of piston friction Fpf = -(Fc tanh(v/v_reg) + cv v), N, along z2 at B.
-/// With v_reg = 0 the tanh is sign(v), and |v| <= `rest_speed` counts as rest.
-/// @param velocity  z2-velocity of B, m/s.
-double piston_friction_force(const Friction& friction, double velocity, double rest_speed);
-
-/// The speed below which a piston counts as at rest in the sign law: 1e-12 |omega| R_a, m/s.
-double piston_rest_speed(const Geometry& geometry, double omega);
 
 /// Ideal gap between the longest distance from a joint A to the axis of its bore and the piston
 /// length that has to span it: where it is not positive the pump cannot be assembled.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
@@ -34,14 +35,17 @@ const std::vector<std::string>& hard_models();
 struct GroupLoss {
   std::string group;
   double measured = 0;
-  double predicted = 0;
+  double predicted = 0;  ///< of the inputs' part alone where the rest could not be estimated
 };
 
 enum class HardVerdict {
-  accurate,  ///< right within the predicted loss
-  refused,   ///< ended with a message
-  wrong,     ///< off by more than predicted, or refused what should be solved
+  as_predicted,  ///< off by no more than kPredictionFactor times the predicted loss, or by
+                 ///< round-off
+  refused,       ///< ended with a message, as expected
+  wrong,         ///< off by more than predicted, or refused what should be solved
 };
+/// The words of hardcases.csv. as_predicted is "accurate" there and in the catalogue: as accurate
+/// as the inputs' rounding lets it be, which may be a few digits only.
 const char* to_string(HardVerdict verdict);
 
 /// What one model made of a hard case.
@@ -49,7 +53,7 @@ struct HardOutcome {
   std::string model;
   HardVerdict verdict = HardVerdict::wrong;
   bool refusal_expected = false;
-  std::string message;  ///< of the refusal, or what is wrong
+  std::string message;  ///< of the refusal, what is wrong, or what could not be predicted
   std::vector<GroupLoss> groups;
   double seconds_per_angle = 0;
   std::string weak_point;  ///< the input whose rounding matters most
@@ -70,11 +74,17 @@ inline constexpr double kRoundOffLoss = 1e-12;
 /// @return one outcome for each of hard_models(), in their order
 std::vector<HardOutcome> run_hard_case(const HardCase& hard, const PartProgress& progress_of);
 
+/// Largest difference of any reaction within each turn, over the peak of its group; over the scale
+/// for its unit where nothing loads the group.
+/// @param reference  whose peaks count; `table` has the same channels and angles
+std::vector<double> errors_of_turns(const ResultTable& reference, const ResultTable& table,
+                                    const compare::ZeroScales& zero_scales, int samples_per_turn);
+
 /// A long integrated run of the rated pump with real, spinning pistons: does anything grow?
 struct LongRun {
   struct Turn {
     int number = 0;  ///< from 1
-    multibody::TurnRecord record;
+    multibody::WorstErrors record;
     double reaction_error = 0;  ///< largest difference from the analytic model within this turn,
                                 ///< over the peak of the reaction
   };

@@ -25,8 +25,12 @@ struct InertiaRun {
   bool loaded = false;
   ResultTable analytic_lumped, analytic_real;
   ResultTable multibody_lumped, multibody_real;  ///< of the scene asked for
+  /// Pistons whose multibody table is by inverse dynamics, because they have no inertia about A and
+  /// so no equation of motion; all others are by constraint multipliers.
+  std::vector<PistonInertia> by_inverse_dynamics;
 };
 /// @throws InputError where the case has no data of the real piston or the speed is 0
+/// @throws ComputationError where a model refuses the case
 InertiaRun run_both_pistons(const Case& the_case, double speed_rpm, bool loaded,
                             multibody::Scene scene, const Progress& progress = {});
 

@@ -1,7 +1,9 @@
-#include "land_pressure.h"
+#include "loads/film.h"
 
 #include <array>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "bentaxis/pump/units.h"
@@ -9,20 +11,18 @@
 namespace bentaxis::multibody {
 namespace {
 
-// Five-point Gauss-Legendre rule on [-1, 1] (Abramowitz & Stegun 1964, table 25.4).
-constexpr std::array<std::pair<double, double>, 5> kGauss = {{
-    {-0.906179845938663992797626878299, 0.236926885056189087514264040720},
-    {-0.538469310105683091036314420700, 0.478628670499366468041291514836},
-    {0.0, 0.568888888888888888888888888889},
-    {0.538469310105683091036314420700, 0.478628670499366468041291514836},
-    {0.906179845938663992797626878299, 0.236926885056189087514264040720},
-}};
-
-// Calls visit(x, weight) for the points of the rule on [a, b].
+// Calls visit(x, weight) for the points of the five-point rule on [a, b], from a to b.
 template <class Visit>
 void quadrature(double a, double b, Visit visit) {
-  for (const auto& [at, weight] : kGauss)
-    visit((a + b) / 2 + (b - a) / 2 * at, (b - a) / 2 * weight);
+  // In extended precision, so that the tables are right to the last digit of a double.
+  using Rule = boost::math::quadrature::gauss<long double, 5>;
+  const auto& points = Rule::abscissa();  // those from 0 on: the others are their mirror images
+  const auto& weights = Rule::weights();
+  const int last = static_cast<int>(points.size()) - 1;
+  for (int i = -last; i <= last; ++i) {
+    const auto at = static_cast<double>(i < 0 ? -points[-i] : points[i]);
+    visit((a + b) / 2 + (b - a) / 2 * at, (b - a) / 2 * static_cast<double>(weights[std::abs(i)]));
+  }
 }
 
 void add_port(FilmLoad& load, const PortPlate& plate, const PortArc& arc, double port_pressure) {

@@ -1,8 +1,9 @@
-#include "loads.h"
+#include "loads/loads.h"
 
 #include "bentaxis/pump/units.h"
-#include "gear_mesh.h"
-#include "land_pressure.h"
+#include "loads/film.h"
+#include "loads/friction.h"
+#include "scene/gear_mesh.h"
 
 namespace bentaxis::multibody {
 
@@ -16,7 +17,7 @@ AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions,
   const double radius = pump.geometry.bore_diameter / 2;
   load.pressure = -pressure * kPi * radius * radius;
   if (assumptions.piston_friction)
-    load.friction = piston_friction_force(pump.friction, velocity, rest_speed);
+    load.friction = piston_friction(pump.friction, velocity, rest_speed);
   return load;
 }
 
@@ -71,8 +72,8 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
     }
     const double block_speed = SimTK::dot(z2, block.getBodyAngularVelocity(state));
     const double shaft_speed = SimTK::dot(z1, shaft.getBodyAngularVelocity(state));
-    on_block[0] -= pump_.friction.block_viscous * block_speed * z2;
-    double shaft_torque = -pump_.friction.shaft_viscous * shaft_speed;
+    on_block[0] += block_friction(pump_.friction, block_speed) * z2;
+    double shaft_torque = shaft_friction(pump_.friction, shaft_speed);
     if (inputs_.shaft_torque) shaft_torque += inputs_.shaft_torque(theta);
     on_shaft[0] += shaft_torque * z1;
   }

@@ -1,6 +1,8 @@
-#include "gear_mesh.h"
+#include "scene/gear_mesh.h"
 
 #include <cmath>
+
+#include "bentaxis/pump/units.h"
 
 namespace bentaxis::multibody {
 
@@ -104,6 +106,19 @@ GearMesh::GearMesh(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& 
     : Custom(new GearMeshImplementation(matter, shaft, block, point, Vec3(line), block_frame)),
       point_(point),
       line_(line) {}
+
+std::unique_ptr<GearMesh> gear_of(const PumpParameters& pump, SimTK::SimbodyMatterSubsystem& matter,
+                                  SimTK::MobilizedBody& shaft, SimTK::MobilizedBody& block,
+                                  const Rotation& frame, double omega) {
+  const double radius = pump.gear.pitch_diameter / 2;
+  const double cone = kPi / 2 - pump.geometry.tilt / 2;
+  const double sign = omega < 0 ? -1 : 1;
+  const double ap = pump.gear.pressure_angle;
+  const Vec3 mesh_point(0, radius, -radius / std::tan(cone) + pump.geometry.axis_offset);
+  const Vec3 line =
+      sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
+  return std::make_unique<GearMesh>(matter, shaft, block, mesh_point, SimTK::UnitVec3(line), frame);
+}
 
 double GearMesh::tooth_force(const State& state) const {
   return -getMultipliersAsVector(state)[0];  // a multiplier is minus the applied force

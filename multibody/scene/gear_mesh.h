@@ -3,6 +3,10 @@
 
 #include <SimTKsimbody.h>
 
+#include <memory>
+
+#include "bentaxis/pump/parameters.h"
+
 namespace bentaxis::multibody {
 
 /// Keeps the block in phase with the shaft by equal and opposite forces along `line` at `point`.
@@ -31,6 +35,14 @@ class GearMesh : public SimTK::Constraint::Custom {
  private:
   SimTK::Vec3 point_, line_;
 };
+
+/// The gear of a pump between its shaft and block (19)-(22): the pitch cones of two wheels with
+/// equal tooth counts touch at O4, and the line of action turns with the direction of rotation.
+/// @param frame  in which the block turns about z
+/// @param omega  its sign counts; 0 is positive
+std::unique_ptr<GearMesh> gear_of(const PumpParameters& pump, SimTK::SimbodyMatterSubsystem& matter,
+                                  SimTK::MobilizedBody& shaft, SimTK::MobilizedBody& block,
+                                  const SimTK::Rotation& frame, double omega);
 
 /// Angle of a body about its fixed axis of rotation, in (-pi, pi]: `frame` has that axis as z.
 double turn_angle(const SimTK::Rotation& body_in_ground, const SimTK::Rotation& frame);

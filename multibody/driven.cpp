@@ -1,0 +1,90 @@
+// One turn of a case, evaluated angle by angle.
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/results/stopwatch.h"
+
+namespace bentaxis::multibody {
+
+namespace {
+
+// Row of the samples at which piston 1 stands where piston k + 1 stands in `row`.
+std::size_t row_of_piston_one(std::size_t row, int k, std::size_t rows, int pistons) {
+  return (row + rows - rows / pistons * k) % rows;
+}
+
+// Pressures that differ by less than this share of the largest are equal but for the rounding of
+// the angle they were evaluated at.
+constexpr double kSamePressure = 1e-13;
+
+// An angle this near to one of an even division of the turn, degrees, is that one: the tolerance
+// within which an angle counts as on an edge of the pressure.
+constexpr double kSameAngle = 1e-9;
+
+// Does every piston see, at each of its angles, the pressure that piston 1 sees there? Then piston
+// 1 stands for all.
+bool one_stands_for_all(const Samples& samples) {
+  const std::size_t rows = samples.theta_deg.size();
+  const int n = samples.pistons;
+  if (rows == 0 || rows % n != 0) return false;
+  double largest = 0;
+  for (const double pressure : samples.chamber_pressure)
+    largest = std::max(largest, std::abs(pressure));
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double angle = 360.0 * static_cast<double>(row) / static_cast<double>(rows);
+    if (std::abs(samples.theta_deg[row] - angle) > kSameAngle) return false;
+    for (int k = 1; k < n; ++k)
+      if (std::abs(samples.chamber_pressure[row * n + k] -
+                   samples.chamber_pressure[row_of_piston_one(row, k, rows, n) * n]) >
+          kSamePressure * largest)
+        return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
+                       const Progress& progress, Scene scene, Method method) {
+  const Stopwatch stopwatch;
+  Model model(the_case.pump, assumptions, samples.omega, scene, method);
+  const bool shared = scene == Scene::piston && one_stands_for_all(samples);
+  std::vector<std::vector<double>> of_one;
+  if (shared) {
+    Instant instant;
+    for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
+      samples.instant(row, instant);
+      of_one.emplace_back(model.layout().size(), not_computed());
+      model.evaluate_one(instant, of_one.back());
+    }
+  }
+  std::size_t next = 0;
+  const ChannelLayout& at = model.layout();
+  const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {
+    if (!shared) {
+      model.evaluate(instant, row);
+      return;
+    }
+    for (int k = 0; k < at.pistons(); ++k) {
+      const auto& one = of_one[row_of_piston_one(next, k, samples.theta_deg.size(), at.pistons())];
+      for (int axis = 0; axis < 3; ++axis) row[at.Rs(k, axis)] = one[at.Rs(0, axis)];
+      for (int axis = 0; axis < 2; ++axis) row[at.Rc(k, axis)] = one[at.Rc(0, axis)];
+      for (int axis = 0; axis < 3; ++axis) row[at.Rs3(k, axis)] = one[at.Rs3(0, axis)];
+      row[at.pressure(k)] = instant.chamber_pressure[k];
+      row[at.zB(k)] = one[at.zB(0)];
+      row[at.Tc(k)] = one[at.Tc(0)];
+      row[at.axis_moment(k)] = one[at.axis_moment(0)];
+    }
+    ++next;
+  };
+  ResultTable table = tabulate("multibody", at, samples, evaluate, progress);
+  table.provenance = model.provenance();
+  if (scene == Scene::piston)
+    table.provenance.facts.emplace_back("pistons",
+                                        shared ? "one stands for all" : "evaluated one by one");
+  table.provenance.seconds = stopwatch.seconds();
+  return table;
+}
+
+}  // namespace bentaxis::multibody

@@ -1,0 +1,106 @@
+#include "reactions/channels.h"
+
+#include "bentaxis/results/result_table.h"
+#include "scene/piston.h"
+
+namespace bentaxis::multibody {
+
+using SimTK::dot;
+using SimTK::MobilizedBody;
+using SimTK::Rotation;
+using SimTK::SpatialVec;
+using SimTK::State;
+using SimTK::UnitVec3;
+using SimTK::Vec3;
+
+void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, std::size_t index,
+                          int channel, double pressure, const ChannelLayout& layout,
+                          std::vector<double>& values) {
+  const PumpBodies& bodies = pump.bodies();
+  const Rotation& s2 = bodies.block_frame;
+  const Reactions::OnPiston& on = reactions.pistons[index];
+  const Vec3 rs = ~s2 * on.joint;
+  const Vec3 rc = ~s2 * on.bore;
+  for (int axis = 0; axis < 3; ++axis) values[layout.Rs(channel, axis)] = rs[axis];
+  for (int axis = 0; axis < 2; ++axis) values[layout.Rc(channel, axis)] = rc[axis];
+
+  const Vec3 k3(on.place.z());
+  const Vec3 ring =
+      ~s2 * Vec3(on.place.p() + pump.pump().geometry.piston_length * k3 - bodies.block_origin);
+  values[layout.pressure(channel)] = pressure;
+  values[layout.zB(channel)] = ring[2];
+  values[layout.Tc(channel)] = ring[1] * rc[0] - ring[0] * rc[1];
+
+  // S3 with j3 in the plane of y1 and z1 (15).
+  const UnitVec3 j3(Vec3(0, k3[2], -k3[1]));
+  values[layout.Rs3(channel, 0)] = dot(on.joint, Vec3(Vec3(j3) % k3));
+  values[layout.Rs3(channel, 1)] = dot(on.joint, Vec3(j3));
+  values[layout.Rs3(channel, 2)] = dot(on.joint, k3);
+  values[layout.axis_moment(channel)] = on.axis_moment;
+}
+
+void read_pump_channels(const PumpSystem& pump, const State& state, const Reactions& reactions,
+                        const WorkRate& rate, double omega_dot, const std::vector<double>& pressure,
+                        const ChannelLayout& layout, std::vector<double>& values) {
+  const PumpBodies& bodies = pump.bodies();
+  const PumpParameters& p = pump.pump();
+  const Rotation& s2 = bodies.block_frame;
+  const Vec3 z2(s2.z());
+  const double omega = state.getU()[bodies.shaft.getFirstUIndex(state) + 2];
+  double carry = 0;
+  double work = 0;
+  for (int k = 0; k < layout.pistons(); ++k) {
+    const MobilizedBody& piston = bodies.pistons[k];
+    carry -= values[layout.Tc(k)];
+    const Vec3 ring = p.geometry.piston_length * Vec3(piston.getBodyRotation(state).z());
+    const SpatialVec& own_rate = piston.getBodyVelocity(state);
+    const SpatialVec& work_rate = piston.getBodyVelocity(rate.state);
+    const double velocity = dot(z2, own_rate[1] + own_rate[0] % ring);
+    const AxialLoad load =
+        axial_load(p, pump.assumptions(), pressure[k], velocity, pump.inputs().rest_speed);
+    work += (load.pressure + load.friction) * dot(z2, work_rate[1] + work_rate[0] % ring) +
+            piston_power(p, pump.assumptions().inertia, piston, state,
+                         reactions.pistons[k].acceleration, work_rate);
+  }
+
+  // The block's joint to ground stands for film and pin together: Rcn is what it takes across z2,
+  // and the moment about O2 that is left belongs to the film.
+  const Vec3 force = ~s2 * reactions.block_hold[1];
+  const Vec3 moment = ~s2 * reactions.block_hold[0];
+  values[layout.Fh()] = force[2];
+  values[layout.Rcn(0)] = force[0];
+  values[layout.Rcn(1)] = force[1];
+  values[layout.Th(0)] = moment[0] + p.block.pin_z * force[1];
+  values[layout.Th(1)] = moment[1] - p.block.pin_z * force[0];
+  values[layout.xh()] = force[2] == 0 ? not_computed() : -values[layout.Th(1)] / force[2];
+  values[layout.yh()] = force[2] == 0 ? not_computed() : values[layout.Th(0)] / force[2];
+  if (pump.has_gear()) {
+    values[layout.Rcs()] = reactions.tooth;
+    values[layout.Tcs()] =
+        carry + p.friction.block_viscous * omega + p.block.axial_inertia * omega_dot;
+  } else {
+    values[layout.Rcs()] = not_computed();
+    values[layout.Tcs()] = reactions.imposed;
+  }
+  for (int axis = 0; axis < 3; ++axis) values[layout.Rb1(axis)] = reactions.tapered[axis];
+  for (int axis = 0; axis < 2; ++axis) values[layout.Rb2(axis)] = reactions.cylindrical[axis];
+  // The drive gives the torque that is left after the proportional loss (38).
+  values[layout.Td()] = reactions.drive / p.friction.shaft_torque_factor;
+
+  values[layout.power_residual()] =
+      reactions.drive - (p.friction.shaft_viscous + p.friction.block_viscous) * omega -
+      (p.shaft.axial_inertia + p.block.axial_inertia) * omega_dot + work / rate.omega +
+      (pump.has_gear() ? 0 : values[layout.Tcs()]);
+}
+
+void read_channels(const PumpSystem& pump, const State& state, const WorkRate& rate,
+                   double omega_dot, const std::vector<double>& pressure,
+                   const ChannelLayout& layout, std::vector<double>& values) {
+  Reactions reactions;
+  reactions_from_multipliers(pump, state, reactions);
+  for (int k = 0; k < layout.pistons(); ++k)
+    read_piston_channels(pump, reactions, k, k, pressure[k], layout, values);
+  read_pump_channels(pump, state, reactions, rate, omega_dot, pressure, layout, values);
+}
+
+}  // namespace bentaxis::multibody

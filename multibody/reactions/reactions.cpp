@@ -1,0 +1,43 @@
+#include "reactions/reactions.h"
+
+namespace bentaxis::multibody {
+
+using SimTK::dot;
+using SimTK::MobilizedBody;
+using SimTK::Rotation;
+using SimTK::SpatialVec;
+using SimTK::State;
+using SimTK::Vec3;
+
+void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reactions& reactions) {
+  const PumpBodies& bodies = pump.bodies();
+  SimTK::Vector_<SpatialVec> joints;
+  joint_forces(state, pump.matter(), joints);
+  const Rotation& block = bodies.block.getBodyRotation(state);
+  reactions.pistons.resize(bodies.pistons.size());
+  for (std::size_t k = 0; k < bodies.pistons.size(); ++k) {
+    const MobilizedBody& piston = bodies.pistons[k];
+    Reactions::OnPiston& on = reactions.pistons[k];
+    const SpatialVec& joint = joints[piston.getMobilizedBodyIndex()];
+    on.joint = joint[1];
+    on.bore = block * pump.bores()[k].force_in_base(state);
+    on.acceleration = piston.getBodyAcceleration(state);
+    // Where the joint leaves the spin free, a moment about the axis would change it.
+    on.place = piston.getBodyTransform(state);
+    const Vec3 axis(on.place.z());
+    on.axis_moment = dot(joint[0], axis);
+    if (pump.pistons_free_to_spin())
+      on.axis_moment -= pump.pump().piston.real->axial_inertia * dot(on.acceleration[0], axis);
+  }
+  if (pump.is_prescribed()) return;
+  reactions.block_hold = joints[bodies.block.getMobilizedBodyIndex()];
+  reactions.tapered = joints[bodies.shaft.getMobilizedBodyIndex()][1];
+  reactions.cylindrical = pump.cylindrical_bearing().force_in_base(state);
+  reactions.drive = pump.drive().torque(state);
+  if (pump.has_gear())
+    reactions.tooth = pump.gear().tooth_force(state);
+  else
+    reactions.imposed = pump.imposed_block_torque(state);
+}
+
+}  // namespace bentaxis::multibody

@@ -1,0 +1,34 @@
+// Reactions of a placed pump, and reading them from Simbody's constraint multipliers.
+#pragma once
+
+#include <SimTKsimbody.h>
+
+#include <vector>
+
+#include "scene/pump_system.h"
+
+namespace bentaxis::multibody {
+
+/// Forces found at an instant, all in Ground, on the first body named.
+struct Reactions {
+  struct OnPiston {
+    SimTK::Vec3 joint;       ///< by the shaft, at A
+    SimTK::Vec3 bore;        ///< by the block, at B
+    double axis_moment = 0;  ///< about its own axis, that would have to be supplied: must vanish
+    SimTK::SpatialVec acceleration;  ///< of the body at A: angular, linear
+    SimTK::Transform place;          ///< of the body: A and its axes
+  };
+  std::vector<OnPiston> pistons;
+  // Not found where shaft and block are prescribed:
+  SimTK::SpatialVec block_hold;      ///< by film and pin together, about O2: moment, force
+  SimTK::Vec3 tapered, cylindrical;  ///< on the shaft by its bearings
+  double drive = 0;                  ///< torque about z1 on the shaft after proportional losses, Nm
+  double tooth = 0;                  ///< tooth force on the block along the line of action, N
+  double imposed = 0;  ///< torque about z2 that an imposed motion applies to the block
+};
+
+/// From a dynamics state realized to Acceleration: Simbody's multipliers and joint reactions.
+void reactions_from_multipliers(const PumpSystem& pump, const SimTK::State& state,
+                                Reactions& reactions);
+
+}  // namespace bentaxis::multibody

@@ -1,0 +1,103 @@
+#include "scene/pump_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "loads/friction.h"
+#include "scene/block.h"
+#include "scene/shaft.h"
+
+namespace bentaxis::multibody {
+
+using SimTK::State;
+using SimTK::Vec3;
+
+PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega,
+                       Drive drive)
+    : pump_(pump),
+      assumptions_(assumptions),
+      drive_(drive),
+      piston_(piston_body(pump, assumptions.inertia)),
+      matter_(system_),
+      forces_(system_) {
+  if (drive == Drive::torque && !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
+    throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
+  inputs_.rest_speed = rest_speed_at(pump.geometry, omega);
+  inputs_.chamber_pressure = [](double, std::vector<double>& p) {
+    std::fill(p.begin(), p.end(), 0.0);
+  };
+  add_shaft_and_block(omega);
+  SimTK::Force::UniformGravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
+  pistons_ = add_pistons(pump_.geometry, piston_, shaft_, block_);
+  bodies_.pistons = pistons_.bodies;
+  PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_,
+            is_prescribed() ? LoadedBodies::pistons : LoadedBodies::all);
+  if (drive_ == Drive::constant_speed || drive_ == Drive::torque)
+    work_.emplace(system_, matter_, forces_,
+                  [this](const State& state) { return power_of_drives(state); });
+  make_states();
+}
+
+void PumpSystem::add_shaft_and_block(double omega) {
+  const SimTK::Transform frame = block_frame(pump_.geometry);
+  bodies_.block_frame = frame.R();
+  bodies_.block_origin = frame.p();
+  bodies_.shaft_origin = Vec3(0, 0, pump_.bearings.tapered_z);
+  shaft_ = shaft_on_tapered_bearing(matter_, pump_);
+  block_ = block_on_pin(matter_, pump_, frame);
+  bodies_.shaft = shaft_;
+  bodies_.block = block_;
+  shaft_motion_ = turning_motion(shaft_, turning_, true);
+  block_motion_ = turning_motion(block_, turning_, false);
+  if (!is_prescribed()) cylindrical_ = multibody::cylindrical_bearing(matter_, shaft_, pump_);
+  shaft_drive_.emplace(drive_, shaft_, omega);
+  if (has_gear()) gear_ = gear_of(pump_, matter_, shaft_, block_, bodies_.block_frame, omega);
+}
+
+void PumpSystem::make_states() {
+  system_.realizeTopology();
+  assembly_ = system_.getDefaultState();
+  dynamics_ = system_.getDefaultState();
+  if (!is_prescribed()) {
+    // Assembly: shaft and block follow the prescribed turning, so what holds them is switched off.
+    cylindrical_.constraint().disable(assembly_);
+    shaft_drive_->disable(assembly_);
+    if (has_gear()) gear_->disable(assembly_);
+    // Dynamics: joints and constraints hold them; an imposed block keeps its motion.
+    shaft_motion_.disable(dynamics_);
+    if (has_gear()) block_motion_.disable(dynamics_);
+  }
+  system_.realize(assembly_, SimTK::Stage::Instance);
+  system_.realize(dynamics_, SimTK::Stage::Instance);
+}
+
+void PumpSystem::require_piston_inertia() const {
+  if (!(piston_.inertia_about_joint() > 0))
+    throw ComputationError(
+        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
+        "has no equation of motion in Simbody; use --reactions residual, or the analytic model");
+}
+
+double PumpSystem::power_of_drives(const State& state) const {
+  double power = 0;
+  if (shaft_drive_->has_equation())
+    power += shaft_drive_->torque(state) * shaft_.getBodyAngularVelocity(state)[2];
+  if (!has_gear()) power += imposed_block_torque(state) * block_.getOneU(state, 0);
+  return power;
+}
+
+double PumpSystem::imposed_block_torque(const State& state) const {
+  SimTK::Vector torques;
+  matter_.findMotionForces(state, torques);
+  return -block_.getOneFromUPartition(state, 0, torques);
+}
+
+double PumpSystem::gear_phase(const State& state) const {
+  return std::remainder(turn_angle(block_.getBodyRotation(state), bodies_.block_frame) -
+                            turn_angle(shaft_.getBodyRotation(state), SimTK::Rotation()),
+                        2 * kPi);
+}
+
+}  // namespace bentaxis::multibody

@@ -1,0 +1,105 @@
+// The pump as Simbody bodies, joints, constraints and loads, put together from its pieces.
+//
+// It mirrors the virtual pump of Roccatello & Nervegna (2009), section 7:
+//   shaft   on a spherical joint at C1 (tapered bearing), with its axis kept on z1 by an inline
+//           joint at C2 (cylindrical bearing), turned at a given rate;
+//   block   turning about z2 on ground (pin and port plate);
+//   piston  on a spherical joint at A to the shaft, with B kept on its bore axis by an inline
+//           joint to the block;
+//   gear    a force along z4 at O4 between shaft and block (mesh), or the block's speed imposed.
+// With a prescribed drive, shaft and block are moved and nothing that holds or drives them is
+// built.
+#pragma once
+
+#include <SimTKsimbody.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bentaxis/pump/parameters.h"
+#include "loads/loads.h"
+#include "scene/drive.h"
+#include "scene/gear_mesh.h"
+#include "scene/piston.h"
+#include "scene/work_meter.h"
+
+namespace bentaxis::multibody {
+
+/// A pump ready for Simbody's solvers. Two states serve two purposes: in `assembly` shaft and block
+/// are prescribed and Simbody's projection finds the pistons from any start; in `dynamics`
+/// everything is held by joints and constraints, whose forces are the reactions (a prescribed drive
+/// prescribes shaft and block there too). Placement finds both.
+class PumpSystem {
+ public:
+  PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega, Drive drive);
+  PumpSystem(const PumpSystem&) = delete;
+  PumpSystem& operator=(const PumpSystem&) = delete;
+
+  /// @throws ComputationError if a piston has no inertia about its joint: then there are
+  /// equilibrium
+  ///         equations but no equations of motion.
+  void require_piston_inertia() const;
+
+  const PumpParameters& pump() const { return pump_; }
+  const Assumptions& assumptions() const { return assumptions_; }
+  const SimTK::MultibodySystem& system() const { return system_; }
+  const SimTK::SimbodyMatterSubsystem& matter() const { return matter_; }
+  const PumpBodies& bodies() const { return bodies_; }
+  const Pistons& pistons() const { return pistons_; }
+  const SimTK::State& assembly() const { return assembly_; }
+  SimTK::State& assembly() { return assembly_; }
+  SimTK::State& dynamics() { return dynamics_; }
+  const SimTK::State& dynamics() const { return dynamics_; }
+  LoadInputs& inputs() { return inputs_; }
+  const LoadInputs& inputs() const { return inputs_; }
+  /// How shaft and block turn where they are prescribed.
+  Turning& turning() { return turning_; }
+
+  const std::vector<InlineJoint>& bores() const { return pistons_.bores; }
+  const InlineJoint& cylindrical_bearing() const { return cylindrical_; }
+  const GearMesh& gear() const { return *gear_; }
+  const ShaftDrive& drive() const { return *shaft_drive_; }
+  bool has_gear() const { return !is_prescribed() && assumptions_.gear == BlockDrive::mesh; }
+  bool is_prescribed() const { return drive_ == Drive::prescribed; }
+
+  /// Whether the pistons are rigid bodies that can turn about their own axis.
+  bool pistons_free_to_spin() const { return piston_.free_to_spin; }
+
+  /// Torque about z2 that the imposed motion applies to the block, Nm.
+  double imposed_block_torque(const SimTK::State& state) const;
+
+  /// Work of applied loads, and of drive and imposed motion, of an integrated run.
+  const WorkMeter& work() const { return *work_; }
+
+  /// Block angle minus shaft angle, rad in (-pi, pi].
+  double gear_phase(const SimTK::State& state) const;
+
+ private:
+  void add_shaft_and_block(double omega);
+  void make_states();
+  double power_of_drives(const SimTK::State& state) const;
+
+  PumpParameters pump_;
+  Assumptions assumptions_;
+  Drive drive_;
+  PistonBody piston_;
+  LoadInputs inputs_;
+  Turning turning_;
+
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_;
+  SimTK::GeneralForceSubsystem forces_;
+  PumpBodies bodies_;
+  SimTK::MobilizedBody::Ball shaft_;
+  SimTK::MobilizedBody::Pin block_;
+  SimTK::Motion shaft_motion_, block_motion_;
+  InlineJoint cylindrical_;
+  std::optional<ShaftDrive> shaft_drive_;
+  std::unique_ptr<GearMesh> gear_;
+  Pistons pistons_;
+  std::optional<WorkMeter> work_;
+  SimTK::State assembly_, dynamics_;
+};
+
+}  // namespace bentaxis::multibody

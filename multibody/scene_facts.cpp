@@ -1,0 +1,78 @@
+#include "scene_facts.h"
+
+#include <algorithm>
+
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/multibody/versions.h"
+#include "scene/pump_system.h"
+
+namespace bentaxis::multibody {
+
+Drive drive_of(Scene scene) {
+  return scene == Scene::full ? Drive::given_acceleration : Drive::prescribed;
+}
+
+PumpParameters built_pump(const PumpParameters& pump, Scene scene) {
+  PumpParameters built = pump;
+  if (scene == Scene::piston) built.geometry.pistons = 1;
+  return built;
+}
+
+const std::vector<std::string>& scene_names() {
+  static const std::vector<std::string> names = {"full", "pistons", "piston"};
+  return names;
+}
+
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names = {"multipliers", "residual"};
+  return names;
+}
+
+bool computes(Scene scene, const Channel& channel) {
+  return scene == Scene::full || channel.piston > 0;
+}
+
+Scene smallest_scene(const std::vector<Channel>& channels) {
+  const bool of_pistons = std::all_of(channels.begin(), channels.end(), [](const Channel& channel) {
+    return computes(Scene::piston, channel);
+  });
+  return of_pistons ? Scene::piston : Scene::full;
+}
+
+std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameters& pump,
+                                                             const Assumptions& assumptions,
+                                                             Scene scene) {
+  const bool mesh = assumptions.gear == BlockDrive::mesh;
+  const int n = scene == Scene::piston ? 1 : pump.geometry.pistons;
+  const std::string pistons = n == 1 ? "1 piston" : std::to_string(n) + " pistons";
+  const std::string bodies = std::to_string(n + 2) + " (shaft, block, " + pistons + ")";
+  if (scene != Scene::full)
+    return {{"method", "multibody, Simbody " + simbody_version()},
+            {"scene", scene == Scene::pistons ? "pistons; shaft and block move as prescribed"
+                                              : "one piston; shaft and block move as prescribed"},
+            {"bodies", bodies},
+            {"joints", "pistons spherical at A to the shaft"},
+            {"constraints", "B on its bore axis (2 per piston)"}};
+  return {
+      {"method", "multibody, Simbody " + simbody_version()},
+      {"scene", std::string("full pump, gear ") +
+                    (mesh ? "in mesh (tooth force along z4 at O4)"
+                          : "replaced by a speed imposed on the block's joint")},
+      {"bodies", bodies},
+      {"joints", "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
+      {"constraints",
+       std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
+           (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
+}
+
+SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {
+  const PumpSystem system(built_pump(pump, scene), assumptions, 1, drive_of(scene));
+  const SimTK::State& state = system.dynamics();
+  SceneSize size;
+  size.bodies = system.matter().getNumBodies() - 1;  // without Ground
+  size.mobilities = state.getNU();
+  size.equations = state.getNMultipliers();
+  return size;
+}
+
+}  // namespace bentaxis::multibody

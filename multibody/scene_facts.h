@@ -1,0 +1,16 @@
+// What the scenes are, in Simbody's terms.
+#pragma once
+
+#include "bentaxis/multibody/scene.h"
+#include "bentaxis/pump/parameters.h"
+#include "scene/drive.h"
+
+namespace bentaxis::multibody {
+
+/// What turns the shaft in a scene that is evaluated at instants.
+Drive drive_of(Scene scene);
+
+/// The pump that is built: the one-piston scene is the scene of a pump with one piston.
+PumpParameters built_pump(const PumpParameters& pump, Scene scene);
+
+}  // namespace bentaxis::multibody
