@@ -10,6 +10,9 @@
 
 namespace bentaxis {
 
+/// The most pistons that a pump may have: buffers of fixed size rely on it.
+inline constexpr int kMostPistons = 99;
+
 /// Main dimensions. Frames: S1 has its origin O1 where the shaft axis z1 meets the plane of the
 /// piston joints, y1 up; S2 has its origin at (0, 0, axis_offset) in S1 and is bent by `tilt`
 /// about x towards +y1; z2 is the block axis (Roccatello & Nervegna 2009, Fig. 1, (7)).
