@@ -143,13 +143,19 @@ class CaseReader {
   std::map<std::string, TableReader> parents_;
 };
 
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  return first == std::string::npos ? ""
+                                    : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
 // The change "TABLE.KEY=VALUE", of a key that the registry knows.
 void apply_change(TomlFile& file, const std::string& change, const Registry& registry) {
   const auto fail = [&](const std::string& why) {
     throw InputError("--set " + one_line(change) + ": " + why);
   };
   const auto equals = change.find('=');
-  const std::string name = change.substr(0, equals);
+  const std::string name = trimmed(change.substr(0, equals));
   if (equals == std::string::npos || name.empty() || one_line(change) != change)
     fail("must be TABLE.KEY=VALUE, in one line");
   const auto dot = name.rfind('.');
@@ -165,7 +171,7 @@ void apply_change(TomlFile& file, const std::string& change, const Registry& reg
   if (keys.count(key) == 0)
     fail("unknown key \"" + key + "\"" + (table.empty() ? "" : " in [" + table + "]") +
          suggestion(key, keys));
-  file.change(table, key, change.substr(equals + 1));
+  file.change(table, key, trimmed(change.substr(equals + 1)));
 }
 
 }  // namespace

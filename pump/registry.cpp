@@ -53,6 +53,12 @@ NumberRange si_range(const Parameter& parameter, const ConstView& view) {
   return range;
 }
 
+std::string integer_range_text(NumberRange range) {
+  if (range.high == std::numeric_limits<int>::max())
+    range.high = std::numeric_limits<double>::infinity();
+  return range.text();
+}
+
 [[noreturn]] void refuse(const Table& table, const Parameter& parameter, const ConstView& view,
                          const std::string& why) {
   const auto value = value_of(parameter, view);
@@ -75,7 +81,7 @@ void check(const Table& table, const Parameter& parameter, const ConstView& view
   } else if (const auto* integer = std::get_if<IntegerField>(&parameter.field)) {
     const int* value = read(integer->place, view);
     if (value != nullptr && !parameter.range.contains(*value))
-      refuse(table, parameter, view, "must be an integer " + parameter.range.text());
+      refuse(table, parameter, view, "must be an integer " + integer_range_text(parameter.range));
   } else if (const auto* choice = std::get_if<ChoiceField>(&parameter.field)) {
     const auto index = choice->read == nullptr ? std::nullopt : choice->read(view);
     if (index && *index >= parameter.words.size())
@@ -211,7 +217,8 @@ std::optional<Value> value_of(const Parameter& parameter, const ConstView& view)
                  },
                  [&](const CurveField&) -> std::optional<Value> {
                    if (view.pressure == nullptr) return std::nullopt;
-                   return std::filesystem::absolute(view.pressure->file).string();
+                   const std::filesystem::path& file = view.pressure->file;
+            return file.empty() ? std::string() : std::filesystem::absolute(file).string();
                  }},
       parameter.field);
 }

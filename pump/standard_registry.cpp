@@ -13,10 +13,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostSamples = std::numeric_limits<int>::max();
 constexpr NumberRange kCount{1, kMostSamples};
 
-// Axial inertias of a pump of the size of the BAP 63, kg mm2. At constant speed nothing depends on
-// them; they are there so that a changing speed and an integrated run have a finite answer.
-constexpr double kShaftInertia = 2000;
-constexpr double kBlockInertia = 1500;
 // Overlap over which a kidney with rounded ends opens, where the case does not say, degrees.
 constexpr double kKidneyRounding = 5;
 
@@ -425,7 +421,7 @@ Table shaft_table() {
                .symbol = "I_s",
                .unit = kInertia,
                .range = kNotNegative,
-               .fallback = {kShaftInertia},
+               .fallback = {in_file_unit(kUsualShaftInertia, kInertia)},
                .meaning = "about z1; acts only where the speed changes"}}};
 }
 
@@ -475,7 +471,7 @@ Table block_table() {
            .symbol = "I_c",
            .unit = kInertia,
            .range = kNotNegative,
-           .fallback = {kBlockInertia},
+           .fallback = {in_file_unit(kUsualBlockInertia, kInertia)},
            .meaning = "about z2; acts only where the speed changes"}}};
 }
 
