@@ -11,6 +11,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/pump/validate.h"
 #include "pump_system.h"
 #include "reactions.h"
 #include "solver_guard.h"
@@ -235,7 +236,11 @@ class Runner {
   IntegrationRecord record_;
 };
 
-void refuse_standstill(const Case& the_case) {
+void check(const Case& the_case, const Samples& samples) {
+  validate(the_case);
+  if (samples.pistons != the_case.pump.geometry.pistons)
+    throw InputError("integrated run: samples of " + std::to_string(samples.pistons) +
+                     " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   if (the_case.operation.speed_rpm == 0)
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = 0: an integrated run needs a speed other than 0 "
@@ -263,7 +268,7 @@ const std::vector<std::string>& integrator_names() {
 IntegratedRun run_integrated(const Case& the_case, const Assumptions& assumptions,
                              const Samples& samples, const PressureTrace& pressure,
                              const IntegrationOptions& options, const Progress& progress) {
-  refuse_standstill(the_case);
+  check(the_case, samples);
   const Stopwatch stopwatch;
   IntegratedRun result;
   translate_simbody_errors([&] {
@@ -297,7 +302,7 @@ IntegrationRecord run_torque_driven(const Case& the_case, const Assumptions& ass
                                     const Samples& samples, const PressureTrace& pressure,
                                     const std::function<double(double)>& drive_torque,
                                     const IntegrationOptions& options, const Progress& progress) {
-  refuse_standstill(the_case);
+  check(the_case, samples);
   const Stopwatch stopwatch;
   IntegrationRecord record;
   translate_simbody_errors([&] {

@@ -9,6 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/pump/validate.h"
 #include "pump_system.h"
 #include "reactions.h"
 #include "solver_guard.h"
@@ -56,7 +57,7 @@ Scene smallest_scene(const std::vector<Channel>& channels) {
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
                  Scene the_scene, Method the_method)
-      : layout(pump.geometry.pistons),
+      : layout(validate(pump).geometry.pistons),
         scene(the_scene),
         method(the_method),
         parameters(pump),
@@ -68,6 +69,7 @@ struct Model::Implementation {
   }
 
   void check(const Instant& instant) const;
+  void require_sizes(const Instant& instant, const std::vector<double>& values) const;
   void evaluate(const Instant& instant, std::vector<double>& values);
   void place_and_solve(double theta, const Instant& instant);
   void check_rank();
@@ -107,6 +109,16 @@ void Model::Implementation::check(const Instant& instant) const {
   if (instant.shaft.acceleration != 0 &&
       !(system.pump().shaft.axial_inertia > 0 && system.pump().block.axial_inertia > 0))
     throw InputError("multibody model: changing speed needs axial inertias above 0");
+}
+
+void Model::Implementation::require_sizes(const Instant& instant,
+                                          const std::vector<double>& values) const {
+  if (instant.chamber_pressure.size() != static_cast<std::size_t>(layout.pistons()))
+    throw InputError("multibody model: " + std::to_string(instant.chamber_pressure.size()) +
+                     " chamber pressures for " + std::to_string(layout.pistons()) + " pistons");
+  if (values.size() < layout.size())
+    throw InputError("multibody model: room for " + std::to_string(values.size()) +
+                     " values, needed are " + std::to_string(layout.size()));
 }
 
 void Model::Implementation::check_rank() {
@@ -167,6 +179,7 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
 }
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values) {
+  implementation_->require_sizes(instant, values);
   translate_simbody_errors([&] { implementation_->evaluate(instant, values); });
 }
 
@@ -174,6 +187,7 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   Implementation& self = *implementation_;
   if (self.scene != Scene::piston)
     throw std::logic_error("evaluate_one() is of the one-piston scene");
+  self.require_sizes(instant, values);
   translate_simbody_errors([&] {
     self.check(instant);
     self.pressure.assign(1, instant.chamber_pressure[0]);
@@ -210,7 +224,7 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
 }
 
 SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {
-  const PumpSystem system(built_pump(pump, scene), assumptions, 1, drive_of(scene));
+  const PumpSystem system(built_pump(validate(pump), scene), assumptions, 1, drive_of(scene));
   const SimTK::State& state = system.dynamics();
   SceneSize size;
   size.bodies = system.matter().getNumBodies() - 1;  // without Ground
@@ -285,6 +299,10 @@ bool one_stands_for_all(const Samples& samples) {
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress, Scene scene, Method method) {
   const auto start = std::chrono::steady_clock::now();
+  validate(the_case);
+  if (samples.pistons != the_case.pump.geometry.pistons)
+    throw InputError("driven run: samples of " + std::to_string(samples.pistons) +
+                     " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   Model model(the_case.pump, assumptions, samples.omega, scene, method);
   const bool shared = scene == Scene::piston && one_stands_for_all(samples);
   std::vector<std::vector<double>> of_one;

@@ -5,15 +5,22 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bentaxis/analytic/batch.h"
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/rounding.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/schema.h"
+#include "bentaxis/multibody/integrated.h"
+#include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/validate.h"
+#include "network.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -386,6 +393,148 @@ TEST(Validate, HydraulicsToo) {
               HasSubstr("[hydraulics] atmosphere_bar = 1.01325: must exceed -suction_bar"));
   EXPECT_THAT(after([](Case& c) { c.pressure.ports.delivery = -1; }),
               HasSubstr("delivery_bar = -1e-05: must be in [0, 10000]"));
+}
+
+// ---- The border of every model
+// -------------------------------------------------------------------
+
+// Each way into a model with a case, by name.
+std::map<std::string, std::function<void(const Case&)>> borders() {
+  const Samples samples = one_turn(reference_case("bap63_rated"));
+  const PressureTrace trace(reference_case("bap63_rated").pressure);
+  const auto zero = [](double) { return 0.0; };
+  return {
+      {"analytic model", [](const Case& c) { analytic::Model(c.pump, c.analytic); }},
+      {"analytic run", [=](const Case& c) { analytic::run(c, c.analytic, samples); }},
+      {"batch", [](const Case& c) { analytic::BatchModel(c.pump, c.analytic); }},
+      {"batch of pumps", [](const Case& c) { analytic::PumpBatch({c.pump}, c.analytic); }},
+      {"last of a batch of pumps",
+       [](const Case& c) {
+         PumpParameters good = reference_case("bap63_rated").pump;
+         good.geometry.pistons = c.pump.geometry.pistons;
+         if (good.geometry.pistons > kMostPistons) throw InputError("the first is refused");
+         analytic::PumpBatch({good, c.pump}, c.analytic);
+       }},
+      {"rounding", [](const Case& c) { analytic::RoundingEstimate(c.pump, c.analytic); }},
+      {"multibody model", [](const Case& c) { multibody::Model(c.pump, c.multibody, 1); }},
+      {"size of a scene",
+       [](const Case& c) { multibody::scene_size(c.pump, c.multibody, multibody::Scene::full); }},
+      {"driven run", [=](const Case& c) { multibody::run_driven(c, c.multibody, samples); }},
+      {"integrated run",
+       [=](const Case& c) {
+         multibody::run_integrated(c, c.multibody, samples, PressureTrace(c.pressure), {});
+       }},
+      {"torque-driven run",
+       [=](const Case& c) {
+         multibody::run_torque_driven(c, c.multibody, samples, PressureTrace(c.pressure), zero, {});
+       }},
+      {"hydraulics", [](const Case& c) { hydraulics::Network{c}; }}};
+}
+
+// What a case file is refused for does not reach a model through the API.
+TEST(Border, RefusesWhatTheReaderRefuses) {
+  const std::map<std::string, std::function<void(Case&)>> faults = {
+      {"pistons", [](Case& c) { c.pump.geometry.pistons = 100; }},
+      {"tilt_deg", [](Case& c) { c.pump.geometry.tilt = -0.1; }},
+      {"piston_length_mm", [](Case& c) { c.pump.geometry.piston_length = 1e-3; }},
+      {"cylindrical_z_mm",
+       [](Case& c) { c.pump.bearings.cylindrical_z = c.pump.bearings.tapered_z; }},
+      {"joint_mass_fraction", [](Case& c) { c.pump.piston.joint_mass_fraction = 1.01; }},
+      {"shaft_torque_factor", [](Case& c) { c.pump.friction.shaft_torque_factor = 0; }},
+      {"mass_kg", [](Case& c) { c.pump.block.mass = std::nan(""); }},
+      {"inner_land_mm", [](Case& c) { c.pump.port_plate->r1 = 1; }}};
+  for (const auto& [border, enter] : borders())
+    for (const auto& [key, spoil] : faults) {
+      Case the_case = reference_case("bap63_rated");
+      spoil(the_case);
+      const std::string why_not = refusal([&] { enter(the_case); });
+      const bool many = border == "last of a batch of pumps" && key == "pistons";
+      EXPECT_THAT(why_not, HasSubstr(many ? "the first is refused" : key + " = ")) << border;
+    }
+}
+
+TEST(Border, AcceptsWhatIsRight) {
+  const Case the_case = reference_case("bap63_rated");
+  for (const auto& [border, enter] : borders()) {
+    if (border == "hydraulics" || border.ends_with(" run")) continue;  // in tests of their own
+    EXPECT_EQ(refusal([&] { enter(the_case); }), "accepted") << border;
+  }
+}
+
+TEST(Border, OnePressureForEachPiston) {
+  const Case the_case = reference_case("bap63_rated");
+  const std::string expected = "3 chamber pressures for 5 pistons";
+  Instant instant;
+  instant.turn(0.1, 100);
+  instant.chamber_pressure.assign(3, 1e7);
+
+  const analytic::Model analytic(the_case.pump, the_case.analytic);
+  std::vector<double> values(analytic.layout().size());
+  std::vector<long double> extended(values.size());
+  EXPECT_THAT(refusal([&] { analytic.reactions(instant, values); }), HasSubstr(expected));
+  EXPECT_THAT(refusal([&] { analytic.reactions(instant, extended); }), HasSubstr(expected));
+  EXPECT_THAT(refusal([&] { analytic.evaluate(instant, values); }), HasSubstr(expected));
+  EXPECT_THAT(refusal([&] { analytic.friction_power(instant, 0); }), HasSubstr(expected));
+
+  for (const auto scene : {multibody::Scene::full, multibody::Scene::piston}) {
+    multibody::Model multibody(the_case.pump, the_case.multibody, 1, scene);
+    EXPECT_THAT(refusal([&] { multibody.evaluate(instant, values); }), HasSubstr(expected));
+    if (scene == multibody::Scene::piston) {
+      EXPECT_THAT(refusal([&] { multibody.evaluate_one(instant, values); }), HasSubstr(expected));
+    }
+  }
+
+  const std::vector<analytic::Varying> chambers(3);
+  analytic::BatchInstants instants;
+  instants.count = 1;
+  instants.chamber_pressure = chambers;
+  const analytic::BatchModel batch(the_case.pump, the_case.analytic);
+  const analytic::PumpBatch pumps({the_case.pump}, the_case.analytic);
+  analytic::BatchColumns columns(batch.layout().reactions(), 1);
+  const auto outputs = outputs_of(batch.layout(), analytic::ChannelGroup::all, columns);
+  EXPECT_THAT(refusal([&] { batch.reactions(instants, outputs); }), HasSubstr(expected));
+  EXPECT_THAT(refusal([&] { pumps.reactions(instants, outputs); }), HasSubstr(expected));
+}
+
+TEST(Border, RoomForEveryValue) {
+  const Case the_case = reference_case("bap63_rated");
+  Instant instant;
+  instant.turn(0.1, 100);
+  instant.chamber_pressure.assign(5, 1e7);
+  const analytic::Model analytic(the_case.pump, the_case.analytic);
+  multibody::Model multibody(the_case.pump, the_case.multibody, 1);
+  std::vector<double> few(analytic.layout().reactions() - 1);
+  EXPECT_THAT(refusal([&] { analytic.reactions(instant, few); }), HasSubstr("room for 36 values"));
+  few.resize(analytic.layout().size() - 1);
+  EXPECT_EQ(refusal([&] { analytic.reactions(instant, few); }), "accepted");
+  EXPECT_THAT(refusal([&] { analytic.evaluate(instant, few); }), HasSubstr("room for"));
+  EXPECT_THAT(refusal([&] { multibody.evaluate(instant, few); }), HasSubstr("room for"));
+}
+
+TEST(Border, SamplesAreThoseOfThePump) {
+  const Case the_case = reference_case("bap63_rated");
+  const Samples samples = one_turn(reference_case("offset_nine"));
+  const PressureTrace trace(the_case.pressure);
+  EXPECT_THAT(refusal([&] { analytic::run(the_case, the_case.analytic, samples); }),
+              HasSubstr("9 chamber pressures for 5 pistons"));
+  for (const auto scene : {multibody::Scene::full, multibody::Scene::piston})
+    EXPECT_THAT(
+        refusal([&] { multibody::run_driven(the_case, the_case.multibody, samples, {}, scene); }),
+        HasSubstr("samples of 9 pistons for a pump with 5"));
+  EXPECT_THAT(
+      refusal([&] { multibody::run_integrated(the_case, the_case.multibody, samples, trace, {}); }),
+      HasSubstr("samples of 9 pistons for a pump with 5"));
+}
+
+// The estimate moves inputs that stand on their bounds a little beyond them.
+TEST(Border, RoundingIsEstimatedOnTheBoundsToo) {
+  Case the_case = reference_case("seven_real_spinning");
+  PumpParameters& pump = the_case.pump;
+  pump.piston.joint_mass_fraction = 1;
+  pump.friction.shaft_torque_factor = 1;
+  pump.gear.pressure_angle = radians(60);
+  pump.piston.real->axial_inertia = 2 * pump.piston.real->transverse_inertia;
+  EXPECT_EQ(refusal([&] { analytic::RoundingEstimate(pump, the_case.analytic); }), "accepted");
 }
 
 }  // namespace
