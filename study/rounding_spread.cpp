@@ -18,9 +18,7 @@ Case moved(const Case& the_case, std::mt19937& engine) {
   for (const PumpInput& input : continuous_inputs(copy.pump)) {
     const double sign = (engine() & 1U) != 0 ? 1 : -1;
     const double value = *input.value * (1 + sign * std::numeric_limits<double>::epsilon());
-    const bool share =
-        input.name == "piston.joint_mass_fraction" || input.name == "friction.shaft_torque_factor";
-    if (!share || value <= 1) *input.value = value;
+    if (input.range.contains(value)) *input.value = value;  // a share stays a share
   }
   return copy;
 }
@@ -50,6 +48,8 @@ std::map<std::string, double> rounding_spread(const Case& the_case, const Result
         spread[group] = std::max(spread[group], change);
     } catch (const ComputationError&) {
       // This copy was refused.
+    } catch (const InputError&) {
+      // This copy is no pump any more: it lay on a bound between two inputs.
     }
   }
   return spread;
