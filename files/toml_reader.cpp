@@ -357,14 +357,21 @@ TomlFile TomlFile::read(const std::filesystem::path& file, const std::string& wh
 void TomlFile::change(const std::string& table, const std::string& key, const std::string& value) {
   toml::table* const parent = table_at(root_->file->table, table);
   if (parent == nullptr) return;  // the file has no table there, which whoever reads it refuses
+  const std::string name = table.empty() ? key : table + "." + key;
+  toml::table parsed;
   try {
-    toml::table parsed = toml::parse("value = " + value);
-    if (parsed.size() != 1) throw InputError("--set " + table + "." + key + ": more than a value");
-    parent->insert_or_assign(key, std::move(*parsed.get("value")));
+    parsed = toml::parse("value = " + value);
   } catch (const toml::parse_error&) {
-    parent->insert_or_assign(key, value);  // a bare word
+    try {
+      parsed = toml::parse("value = " + toml_text(value));  // a bare word
+    } catch (const toml::parse_error&) {
+    }
+    if (parsed["value"].value<std::string>() != value)
+      throw InputError("--set " + name + ": must be text in UTF-8");
   }
-  root_->file->changes[table.empty() ? key : table + "." + key] = value;
+  if (parsed.size() != 1) throw InputError("--set " + name + ": must be one value");
+  parent->insert_or_assign(key, std::move(*parsed.get("value")));
+  root_->file->changes[name] = value;
 }
 
 TableReader TomlFile::root(std::vector<InputEntry>* entries) const {

@@ -847,7 +847,7 @@ class SchemaTest(ProgramTest):
 
     def test_what_a_single_key_can_be_refused_for_is_in_the_schema(self):
         together = {  # what keys must be to each other, or what files must be there
-            "cannot be assembled", "equal bearings", "land", "lands overlap", "arc too long", "arc backwards",
+            "pistons cannot reach", "equal bearings", "land", "lands overlap", "arc too long", "arc backwards",
             "no such curve", "folder for a curve", "axial inertia above twice the transverse",
             "inertia of pistons without their data", "not a number", "infinite",
             "float for an integer"}  # 5.0 is an integer in JSON

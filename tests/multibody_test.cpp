@@ -287,7 +287,8 @@ TEST(Rank, EveryMobilityIsHeldOnce) {
 // A bearing that repeats what the other does: its equations are none, its forces anybody's guess.
 TEST(Rank, RedundantConstraintsAreRefusedByName) {
   Case the_case = reference_case("bap63_rated");
-  the_case.pump.bearings.cylindrical_z = the_case.pump.bearings.tapered_z;
+  // The same place would be refused as an input; this near they are one place all the same.
+  the_case.pump.bearings = {0, 1e-320};
   for (const auto method : {multibody::Method::multipliers, multibody::Method::residual}) {
     try {
       provenance_of(the_case.pump, the_case.multibody, method);

@@ -98,7 +98,7 @@ class TomlFile {
 
   /// Sets a key as if the file said so; messages then name the change instead of file and line.
   /// @param table  "pump", "assumptions.analytic"; "" for the top level
-  /// @param value  as in TOML, or a bare word for a text
+  /// @param value  as in TOML, or a bare word for a text. @throws InputError where it is neither
   void change(const std::string& table, const std::string& key, const std::string& value);
 
   const std::filesystem::path& file() const { return file_; }
