@@ -15,6 +15,7 @@
 #include "batch_job.h"
 #include "bentaxis/analytic/prepared.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/validate.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::analytic {
@@ -83,8 +84,10 @@ void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout&
   if (outputs.size() < layout.reactions())
     throw InputError("batch: " + std::to_string(outputs.size()) + " outputs, needed are " +
                      std::to_string(layout.reactions()) + " (null where not asked for)");
-  // A pump has 99 pistons at most.
-  BatchJob::Column pressures[99];
+  if (instants.chamber_pressure.size() != static_cast<std::size_t>(layout.pistons()))
+    throw InputError("batch: " + std::to_string(instants.chamber_pressure.size()) +
+                     " chamber pressures for " + std::to_string(layout.pistons()) + " pistons");
+  BatchJob::Column pressures[kMostPistons];
   for (int k = 0; k < layout.pistons(); ++k) pressures[k] = column(instants.chamber_pressure[k]);
   const auto bodies = outputs.begin() + static_cast<std::ptrdiff_t>(layout.Fh());
   BatchJob job = {pump.common(),
@@ -173,7 +176,7 @@ BatchOutputs outputs_of(const ChannelLayout& layout, ChannelGroup group, BatchCo
 }
 
 BatchModel::BatchModel(const PumpParameters& pump, const Assumptions& assumptions)
-    : layout_(pump.geometry.pistons),
+    : layout_(validate(pump).geometry.pistons),
       pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
 BatchModel::~BatchModel() = default;
 BatchModel::BatchModel(BatchModel&&) noexcept = default;
@@ -185,7 +188,7 @@ void BatchModel::reactions(const BatchInstants& instants, const BatchOutputs& ou
 }
 
 PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions)
-    : layout_(pumps.empty() ? 1 : pumps.front().geometry.pistons), size_(pumps.size()) {
+    : layout_(pumps.empty() ? 1 : validate(pumps.front()).geometry.pistons), size_(pumps.size()) {
   if (pumps.empty()) throw InputError("batch of pumps: there is none");
   numbers_.resize(kNumbers * size_);
   for (std::size_t i = 0; i < size_; ++i) {
@@ -193,7 +196,7 @@ PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions
       throw InputError("batch of pumps: pump " + std::to_string(i + 1) + " has " +
                        std::to_string(pumps[i].geometry.pistons) + " pistons, the first has " +
                        std::to_string(layout_.pistons()));
-    PreparedPump pump = prepare(pumps[i], assumptions);
+    PreparedPump pump = prepare(validate(pumps[i]), assumptions);
     double numbers[kNumbers];
     std::memcpy(numbers, &pump.numbers, sizeof numbers);
     for (std::size_t n = 0; n < kNumbers; ++n) numbers_[n * size_ + i] = numbers[n];

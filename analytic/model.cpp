@@ -8,7 +8,9 @@
 #include <iterator>
 #include <limits>
 
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/validate.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -25,7 +27,26 @@ struct Model::PistonState {
   closed_form::PistonForces<double> forces;
 };
 
+namespace {
+
+// What is read and written without a further look.
+template <class Real>
+void require_sizes(const Instant& instant, const std::vector<Real>& values, int pistons,
+                   std::size_t least) {
+  if (instant.chamber_pressure.size() != static_cast<std::size_t>(pistons))
+    throw InputError("analytic model: " + std::to_string(instant.chamber_pressure.size()) +
+                     " chamber pressures for " + std::to_string(pistons) + " pistons");
+  if (values.size() < least)
+    throw InputError("analytic model: room for " + std::to_string(values.size()) +
+                     " values, needed are " + std::to_string(least));
+}
+
+}  // namespace
+
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
+    : Model(validate(pump), assumptions, Unchecked{}) {}
+
+Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked)
     : pump_(pump),
       layout_(pump.geometry.pistons),
       kinematics_(pump.geometry),
@@ -80,17 +101,20 @@ void all_reactions(const closed_form::Common& common, const closed_form::Pump<Re
 
 void Model::reactions(const Instant& instant, std::vector<double>& values) const {
   require_locked(instant, "analytic");
+  require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_.common(), prepared_.numbers, instant, values.data());
 }
 
 void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
   require_locked(instant, "analytic");
+  require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_.common(), extended(prepared_.numbers), instant, values.data());
 }
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values) const {
+  require_sizes(instant, values, layout_.pistons(), layout_.size());
   reactions(instant, values);
   const ChannelLayout& at = layout_;
   const double fh = values[at.Fh()];
@@ -162,6 +186,7 @@ Model::FlankChange Model::other_flank(double tooth_force) const {
 
 Model::FrictionPower Model::friction_power(const Instant& instant, double drive_torque) const {
   require_locked(instant, "analytic");
+  require_sizes(instant, std::vector<double>(), layout_.pistons(), 0);
   const Friction& friction = pump_.friction;
   const double omega = instant.shaft.speed;
   FrictionPower power;
@@ -181,7 +206,7 @@ Model::FrictionPower Model::friction_power(const Instant& instant, double drive_
 ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                 const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const Model model(the_case.pump, assumptions);
+  const Model model(validate(the_case).pump, assumptions);
   ResultTable table = tabulate(
       "analytic", model.layout(), samples,
       [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },

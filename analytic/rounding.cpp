@@ -42,13 +42,13 @@ RoundingEstimate::RoundingEstimate(const PumpParameters& pump, const Assumptions
     if (before == 0) continue;
     *input.value = before * (1 + kChange);
     const double change = *input.value - before;
-    perturbed_.push_back({input.name, Model(changed, assumptions),
+    perturbed_.push_back({input.name, Model(changed, assumptions, Model::Unchecked{}),
                           kInputRounding * std::abs(before) / std::abs(change)});
     *input.value = before;
   }
   for (const int mode : kModes) {
     const RoundingMode scope(mode);
-    directed_.emplace_back(pump, assumptions);
+    directed_.push_back(Model(pump, assumptions, Model::Unchecked{}));
   }
 }
 

@@ -37,7 +37,7 @@ struct Angles {
     instants.count = count;
     instants.theta = {theta.data(), 0};
     instants.omega = {nullptr, rad_per_second(rated().operation.speed_rpm)};
-    instants.chamber_pressure = chamber.data();
+    instants.chamber_pressure = chamber;
     instants.suction = {nullptr, rated().pressure.ports.suction};
     instants.delivery = {nullptr, rated().pressure.ports.delivery};
   }

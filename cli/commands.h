@@ -22,6 +22,7 @@ Command add_inertia_command(CLI::App& app);
 Command add_pressure_command(CLI::App& app);
 Command add_regress_command(CLI::App& app);
 Command add_reference_command(CLI::App& app);
+Command add_schema_command(CLI::App& app);
 Command add_tradeoff_command(CLI::App& app);
 
 }  // namespace bentaxis::cli

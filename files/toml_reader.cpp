@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "bentaxis/pump/error.h"
@@ -19,6 +20,17 @@ std::string quoted(const toml::node& node) {
   std::string text = out.str();
   if (const auto newline = text.find('\n'); newline != std::string::npos) text.resize(newline);
   return text;
+}
+
+// Takes the file apart into table by table; null where a key on the way is no table.
+toml::table* table_at(toml::table& root, const std::string& name) {
+  toml::table* table = &root;
+  std::istringstream parts(name);
+  for (std::string part; table != nullptr && std::getline(parts, part, '.');) {
+    table->insert(part, toml::table{});  // unless it is there
+    table = table->get_as<toml::table>(part);
+  }
+  return table;
 }
 
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
@@ -43,20 +55,39 @@ constexpr std::size_t kLikelyTypo = 3;  // edits
 
 }  // namespace
 
-bool NumberRange::contains(double value) const {
-  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+std::string toml_text(const std::string& text) {
+  const toml::value<std::string> value(text);
+  std::ostringstream out;
+  out << toml::default_formatter(value, toml::format_flags::allow_unicode_strings);
+  return out.str();
 }
 
-std::string NumberRange::text() const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (low == -kInfinity && high == kInfinity) return "a finite number";
-  if (high == kInfinity) return (low_open ? "> " : ">= ") + number_text(low);
-  return "in " + std::string(low_open ? "(" : "[") + number_text(low) + ", " + number_text(high) +
-         (high_open ? ")" : "]");
+std::string one_line(const std::string& text) {
+  const bool plain =
+      std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  return plain ? text : toml_text(text);
 }
+
+std::string suggestion(const std::string& word, const std::set<std::string>& known) {
+  const auto nearest =
+      std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+        return edit_distance(word, a) < edit_distance(word, b);
+      });
+  if (nearest == known.end()) return "";
+  if (edit_distance(word, *nearest) <= kLikelyTypo) return "; did you mean \"" + *nearest + "\"?";
+  std::string allowed;
+  for (const auto& name : known) allowed += (allowed.empty() ? "" : ", ") + name;
+  return "; allowed: " + allowed;
+}
+
+// A parsed file, and what was changed in it: "pump.tilt_deg" -> the value as given.
+struct Document {
+  toml::table table;
+  std::map<std::string, std::string> changes;
+};
 
 struct TableReader::Node {
-  std::shared_ptr<const toml::table> file;
+  std::shared_ptr<Document> file;
   const toml::node* node;
 
   const toml::table* table() const { return node->as_table(); }
@@ -136,13 +167,19 @@ std::size_t TableReader::choice(const std::string& key, const std::vector<std::s
   return static_cast<std::size_t>(it - words.begin());
 }
 
-std::pair<double, double> TableReader::pair(const std::string& key, NumberRange range) {
-  const auto node = find(key, "a pair of numbers [a, b]", false);
+std::pair<double, double> TableReader::pair(const std::string& key, NumberRange range,
+                                            std::optional<std::pair<double, double>> fallback) {
+  const auto node = find(key, "a pair of numbers [a, b]", fallback.has_value());
+  if (!node) {
+    record(key, "[" + number_text(fallback->first) + ", " + number_text(fallback->second) + "]",
+           true);
+    return *fallback;
+  }
   const toml::array* array = node->node->as_array();
   if (array == nullptr || array->size() != 2)
     fail_at(*node, key, "must be a pair of numbers [a, b]");
-  const std::pair<double, double> values{number_of({node->file, &(*array)[0]}, key, range, false),
-                                         number_of({node->file, &(*array)[1]}, key, range, false)};
+  const std::pair values{number_of({node->file, &(*array)[0]}, key, range, false),
+                         number_of({node->file, &(*array)[1]}, key, range, false)};
   record(key, quoted(*node->node));
   return values;
 }
@@ -207,17 +244,9 @@ void TableReader::finish() const {
         node.is_table() && name_.empty()
             ? "unknown table [" + word + "]"
             : "unknown key \"" + word + "\"" + (name_.empty() ? "" : " in [" + name_ + "]");
-    const auto nearest =
-        std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
-          return edit_distance(word, a) < edit_distance(word, b);
-        });
-    if (nearest != known_.end() && edit_distance(word, *nearest) <= kLikelyTypo) {
-      message += "; did you mean \"" + *nearest + "\"?";
-    } else if (!known_.empty()) {
-      std::string allowed;
-      for (const auto& name : known_) allowed += (allowed.empty() ? "" : ", ") + name;
-      message += "; allowed: " + allowed;
-    }
+    message += suggestion(word, known_);
+    if (change_of(word) != nullptr)
+      throw InputError(place_of({table_->file, &node}, word) + message);
     throw InputError(place(line_of(node) > 0 ? line_of(node) : line_) + message);
   }
 }
@@ -247,8 +276,22 @@ std::string TableReader::label(const std::string& key) const {
 }
 
 void TableReader::fail_at(const Node& node, const std::string& key, const std::string& why) const {
-  throw InputError(place(line_of(*node.node)) + label(key) + " = " + quoted(*node.node) + ": " +
-                   why);
+  if (change_of(key) != nullptr) throw InputError(place_of(node, key) + why);
+  throw InputError(place_of(node, key) + label(key) + " = " + quoted(*node.node) + ": " + why);
+}
+
+const std::string* TableReader::change_of(const std::string& key) const {
+  if (table_ == nullptr) return nullptr;
+  const auto& changes = table_->file->changes;
+  const auto found = changes.find(name_.empty() ? key : name_ + "." + key);
+  return found == changes.end() ? nullptr : &found->second;
+}
+
+// Where a value comes from: file and line, or the change with the value as given.
+std::string TableReader::place_of(const Node& node, const std::string& key) const {
+  if (const std::string* value = change_of(key); value != nullptr)
+    return "--set " + (name_.empty() ? "" : name_ + ".") + key + "=" + *value + ": ";
+  return place(line_of(*node.node));
 }
 
 std::optional<TableReader::Node> TableReader::find(const std::string& key,
@@ -283,13 +326,16 @@ double TableReader::defaulted(const std::string& key, double value) {
 }
 
 void TableReader::record(const std::string& key, std::string value, bool by_default) {
-  if (entries_ != nullptr) entries_->push_back({name_, key, std::move(value), by_default});
+  if (entries_ != nullptr)
+    entries_->push_back({name_, key, std::move(value), by_default, change_of(key) != nullptr});
 }
 
 TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(std::move(file)) {
   try {
-    const auto table = std::make_shared<const toml::table>(toml::parse(text, file_.string()));
-    root_ = std::make_shared<const TableReader::Node>(TableReader::Node{table, table.get()});
+    const auto document =
+        std::make_shared<Document>(Document{toml::parse(text, file_.string()), {}});
+    root_ =
+        std::make_shared<const TableReader::Node>(TableReader::Node{document, &document->table});
   } catch (const toml::parse_error& error) {
     std::string what(error.description());
     std::replace(what.begin(), what.end(), '\n', ' ');
@@ -306,6 +352,26 @@ TomlFile TomlFile::read(const std::filesystem::path& file, const std::string& wh
   std::ostringstream text;
   text << in.rdbuf();
   return {text.str(), file};
+}
+
+void TomlFile::change(const std::string& table, const std::string& key, const std::string& value) {
+  toml::table* const parent = table_at(root_->file->table, table);
+  if (parent == nullptr) return;  // the file has no table there, which whoever reads it refuses
+  const std::string name = table.empty() ? key : table + "." + key;
+  toml::table parsed;
+  try {
+    parsed = toml::parse("value = " + value);
+  } catch (const toml::parse_error&) {
+    try {
+      parsed = toml::parse("value = " + toml_text(value));  // a bare word
+    } catch (const toml::parse_error&) {
+    }
+    if (parsed["value"].value<std::string>() != value)
+      throw InputError("--set " + name + ": must be text in UTF-8");
+  }
+  if (parsed.size() != 1) throw InputError("--set " + name + ": must be one value");
+  parent->insert_or_assign(key, std::move(*parsed.get("value")));
+  root_->file->changes[name] = value;
 }
 
 TableReader TomlFile::root(std::vector<InputEntry>* entries) const {

@@ -62,6 +62,18 @@ void read_as_case(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+void read_as_change(const std::uint8_t* data, std::size_t size) {
+  const std::string change(reinterpret_cast<const char*>(data), size);
+  try {
+    const Case the_case = read_case(BENTAXIS_FUZZED_CASE, {change});
+    const std::string written = case_text(the_case);
+    require(case_text(parse_case(written, "/fuzz/case.toml")) == written,
+            "changed case is not the same after writing and reading");
+  } catch (const InputError& error) {
+    check_message(error);
+  }
+}
+
 void read_as_csv(const std::uint8_t* data, std::size_t size) {
   const auto file = file_with(data, size);
   for (const bool allow_empty : {false, true}) {

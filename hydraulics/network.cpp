@@ -6,6 +6,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/pump/validate.h"
 
 namespace bentaxis::hydraulics {
 namespace {
@@ -39,7 +40,7 @@ const HydraulicData& data_of(const Case& the_case) {
 }  // namespace
 
 Network::Network(const Case& the_case)
-    : n_(the_case.pump.geometry.pistons),
+    : n_(validate(the_case).pump.geometry.pistons),
       open_(the_case.pressure.ports.delivery == 0),
       fluid_(data_of(the_case)),
       chamber_(the_case.pump.geometry, the_case.hydraulics->dead_volume),

@@ -25,7 +25,8 @@ namespace bentaxis::hydraulics {
 /// stays at atmospheric pressure and there is no load.
 class Network {
  public:
-  /// @throws InputError at standstill, backwards, and where the pistons have no stroke
+  /// @throws InputError where a case file that says the same would be refused; at standstill,
+  /// backwards, and where the pistons have no stroke
   explicit Network(const Case& the_case);
 
   int pistons() const { return n_; }

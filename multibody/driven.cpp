@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/validate.h"
 #include "bentaxis/results/stopwatch.h"
 
 namespace bentaxis::multibody {
@@ -47,6 +49,10 @@ bool one_stands_for_all(const Samples& samples) {
 
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress, Scene scene, Method method) {
+  validate(the_case);
+  if (samples.pistons != the_case.pump.geometry.pistons)
+    throw InputError("driven run: samples of " + std::to_string(samples.pistons) +
+                     " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   const Stopwatch stopwatch;
   Model model(the_case.pump, assumptions, samples.omega, scene, method);
   const bool shared = scene == Scene::piston && one_stands_for_all(samples);

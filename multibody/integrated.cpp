@@ -5,6 +5,7 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/validate.h"
 #include "bentaxis/results/stopwatch.h"
 #include "bentaxis/results/worst.h"
 #include "integration/time_run.h"
@@ -14,7 +15,11 @@ namespace bentaxis::multibody {
 
 namespace {
 
-void refuse_standstill(const Case& the_case) {
+void check(const Case& the_case, const Samples& samples) {
+  validate(the_case);
+  if (samples.pistons != the_case.pump.geometry.pistons)
+    throw InputError("integrated run: samples of " + std::to_string(samples.pistons) +
+                     " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   if (the_case.operation.speed_rpm == 0)
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = 0: an integrated run needs a speed other than 0 "
@@ -45,7 +50,7 @@ const std::vector<std::string>& integrator_names() {
 IntegratedRun run_integrated(const Case& the_case, const Assumptions& assumptions,
                              const Samples& samples, const PressureTrace& pressure,
                              const IntegrationOptions& options, const Progress& progress) {
-  refuse_standstill(the_case);
+  check(the_case, samples);
   const Stopwatch stopwatch;
   IntegratedRun result;
   translate_simbody_errors([&] {
@@ -79,7 +84,7 @@ IntegrationRecord run_torque_driven(const Case& the_case, const Assumptions& ass
                                     const Samples& samples, const PressureTrace& pressure,
                                     const std::function<double(double)>& drive_torque,
                                     const IntegrationOptions& options, const Progress& progress) {
-  refuse_standstill(the_case);
+  check(the_case, samples);
   const Stopwatch stopwatch;
   IntegrationRecord record;
   translate_simbody_errors([&] {

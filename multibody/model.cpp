@@ -7,6 +7,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/pump/validate.h"
 #include "bentaxis/results/worst.h"
 #include "loads/friction.h"
 #include "placement/placement.h"
@@ -24,7 +25,7 @@ using SimTK::Stage;
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
                  Scene the_scene, Method the_method)
-      : layout(pump.geometry.pistons),
+      : layout(validate(pump).geometry.pistons),
         scene(the_scene),
         method(the_method),
         parameters(pump),
@@ -37,6 +38,7 @@ struct Model::Implementation {
   }
 
   void check(const Instant& instant) const;
+  void require_sizes(const Instant& instant, const std::vector<double>& values) const;
   void evaluate(const Instant& instant, std::vector<double>& values);
   void place_and_solve(double theta, const Instant& instant);
   void check_rank();
@@ -78,6 +80,16 @@ void Model::Implementation::check(const Instant& instant) const {
   if (instant.shaft.acceleration != 0 &&
       !(system.pump().shaft.axial_inertia > 0 && system.pump().block.axial_inertia > 0))
     throw InputError("multibody model: changing speed needs axial inertias above 0");
+}
+
+void Model::Implementation::require_sizes(const Instant& instant,
+                                          const std::vector<double>& values) const {
+  if (instant.chamber_pressure.size() != static_cast<std::size_t>(layout.pistons()))
+    throw InputError("multibody model: " + std::to_string(instant.chamber_pressure.size()) +
+                     " chamber pressures for " + std::to_string(layout.pistons()) + " pistons");
+  if (values.size() < layout.size())
+    throw InputError("multibody model: room for " + std::to_string(values.size()) +
+                     " values, needed are " + std::to_string(layout.size()));
 }
 
 void Model::Implementation::check_rank() {
@@ -141,6 +153,7 @@ void Model::Implementation::evaluate(const Instant& instant, std::vector<double>
 }
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values) {
+  implementation_->require_sizes(instant, values);
   translate_simbody_errors([&] { implementation_->evaluate(instant, values); });
 }
 
@@ -148,6 +161,7 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   Implementation& self = *implementation_;
   if (self.scene != Scene::piston)
     throw std::logic_error("evaluate_one() is of the one-piston scene");
+  self.require_sizes(instant, values);
   translate_simbody_errors([&] {
     self.check(instant);
     self.pressure.assign(1, instant.chamber_pressure[0]);

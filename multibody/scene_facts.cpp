@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/validate.h"
 #include "bentaxis/multibody/versions.h"
 #include "scene/pump_system.h"
 
@@ -66,7 +67,7 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
 }
 
 SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {
-  const PumpSystem system(built_pump(pump, scene), assumptions, 1, drive_of(scene));
+  const PumpSystem system(built_pump(validate(pump), scene), assumptions, 1, drive_of(scene));
   const SimTK::State& state = system.dynamics();
   SceneSize size;
   size.bodies = system.matter().getNumBodies() - 1;  // without Ground

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -36,6 +37,22 @@ std::string number_text(double value) {
   std::string text;
   append_number(text, value);
   return text;
+}
+
+bool NumberRange::contains(double value) const {
+  const auto beyond = [&](double bound) {
+    return std::isfinite(bound) ? slack * std::abs(bound) : 0;
+  };
+  return std::isfinite(value) && (low_open ? value > low : value >= low - beyond(low)) &&
+         (high_open ? value < high : value <= high + beyond(high));
+}
+
+std::string NumberRange::text() const {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (low == -kInfinity && high == kInfinity) return "a finite number";
+  if (high == kInfinity) return (low_open ? "> " : ">= ") + number_text(low);
+  return "in " + std::string(low_open ? "(" : "[") + number_text(low) + ", " + number_text(high) +
+         (high_open ? ")" : "]");
 }
 
 }  // namespace bentaxis

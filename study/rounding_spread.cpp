@@ -17,9 +17,7 @@ Case moved(const Case& the_case, std::mt19937& engine) {
   for (const PumpInput& input : continuous_inputs(copy.pump)) {
     const double sign = (engine() & 1U) != 0 ? 1 : -1;
     const double value = *input.value * (1 + sign * std::numeric_limits<double>::epsilon());
-    const bool share =
-        input.name == "piston.joint_mass_fraction" || input.name == "friction.shaft_torque_factor";
-    if (!share || value <= 1) *input.value = value;
+    if (input.range.contains(value)) *input.value = value;  // a share stays a share
   }
   return copy;
 }
@@ -48,6 +46,9 @@ std::map<std::string, double> rounding_spread(const Case& the_case, const Result
       for (const auto& [group, change] : largest_of_groups(comparison))
         keep_worst(spread[group], change);
     } catch (const ComputationError& error) {
+      refusal = error.what();
+    } catch (const InputError& error) {
+      // This copy is no pump any more: it lay on a bound between two inputs.
       refusal = error.what();
     }
   }

@@ -122,7 +122,7 @@ class Measurement {
     instants.count = rows;
     instants.theta.each = theta.data();
     instants.omega.all = samples_.omega;
-    instants.chamber_pressure = chambers.data();
+    instants.chamber_pressure = chambers;
     instants.suction.all = samples_.ports.suction;
     instants.delivery.all = samples_.ports.delivery;
     const analytic::BatchModel model(case_.pump, assumptions_);

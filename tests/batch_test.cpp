@@ -30,8 +30,8 @@ struct Arrays {
         pressure[k].push_back(i.chamber_pressure[k]);
     }
     for (const auto& column : pressure) chamber.push_back({column.data(), 0});
-    instants = {list.size(),    {theta.data(), 0},   {omega.data(), 0},   {omega_dot.data(), 0},
-                chamber.data(), {suction.data(), 0}, {delivery.data(), 0}};
+    instants = {list.size(), {theta.data(), 0},   {omega.data(), 0},   {omega_dot.data(), 0},
+                chamber,     {suction.data(), 0}, {delivery.data(), 0}};
   }
   std::vector<double> theta, omega, omega_dot, suction, delivery;
   std::vector<std::vector<double>> pressure;

@@ -15,7 +15,10 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 import unittest
+
+import jsonschema
 
 DONE, OUT_OF_TOLERANCE, BAD_INPUT, COMPUTATION_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 REPORT_FILES = {"report.html", "report.json", "analytic.csv", "multibody.csv"}
@@ -97,6 +100,9 @@ class ProgramTest(unittest.TestCase):
     def start(self, *arguments, **options):
         return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+
+    def schema(self):
+        return json.loads(self.run_program("schema").out)
 
     def finish(self, process, status):
         try:
@@ -825,6 +831,48 @@ class PressureTest(ProgramTest):
         self.assert_mentions(self.refused("pressure", slow, status=COMPUTATION_FAILED), "hydraulics", "periodic")
 
 
+# ---- The format of case files ----------------------------------------------------------------------------
+
+
+class SchemaTest(ProgramTest):
+    def errors(self, file):
+        return [error.message for error in jsonschema.Draft7Validator(self.schema()).iter_errors(
+            tomllib.loads(pathlib.Path(file).read_text()))]
+
+    def test_every_case_of_the_repository_conforms(self):
+        files = [*REPO.glob("cases/*.toml"), *REPO.glob("reference_data/*/*/case.toml")]
+        self.assertGreater(len(files), 70)
+        for file in files:
+            self.assertEqual(self.errors(file), [], file)
+
+    def test_what_a_single_key_can_be_refused_for_is_in_the_schema(self):
+        together = {  # what keys must be to each other, or what files must be there
+            "pistons cannot reach", "equal bearings", "land", "lands overlap", "arc too long", "arc backwards",
+            "no such curve", "folder for a curve", "axial inertia above twice the transverse",
+            "inertia of pistons without their data", "not a number", "infinite",
+            "float for an integer"}  # 5.0 is an integer in JSON
+        checked = 0
+        for label, changes, _ in BAD_VALUES:
+            if label in together:
+                continue
+            with self.subTest(label):
+                checked += 1
+                self.assertNotEqual(self.errors(Case(**changes).write(self.folder / "case.toml")), [])
+        self.assertGreater(checked, 20)
+
+    def test_what_a_choice_makes_necessary(self):
+        for changes in ({"pressure.transition_deg": None}, {"pressure.kind": '"curve"'},
+                        {"pressure.kind": '"hydraulic"'}, {"piston.inertia": '"real"'}):
+            with self.subTest(changes):
+                self.assertNotEqual(self.errors(Case(**changes).write(self.folder / "case.toml")), [])
+
+    def test_tables_for_docs(self):
+        text = self.run_program("schema", "--markdown", "gear", "bearings").out
+        self.assertIn("| `pressure_angle_deg` | alpha_p (ap) |", text)
+        self.assertIn("| `tapered_z_mm` | C1 |", text)
+        self.assert_mentions(self.refused("schema", "--markdown", "gears"), "gears", '"gear"')
+
+
 # ---- Negative controls: a wrong input to one model is noticed -------------------------------------------
 
 # Cases in which every parameter has something to do. Pressure hides weights and inertia: light cases show them.
@@ -895,6 +943,17 @@ class NegativeControlTest(ProgramTest):
                 name = f"{table}.{key}" if table else key
                 if value and not value.startswith('"') and name not in structure:
                     self.assertIn(name, tried)
+
+    def test_no_parameter_of_the_program_is_forgotten(self):
+        """Every number that the mechanical models are given, whether the cases above have it or not."""
+        structure = {"pump.pistons", "operation.samples_per_revolution", "operation.revolutions", "pressure.points"}
+        without_effect = {name for _, name, _ in WITHOUT_EFFECT}
+        tried = {name for _, names in CONTROLS for name in names.split()}
+        numbers = {f"{table}.{key}" for table, schema in self.schema()["properties"].items() if table != "hydraulics"
+                   for key, parameter in schema.get("properties", {}).items()
+                   if parameter.get("type") in ("number", "integer", "array")}
+        self.assertGreater(len(numbers), 40)
+        self.assertEqual(numbers - structure - without_effect - tried, set())
 
     def test_pressure_curve_counts(self):
         (self.folder / "curve.csv").write_text(CURVE)

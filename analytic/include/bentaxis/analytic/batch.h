@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,7 @@ struct Varying {
 struct BatchInstants {
   std::size_t count = 0;
   Varying theta, omega, omega_dot;
-  const Varying* chamber_pressure = nullptr;  ///< one per piston
+  std::span<const Varying> chamber_pressure;  ///< one per piston
   Varying suction, delivery;                  ///< port pressures
 };
 
@@ -95,6 +96,7 @@ class BatchModel {
 
   /// Reactions at every instant, equal to Model::reactions to round-off. Allocates nothing (with
   /// more than one thread oneTBB does). Rcs is not_computed() where the block speed is imposed.
+  /// @throws InputError unless there is a pressure for each piston and an output for each reaction
   void reactions(const BatchInstants& instants, const BatchOutputs& outputs,
                  const BatchOptions& options = {}) const;
 

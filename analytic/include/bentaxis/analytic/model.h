@@ -20,7 +20,8 @@ namespace bentaxis::analytic {
 /// A pump prepared for evaluation at any instant. Immutable, so one object serves many threads.
 class Model {
  public:
-  /// @throws InputError if `assumptions` ask for real pistons and the pump has no data of them.
+  /// @throws InputError where a case file with this pump would be refused (validate()), or if
+  ///         `assumptions` ask for real pistons and the pump has no data of them.
   Model(const PumpParameters& pump, const Assumptions& assumptions);
 
   const ChannelLayout& layout() const { return layout_; }
@@ -32,6 +33,7 @@ class Model {
   ///                 per piston
   /// @param values   at least layout().reactions() long; SI, ordered by layout(). Rcs is
   ///                 not_computed() where the block speed is imposed.
+  /// @throws InputError where the sizes are others
   /// Allocates nothing. Many instants, or many pumps, at a time: batch.h.
   void reactions(const Instant& instant, std::vector<double>& values) const;
 
@@ -61,6 +63,11 @@ class Model {
   FrictionPower friction_power(const Instant& instant, double drive_torque) const;
 
  private:
+  // The rounding estimate moves inputs by little, over their bounds too where they stand on them.
+  friend class RoundingEstimate;
+  struct Unchecked {};
+  Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked);
+
   struct PistonState;
 
   PistonState piston_state(const Instant& instant, double sin_theta, double cos_theta, int k) const;

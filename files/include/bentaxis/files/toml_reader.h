@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -12,21 +11,16 @@
 #include <vector>
 
 #include "bentaxis/pump/case.h"
+#include "bentaxis/pump/number.h"
 
 namespace bentaxis {
 
-/// Allowed values of a number, with the text an engineer sees when it is left.
-struct NumberRange {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false, high_open = false;
-
-  bool contains(double value) const;
-  std::string text() const;
-};
-inline constexpr NumberRange kAny{};
-inline constexpr NumberRange kPositive{0, std::numeric_limits<double>::infinity(), true};
-inline constexpr NumberRange kNotNegative{0, std::numeric_limits<double>::infinity()};
+/// A text as TOML writes it: in quotes, escaped.
+std::string toml_text(const std::string& text);
+/// A text for a message: control characters are escaped.
+std::string one_line(const std::string& text);
+/// "; did you mean ...?" for a word that is close to one of those known, or else a list of them.
+std::string suggestion(const std::string& word, const std::set<std::string>& known);
 
 /// One table of a file. Remembers which keys were asked for, so that the rest are errors. All
 /// errors are InputError with one line: file, line, key, value, what is allowed.
@@ -46,7 +40,8 @@ class TableReader {
   std::size_t choice(const std::string& key, const std::vector<std::string>& words,
                      std::optional<std::size_t> fallback = {});
   /// [a, b].
-  std::pair<double, double> pair(const std::string& key, NumberRange range);
+  std::pair<double, double> pair(const std::string& key, NumberRange range,
+                                 std::optional<std::pair<double, double>> fallback = {});
   /// ["a", "b", ...]; empty where the key is missing.
   std::vector<std::string> texts(const std::string& key);
 
@@ -74,6 +69,8 @@ class TableReader {
               std::vector<InputEntry>* entries);
 
   std::string place(int line) const;
+  std::string place_of(const Node& node, const std::string& key) const;
+  const std::string* change_of(const std::string& key) const;
   std::string label(const std::string& key) const;
   [[noreturn]] void fail_at(const Node& node, const std::string& key, const std::string& why) const;
   std::optional<Node> find(const std::string& key, const std::string& wanted, bool optional);
@@ -98,6 +95,11 @@ class TomlFile {
   /// Reads a file; `what` says in a message what it should have been ("case file").
   /// @throws InputError
   static TomlFile read(const std::filesystem::path& file, const std::string& what);
+
+  /// Sets a key as if the file said so; messages then name the change instead of file and line.
+  /// @param table  "pump", "assumptions.analytic"; "" for the top level
+  /// @param value  as in TOML, or a bare word for a text. @throws InputError where it is neither
+  void change(const std::string& table, const std::string& key, const std::string& value);
 
   const std::filesystem::path& file() const { return file_; }
   /// The top level. Keys read are appended to `entries` where given.

@@ -24,6 +24,7 @@ struct InputEntry {
   std::string key;
   std::string value;
   bool defaulted = false;
+  bool changed = false;  ///< by --set
 };
 
 struct Case {

@@ -7,8 +7,8 @@ namespace bentaxis {
 
 /// How the opening of a silencing notch grows with the length of it that the kidney has passed.
 enum class NotchLaw {
-  linear,     ///< groove of constant depth: area in proportion to the length
   quadratic,  ///< V groove whose width and depth grow alike: area in proportion to the square
+  linear,     ///< groove of constant depth: area in proportion to the length
 };
 
 /// Silencing notch in front of a port: it leads the port's leading edge by `length_deg`.

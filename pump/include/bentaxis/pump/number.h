@@ -1,6 +1,7 @@
 // Numbers as text, and the value of what was not computed.
 #pragma once
 
+#include <limits>
 #include <string>
 
 namespace bentaxis {
@@ -17,5 +18,20 @@ void append_number(std::string& text, double value);
 
 /// The same as a string of its own.
 std::string number_text(double value);
+
+/// Allowed values of a number, with the text an engineer sees when it is left. What is not finite
+/// lies in no range.
+struct NumberRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false, high_open = false;
+  double slack = 0;  ///< of itself, by which a closed bound may be left
+
+  bool contains(double value) const;
+  std::string text() const;
+};
+inline constexpr NumberRange kAny{};
+inline constexpr NumberRange kPositive{0, std::numeric_limits<double>::infinity(), true};
+inline constexpr NumberRange kNotNegative{0, std::numeric_limits<double>::infinity()};
 
 }  // namespace bentaxis

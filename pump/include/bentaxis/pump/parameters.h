@@ -10,6 +10,9 @@
 
 namespace bentaxis {
 
+/// The most pistons that a pump may have: buffers of fixed size rely on it.
+inline constexpr int kMostPistons = 99;
+
 /// Main dimensions. Frames: S1 has its origin O1 where the shaft axis z1 meets the plane of the
 /// piston joints, y1 up; S2 has its origin at (0, 0, axis_offset) in S1 and is bent by `tilt`
 /// about x towards +y1; z2 is the block axis (Roccatello & Nervegna 2009, Fig. 1, (7)).
@@ -62,19 +65,25 @@ struct PistonMass {
   std::optional<Real> real;
 };
 
+/// Axial inertias where a case does not give them, kg m2: of a pump of the size of the BAP 63. At
+/// constant speed nothing depends on them; they are there so that a run in which the speed changes
+/// has an answer.
+inline constexpr double kUsualShaftInertia = 2000e-6;
+inline constexpr double kUsualBlockInertia = 1500e-6;
+
 struct Shaft {
-  double mass = 0;              ///< m_s, kg
-  double centre_of_mass_z = 0;  ///< z1, m
-  double axial_inertia = 0;     ///< kg m2, about z1; matters only when the speed changes
+  double mass = 0;                            ///< m_s, kg
+  double centre_of_mass_z = 0;                ///< z1, m
+  double axial_inertia = kUsualShaftInertia;  ///< kg m2, about z1
 };
 
 struct Block {
-  double mass = 0;              ///< m_c, kg
-  double centre_of_mass_z = 0;  ///< z2, m
-  double pin_z = 0;             ///< z2 of the pin's mean contact point H_cn, m
-  double bottom_area = 0;       ///< A_c per bore, m2
-  double spring_force = 0;      ///< F_m, N, pushes block and shaft apart
-  double axial_inertia = 0;     ///< kg m2, about z2; matters only when the speed changes
+  double mass = 0;                            ///< m_c, kg
+  double centre_of_mass_z = 0;                ///< z2, m
+  double pin_z = 0;                           ///< z2 of the pin's mean contact point H_cn, m
+  double bottom_area = 0;                     ///< A_c per bore, m2
+  double spring_force = 0;                    ///< F_m, N, pushes block and shaft apart
+  double axial_inertia = kUsualBlockInertia;  ///< kg m2, about z2
 };
 
 struct Friction {

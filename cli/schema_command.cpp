@@ -1,0 +1,31 @@
+// bentaxis schema: the format of case files.
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bentaxis/files/schema.h"
+#include "commands.h"
+
+namespace bentaxis::cli {
+
+Command add_schema_command(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "schema", "print the JSON Schema of case files, for editors that complete and check TOML");
+  const auto tables = std::make_shared<std::vector<std::string>>();
+  command
+      ->add_option("--markdown", *tables,
+                   "print the keys of these tables as Markdown tables instead (docs/case_file.md); "
+                   "top stands for the keys above all tables")
+      ->option_text("TABLE..");
+  return {command, [tables] {
+            std::string text;
+            for (const std::string& table : *tables)
+              text += (text.empty() ? "" : "\n") + markdown_table(table == "top" ? "" : table);
+            if (tables->empty()) text = case_schema();
+            std::fputs(text.c_str(), stdout);
+            return kDone;
+          }};
+}
+
+}  // namespace bentaxis::cli

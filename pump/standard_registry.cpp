@@ -1,0 +1,881 @@
+// The parameters of this program. One entry each; what is made from them: registry.h.
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kMostSamples = std::numeric_limits<int>::max();
+constexpr NumberRange kCount{1, kMostSamples};
+
+// Overlap over which a kidney with rounded ends opens, where the case does not say, degrees.
+constexpr double kKidneyRounding = 5;
+
+// ---- Units: the conversions that results hold to the last bit -----------------------------------
+
+constexpr Unit kMillimetres{"mm", metres};
+constexpr Unit kSquareMillimetres{"mm2", square_metres};
+constexpr Unit kAngle{"deg", radians};            // kept in rad
+constexpr Unit kDegrees{"deg"};                   // kept in degrees, where edges are exact
+constexpr Unit kRotation{"rpm", rad_per_second};  // kept in rad/s
+constexpr Unit kSpeed{"rpm"};                     // kept in rpm
+constexpr Unit kBar{"bar", pascals};
+constexpr Unit kKilograms{"kg"};
+constexpr Unit kInertia{"kg mm2", square_metres};
+constexpr Unit kNewtons{"N"};
+constexpr Unit kTorquePerSpeed{"Nm/rpm", [](double x) { return x / kRadPerSecondPerRpm; }};
+constexpr Unit kMegapascals{"MPa", [](double x) { return x * 1e6; }};
+constexpr Unit kPercent{"percent", [](double x) { return x / 100; }};
+constexpr Unit kCubicCentimetres{"cm3", [](double x) { return x / 1e6; }};
+constexpr Unit kLitres{"l", [](double x) { return x / 1e3; }};
+// 1 l/min = 1e-3/60 m3/s
+constexpr Unit kLeakage{"l/min/bar", [](double x) { return x / 6e4 / kPascalPerBar; }};
+
+// ---- Conditions and parts
+// ------------------------------------------------------------------------
+
+const When kIdeal{"pressure", "kind", {"ideal"}};
+const When kCurve{"pressure", "kind", {"curve"}};
+const When kHydraulic{"pressure", "kind", {"hydraulic"}};
+
+const Part kRealPiston{{"piston", "inertia", {"real", "dynamically_equivalent"}},
+                       [](const ConstView& v) { return v.real_piston() != nullptr; },
+                       [](const View& v) { v.pump->piston.real.emplace(); }};
+const Part kPortPlate{{},
+                      [](const ConstView& v) { return v.port_plate() != nullptr; },
+                      [](const View& v) { v.pump->port_plate.emplace(); }};
+const Part kHydraulicData{kHydraulic,
+                          [](const ConstView& v) { return v.hydraulic_data() != nullptr; },
+                          [](const View& v) {
+                            if (v.hydraulics != nullptr) v.hydraulics->emplace();
+                          },
+                          [](const View& v) {
+                            if (v.hydraulics != nullptr) v.hydraulics->reset();
+                          }};
+
+// ---- What a rule says
+// ----------------------------------------------------------------------------
+
+// A computed number for a message, to six digits.
+std::string short_text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::string not_assembled(const ConstView& v) {
+  const Geometry& g = v.pump->geometry;
+  const AssemblyMargin margin = assembly_margin(g);
+  if (g.piston_length > margin.longest_distance) return "";
+  return "must be > " + short_text(margin.longest_distance * 1e3) +
+         ": the pump cannot be assembled at theta = " + short_text(margin.theta_deg) +
+         " deg, where " + short_text((margin.longest_distance - g.piston_length) * 1e3) +
+         " mm are missing (set by joint_circle_radius_mm, bore_circle_radius_mm, axis_offset_mm, "
+         "tilt_deg)";
+}
+
+std::string same_bearings(const ConstView& v) {
+  const Bearings& b = v.pump->bearings;
+  return b.tapered_z == b.cylindrical_z ? "must differ from tapered_z_mm" : "";
+}
+
+std::string arc_refusal(const PortArc* arc) {
+  if (arc == nullptr || (arc->from_deg < arc->to_deg && arc->to_deg <= arc->from_deg + 360))
+    return "";
+  return "must be [from, to] with from < to <= from + 360";
+}
+
+std::string inner_land_refusal(const ConstView& v) {
+  const PortPlate* p = v.port_plate();
+  return p->r1 < p->r2 ? "" : "must be [r1, r2] with 0 <= r1 < r2";
+}
+
+std::string outer_land_refusal(const ConstView& v) {
+  const PortPlate* p = v.port_plate();
+  return p->r2 < p->r3 && p->r3 < p->r4 ? "" : "must be [r3, r4] with r2 < r3 < r4";
+}
+
+std::string kidney_refusal(const ConstView& v) {
+  const HydraulicData* data = v.hydraulic_data();
+  const auto too_long = [&](const PlatePort& port) {
+    return port.arc.to_deg - port.arc.from_deg + port.notch.length_deg + data->kidney_width_deg >
+           360;
+  };
+  for (const bool delivery : {true, false})
+    if (too_long(delivery ? data->delivery : data->suction))
+      return std::string("with the ") + (delivery ? "delivery" : "suction") +
+             " port's arc and notch must not exceed 360 deg";
+  return "";
+}
+
+std::string vacuum_refusal(const ConstView& v) {
+  if (v.pressure->kind != PressureKind::hydraulic) return "";  // present and unused
+  return v.pressure->ports.suction > -v.hydraulic_data()->atmosphere
+             ? ""
+             : "must exceed -suction_bar of [pressure]: no absolute pressure is below zero";
+}
+
+// ---- Tables of a kind
+// ----------------------------------------------------------------------------
+
+// Two numbers of an arc. `Arc` finds it.
+template <class Arc>
+PairField arc_at(Arc) {
+  return pair_at([](const auto& v) { return in(Arc{}(v), &PortArc::from_deg); },
+                 [](const auto& v) { return in(Arc{}(v), &PortArc::to_deg); });
+}
+
+// Arc and notch of one port of [hydraulics]. `Port` finds it, `Plate` the arc of [port_plate].
+template <class Port, class Plate>
+std::vector<Parameter> port_parameters(const std::string& name, Port, Plate) {
+  const auto arc = [](const auto& v) { return in(Port{}(v), &PlatePort::arc); };
+  const auto notch_length = [](const auto& v) {
+    return in(in(Port{}(v), &PlatePort::notch), &Notch::length_deg);
+  };
+  const auto notch_area = [](const auto& v) {
+    return in(in(Port{}(v), &PlatePort::notch), &Notch::area);
+  };
+  return {{.key = name + "_arc_deg",
+           .field = arc_at(arc),
+           .unit = kDegrees,
+           .range_words = "[from, to], from < to <= from + 360",
+           .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                          const PortArc* plate = Plate{}(v);
+                          if (plate == nullptr) return std::nullopt;
+                          return std::array{plate->from_deg, plate->to_deg};
+                        },
+                        .words = "that of `[port_plate]`"},
+           .meaning = "edges of the " + name + " port"},
+          {.key = name + "_notch_deg",
+           .field = number_at(notch_length),
+           .unit = kDegrees,
+           .range = {0, 90},
+           .fallback = {0.0},
+           .meaning = "length of the silencing notch that leads the " + name + " port",
+           .practice = "5..20"},
+          {.key = name + "_notch_area_mm2",
+           .field = number_at(notch_area),
+           .unit = kSquareMillimetres,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "its area at the root, where it meets the port",
+           .practice = "some mm2"}};
+}
+
+template <class Model>
+Table assumptions_table(const std::string& model, Model) {
+  return {
+      .name = "assumptions." + model,
+      .meaning = "what the " + model + " model assumes in this case",
+      .presence = Presence::silent,
+      .parameters =
+          {{.key = "piston_friction",
+            .field = flag_at(
+                [](const auto& v) { return in(Model{}(v), &Assumptions::piston_friction); }),
+            .fallback = {true},
+            .meaning = "whether friction acts on the pistons"},
+           {.key = "inertia",
+            .field = choice_at([](const auto& v) { return in(Model{}(v), &Assumptions::inertia); }),
+            .words = piston_inertia_names(),
+            .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                           return to_string(v.pump->piston.inertia);
+                         },
+                         .words = "that of `[piston]`"},
+            .meaning = "as in `[piston]`"},
+           {.key = "gear",
+            .field = choice_at([](const auto& v) { return in(Model{}(v), &Assumptions::gear); }),
+            .words = {"mesh", "imposed"},
+            .fallback = {std::string("mesh")},
+            .meaning = "how the block is carried round: by the tooth force, or by a speed imposed "
+                       "on its own joint, as in the paper's ADAMS run"}},
+      .rules = {{.key = "inertia", .after = "gear", .broken = [](const ConstView& v) {
+                   const Assumptions* a = Model{}(v);
+                   return a == nullptr ? "" : piston_inertia_refusal(a->inertia, *v.pump);
+                 }}}};
+}
+
+std::vector<Parameter> joined(std::vector<std::vector<Parameter>> lists) {
+  std::vector<Parameter> all;
+  for (auto& list : lists)
+    for (Parameter& parameter : list) all.push_back(std::move(parameter));
+  return all;
+}
+
+// ---- The tables, in the order in which a case is read
+// --------------------------------------------
+
+Table top_level() {
+  return {.name = "",
+          .meaning = "the file itself",
+          .parameters = {{.key = "schema",
+                          .field = IntegerField{},
+                          .range = {1, 1},
+                          .meaning = "version of this format"},
+                         {.key = "name",
+                          .field = text_at([](const auto& v) { return v.name; }),
+                          .meaning = "shown in reports"}}};
+}
+
+Table pump_table() {
+  return {
+      .name = "pump",
+      .meaning = "main dimensions",
+      .parameters =
+          {{.key = "type",
+            .field = ChoiceField{},
+            .words = {"bent_axis_bevel"},
+            .fallback = {std::string("bent_axis_bevel")},
+            .meaning = "kind of mechanism"},
+           {.key = "pistons",
+            .field = integer_at([](const auto& v) { return &v.pump->geometry.pistons; }),
+            .symbol = "N",
+            .range = {1, kMostPistons},
+            .meaning = "number of pistons"},
+           {.key = "tilt_deg",
+            .field = number_at([](const auto& v) { return &v.pump->geometry.tilt; }),
+            .path = {"geometry.tilt"},
+            .symbol = "alpha",
+            .unit = kAngle,
+            .range = {0, 90, false, true},
+            .meaning = "angle between shaft axis z1 and block axis z2"},
+           {.key = "joint_circle_radius_mm",
+            .field = number_at([](const auto& v) { return &v.pump->geometry.joint_circle_radius; }),
+            .path = {"geometry.joint_circle_radius"},
+            .symbol = "Ra",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .meaning = "radius of the circle of joint centres A, about z1"},
+           {.key = "bore_circle_radius_mm",
+            .field = number_at([](const auto& v) { return &v.pump->geometry.bore_circle_radius; }),
+            .path = {"geometry.bore_circle_radius"},
+            .symbol = "Rd",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .meaning = "radius of the circle of bore axes, about z2"},
+           {.key = "axis_offset_mm",
+            .field = number_at([](const auto& v) { return &v.pump->geometry.axis_offset; }),
+            .path = {"geometry.axis_offset"},
+            .symbol = "b",
+            .unit = kMillimetres,
+            .meaning = "z1 of O2: from the joint plane to the point where the axes meet"},
+           {.key = "piston_length_mm",
+            .field = number_at([](const auto& v) { return &v.pump->geometry.piston_length; }),
+            .path = {"geometry.piston_length"},
+            .symbol = "b1",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .range_words = "> 0, and long enough to be assembled over the whole turn",
+            .meaning = "A to B"},
+           {.key = "bore_diameter_mm",
+            .field = number_at([](const auto& v) { return &v.pump->geometry.bore_diameter; }),
+            .path = {"geometry.bore_diameter"},
+            .symbol = "Dpi",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .meaning = "cylinder diameter; piston area A = pi Dpi^2/4"}},
+      .rules = {{.key = "piston_length_mm", .after = "piston_length_mm", .broken = not_assembled}}};
+}
+
+Table gear_table() {
+  return {.name = "gear",
+          .meaning = "bevel gear pair that carries the block round",
+          .parameters = {
+              {.key = "pitch_diameter_mm",
+               .field = number_at([](const auto& v) { return &v.pump->gear.pitch_diameter; }),
+               .path = {"gear.pitch_diameter"},
+               .symbol = "d = m Z",
+               .unit = kMillimetres,
+               .range = kPositive,
+               .meaning = "pitch cone diameter at the contact point O4"},
+              {.key = "pressure_angle_deg",
+               .field = number_at([](const auto& v) { return &v.pump->gear.pressure_angle; }),
+               .path = {"gear.pressure_angle"},
+               .symbol = "alpha_p (ap)",
+               .unit = kAngle,
+               .range = {0, 60},
+               .meaning = "pressure angle; the pitch cone angle is 90 deg - alpha/2"}}};
+}
+
+Table bearings_table() {
+  return {
+      .name = "bearings",
+      .meaning = "places of the bearings on the shaft axis",
+      .parameters = {{.key = "tapered_z_mm",
+                      .field = number_at([](const auto& v) { return &v.pump->bearings.tapered_z; }),
+                      .path = {"bearings.tapered_z"},
+                      .symbol = "C1",
+                      .unit = kMillimetres,
+                      .meaning = "z1 of the tapered roller bearing, which takes x, y and z"},
+                     {.key = "cylindrical_z_mm",
+                      .field =
+                          number_at([](const auto& v) { return &v.pump->bearings.cylindrical_z; }),
+                      .path = {"bearings.cylindrical_z"},
+                      .symbol = "C2",
+                      .unit = kMillimetres,
+                      .range_words = "other than `tapered_z_mm`",
+                      .meaning = "z1 of the cylindrical roller bearing, which takes x and y"}},
+      .rules = {{.key = "cylindrical_z_mm", .after = "cylindrical_z_mm", .broken = same_bearings}}};
+}
+
+Table piston_table() {
+  return {
+      .name = "piston",
+      .meaning = "mass properties of one piston",
+      .parameters =
+          {{.key = "inertia",
+            .field = choice_at([](const auto& v) { return &v.pump->piston.inertia; }),
+            .words = piston_inertia_names(),
+            .meaning = "two point masses at A and B; a rigid body; or three point masses at A, "
+                       "centre of mass and B with the real piston's mass, centre and transverse "
+                       "inertia (no spin)"},
+           {.key = "mass_kg",
+            .field = number_at([](const auto& v) { return &v.pump->piston.mass; }),
+            .path = {"piston.mass"},
+            .symbol = "m_pi",
+            .unit = kKilograms,
+            .range = kNotNegative,
+            .meaning = "mass of a piston, m in theory.md"},
+           {.key = "joint_mass_fraction",
+            .field = number_at([](const auto& v) { return &v.pump->piston.joint_mass_fraction; }),
+            .path = {"piston.joint_mass_fraction"},
+            .symbol = "chi",
+            .range = {0, 1},
+            .fallback = {0.5},
+            .meaning = "lumped: share of the mass at A; mA = chi m, mB = (1 - chi) m"},
+           {.key = "centre_of_mass_mm",
+            .field = number_at([](const auto& v) {
+              return in(v.real_piston(), &PistonMass::Real::centre_of_mass);
+            }),
+            .path = {"piston.real.centre_of_mass"},
+            .symbol = "s_G (Gpi)",
+            .unit = kMillimetres,
+            .range_words = "dynamically equivalent: strictly between A and B, unless It = 0",
+            .meaning = "from A along the piston's axis",
+            .part = &kRealPiston},
+           {.key = "transverse_inertia_kg_mm2",
+            .field = number_at([](const auto& v) {
+              return in(v.real_piston(), &PistonMass::Real::transverse_inertia);
+            }),
+            .path = {"piston.real.transverse_inertia"},
+            .symbol = "It",
+            .unit = kInertia,
+            .range = kNotNegative,
+            .meaning = "about the centre of mass, across the axis",
+            .part = &kRealPiston},
+           {.key = "axial_inertia_kg_mm2",
+            .field = number_at([](const auto& v) {
+              return in(v.real_piston(), &PistonMass::Real::axial_inertia);
+            }),
+            .path = {"piston.real.axial_inertia"},
+            .symbol = "Ia",
+            .unit = kInertia,
+            .range = kNotNegative,
+            .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+              const PistonMass::Real* real = v.real_piston();
+              if (real == nullptr) return std::nullopt;
+              return NumberRange{0, 2 * in_file_unit(real->transverse_inertia, kInertia)};
+            },
+            .range_words = "[0, 2 It]",
+            .meaning = "about the axis",
+            .part = &kRealPiston},
+           {.key = "spin_rpm",
+            .field = number_at(
+                [](const auto& v) { return in(v.real_piston(), &PistonMass::Real::spin); }),
+            .path = {"piston.real.spin"},
+            .symbol = "w_s",
+            .unit = kRotation,
+            .fallback = {0.0},
+            .meaning = "real: axial component of the absolute angular velocity, positive along A "
+                       "to B",
+            .part = &kRealPiston}},
+      .rules = {{.key = "inertia", .after = "", .broken = [](const ConstView& v) {
+                   return piston_inertia_refusal(v.pump->piston.inertia, *v.pump);
+                 }}}};
+}
+
+Table shaft_table() {
+  return {.name = "shaft",
+          .meaning = "shaft",
+          .parameters = {
+              {.key = "mass_kg",
+               .field = number_at([](const auto& v) { return &v.pump->shaft.mass; }),
+               .path = {"shaft.mass"},
+               .symbol = "ms",
+               .unit = kKilograms,
+               .range = kNotNegative,
+               .meaning = "mass"},
+              {.key = "centre_of_mass_z_mm",
+               .field = number_at([](const auto& v) { return &v.pump->shaft.centre_of_mass_z; }),
+               .path = {"shaft.centre_of_mass_z"},
+               .symbol = "Gs",
+               .unit = kMillimetres,
+               .meaning = "z1 of the centre of mass"},
+              {.key = "axial_inertia_kg_mm2",
+               .field = number_at([](const auto& v) { return &v.pump->shaft.axial_inertia; }),
+               .path = {"shaft.axial_inertia"},
+               .symbol = "I_s",
+               .unit = kInertia,
+               .range = kNotNegative,
+               .fallback = {in_file_unit(kUsualShaftInertia, kInertia)},
+               .meaning = "about z1; acts only where the speed changes"}}};
+}
+
+Table block_table() {
+  return {
+      .name = "block",
+      .meaning = "cylinder block",
+      .parameters = {
+          {.key = "mass_kg",
+           .field = number_at([](const auto& v) { return &v.pump->block.mass; }),
+           .path = {"block.mass"},
+           .symbol = "mc",
+           .unit = kKilograms,
+           .range = kNotNegative,
+           .meaning = "mass"},
+          {.key = "centre_of_mass_z_mm",
+           .field = number_at([](const auto& v) { return &v.pump->block.centre_of_mass_z; }),
+           .path = {"block.centre_of_mass_z"},
+           .symbol = "Gt",
+           .unit = kMillimetres,
+           .meaning = "z2 of the centre of mass"},
+          {.key = "pin_z_mm",
+           .field = number_at([](const auto& v) { return &v.pump->block.pin_z; }),
+           .path = {"block.pin_z"},
+           .symbol = "Hcn",
+           .unit = kMillimetres,
+           .meaning = "z2 of the mean contact point of the guide pin"},
+          {.key = "bottom_area_mm2",
+           .field = number_at([](const auto& v) { return &v.pump->block.bottom_area; }),
+           .path = {"block.bottom_area"},
+           .symbol = "Ac",
+           .unit = kSquareMillimetres,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "area per bore on which the chamber pressure pushes the block to the plate"},
+          {.key = "spring_force_N",
+           .field = number_at([](const auto& v) { return &v.pump->block.spring_force; }),
+           .path = {"block.spring_force"},
+           .symbol = "Fm",
+           .unit = kNewtons,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "spring between shaft and block, pushes them apart"},
+          {.key = "axial_inertia_kg_mm2",
+           .field = number_at([](const auto& v) { return &v.pump->block.axial_inertia; }),
+           .path = {"block.axial_inertia"},
+           .symbol = "I_c",
+           .unit = kInertia,
+           .range = kNotNegative,
+           .fallback = {in_file_unit(kUsualBlockInertia, kInertia)},
+           .meaning = "about z2; acts only where the speed changes"}}};
+}
+
+Table friction_table() {
+  return {
+      .name = "friction",
+      .meaning = "friction of pistons, block and shaft",
+      .presence = Presence::optional,
+      .parameters = {
+          {.key = "piston_coulomb_N",
+           .field = number_at([](const auto& v) { return &v.pump->friction.piston_coulomb; }),
+           .path = {"friction.piston_coulomb"},
+           .symbol = "Fc",
+           .unit = kNewtons,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "Coulomb part of the piston friction Fpf"},
+          {.key = "piston_viscous_N_s_per_m",
+           .field = number_at([](const auto& v) { return &v.pump->friction.piston_viscous; }),
+           .path = {"friction.piston_viscous"},
+           .symbol = "cv",
+           .unit = {"N s/m"},
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "viscous part of Fpf"},
+          {.key = "regularization_m_per_s",
+           .field = number_at([](const auto& v) { return &v.pump->friction.regularization; }),
+           .path = {"friction.regularization"},
+           .symbol = "v_reg",
+           .unit = {"m/s"},
+           .range = kNotNegative,
+           .fallback = {0.01},
+           .meaning = "the Coulomb part grows as tanh(v/v_reg); 0 means sign(v)"},
+          {.key = "block_viscous_Nm_per_rpm",
+           .field = number_at([](const auto& v) { return &v.pump->friction.block_viscous; }),
+           .path = {"friction.block_viscous"},
+           .symbol = "Cc (also C)",
+           .unit = kTorquePerSpeed,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "viscous torque of the block"},
+          {.key = "shaft_viscous_Nm_per_rpm",
+           .field = number_at([](const auto& v) { return &v.pump->friction.shaft_viscous; }),
+           .path = {"friction.shaft_viscous"},
+           .symbol = "Cs",
+           .unit = kTorquePerSpeed,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "viscous torque of the shaft"},
+          {.key = "shaft_torque_factor",
+           .field = number_at([](const auto& v) { return &v.pump->friction.shaft_torque_factor; }),
+           .path = {"friction.shaft_torque_factor"},
+           .symbol = "Ct",
+           .range = {0, 1, true},
+           .fallback = {1.0},
+           .meaning = "1 - Ct of the drive torque is lost"}}};
+}
+
+Table operation_table() {
+  return {
+      .name = "operation",
+      .meaning = "how the pump runs",
+      .parameters = {
+          {.key = "speed_rpm",
+           .field = number_at([](const auto& v) { return in(v.operation, &Operation::speed_rpm); }),
+           .symbol = "omega",
+           .unit = kSpeed,
+           .meaning = "speed of shaft and block, positive about +z1, +z2; the sign gives the "
+                      "direction"},
+          {.key = "gravity_m_per_s2",
+           .field = number_at([](const auto& v) { return &v.pump->gravity; }),
+           .path = {"gravity"},
+           .symbol = "g",
+           .unit = {"m/s2"},
+           .fallback = {9.80665},
+           .meaning = "along -y1"},
+          {.key = "revolutions",
+           .field =
+               integer_at([](const auto& v) { return in(v.operation, &Operation::revolutions); }),
+           .range = kCount,
+           .fallback = {1},
+           .meaning = "of an integrated run"},
+          {.key = "samples_per_revolution",
+           .field = integer_at(
+               [](const auto& v) { return in(v.operation, &Operation::samples_per_revolution); }),
+           .range = kCount,
+           .fallback = {720},
+           .meaning = "angles of a turn, equally far apart"}}};
+}
+
+Table pressure_table() {
+  return {
+      .name = "pressure",
+      .meaning = "gauge pressure in the chambers over their own angle theta_k",
+      .parameters = {
+          {.key = "kind",
+           .field = choice_at([](const auto& v) { return in(v.pressure, &PressureSpec::kind); }),
+           .words = {"ideal", "curve", "hydraulic"},
+           .meaning = "smoothed steps between the port pressures; points of a file; or computed "
+                      "from `[hydraulics]`"},
+          {.key = "suction_bar",
+           .field = number_at([](const auto& v) {
+             return in(in(v.pressure, &PressureSpec::ports), &PortPressures::suction);
+           }),
+           .symbol = "p_s",
+           .unit = kBar,
+           .meaning = "ideal: in the chambers; always: in the port, where it loads the lands"},
+          {.key = "delivery_bar",
+           .field = number_at([](const auto& v) {
+             return in(in(v.pressure, &PressureSpec::ports), &PortPressures::delivery);
+           }),
+           .symbol = "p_d",
+           .unit = kBar,
+           .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+             if (v.pressure->kind != PressureKind::hydraulic) return std::nullopt;
+             return NumberRange{0, 10000};
+           },
+           .range_words = "hydraulic: [0, 10000]",
+           .meaning = "likewise; hydraulic: the mean asked for, 0 is an open line"},
+          {.key = "points",
+           .field = integer_at([](const auto& v) { return in(v.pressure, &PressureSpec::points); }),
+           .range = {16, 100000},
+           .fallback = {800},
+           .meaning = "of the computed curve per turn; as many as the paper gave ADAMS",
+           .active = kHydraulic},
+          {.key = "transition_deg",
+           .field = number_at(
+               [](const auto& v) { return in(v.pressure, &PressureSpec::transition_deg); }),
+           .symbol = "w",
+           .unit = kDegrees,
+           .range = {0, 180},
+           .meaning = "width of each rise and fall; 0 is a step",
+           .active = kIdeal},
+          {.key = "delivery_start_deg",
+           .field = number_at(
+               [](const auto& v) { return in(v.pressure, &PressureSpec::delivery_start_deg); }),
+           .unit = kDegrees,
+           .fallback = {180.0},
+           .meaning = "middle of the rise",
+           .active = kIdeal},
+          {.key = "file",
+           .field = CurveField{},
+           .meaning = "CSV `theta_deg,pressure_bar`, path relative to the case file",
+           .active = kCurve}}};
+}
+
+// The arcs of [port_plate].
+struct DeliveryArc {
+  template <bool kConstant>
+  auto operator()(const BasicView<kConstant>& v) const {
+    return in(v.port_plate(), &PortPlate::delivery);
+  }
+};
+struct SuctionArc {
+  template <bool kConstant>
+  auto operator()(const BasicView<kConstant>& v) const {
+    return in(v.port_plate(), &PortPlate::suction);
+  }
+};
+
+Table port_plate_table() {
+  return {
+      .name = "port_plate",
+      .meaning =
+          "lands of the fixed port plate: full port pressure between r2 and r3, falling "
+          "linearly to 0 at r1 and r4",
+      .part = &kPortPlate,
+      .parameters = {{.key = "inner_land_mm",
+                      .field =
+                          pair_at([](const auto& v) { return in(v.port_plate(), &PortPlate::r1); },
+                                  [](const auto& v) { return in(v.port_plate(), &PortPlate::r2); }),
+                      .path = {"port_plate.r1", "port_plate.r2"},
+                      .symbol = "r1, r2",
+                      .unit = kMillimetres,
+                      .range = kNotNegative,
+                      .range_words = "[r1, r2], 0 <= r1 < r2",
+                      .meaning = "radii of the inner sealing land"},
+                     {.key = "outer_land_mm",
+                      .field =
+                          pair_at([](const auto& v) { return in(v.port_plate(), &PortPlate::r3); },
+                                  [](const auto& v) { return in(v.port_plate(), &PortPlate::r4); }),
+                      .path = {"port_plate.r3", "port_plate.r4"},
+                      .symbol = "r3, r4",
+                      .unit = kMillimetres,
+                      .range = kNotNegative,
+                      .range_words = "[r3, r4], r2 < r3 < r4",
+                      .meaning = "radii of the outer sealing land"},
+                     {.key = "delivery_arc_deg",
+                      .field = arc_at(DeliveryArc{}),
+                      .path = {"port_plate.delivery.from_deg", "port_plate.delivery.to_deg"},
+                      .symbol = "psi1, psi2",
+                      .unit = kDegrees,
+                      .range_words = "[from, to], from < to <= from + 360",
+                      .meaning = "delivery port; psi = 0 is +y2, psi grows as theta"},
+                     {.key = "suction_arc_deg",
+                      .field = arc_at(SuctionArc{}),
+                      .path = {"port_plate.suction.from_deg", "port_plate.suction.to_deg"},
+                      .symbol = "psi1, psi2",
+                      .unit = kDegrees,
+                      .range_words = "[from, to], from < to <= from + 360",
+                      .meaning = "suction port"}},
+      .rules = {
+          {.key = "inner_land_mm", .after = "inner_land_mm", .broken = inner_land_refusal},
+          {.key = "outer_land_mm", .after = "outer_land_mm", .broken = outer_land_refusal},
+          {.key = "delivery_arc_deg",
+           .after = "delivery_arc_deg",
+           .broken = [](const ConstView& v) { return arc_refusal(&v.port_plate()->delivery); }},
+          {.key = "suction_arc_deg", .after = "suction_arc_deg", .broken = [](const ConstView& v) {
+             return arc_refusal(&v.port_plate()->suction);
+           }}}};
+}
+
+Table hydraulics_table() {
+  const auto delivery = [](const auto& v) {
+    return in(v.hydraulic_data(), &HydraulicData::delivery);
+  };
+  const auto suction = [](const auto& v) {
+    return in(v.hydraulic_data(), &HydraulicData::suction);
+  };
+  return {
+      .name = "hydraulics",
+      .meaning = "oil, ports, leakage and delivery line",
+      .part = &kHydraulicData,
+      .parameters = joined(
+          {{{.key = "density_kg_per_m3",
+             .field = number_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::density); }),
+             .symbol = "rho0",
+             .unit = {"kg/m3"},
+             .range = {100, 5000},
+             .fallback = {850.0},
+             .meaning = "oil without air at P0",
+             .practice = "mineral oil at 60 deg C: 840..870"},
+            {.key = "bulk_modulus_MPa",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::bulk_modulus);
+             }),
+             .symbol = "K",
+             .unit = kMegapascals,
+             .range = {10, 1e9},
+             .fallback = {1400.0},
+             .meaning = "oil without air, isentropic",
+             .practice = "1200..1600"},
+            {.key = "air_percent",
+             .field = number_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::air_share); }),
+             .symbol = "x",
+             .unit = kPercent,
+             .range = {0, 50, true},
+             .fallback = {0.5},
+             .meaning = "entrained air by volume at P0",
+             .practice = "0.2..2"},
+            {.key = "air_exponent",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::air_exponent);
+             }),
+             .symbol = "n",
+             .range = {1, 1.67},
+             .fallback = {1.4},
+             .meaning = "1 isothermal, 1.4 adiabatic",
+             .practice = "milliseconds per rise: near 1.4"},
+            {.key = "atmosphere_bar",
+             .field = number_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::atmosphere); }),
+             .symbol = "P0",
+             .unit = kBar,
+             .range = {0.1, 10},
+             .range_words = "[0.1, 10], above -`suction_bar`",
+             .fallback = {1.01325},
+             .meaning = "absolute, where gauge pressure is 0"}},
+           port_parameters("delivery", delivery, DeliveryArc{}),
+           port_parameters("suction", suction, SuctionArc{}),
+           {{.key = "kidney_width_deg",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::kidney_width_deg);
+             }),
+             .symbol = "w",
+             .unit = kDegrees,
+             .range = {0, 180, true},
+             .range_words = "(0, 180], with arc and notch of a port at most 360",
+             .meaning = "of a block kidney, seen from the block axis"},
+            {.key = "kidney_height_mm",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::kidney_height);
+             }),
+             .unit = kMillimetres,
+             .range = kPositive,
+             .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                            const PortPlate* plate = v.port_plate();
+                            if (plate == nullptr) return std::nullopt;
+                            return (plate->r3 - plate->r2) * 1e3;
+                          },
+                          .words = "r3 - r2 of `[port_plate]`"},
+             .meaning = "of a block kidney, radial, on the bore circle",
+             .practice = "area about bore area less `bottom_area_mm2`"},
+            {.key = "kidney_rounding_deg",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::kidney_rounding_deg);
+             }),
+             .unit = kDegrees,
+             .range = kNotNegative,
+             .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+               return NumberRange{0, v.hydraulic_data()->kidney_width_deg};
+             },
+             .range_words = "[0, `kidney_width_deg`]",
+             .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                            return std::min(kKidneyRounding, v.hydraulic_data()->kidney_width_deg);
+                          },
+                          .words = "5, at most the width"},
+             .meaning = "overlap over which the opening grows as its square: rounded ends; 0: "
+                        "straight",
+             .practice = "about half the height, as an angle"},
+            {.key = "notch_law",
+             .field = choice_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::notch_law); }),
+             .words = {"quadratic", "linear"},
+             .fallback = {std::string("quadratic")},
+             .meaning = "how a notch opens with the length passed: V groove, or groove of constant "
+                        "depth"},
+            {.key = "discharge_coefficient",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::discharge_coefficient);
+             }),
+             .symbol = "Cd",
+             .range = {0, 2, true},
+             .fallback = {0.67},
+             .meaning = "of every opening",
+             .practice = "0.6..0.7"},
+            {.key = "transition_pressure_bar",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::transition_pressure);
+             }),
+             .symbol = "p_cr",
+             .unit = kBar,
+             .range = kPositive,
+             .fallback = {0.1},
+             .meaning = "below it the orifices are about linear",
+             .practice = "regularisation"},
+            {.key = "leakage_l_per_min_per_bar",
+             .field = number_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::leakage); }),
+             .symbol = "G",
+             .unit = kLeakage,
+             .range = kNotNegative,
+             .fallback = {0.002},
+             .meaning = "of each chamber to the case, laminar",
+             .practice = "gives a volumetric efficiency of 94..97 % at 275 bar"},
+            {.key = "case_bar",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::case_pressure);
+             }),
+             .unit = kBar,
+             .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+               return NumberRange{-in_file_unit(v.hydraulic_data()->atmosphere, kBar), kInfinity,
+                                  true};
+             },
+             .range_words = "above -`atmosphere_bar`",
+             .fallback = {0.0},
+             .meaning = "case pressure, gauge"},
+            {.key = "dead_volume_cm3",
+             .field = number_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::dead_volume); }),
+             .symbol = "V0",
+             .unit = kCubicCentimetres,
+             .range = kPositive,
+             .fallback = {3.0},
+             .meaning = "smallest volume of a chamber",
+             .practice = "about a quarter of the stroke's 12.7 cm3"},
+            {.key = "delivery_volume_l",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::delivery_volume);
+             }),
+             .unit = kLitres,
+             .range = kPositive,
+             .fallback = {0.5},
+             .meaning = "between pump and load orifice"},
+            {.key = "tolerance",
+             .field = number_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::tolerance); }),
+             .range = {1e-12, 1e-4},
+             .fallback = {1e-10},
+             .meaning = "relative error of pressure per step of the time integration"}}}),
+      .rules = {
+          {.key = "delivery_arc_deg",
+           .after = "delivery_arc_deg",
+           .broken =
+               [](const ConstView& v) { return arc_refusal(&v.hydraulic_data()->delivery.arc); }},
+          {.key = "suction_arc_deg",
+           .after = "suction_arc_deg",
+           .broken =
+               [](const ConstView& v) { return arc_refusal(&v.hydraulic_data()->suction.arc); }},
+          {.key = "kidney_width_deg", .after = "kidney_width_deg", .broken = kidney_refusal},
+          {.key = "atmosphere_bar", .after = "", .broken = vacuum_refusal}}};
+}
+
+}  // namespace
+
+const Registry& standard_registry() {
+  static const Registry registry{
+      {top_level(), pump_table(), gear_table(), bearings_table(), piston_table(), shaft_table(),
+       block_table(), friction_table(), operation_table(), pressure_table(), port_plate_table(),
+       hydraulics_table(), assumptions_table("analytic", [](const auto& v) { return v.analytic; }),
+       assumptions_table("multibody", [](const auto& v) { return v.multibody; })}};
+  return registry;
+}
+
+}  // namespace bentaxis
