@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/load_scale.h"
 
 namespace bentaxis::study {
 

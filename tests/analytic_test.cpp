@@ -6,10 +6,11 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/model.h"
-#include "bentaxis/analytic/port_plate.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "closed_form/film.h"
+#include "kinematics.h"
 #include "printed_model.h"
 #include "support.h"
 
@@ -243,7 +244,7 @@ TEST(Properties, ForcesOnTheWholePumpAreInEquilibrium) {
     if (p.port_plate) {
       for (const auto& [arc, pressure] : {std::pair{p.port_plate->delivery, i.ports.delivery},
                                           std::pair{p.port_plate->suction, i.ports.suction}}) {
-        const analytic::LandForce land = analytic::land_force(*p.port_plate, arc);
+        const auto land = analytic::closed_form::land_force(*p.port_plate, arc);
         add(o2, s2(0, 0, land.force_z * pressure));
         moment += s2(land.moment_x * pressure, land.moment_y * pressure, 0);
       }

@@ -1,5 +1,5 @@
-#define xsimd xsimd_avx2  // see batch_kernel.h
-#include "batch_kernel.h"
+#define xsimd xsimd_avx2  // see kernel.h
+#include "batch/kernel.h"
 
 namespace bentaxis::analytic {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "bentaxis/analytic/closed_form.h"
+#include "closed_form/pump.h"
 
 namespace bentaxis::analytic {
 

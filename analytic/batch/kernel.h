@@ -9,8 +9,8 @@
 #include <cstring>
 #include <xsimd/xsimd.hpp>
 
-#include "batch_job.h"
-#include "bentaxis/analytic/closed_form.h"
+#include "batch/job.h"
+#include "closed_form/reactions.h"
 
 namespace bentaxis::analytic::closed_form {
 

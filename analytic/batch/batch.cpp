@@ -12,10 +12,9 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-#include "batch_job.h"
-#include "bentaxis/analytic/prepared.h"
+#include "batch/job.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/results/result_table.h"
+#include "prepared.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -200,8 +199,8 @@ PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions
     if (i == 0) {
       common_ = std::make_unique<PreparedPump>(std::move(pump));
     } else {
-      common_->smooth_friction |= pump.smooth_friction;
-      common_->dry_friction |= pump.dry_friction;
+      common_->friction.smooth |= pump.friction.smooth;
+      common_->friction.dry |= pump.friction.dry;
     }
   }
 }
