@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <type_traits>
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -44,14 +46,22 @@ bool streams(const BatchInstants& instants, const BatchOutputs& outputs) {
 
 BatchKernel* kernel(InstructionSet set) {
   switch (set) {
+#ifdef BENTAXIS_X86_KERNELS
     case InstructionSet::avx512:
       return run_batch_avx512;
     case InstructionSet::avx2:
       return run_batch_avx2;
     case InstructionSet::sse2:
+      return run_batch_sse2;
+#else
+    case InstructionSet::avx512:
+    case InstructionSet::avx2:
+    case InstructionSet::sse2:
+#endif
+    case InstructionSet::scalar:
       break;
   }
-  return run_batch_sse2;
+  return run_batch_scalar;
 }
 
 // oneTBB orders what its caller did before a loop, the pieces, and what the caller does after it;
@@ -82,8 +92,7 @@ void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout&
   if (outputs.size() < layout.reactions())
     throw InputError("batch: " + std::to_string(outputs.size()) + " outputs, needed are " +
                      std::to_string(layout.reactions()) + " (null where not asked for)");
-  // A pump has 99 pistons at most.
-  BatchJob::Column pressures[99];
+  BatchJob::Column pressures[kMostPistons];
   for (int k = 0; k < layout.pistons(); ++k) pressures[k] = column(instants.chamber_pressure[k]);
   const auto bodies = outputs.begin() + static_cast<std::ptrdiff_t>(layout.Fh());
   BatchJob job = {pump.common(),
@@ -137,30 +146,39 @@ std::string to_string(InstructionSet set) {
     case InstructionSet::avx2:
       return "AVX2";
     case InstructionSet::sse2:
+      return "SSE2";
+    case InstructionSet::scalar:
       break;
   }
-  return "SSE2";
+  return "one lane";
 }
 
 std::vector<InstructionSet> available_instruction_sets() {
-  std::vector<InstructionSet> sets = {InstructionSet::sse2};
+  std::vector<InstructionSet> sets = {InstructionSet::scalar};
+#ifdef BENTAXIS_X86_KERNELS
+  sets.push_back(InstructionSet::sse2);
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
     sets.push_back(InstructionSet::avx2);
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
     sets.push_back(InstructionSet::avx512);
+#endif
   return sets;
 }
 
-std::size_t lanes(InstructionSet set) { return std::size_t{2} << static_cast<int>(set); }
+std::size_t lanes(InstructionSet set) { return std::size_t{1} << static_cast<int>(set); }
 
 BatchColumns::BatchColumns(std::size_t columns, std::size_t rows)
     : rows_(rows),
       // One line more than the rows need: columns a power of two apart would share cache sets.
       stride_((rows / kDoublesPerLine + 1) / 2 * 2 * kDoublesPerLine + kDoublesPerLine),
-      storage_(columns * stride_ + kDoublesPerLine) {
-  const auto address = reinterpret_cast<std::uintptr_t>(storage_.data());
-  first_ = storage_.data() + (kCacheLine - address % kCacheLine) % kCacheLine / sizeof(double);
+      first_(static_cast<double*>(
+          ::operator new (columns* stride_ * sizeof(double), std::align_val_t{kCacheLine}))) {
+  std::uninitialized_fill_n(first_.get(), columns * stride_, 0.0);
+}
+
+void BatchColumns::Free::operator()(double* first) const {
+  ::operator delete (first, std::align_val_t{kCacheLine});
 }
 
 BatchOutputs outputs_of(const ChannelLayout& layout, ChannelGroup group, BatchColumns& columns) {

@@ -1,101 +1,61 @@
-// The loop of a batch, for one instruction set. Internal: included by one translation unit per
-// instruction set. None of them may define a function that the linker could take for another's:
-// run on an older processor, that would be an illegal instruction. xsimd has such functions (of
-// plain doubles, for reducing angles), so each unit gives its namespace a name of its own. A test
-// looks at the symbols.
+// The loop of a batch, for one instruction set: included by one translation unit per instruction
+// set. None of them may define a function that the linker could take for another's: run on an older
+// processor, that would be an illegal instruction. Everything here is therefore local to the unit,
+// and xsimd, which has such functions (of plain doubles, for reducing angles), gets a name of its
+// own in each. A test looks at the symbols.
 #pragma once
 
 #include <cstddef>
 #include <cstring>
-#include <xsimd/xsimd.hpp>
 
 #include "batch/job.h"
+#include "batch/lanes.h"
 #include "closed_form/reactions.h"
-
-namespace bentaxis::analytic::closed_form {
-
-template <class A>
-struct Math<xsimd::batch<double, A>> {
-  using Real = xsimd::batch<double, A>;
-  BENTAXIS_INLINE static Real root(const Real& x) { return xsimd::sqrt(x); }
-  BENTAXIS_INLINE static Real magnitude(const Real& x) { return xsimd::abs(x); }
-  BENTAXIS_INLINE static Real tangent(const Real& x) {
-    // Beyond 19.1 tanh rounds to 1: nearly everywhere, for a piston that is not at a dead centre.
-    if (xsimd::all(xsimd::abs(x) > Real(20.0))) return direction(x);
-    return xsimd::tanh(x);
-  }
-  BENTAXIS_INLINE static Real direction(const Real& x) {
-    return xsimd::select(x < Real(0.0), Real(-1.0), Real(1.0));
-  }
-  BENTAXIS_INLINE static Real sign(const Real& x, const Real& rest) {
-    return xsimd::select(xsimd::abs(x) <= rest, Real(0.0), direction(x));
-  }
-};
-
-}  // namespace bentaxis::analytic::closed_form
 
 namespace bentaxis::analytic {
 
-// Stores a whole register past the caches; here because a line is written at once only where a
-// register is as long as a line.
-template <class A>
-BENTAXIS_INLINE void stream(const xsimd::batch<double, A>& value, double* to) {
-#ifdef __AVX512F__
-  _mm512_stream_pd(to, value);
-#else
-  value.store_unaligned(to);
-#endif
-}
+constexpr std::size_t kDoublesPerLine = 64 / sizeof(double);
+constexpr std::size_t kMostReactions = 5 * kMostPistons + 12;
 
 template <class Real>
 struct Lanes {
-  static constexpr std::size_t kLanes = Real::size;
+  static constexpr std::size_t kLanes = Register<Real>::kLanes;
 
   BENTAXIS_INLINE static Real load(const double* from, std::size_t used) {
-    if (used == kLanes) return Real::load_unaligned(from);
+    if (used == kLanes) return Register<Real>::load(from);
     double padded[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i) padded[i] = from[i < used ? i : 0];
-    return Real::load_unaligned(padded);
+    return Register<Real>::load(padded);
   }
   BENTAXIS_INLINE static Real load(const BatchJob::Column& column, std::size_t at,
                                    std::size_t used) {
     return column.each == nullptr ? Real(column.all) : load(column.each + at, used);
   }
-  template <bool kStream>
   BENTAXIS_INLINE static void store(const Real& value, double* to, std::size_t used) {
     if (used == kLanes) {
-      if constexpr (kStream)
-        stream(value, to);
-      else
-        value.store_unaligned(to);
+      Register<Real>::store(value, to);
       return;
     }
     double padded[kLanes];
-    value.store_unaligned(padded);
+    Register<Real>::store(value, padded);
     for (std::size_t i = 0; i < used; ++i) to[i] = padded[i];
   }
 };
 
-// `used` lanes from instant `at` on.
-template <class Real, bool kStream, class Par>
+// `used` lanes from instant `at` on; results to put(column, value).
+template <class Real, class Par, class Put>
 BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump<Par>& pump,
-                                    std::size_t at, std::size_t used) {
+                                    std::size_t at, std::size_t used, const Put& put) {
   using L = Lanes<Real>;
   closed_form::State<Real> state;
-  const auto angle = xsimd::sincos(L::load(job.theta, at, used));
-  state.sine = angle.first;
-  state.cosine = angle.second;
+  Register<Real>::sine_cosine(L::load(job.theta, at, used), state.sine, state.cosine);
   state.omega = L::load(job.omega, at, used);
   state.omega_dot = L::load(job.omega_dot, at, used);
   state.suction = L::load(job.suction, at, used);
   state.delivery = L::load(job.delivery, at, used);
   closed_form::reactions(
       job.common, pump, state, job.bodies,
-      [&](int k) { return L::load(job.chamber_pressure[k], at, used); },
-      [&](int index, const Real& value) {
-        double* const column = job.outputs[index];
-        if (column != nullptr) L::template store<kStream>(value, column + at, used);
-      });
+      [&](int k) { return L::load(job.chamber_pressure[k], at, used); }, put);
 }
 
 // Numbers of the pumps in the lanes: Pump<Real> is an array of Real with names.
@@ -112,33 +72,103 @@ BENTAXIS_INLINE closed_form::Pump<Real> load_pumps(const BatchJob& job, std::siz
   return pump;
 }
 
-template <class Real, bool kStream>
-void run_lanes(const BatchJob& job, std::size_t begin, std::size_t end) {
-  constexpr std::size_t kWidth = Real::size;
-  std::size_t at = begin;
+// Results to their columns by ordinary stores.
+template <class Real>
+struct Store {
+  const BatchJob& job;
+  std::size_t at, used;
+  BENTAXIS_INLINE void operator()(int index, const Real& value) const {
+    double* const column = job.outputs[index];
+    if (column != nullptr) Lanes<Real>::store(value, column + at, used);
+  }
+};
+
+template <class Real>
+BENTAXIS_INLINE void store_lanes(const BatchJob& job, std::size_t at, std::size_t end) {
+  constexpr std::size_t kLanes = Register<Real>::kLanes;
   if (job.pumps == nullptr) {
     const closed_form::Pump<double> pump = *job.pump;  // a copy: results cannot overlap it
-    for (; at + kWidth <= end; at += kWidth) evaluate_lanes<Real, kStream>(job, pump, at, kWidth);
-    if (at < end) evaluate_lanes<Real, kStream>(job, pump, at, end - at);
+    for (; at + kLanes <= end; at += kLanes)
+      evaluate_lanes<Real>(job, pump, at, kLanes, Store<Real>{job, at, kLanes});
+    if (at < end) evaluate_lanes<Real>(job, pump, at, end - at, Store<Real>{job, at, end - at});
     return;
   }
-  for (; at < end; at += kWidth) {
-    const std::size_t used = end - at < kWidth ? end - at : kWidth;
-    evaluate_lanes<Real, kStream>(job, load_pumps<Real>(job, at, used), at, used);
+  for (; at < end; at += kLanes) {
+    const std::size_t used = end - at < kLanes ? end - at : kLanes;
+    evaluate_lanes<Real>(job, load_pumps<Real>(job, at, used), at, used,
+                         Store<Real>{job, at, used});
   }
 }
 
-template <class A>
-void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
-  using Real = xsimd::batch<double, A>;
-#ifdef __AVX512F__
-  if (job.stream) {
-    run_lanes<Real, true>(job, begin, end);
-    _mm_sfence();
-    return;
+// One register past the caches: right where it is as long as a line.
+template <class Real>
+struct Stream {
+  const BatchJob& job;
+  std::size_t at;
+  BENTAXIS_INLINE void operator()(int index, const Real& value) const {
+    double* const column = job.outputs[index];
+    if (column != nullptr) Register<Real>::stream(value, column + at);
   }
-#endif
-  run_lanes<Real, false>(job, begin, end);
+};
+
+// Collects the parts of a line, which must be written past the caches one right after the other.
+template <class Real>
+struct Collect {
+  double (*lines)[kDoublesPerLine];
+  std::size_t part;
+  BENTAXIS_INLINE void operator()(int index, const Real& value) const {
+    Register<Real>::store(value, lines[index] + part);
+  }
+};
+
+// Instants from `at` on past the caches, as many whole lines as there are before `end`; where it
+// ended.
+template <class Real>
+BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, std::size_t end) {
+  constexpr std::size_t kLanes = Register<Real>::kLanes;
+  const auto pump_at = [&](std::size_t first) { return load_pumps<Real>(job, first, kLanes); };
+  const closed_form::Pump<double> one =
+      job.pumps == nullptr ? *job.pump : closed_form::Pump<double>{};
+  if constexpr (kLanes == kDoublesPerLine) {
+    for (; at + kLanes <= end; at += kLanes) {
+      if (job.pumps == nullptr)
+        evaluate_lanes<Real>(job, one, at, kLanes, Stream<Real>{job, at});
+      else
+        evaluate_lanes<Real>(job, pump_at(at), at, kLanes, Stream<Real>{job, at});
+    }
+  } else {
+    const int reactions = kReactionsEnd.per_piston * job.common.pistons + kReactionsEnd.single;
+    const int absent =
+        job.common.imposed ? closed_form::column<Quantity::Rcs>(job.common.pistons, 0, 0) : -1;
+    alignas(64) double lines[kMostReactions][kDoublesPerLine];
+    for (; at + kDoublesPerLine <= end; at += kDoublesPerLine) {
+      for (std::size_t part = 0; part < kDoublesPerLine; part += kLanes) {
+        const Collect<Real> collect = {lines, part};
+        if (job.pumps == nullptr)
+          evaluate_lanes<Real>(job, one, at + part, kLanes, collect);
+        else
+          evaluate_lanes<Real>(job, pump_at(at + part), at + part, kLanes, collect);
+      }
+      for (int c = 0; c < reactions; ++c) {
+        double* const column = job.outputs[c];
+        if (column == nullptr || c == absent) continue;
+        for (std::size_t part = 0; part < kDoublesPerLine; part += kLanes)
+          Register<Real>::stream(Register<Real>::load(lines[c] + part), column + at + part);
+      }
+    }
+  }
+  return at;
+}
+
+template <class Real>
+void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
+  if constexpr (Register<Real>::kStreams) {
+    if (job.stream) {
+      begin = stream_lines<Real>(job, begin, end);
+      Register<Real>::stream_done();
+    }
+  }
+  store_lanes<Real>(job, begin, end);
 }
 
 }  // namespace bentaxis::analytic
