@@ -1,9 +1,7 @@
-#include "bentaxis/analytic/kinematics.h"
+#include "kinematics.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
-
-#include "bentaxis/analytic/prepared.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -12,12 +10,13 @@ Eigen::Vector3d to_eigen(const closed_form::Vec3<double>& v) { return {v.x, v.y,
 
 }  // namespace
 
-Kinematics::Kinematics(const Geometry& geometry) : numbers_{} {
-  prepare_geometry(geometry, numbers_);
+Kinematics::Kinematics(const Geometry& geometry) : frame_{}, piston_{} {
+  closed_form::prepare(geometry, frame_);
+  closed_form::prepare(geometry, frame_, piston_);
 }
 
 PistonKinematics Kinematics::piston(double s, double c) const {
-  const auto m = closed_form::piston_motion(numbers_, s, c);
+  const auto m = closed_form::piston_motion(frame_, piston_, s, c);
   return {{to_eigen(m.joint), to_eigen(m.joint_first), to_eigen(m.joint_second)},
           {to_eigen(m.axis), to_eigen(m.axis_first), to_eigen(m.axis_second)}};
 }

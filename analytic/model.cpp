@@ -11,6 +11,9 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
+#include "closed_form/reactions.h"
+#include "kinematics.h"
+#include "prepared.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -24,6 +27,7 @@ Vector3d to_eigen(const closed_form::Vec3<double>& v) { return {v.x, v.y, v.z}; 
 // A piston's motion and forces at an instant.
 struct Model::PistonState {
   closed_form::PistonMotion<double> motion;
+  double ring_velocity, friction;
   closed_form::PistonForces<double> forces;
 };
 
@@ -49,20 +53,24 @@ Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked)
     : pump_(pump),
       layout_(pump.geometry.pistons),
-      kinematics_(pump.geometry),
-      prepared_(prepare(pump, assumptions)) {}
+      prepared_(std::make_shared<const PreparedPump>(prepare(pump, assumptions))) {}
 
 Model::PistonState Model::piston_state(const Instant& instant, double sin_theta, double cos_theta,
                                        int k) const {
-  const double phase_sin = prepared_.phase_sin[k];
-  const double phase_cos = prepared_.phase_cos[k];
+  const double phase_sin = prepared_->phase_sin[k];
+  const double phase_cos = prepared_->phase_cos[k];
+  const closed_form::Pump<double>& p = prepared_->numbers;
+  const double omega = instant.shaft.speed;
   PistonState state;
   state.motion =
-      closed_form::piston_motion(prepared_.numbers, sin_theta * phase_cos - cos_theta * phase_sin,
+      closed_form::piston_motion(p.frame, p.piston, sin_theta * phase_cos - cos_theta * phase_sin,
                                  cos_theta * phase_cos + sin_theta * phase_sin);
-  state.forces = closed_form::piston_forces(prepared_.common(), prepared_.numbers, state.motion,
-                                            instant.shaft.speed, instant.shaft.acceleration,
-                                            instant.chamber_pressure[k]);
+  state.ring_velocity = state.motion.ring_velocity(omega);
+  state.friction =
+      closed_form::friction_force(prepared_->friction, p.friction, state.ring_velocity, omega);
+  state.forces =
+      closed_form::piston_forces(p.piston, state.motion, omega, instant.shaft.acceleration,
+                                 state.friction, instant.chamber_pressure[k]);
   return state;
 }
 
@@ -102,15 +110,15 @@ void all_reactions(const closed_form::Common& common, const closed_form::Pump<Re
 void Model::reactions(const Instant& instant, std::vector<double>& values) const {
   require_locked(instant, "analytic");
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
-  if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
-  all_reactions(prepared_.common(), prepared_.numbers, instant, values.data());
+  if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
+  all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
 }
 
 void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
   require_locked(instant, "analytic");
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
-  if (prepared_.imposed) values[layout_.Rcs()] = not_computed();
-  all_reactions(prepared_.common(), extended(prepared_.numbers), instant, values.data());
+  if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
+  all_reactions(prepared_->common(), extended(prepared_->numbers), instant, values.data());
 }
 
 void Model::evaluate(const Instant& instant, std::vector<double>& values) const {
@@ -121,7 +129,9 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
   values[at.xh()] = fh == 0 ? not_computed() : -values[at.Th(1)] / fh;  // (53)
   values[at.yh()] = fh == 0 ? not_computed() : values[at.Th(0)] / fh;
 
-  const closed_form::Pump<double>& p = prepared_.numbers;
+  const closed_form::Pump<double>& numbers = prepared_->numbers;
+  const closed_form::PistonNumbers<double>& p = numbers.piston;
+  const Kinematics kinematics(pump_.geometry);
   const double omega = instant.shaft.speed;
   const double sin_theta = std::sin(instant.shaft.angle);
   const double cos_theta = std::cos(instant.shaft.angle);
@@ -129,11 +139,11 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
   const double length = pump_.geometry.piston_length;
   const double share_of_centre = p.mass > 0 ? p.static_moment / p.mass : 0;     // sG / b1
   const double inertia_centre = p.inertia - p.static_moment * share_of_centre;  // It / b1^2
-  double carry = p.block_viscous * omega + p.block_inertia * instant.shaft.acceleration;
+  double carry = numbers.block.viscous * omega + numbers.block.inertia * instant.shaft.acceleration;
   // Virtual work per radian: every term of the power balance divided by omega.
   double work = pump_.friction.shaft_torque_factor * values[at.Td()] -
-                (p.shaft_viscous + p.block_viscous) * omega -
-                (p.shaft_inertia + p.block_inertia) * instant.shaft.acceleration;
+                (numbers.shaft.viscous + numbers.block.viscous) * omega -
+                (numbers.shaft.inertia + numbers.block.inertia) * instant.shaft.acceleration;
   for (int k = 0; k < at.pistons(); ++k) {
     const PistonState state = piston_state(instant, sin_theta, cos_theta, k);
     const double axial = state.forces.axial;
@@ -148,7 +158,7 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
 
     values[at.pressure(k)] = instant.chamber_pressure[k];
     values[at.zB(k)] = ring.z();
-    const Vector3d rs3 = kinematics_.s3_in_s1(axis).transpose() * kinematics_.to_s1(rs);
+    const Vector3d rs3 = kinematics.s3_in_s1(axis).transpose() * kinematics.to_s1(rs);
     for (int i = 0; i < 3; ++i) values[at.Rs3(k, i)] = rs3[i];
     const double share = ring.y() * rc.x() - ring.x() * rc.y();
     values[at.Tc(k)] = share;
@@ -170,18 +180,19 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
   }
   values[at.Tcs()] = carry;
   // The gear passes power on; an imposed block speed brings in power of its own.
-  values[at.power_residual()] = prepared_.imposed ? work + carry : work;
+  values[at.power_residual()] = prepared_->imposed ? work + carry : work;
 }
 
 Model::FlankChange Model::other_flank(double tooth_force) const {
   // The part of k4 that pushes the gears apart, turned round.
-  const closed_form::Pump<double>& p = prepared_.numbers;
-  const Vector3d on_block = 2 * std::abs(tooth_force) * Vector3d(0, p.line_y1, p.line_z1);
-  const Vector3d moment = Vector3d(0, p.gear_y, p.gear_z1).cross(-on_block);
-  const auto held = closed_form::bearings(p, {-on_block.x(), -on_block.y(), -on_block.z()},
-                                          moment.x(), moment.y());
-  return {kinematics_.to_s2(on_block).head<2>().norm(), to_eigen(held.tapered).norm(),
-          std::hypot(held.cylindrical_x, held.cylindrical_y)};
+  const closed_form::GearNumbers<double>& gear = prepared_->numbers.gear;
+  const Vector3d on_block = 2 * std::abs(tooth_force) * Vector3d(0, gear.line_y1, gear.line_z1);
+  const Vector3d moment = Vector3d(0, gear.y, gear.z1).cross(-on_block);
+  const auto held =
+      closed_form::bearings(prepared_->numbers.shaft, {-on_block.x(), -on_block.y(), -on_block.z()},
+                            moment.x(), moment.y());
+  return {Kinematics(pump_.geometry).to_s2(on_block).head<2>().norm(),
+          to_eigen(held.tapered).norm(), std::hypot(held.cylindrical_x, held.cylindrical_y)};
 }
 
 Model::FrictionPower Model::friction_power(const Instant& instant, double drive_torque) const {
@@ -197,8 +208,7 @@ Model::FrictionPower Model::friction_power(const Instant& instant, double drive_
   for (int k = 0; k < layout_.pistons(); ++k) {
     const PistonState state =
         piston_state(instant, std::sin(instant.shaft.angle), std::cos(instant.shaft.angle), k);
-    const double velocity = (state.motion.joint_first.z + state.motion.axis_first.z) * omega;
-    power.pistons = std::max(power.pistons, state.forces.friction * velocity);
+    power.pistons = std::max(power.pistons, state.friction * state.ring_velocity);
   }
   return power;
 }

@@ -9,6 +9,10 @@
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/units.h"
 
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__ROUNDING_MATH__)
+#error "this file and the closed form need -frounding-math: see analytic/CMakeLists.txt"
+#endif
+
 namespace bentaxis::analytic {
 namespace {
 
@@ -91,7 +95,7 @@ void RoundingEstimate::estimate(const Instant& instant,
     changed.block = changed.shaft;
   };
   // The angle of a piston is the shaft's and its phase. The step leaves a piston at a dead centre
-  // at rest in the sign law of friction.
+  // at rest in the sign law of friction (kRestShare).
   vary("theta", changed.shaft.angle,
        kInputRounding * std::max(std::abs(instant.shaft.angle), 2 * kPi), 0x1p-41);
   vary("speed", changed.shaft.speed, kInputRounding * std::abs(instant.shaft.speed));

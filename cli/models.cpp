@@ -41,7 +41,6 @@ void stream_analytic(const Case& the_case, const Assumptions& assumptions,
                      const PressureTrace& pressure,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out) {
   const analytic::Model model(the_case.pump, assumptions);
-  const Sampler sampler(the_case, pressure);
   std::vector<Channel> channels;
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < model.layout().size(); ++c)
@@ -53,7 +52,7 @@ void stream_analytic(const Case& the_case, const Assumptions& assumptions,
   std::string line;
   std::vector<double> values(columns.size());
   stream_rows(
-      "analytic", model.layout(), sampler,
+      "analytic", model.layout(), the_case, pressure,
       [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
       [&](double theta_deg, const std::vector<double>& row) {
         line.clear();

@@ -6,24 +6,29 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/pump/units.h"
 
 namespace bentaxis {
 namespace {
 
-using Evaluate = std::function<void(const Instant&, std::vector<double>&)>;
-
-// One row in the channels' units, checked.
-void evaluate_row(const std::string& name, const std::vector<Channel>& channels,
-                  const Evaluate& evaluate, const Instant& instant, double theta_deg,
-                  std::vector<double>& row) {
-  std::fill(row.begin(), row.end(), not_computed());
-  evaluate(instant, row);
-  for (std::size_t c = 0; c < row.size(); ++c) {
-    if (std::isinf(row[c]) || is_stray_nan(row[c]))
-      throw ComputationError(name + " model: " + channels[c].name + " is not finite at " +
-                             number_text(theta_deg) + " deg");
-    row[c] /= channels[c].unit_in_si;
+// The loop of every table: each sample's row in the channels' units, checked, to the sink.
+void evaluate_rows(const std::string& name, const ChannelLayout& layout, const Samples& samples,
+                   const EvaluateRow& evaluate, const RowSink& sink, const Progress& progress) {
+  const std::vector<Channel>& channels = layout.channels();
+  const std::size_t rows = samples.theta_deg.size();
+  Instant instant;
+  std::vector<double> row(layout.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    samples.instant(i, instant);
+    std::fill(row.begin(), row.end(), not_computed());
+    evaluate(instant, row);
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      if (std::isinf(row[c]) || is_stray_nan(row[c]))
+        throw ComputationError(name + " model: " + channels[c].name + " is not finite at " +
+                               number_text(samples.theta_deg[i]) + " deg");
+      row[c] /= channels[c].unit_in_si;
+    }
+    sink(samples.theta_deg[i], row);
+    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(rows));
   }
 }
 
@@ -55,103 +60,34 @@ double ResultTable::peak(const std::string& group) const {
   return peak;
 }
 
-void Samples::instant(std::size_t row, Instant& instant) const {
-  instant.turn(radians(std::fmod(theta_deg[row], 360.0)), omega);
-  instant.ports = ports;
-  const auto first = chamber_pressure.begin() + static_cast<std::ptrdiff_t>(row) * pistons;
-  instant.chamber_pressure.assign(first, first + pistons);
-}
-
-Sampler::Sampler(const Case& the_case, const PressureTrace& pressure, int revolutions, bool falling)
-    : case_(the_case),
-      pressure_(pressure),
-      rows_(static_cast<long long>(the_case.operation.samples_per_revolution) * revolutions),
-      turn_deg_(falling ? -360.0 : 360.0) {}
-
-double Sampler::theta_deg(long long row) const {
-  const double theta =
-      turn_deg_ * static_cast<double>(row) / case_.operation.samples_per_revolution;
-  return theta == 0 ? 0 : theta;
-}
-
-void Sampler::instant(long long row, Instant& instant) const {
-  const int n = case_.pump.geometry.pistons;
-  const double theta = theta_deg(row);
-  instant.turn(radians(std::fmod(theta, 360.0)), rad_per_second(case_.operation.speed_rpm));
-  instant.ports = case_.pressure.ports;
-  instant.chamber_pressure.resize(n);
-  for (int k = 1; k <= n; ++k)
-    instant.chamber_pressure[k - 1] = pressure_(piston_angle_deg(theta, k, n));
-}
-
-Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions,
-                    bool falling) {
-  const Sampler sampler(the_case, pressure, revolutions, falling);
-  Samples samples;
-  samples.pistons = the_case.pump.geometry.pistons;
-  samples.omega = rad_per_second(the_case.operation.speed_rpm);
-  samples.ports = the_case.pressure.ports;
-  Instant instant;
-  for (long long row = 0; row < sampler.rows(); ++row) {
-    sampler.instant(row, instant);
-    samples.theta_deg.push_back(sampler.theta_deg(row));
-    samples.chamber_pressure.insert(samples.chamber_pressure.end(),
-                                    instant.chamber_pressure.begin(),
-                                    instant.chamber_pressure.end());
-  }
-  return samples;
-}
-
 ResultTable tabulate(const std::string& name, const ChannelLayout& layout, const Samples& samples,
-                     const std::function<void(const Instant&, std::vector<double>&)>& evaluate,
-                     const Progress& progress) {
+                     const EvaluateRow& evaluate, const Progress& progress) {
   ResultTable table;
   table.name = name;
   table.channels = layout.channels();
   table.theta_deg = samples.theta_deg;
   table.values.reserve(table.rows() * table.columns());
-  Instant instant;
-  std::vector<double> row(layout.size());
-  for (std::size_t i = 0; i < samples.theta_deg.size(); ++i) {
-    samples.instant(i, instant);
-    evaluate_row(name, table.channels, evaluate, instant, samples.theta_deg[i], row);
-    table.values.insert(table.values.end(), row.begin(), row.end());
-    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(table.rows()));
-  }
+  evaluate_rows(
+      name, layout, samples, evaluate,
+      [&](double, const std::vector<double>& row) {
+        table.values.insert(table.values.end(), row.begin(), row.end());
+      },
+      progress);
   return table;
 }
 
-void stream_rows(const std::string& name, const ChannelLayout& layout, const Sampler& sampler,
-                 const Evaluate& evaluate,
-                 const std::function<void(double theta_deg, const std::vector<double>&)>& sink,
+void stream_rows(const std::string& name, const ChannelLayout& layout, const Case& the_case,
+                 const PressureTrace& pressure, const EvaluateRow& evaluate, const RowSink& sink,
                  const Progress& progress) {
-  Instant instant;
-  std::vector<double> row(layout.size());
-  for (long long i = 0; i < sampler.rows(); ++i) {
-    sampler.instant(i, instant);
-    evaluate_row(name, layout.channels(), evaluate, instant, sampler.theta_deg(i), row);
-    sink(sampler.theta_deg(i), row);
-    if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(sampler.rows()));
+  constexpr long long kHeld = 4096;
+  const long long rows = the_case.operation.samples_per_revolution;
+  for (long long first = 0; first < rows; first += kHeld) {
+    const Samples part = sample_case(the_case, pressure, 1, false, {first, kHeld});
+    const auto share = static_cast<double>(part.theta_deg.size()) / static_cast<double>(rows);
+    evaluate_rows(name, layout, part, evaluate, sink, [&](double done) {
+      if (progress) progress(static_cast<double>(first) / static_cast<double>(rows) + share * done);
+    });
   }
-}
-
-LoadScale load_scale(const Case& the_case, const Samples& samples) {
-  const PumpParameters& pump = the_case.pump;
-  const double area = kPi / 4 * pump.geometry.bore_diameter * pump.geometry.bore_diameter;
-  double pressure = std::max(std::abs(samples.ports.delivery), std::abs(samples.ports.suction));
-  for (const double p : samples.chamber_pressure) pressure = std::max(pressure, std::abs(p));
-  const double radius =
-      std::max(pump.geometry.joint_circle_radius, pump.geometry.bore_circle_radius);
-  const double inertia = pump.piston.mass * samples.omega * samples.omega * radius;
-  LoadScale scale;
-  scale.force =
-      std::max({pressure * std::max(area, pump.block.bottom_area), pump.block.spring_force,
-                pump.friction.piston_coulomb, inertia,
-                pump.gravity * std::max({pump.shaft.mass, pump.block.mass, pump.piston.mass})});
-  scale.moment =
-      std::max({scale.force * radius, pump.friction.block_viscous * std::abs(samples.omega),
-                pump.friction.shaft_viscous * std::abs(samples.omega)});
-  return scale;
 }
 
 ResultTable select_channels(const ResultTable& table,

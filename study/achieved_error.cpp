@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/load_scale.h"
 #include "bentaxis/results/worst.h"
 
 namespace bentaxis::study {

@@ -6,10 +6,14 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/model.h"
-#include "bentaxis/analytic/port_plate.h"
+#include "bentaxis/analytic/rounding.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "closed_form/film.h"
+#include "closed_form/friction.h"
+#include "free_bodies.h"
+#include "kinematics.h"
 #include "printed_model.h"
 #include "support.h"
 
@@ -243,7 +247,7 @@ TEST(Properties, ForcesOnTheWholePumpAreInEquilibrium) {
     if (p.port_plate) {
       for (const auto& [arc, pressure] : {std::pair{p.port_plate->delivery, i.ports.delivery},
                                           std::pair{p.port_plate->suction, i.ports.suction}}) {
-        const analytic::LandForce land = analytic::land_force(*p.port_plate, arc);
+        const auto land = analytic::closed_form::land_force(*p.port_plate, arc);
         add(o2, s2(0, 0, land.force_z * pressure));
         moment += s2(land.moment_x * pressure, land.moment_y * pressure, 0);
       }
@@ -432,6 +436,61 @@ TEST(Properties, KinematicRippleHasTheTextbookOrders) {
       EXPECT_LT(std::abs(sum[0]) / mean, 1e-6) << pistons;
       EXPECT_LT(std::abs(sum[2]) / mean, 1e-6) << pistons;
     }
+  }
+}
+
+// ---- friction ----------------------------------------------------------------------------------
+
+TEST(RingFriction, OpposesMotionAndRestsAtRest) {
+  PumpParameters pump = reference_case("bap63_rated").pump;
+  pump.friction.piston_coulomb = 25;
+  pump.friction.piston_viscous = 10;
+  const auto force = [&](double velocity, double omega) {
+    analytic::closed_form::FrictionNumbers<double> numbers;
+    const auto law = analytic::closed_form::prepare(pump, true, numbers);
+    return analytic::closed_form::friction_force(law, numbers, velocity, omega);
+  };
+  pump.friction.regularization = 0.01;
+  EXPECT_DOUBLE_EQ(force(0.01, 100), -(25 * std::tanh(1.0) + 0.1));
+  EXPECT_DOUBLE_EQ(force(-0.01, -100), 25 * std::tanh(1.0) + 0.1);
+  pump.friction.regularization = 0;
+  const double rest = analytic::closed_form::kRestShare * 100 * pump.geometry.joint_circle_radius;
+  for (const double omega : {100.0, -100.0}) {
+    EXPECT_DOUBLE_EQ(force(1.01 * rest, omega), -(25 + 10.1 * rest));
+    EXPECT_DOUBLE_EQ(force(-1.01 * rest, omega), 25 + 10.1 * rest);
+    EXPECT_DOUBLE_EQ(force(0.99 * rest, omega), -9.9 * rest);
+  }
+  // The tests' own law agrees, on both sides of rest.
+  for (const double regularization : {0.0, 0.01}) {
+    pump.friction.regularization = regularization;
+    for (const double v : {-2.0, -1e-3, -1.1 * rest, -0.9 * rest, 0.0, 0.9 * rest, 1.1 * rest, 0.5})
+      EXPECT_DOUBLE_EQ(force(v, 100), ring_friction(pump.friction, v, rest)) << v;
+  }
+}
+
+// ---- rounding ----------------------------------------------------------------------------------
+
+// The estimate of rounding errors rests on evaluations that really are rounded otherwise: a
+// compiler that moves them across the change of the mode, or evaluates them itself, gives zeros.
+TEST(DirectedRounding, ReachesEveryReaction) {
+  const Case the_case = reference_case("bap63_rated");
+  const analytic::RoundingEstimate estimate(the_case.pump, the_case.analytic);
+  const ResultTable table = analytic::run(the_case, the_case.analytic, one_turn(the_case));
+  const Samples samples = one_turn(the_case);
+  std::vector<double> largest(estimate.layout().reactions());
+  analytic::RoundingEstimate::Parts parts;
+  Instant instant;
+  for (std::size_t row = 1; row < samples.theta_deg.size(); row += 7) {
+    samples.instant(row, instant);
+    estimate.estimate(instant, std::vector<double>(5), parts);
+    for (std::size_t c = 0; c < largest.size(); ++c)
+      largest[c] = std::max(largest[c], parts.arithmetic[c]);
+  }
+  for (std::size_t c = 0; c < largest.size(); ++c) {
+    const Channel& channel = table.channels[c];
+    const double peak = table.peak(channel.group) * channel.unit_in_si;
+    EXPECT_GT(largest[c], 1e-18 * peak) << channel.name;
+    EXPECT_LT(largest[c], 1e-12 * peak) << channel.name;
   }
 }
 

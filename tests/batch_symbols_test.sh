@@ -14,17 +14,17 @@ shared_symbols() {  # object, instruction set: names defined for the linker with
 cd "$scratch"
 status=0
 for set in sse2 avx2 avx512; do
-  ar x "$library" "batch_$set.cpp.o"
-  if ! nm -C --defined-only "batch_$set.cpp.o" | grep -q "run_batch_$set"; then
+  ar x "$library" "$set.cpp.o"
+  if ! nm -C --defined-only "$set.cpp.o" | grep -q "run_batch_$set"; then
     echo "error: no kernel for $set"; status=1
   fi
-  found=$(shared_symbols "batch_$set.cpp.o" "$set")
+  found=$(shared_symbols "$set.cpp.o" "$set")
   if [ -n "$found" ]; then
     echo "error: the kernel for $set defines"; echo "$found"; status=1
   fi
 done
 # The check itself must be able to fail: this object's symbols are not avx512's.
-if [ -z "$(shared_symbols batch_avx2.cpp.o avx512)" ]; then
+if [ -z "$(shared_symbols avx2.cpp.o avx512)" ]; then
   echo "error: the check does not notice a shared symbol"; status=1
 fi
 [ $status = 0 ] && echo "kernels share no symbol"

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <type_traits>
+#include <utility>
+
 #include "allocations.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/files/csv.h"
@@ -260,6 +263,70 @@ TEST(Batch, OneNumberForAllEqualsAnArrayOfIt) {
 // Code for writing past the caches is compiled anew: additions may be fused elsewhere. 4e-16 found.
 constexpr double kRecompiledTolerance = 1e-14;
 
+// A copy would point into the original.
+static_assert(!std::is_copy_constructible_v<BatchColumns>);
+static_assert(!std::is_copy_assignable_v<BatchColumns>);
+
+TEST(Batch, ColumnsCanBeMoved) {
+  BatchColumns columns(3, 5);
+  columns.column(2)[4] = 7;
+  const double* const before = columns.column(2);
+  const BatchColumns moved = std::move(columns);
+  EXPECT_EQ(moved.column(2), before);
+  EXPECT_EQ(moved.column(2)[4], 7);
+}
+
+// Whole lines are written past the caches, what is left over by ordinary stores, and what is not
+// asked for or not computed is left alone: on every instruction set, one pump or many.
+TEST(Batch, WritingPastTheCachesChangesNothingOnAnyInstructionSet) {
+  const Case the_case = reference_case("bap63_rated");
+  const std::vector<Instant> some = turn(the_case);
+  std::vector<Instant> instants;
+  for (std::size_t i = 0; i < 60'003; ++i) instants.push_back(some[i % some.size()]);
+  const Arrays arrays(instants);
+  const Arrays few(some);
+  for (const GearScene gear : {GearScene::mesh, GearScene::imposed}) {
+    Assumptions assumptions = the_case.analytic;
+    assumptions.gear = gear;
+    const BatchModel model(the_case.pump, assumptions);
+    const PumpBatch pumps(std::vector<PumpParameters>(instants.size(), the_case.pump), assumptions);
+    const std::size_t reactions = model.layout().reactions();
+    for (const InstructionSet set : available_instruction_sets()) {
+      BatchColumns small(reactions, some.size());
+      model.reactions(few.instants, outputs_of(model.layout(), ChannelGroup::all, small), {set, 1});
+      BatchColumns large(reactions, instants.size());
+      BatchOutputs outputs = outputs_of(model.layout(), ChannelGroup::all, large);
+      outputs[model.layout().Fh()] = nullptr;
+      for (const bool many : {false, true}) {
+        for (std::size_t c = 0; c < reactions; ++c)
+          std::fill_n(large.column(c), instants.size(), 0);
+        if (many)
+          pumps.reactions(arrays.instants, outputs, {set, 1});
+        else
+          model.reactions(arrays.instants, outputs, {set, 1});
+        for (std::size_t c = 0; c < reactions; ++c) {
+          double peak = 0;
+          for (std::size_t i = 0; i < some.size(); ++i)
+            if (is_computed(small.column(c)[i]))
+              peak = std::max(peak, std::abs(small.column(c)[i]));
+          for (std::size_t i = 0; i < instants.size(); ++i) {
+            const double expected = small.column(c)[i % some.size()];
+            const double value = large.column(c)[i];
+            if (outputs[c] == nullptr) {
+              ASSERT_EQ(value, 0);
+            } else if (!is_computed(expected)) {
+              ASSERT_FALSE(is_computed(value));
+            } else {
+              ASSERT_NEAR(value, expected, scaled(kRecompiledTolerance) * peak)
+                  << to_string(set) << ", column " << c << ", row " << i;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
 // Large enough to be shared by threads and to be written past the caches.
 TEST(Batch, ThreadsAndWritingPastTheCachesChangeNothing) {
   const Case the_case = reference_case("bap63_rated");
@@ -344,7 +411,8 @@ TEST(Batch, RefusesWhatDoesNotFit) {
 TEST(Batch, InstructionSetsAreNamedAndOrdered) {
   const auto sets = available_instruction_sets();
   ASSERT_FALSE(sets.empty());
-  EXPECT_EQ(sets.front(), InstructionSet::sse2);
+  EXPECT_EQ(sets.front(), InstructionSet::scalar);
+  EXPECT_EQ(lanes(sets.front()), 1U);
   for (std::size_t i = 1; i < sets.size(); ++i) EXPECT_EQ(lanes(sets[i]), 2 * lanes(sets[i - 1]));
 }
 

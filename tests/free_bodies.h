@@ -40,6 +40,17 @@ class FreeBody {
   double force_scale_ = 0, moment_scale_ = 0;
 };
 
+/// Friction (25) along z2 on a piston whose ring moves with `velocity`; written out here, because
+/// each model has a law of its own.
+inline double ring_friction(const Friction& f, double velocity, double rest_speed) {
+  double share = 0;
+  if (f.regularization > 0)
+    share = std::tanh(velocity / f.regularization);
+  else if (std::abs(velocity) > rest_speed)
+    share = velocity < 0 ? -1 : 1;
+  return -(f.piston_coulomb * share + f.piston_viscous * velocity);
+}
+
 /// Largest residual of all bodies, in S1. `values` are SI, ordered by ChannelLayout. Needs the gear
 /// in mesh.
 inline double free_body_residual(const PumpParameters& p, const Assumptions& assumptions,
@@ -87,15 +98,10 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
     const V rs = r12 * V(values[at.Rs(k, 0)], values[at.Rs(k, 1)], values[at.Rs(k, 2)]);
     const V rc = r12 * V(values[at.Rc(k, 0)], values[at.Rc(k, 1)], 0);
     const double v = (a2[2].d + h.d) * t.shaft.speed;
-    // (25), written once more: no model's law judges itself.
-    const double rest = 1e-12 * std::abs(t.shaft.speed) * g.joint_circle_radius;
-    const double sign = p.friction.regularization > 0 ? std::tanh(v / p.friction.regularization)
-                        : v > rest                    ? 1
-                        : v < -rest                   ? -1
-                                                      : 0;
-    const double friction = assumptions.piston_friction
-                                ? -p.friction.piston_coulomb * sign - p.friction.piston_viscous * v
-                                : 0;
+    const double friction =
+        assumptions.piston_friction
+            ? ring_friction(p.friction, v, 1e-12 * std::abs(t.shaft.speed) * g.joint_circle_radius)
+            : 0;
     // Moments about A: the lever of what acts at A is exactly 0.
     FreeBody piston;
     piston.force(V::Zero(), rs);

@@ -6,12 +6,12 @@
 #include <numeric>
 
 #include "bentaxis/analytic/derived.h"
-#include "bentaxis/analytic/kinematics.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "integrator.h"
+#include "kinematics.h"
 #include "network.h"
 #include "support.h"
 

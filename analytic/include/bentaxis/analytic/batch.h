@@ -16,8 +16,9 @@
 namespace bentaxis::analytic {
 
 /// Instruction sets the kernel is compiled for; the processor decides at run time which can be
-/// used.
+/// used. On processors other than x86-64, and with BENTAXIS_PORTABLE, there is `scalar` alone.
 enum class InstructionSet {
+  scalar,  ///< one lane, every processor
   sse2,    ///< 2 lanes, every x86-64 processor
   avx2,    ///< 4 lanes, with fused multiply-add
   avx512,  ///< 8 lanes (F, CD, DQ, BW)
@@ -55,19 +56,23 @@ struct BatchOptions {
   int threads = 1;  ///< 1: in the calling thread; more: as many threads of oneTBB at most
 };
 
-/// Columns of doubles that start on cache lines: results of a batch. Allocated once, used often.
+/// Columns of doubles that start on cache lines: results of a batch. Allocated once, used often;
+/// moved, never copied: outputs point into it.
 class BatchColumns {
  public:
   BatchColumns(std::size_t columns, std::size_t rows);
 
   std::size_t rows() const { return rows_; }
-  double* column(std::size_t index) { return first_ + index * stride_; }
-  const double* column(std::size_t index) const { return first_ + index * stride_; }
+  double* column(std::size_t index) { return first_.get() + index * stride_; }
+  const double* column(std::size_t index) const { return first_.get() + index * stride_; }
 
  private:
+  struct Free {
+    void operator()(double* first) const;
+  };
+
   std::size_t rows_, stride_;
-  std::vector<double> storage_;
-  double* first_;
+  std::unique_ptr<double[], Free> first_;
 };
 
 /// Which reactions to compute.

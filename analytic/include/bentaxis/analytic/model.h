@@ -5,11 +5,9 @@
 // derivation and every correction of a misprint.
 #pragma once
 
-#include <Eigen/Core>
+#include <memory>
 #include <vector>
 
-#include "bentaxis/analytic/kinematics.h"
-#include "bentaxis/analytic/prepared.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
@@ -17,7 +15,10 @@
 
 namespace bentaxis::analytic {
 
-/// A pump prepared for evaluation at any instant. Immutable, so one object serves many threads.
+struct PreparedPump;
+
+/// A pump prepared for evaluation at any instant. Immutable, so one object serves many threads;
+/// cheap to copy.
 class Model {
  public:
   /// @throws InputError where a case file with this pump would be refused (validate()), or if
@@ -74,8 +75,7 @@ class Model {
 
   PumpParameters pump_;
   ChannelLayout layout_;
-  Kinematics kinematics_;
-  PreparedPump prepared_;
+  std::shared_ptr<const PreparedPump> prepared_;
 };
 
 /// One turn of a case under the assumptions it gives this model, as a table.

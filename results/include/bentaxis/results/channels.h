@@ -7,14 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace bentaxis {
+#include "bentaxis/results/quantities.h"
 
-enum class ChannelKind {
-  reaction,  ///< one of the unknowns of the equilibrium equations
-  derived,   ///< follows from reactions and positions
-  input,     ///< given to the model
-  check,     ///< must vanish
-};
+namespace bentaxis {
 
 /// One scalar result: which component of what, on which body, by which body, at which point, in
 /// which frame and unit.
@@ -42,31 +37,28 @@ class ChannelLayout {
   int pistons() const { return n_; }
   std::size_t size() const { return channels_->size(); }
   /// Number of leading channels that are unknowns of the equilibrium: 5 N + 12.
-  std::size_t reactions() const { return at(5, 12); }
+  std::size_t reactions() const { return static_cast<std::size_t>(kReactionsEnd.column(n_, 0, 0)); }
   const std::vector<Channel>& channels() const { return *channels_; }
 
-  std::size_t Rs(int k, int axis) const { return static_cast<std::size_t>(5 * k + axis); }
-  std::size_t Rc(int k, int axis) const { return static_cast<std::size_t>(5 * k + 3 + axis); }
-  std::size_t Fh() const { return at(5, 0); }
-  std::size_t Th(int axis) const { return at(5, 1 + axis); }
-  std::size_t Rcn(int axis) const { return at(5, 3 + axis); }
-  std::size_t Rcs() const { return at(5, 5); }
-  std::size_t Rb1(int axis) const { return at(5, 6 + axis); }
-  std::size_t Rb2(int axis) const { return at(5, 9 + axis); }
-  std::size_t Td() const { return at(5, 11); }
-  std::size_t xh() const { return at(5, 12); }
-  std::size_t yh() const { return at(5, 13); }
-  std::size_t Tcs() const { return at(5, 14); }
-  std::size_t pressure(int k) const { return at(5, 15 + k); }
-  std::size_t zB(int k) const { return at(6, 15 + k); }
-  std::size_t Rs3(int k, int axis) const { return at(7, 15 + 3 * k + axis); }
-  std::size_t Tc(int k) const { return at(10, 15 + k); }
-  std::size_t power_residual() const { return at(11, 15); }
-  std::size_t axis_moment(int k) const { return at(11, 16 + k); }
+  // Column of every quantity: Rs(k, axis), zB(k), Rb1(axis), Td(), ..; the piston where it repeats,
+  // then the axis where it has several.
+#define BENTAXIS_COLUMN(identifier, ...)           \
+  template <class... Where>                        \
+  std::size_t identifier(Where... where) const {   \
+    return column<Quantity::identifier>(where...); \
+  }
+  BENTAXIS_QUANTITIES(BENTAXIS_COLUMN)
+#undef BENTAXIS_COLUMN
 
  private:
-  std::size_t at(int per_piston, int offset) const {
-    return static_cast<std::size_t>(per_piston * n_ + offset);
+  template <Quantity quantity, class... Where>
+  std::size_t column(Where... where) const {
+    constexpr QuantityPlace kHere = kPlace<quantity>;
+    constexpr int kPistons = kHere.repeated ? 1 : 0;
+    static_assert(sizeof...(where) == kPistons + (kHere.components > 1 ? 1 : 0),
+                  "the piston where the quantity repeats, the axis where it has several");
+    const int list[] = {static_cast<int>(where)..., 0, 0};
+    return static_cast<std::size_t>(kHere.column(n_, kHere.repeated ? list[0] : 0, list[kPistons]));
   }
 
   int n_;

@@ -1,12 +1,12 @@
-#include "bentaxis/analytic/port_plate.h"
+#include "closed_form/film.h"
 
 #include <cmath>
 
 #include "bentaxis/pump/units.h"
 
-namespace bentaxis::analytic {
+namespace bentaxis::analytic::closed_form {
 
-LandForce land_force(const PortPlate& p, const PortArc& arc) {
+LandForce<double> land_force(const PortPlate& p, const PortArc& arc) {
   // Integrals over r of w(r) r and w(r) r^2, with w the trapezoid 0, 1, 1, 0 at r1 .. r4.
   const double first = (p.r2 - p.r1) * (p.r1 + 2 * p.r2) / 6 + (p.r3 - p.r2) * (p.r3 + p.r2) / 2 +
                        (p.r4 - p.r3) * (p.r4 + 2 * p.r3) / 6;
@@ -20,4 +20,11 @@ LandForce land_force(const PortPlate& p, const PortArc& arc) {
           second * (std::cos(to) - std::cos(from))};
 }
 
-}  // namespace bentaxis::analytic
+void prepare(const PumpParameters& pump, FilmNumbers<double>& film) {
+  film = {};
+  if (!pump.port_plate) return;
+  film.delivery = land_force(*pump.port_plate, pump.port_plate->delivery);
+  film.suction = land_force(*pump.port_plate, pump.port_plate->suction);
+}
+
+}  // namespace bentaxis::analytic::closed_form

@@ -7,16 +7,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <type_traits>
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #endif
 
-#include "batch_job.h"
-#include "bentaxis/analytic/prepared.h"
+#include "batch/job.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/validate.h"
-#include "bentaxis/results/result_table.h"
+#include "prepared.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -46,14 +47,22 @@ bool streams(const BatchInstants& instants, const BatchOutputs& outputs) {
 
 BatchKernel* kernel(InstructionSet set) {
   switch (set) {
+#ifdef BENTAXIS_X86_KERNELS
     case InstructionSet::avx512:
       return run_batch_avx512;
     case InstructionSet::avx2:
       return run_batch_avx2;
     case InstructionSet::sse2:
+      return run_batch_sse2;
+#else
+    case InstructionSet::avx512:
+    case InstructionSet::avx2:
+    case InstructionSet::sse2:
+#endif
+    case InstructionSet::scalar:
       break;
   }
-  return run_batch_sse2;
+  return run_batch_scalar;
 }
 
 // oneTBB orders what its caller did before a loop, the pieces, and what the caller does after it;
@@ -141,30 +150,39 @@ std::string to_string(InstructionSet set) {
     case InstructionSet::avx2:
       return "AVX2";
     case InstructionSet::sse2:
+      return "SSE2";
+    case InstructionSet::scalar:
       break;
   }
-  return "SSE2";
+  return "one lane";
 }
 
 std::vector<InstructionSet> available_instruction_sets() {
-  std::vector<InstructionSet> sets = {InstructionSet::sse2};
+  std::vector<InstructionSet> sets = {InstructionSet::scalar};
+#ifdef BENTAXIS_X86_KERNELS
+  sets.push_back(InstructionSet::sse2);
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
     sets.push_back(InstructionSet::avx2);
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
     sets.push_back(InstructionSet::avx512);
+#endif
   return sets;
 }
 
-std::size_t lanes(InstructionSet set) { return std::size_t{2} << static_cast<int>(set); }
+std::size_t lanes(InstructionSet set) { return std::size_t{1} << static_cast<int>(set); }
 
 BatchColumns::BatchColumns(std::size_t columns, std::size_t rows)
     : rows_(rows),
       // One line more than the rows need: columns a power of two apart would share cache sets.
       stride_((rows / kDoublesPerLine + 1) / 2 * 2 * kDoublesPerLine + kDoublesPerLine),
-      storage_(columns * stride_ + kDoublesPerLine) {
-  const auto address = reinterpret_cast<std::uintptr_t>(storage_.data());
-  first_ = storage_.data() + (kCacheLine - address % kCacheLine) % kCacheLine / sizeof(double);
+      first_(static_cast<double*>(
+          ::operator new (columns* stride_ * sizeof(double), std::align_val_t{kCacheLine}))) {
+  std::uninitialized_fill_n(first_.get(), columns * stride_, 0.0);
+}
+
+void BatchColumns::Free::operator()(double* first) const {
+  ::operator delete (first, std::align_val_t{kCacheLine});
 }
 
 BatchOutputs outputs_of(const ChannelLayout& layout, ChannelGroup group, BatchColumns& columns) {
@@ -203,8 +221,8 @@ PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions
     if (i == 0) {
       common_ = std::make_unique<PreparedPump>(std::move(pump));
     } else {
-      common_->smooth_friction |= pump.smooth_friction;
-      common_->dry_friction |= pump.dry_friction;
+      common_->friction.smooth |= pump.friction.smooth;
+      common_->friction.dry |= pump.friction.dry;
     }
   }
 }

@@ -3,9 +3,12 @@
 
 #include <cstddef>
 
-#include "bentaxis/analytic/closed_form.h"
+#include "closed_form/pump.h"
 
 namespace bentaxis::analytic {
+
+/// A pump has 99 pistons at most.
+inline constexpr int kMostPistons = 99;
 
 struct BatchJob {
   struct Column {
@@ -25,6 +28,6 @@ struct BatchJob {
 
 /// Evaluates instants [begin, end).
 using BatchKernel = void(const BatchJob& job, std::size_t begin, std::size_t end);
-BatchKernel run_batch_sse2, run_batch_avx2, run_batch_avx512;
+BatchKernel run_batch_scalar, run_batch_sse2, run_batch_avx2, run_batch_avx512;
 
 }  // namespace bentaxis::analytic

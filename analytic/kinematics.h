@@ -1,10 +1,11 @@
 // Kinematics of the pistons as derivatives with respect to the shaft angle (3.1, (7)-(18)).
+// Internal.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "bentaxis/analytic/closed_form.h"
 #include "bentaxis/pump/parameters.h"
+#include "closed_form/piston.h"
 
 namespace bentaxis::analytic {
 
@@ -31,20 +32,21 @@ class Kinematics {
 
   /// R12 of (7): components in S1 of a vector given in S2.
   Eigen::Vector3d to_s1(const Eigen::Vector3d& v2) const {
-    return {v2.x(), numbers_.cos_tilt * v2.y() + numbers_.sin_tilt * v2.z(),
-            numbers_.cos_tilt * v2.z() - numbers_.sin_tilt * v2.y()};
+    return {v2.x(), frame_.cos_tilt * v2.y() + frame_.sin_tilt * v2.z(),
+            frame_.cos_tilt * v2.z() - frame_.sin_tilt * v2.y()};
   }
   /// Components in S2 of a vector given in S1.
   Eigen::Vector3d to_s2(const Eigen::Vector3d& v1) const {
-    return {v1.x(), numbers_.cos_tilt * v1.y() - numbers_.sin_tilt * v1.z(),
-            numbers_.cos_tilt * v1.z() + numbers_.sin_tilt * v1.y()};
+    return {v1.x(), frame_.cos_tilt * v1.y() - frame_.sin_tilt * v1.z(),
+            frame_.cos_tilt * v1.z() + frame_.sin_tilt * v1.y()};
   }
   /// Orthonormal axes of S3 in S1 for a piston along `axis` (in S2): columns i3, j3, k3. j3 lies in
   /// the plane of y1 and z1 as in (15), without the division of (17) that fails at k3_y = 0.
   Eigen::Matrix3d s3_in_s1(const Eigen::Vector3d& axis) const;
 
  private:
-  closed_form::Pump<double> numbers_;  // of the geometry only
+  closed_form::FrameNumbers<double> frame_;
+  closed_form::PistonNumbers<double> piston_;  // of the geometry only
 };
 
 }  // namespace bentaxis::analytic

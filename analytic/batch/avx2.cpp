@@ -1,0 +1,11 @@
+#define xsimd xsimd_avx2  // see kernel.h
+#define BENTAXIS_SIMD_UNIT
+#include "batch/kernel.h"
+
+namespace bentaxis::analytic {
+
+void run_batch_avx2(const BatchJob& job, std::size_t begin, std::size_t end) {
+  run_batch<xsimd::batch<double, xsimd::fma3<xsimd::avx2>>>(job, begin, end);
+}
+
+}  // namespace bentaxis::analytic

@@ -1,0 +1,44 @@
+// A pump as the closed form sees it: the numbers of its pieces.
+#pragma once
+
+#include "closed_form/block.h"
+#include "closed_form/film.h"
+#include "closed_form/frame.h"
+#include "closed_form/friction.h"
+#include "closed_form/gear.h"
+#include "closed_form/piston.h"
+#include "closed_form/shaft.h"
+
+namespace bentaxis::analytic::closed_form {
+
+/// Numbers of a pump, prepared once, SI. Plain numbers only, so that many pumps can be laid out
+/// with one array per number.
+template <class T>
+struct Pump {
+  FrameNumbers<T> frame;
+  PistonNumbers<T> piston;
+  FrictionNumbers<T> friction;
+  BlockNumbers<T> block;
+  FilmNumbers<T> film;
+  GearNumbers<T> gear;
+  ShaftNumbers<T> shaft;
+};
+
+/// What all pumps of a batch have in common.
+struct Common {
+  int pistons = 0;
+  const double* phase_sin = nullptr;  ///< of 2 pi k / N
+  const double* phase_cos = nullptr;
+  bool imposed = false;  ///< block speed imposed: no tooth force
+  FrictionLaw friction;
+};
+
+/// Instant without the chamber pressures.
+template <class Real>
+struct State {
+  Real sine, cosine;  // of theta
+  Real omega, omega_dot;
+  Real suction, delivery;
+};
+
+}  // namespace bentaxis::analytic::closed_form

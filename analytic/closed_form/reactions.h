@@ -1,0 +1,81 @@
+// The closed-form algebra of the model, written once: for one instant (Real = double) and for
+// several in SIMD lanes (Real = a vector; lanes are instants, or pumps where Par is a vector too).
+// This file composes the pieces that lie beside it. Equation numbers: Roccatello & Nervegna (2009).
+#pragma once
+
+#include "bentaxis/results/quantities.h"
+#include "closed_form/pump.h"
+
+namespace bentaxis::analytic::closed_form {
+
+/// Column of a quantity in a row of results; fixed when compiled but for the number of pistons.
+template <Quantity quantity>
+BENTAXIS_INLINE int column(int pistons, int piston, int component) {
+  constexpr QuantityPlace kHere = quantity_place(static_cast<std::size_t>(quantity));
+  return kHere.per_piston * pistons + kHere.single + kHere.stride * piston + component;
+}
+
+/// Gives put() the components of a quantity.
+template <Quantity quantity, class Put, class... Real>
+BENTAXIS_INLINE void put_all(const Put& put, int pistons, int piston, const Real&... values) {
+  static_assert(sizeof...(values) == quantity_place(static_cast<std::size_t>(quantity)).components);
+  int component = 0;
+  (put(column<quantity>(pistons, piston, component++), values), ...);
+}
+
+/// All reactions at an instant: pistons (31)-(33), block (56), (57), shaft (42), (43).
+/// @param pressure  pressure(k): of chamber k
+/// @param put       put(column, value): result, in the columns of ChannelLayout; Rcs is not put
+///                  where the block speed is imposed
+/// @param bodies    false: pistons only
+template <class Par, class Real, class Pressure, class Put>
+BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const State<Real>& t,
+                               bool bodies, const Pressure& pressure, const Put& put) {
+  using Q = Quantity;
+  const int n = common.pistons;
+  const Real zero = 0.0;
+  BlockLoad<Real> on_block = {zero, zero, zero, {zero, zero, zero}};
+  ShaftLoad<Real> on_shaft = {{zero, zero, zero}, zero, zero, zero};
+  for (int k = 0; k < n; ++k) {
+    const double ps = common.phase_sin[k];
+    const double pc = common.phase_cos[k];
+    const Real s = t.sine * pc - t.cosine * ps;
+    const Real c = t.cosine * pc + t.sine * ps;
+    const Real chamber = pressure(k);
+    const PistonMotion<Real> m = piston_motion(p.frame, p.piston, s, c);
+    const Real friction =
+        friction_force(common.friction, p.friction, m.ring_velocity(t.omega), t.omega);
+    const PistonForces<Real> f =
+        piston_forces(p.piston, m, t.omega, t.omega_dot, friction, chamber);
+    put_all<Q::Rs>(put, n, k, f.rs.x, f.rs.y, f.rs.z);
+    put_all<Q::Rc>(put, n, k, f.rc_x, f.rc_y);
+    if (!bodies) continue;
+    add_piston(p.block, m, f, friction, chamber, on_block);
+    add_joint(p.frame, f.rs, s, c, on_shaft);
+  }
+  if (!bodies) return;
+
+  BlockBalance<Real> balance = block_balance(p.block, on_block);
+  add_lands(p.film, t.delivery, t.suction, balance);
+  Real tooth = zero;  // along k4 for omega >= 0, on the block
+  if (!common.imposed) {
+    tooth = carrying_torque(p.block, on_block, t.omega, t.omega_dot) * p.gear.inverse_arm;
+    put_all<Q::Rcs>(put, n, 0, Math<Real>::direction(t.omega) * tooth);
+    const ToothForce<Real> carried = tooth_on_block(p.gear, tooth);
+    balance.force = balance.force + carried.force;
+    balance.moment_x = balance.moment_x + carried.moment.x;
+    balance.moment_y = balance.moment_y + carried.moment.y;
+  }
+  const BlockReactions<Real> block = hold_block(p.block, balance);
+  put_all<Q::Fh>(put, n, 0, block.fh);
+  put_all<Q::Th>(put, n, 0, block.th_x, block.th_y);
+  put_all<Q::Rcn>(put, n, 0, block.pin_x, block.pin_y);
+
+  const ToothForce<Real> carrying = tooth_on_shaft(p.gear, tooth);
+  const BearingForces<Real> held = hold_shaft(p.frame, p.shaft, on_shaft, carrying);
+  put_all<Q::Rb1>(put, n, 0, held.tapered.x, held.tapered.y, held.tapered.z);
+  put_all<Q::Rb2>(put, n, 0, held.cylindrical_x, held.cylindrical_y);
+  put_all<Q::Td>(put, n, 0, drive_torque(p.shaft, on_shaft, carrying, t.omega, t.omega_dot));
+}
+
+}  // namespace bentaxis::analytic::closed_form

@@ -1,0 +1,20 @@
+#include "closed_form/shaft.h"
+
+namespace bentaxis::analytic::closed_form {
+
+void prepare(const PumpParameters& pump, const FrameNumbers<double>& frame,
+             ShaftNumbers<double>& p) {
+  const double weight = -pump.shaft.mass * pump.gravity;
+  const double spring_y = -pump.block.spring_force * frame.sin_tilt;  // along -z2, at O2
+  p.joint_radius = pump.geometry.joint_circle_radius;
+  p.force_y = weight + spring_y;
+  p.force_z = -pump.block.spring_force * frame.cos_tilt;
+  p.moment_x = -pump.geometry.axis_offset * spring_y - pump.shaft.centre_of_mass_z * weight;
+  p.inertia = pump.shaft.axial_inertia;
+  p.viscous = pump.friction.shaft_viscous;
+  p.inverse_torque_factor = 1 / pump.friction.shaft_torque_factor;
+  p.tapered_z = pump.bearings.tapered_z;
+  p.inverse_bearing_distance = 1 / (pump.bearings.cylindrical_z - pump.bearings.tapered_z);
+}
+
+}  // namespace bentaxis::analytic::closed_form

@@ -1,0 +1,39 @@
+#include "bentaxis/results/samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis {
+
+void Samples::instant(std::size_t row, Instant& instant) const {
+  instant.turn(radians(std::fmod(theta_deg[row], 360.0)), omega);
+  instant.ports = ports;
+  const auto first = chamber_pressure.begin() + static_cast<std::ptrdiff_t>(row) * pistons;
+  instant.chamber_pressure.assign(first, first + pistons);
+}
+
+Samples sample_case(const Case& the_case, const PressureTrace& pressure, int revolutions,
+                    bool falling, const SampleRange& range) {
+  const int per_turn = the_case.operation.samples_per_revolution;
+  const long long rows = static_cast<long long>(per_turn) * revolutions;
+  const long long end = range.count < 0 ? rows : std::min(rows, range.first + range.count);
+  Samples samples;
+  samples.pistons = the_case.pump.geometry.pistons;
+  samples.omega = rad_per_second(the_case.operation.speed_rpm);
+  samples.ports = the_case.pressure.ports;
+  const auto count = static_cast<std::size_t>(std::max(0LL, end - range.first));
+  samples.theta_deg.reserve(count);
+  samples.chamber_pressure.reserve(count * static_cast<std::size_t>(samples.pistons));
+  for (long long row = range.first; row < end; ++row) {
+    const double theta = (falling ? -360.0 : 360.0) * static_cast<double>(row) / per_turn;
+    samples.theta_deg.push_back(theta == 0 ? 0 : theta);  // no -0
+    for (int k = 1; k <= samples.pistons; ++k)
+      samples.chamber_pressure.push_back(
+          pressure(piston_angle_deg(samples.theta_deg.back(), k, samples.pistons)));
+  }
+  return samples;
+}
+
+}  // namespace bentaxis
