@@ -285,7 +285,7 @@ TEST(Batch, WritingPastTheCachesChangesNothingOnAnyInstructionSet) {
   for (std::size_t i = 0; i < 60'003; ++i) instants.push_back(some[i % some.size()]);
   const Arrays arrays(instants);
   const Arrays few(some);
-  for (const GearScene gear : {GearScene::mesh, GearScene::imposed}) {
+  for (const BlockDrive gear : {BlockDrive::mesh, BlockDrive::imposed}) {
     Assumptions assumptions = the_case.analytic;
     assumptions.gear = gear;
     const BatchModel model(the_case.pump, assumptions);
