@@ -32,8 +32,7 @@ std::map<std::string, double> largest_of_groups(const compare::Comparison& compa
   for (const auto& c : comparison.channels) {
     if (c.channel.kind != ChannelKind::reaction) continue;
     double& largest = groups[c.channel.group];
-    if (c.verdict != compare::Verdict::not_computed)
-      largest = std::max(largest, c.largest_over_peak());
+    if (c.compared()) largest = std::max(largest, c.largest_over_peak());
   }
   return groups;
 }
