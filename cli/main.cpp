@@ -57,7 +57,8 @@ int run_program(int argc, char** argv) {
   const std::vector<Command> commands = {add_run_command(app),       add_compare_command(app),
                                          add_regress_command(app),   add_reference_command(app),
                                          add_hardcases_command(app), add_inertia_command(app),
-                                         add_pressure_command(app),  add_tradeoff_command(app)};
+                                         add_pressure_command(app),  add_tradeoff_command(app),
+                                         add_calibrate_command(app), add_blocktorque_command(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

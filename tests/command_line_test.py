@@ -827,6 +827,17 @@ class PressureTest(ProgramTest):
         for a, b in zip(torque, other):
             self.assertAlmostEqual(a, b, delta=1e-9 * torque[-1])
 
+    def test_calibrate_and_blocktorque(self):
+        result = self.run_program("calibrate", REPO / "cases" / "bap63_rated_hydraulic.toml")
+        self.assertEqual(result.out, 4 * ("piston_coulomb_N = 25.1777, shaft_torque_factor = 0.987746: 294.7000 Nm with, "
+                                          "293.4000 Nm without piston friction\n"))
+        cases = [REPO / "cases" / f"{name}.toml" for name in ("bap63_rated", "bap63_rated_hydraulic")]
+        result = self.run_program("blocktorque", *cases)
+        self.assertIn(result.out, (REPO / "docs" / "shaft_to_block_torque.md").read_text())
+        self.assert_mentions(self.refused("blocktorque", cases[0]), "hydraulic")
+        self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0})),
+                             "piston_coulomb_N")
+
     def test_overlay(self):
         self.run_program("pressure", self.hydraulic(), "--overlay", self.hydraulic("peak.toml", "bap63_peak"),
                          "--out", "out")

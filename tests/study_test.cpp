@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/block_torque.h"
 #include "bentaxis/study/comparison.h"
+#include "bentaxis/study/friction_calibration.h"
 #include "bentaxis/study/inertia.h"
 #include "bentaxis/study/operating_points.h"
 #include "support.h"
@@ -376,6 +380,36 @@ TEST(OperatingPoints, TorqueCurveIsItsPoints) {
   EXPECT_THROW(study::torque_curve(slow, {100, 200}), ComputationError);
   EXPECT_THROW(study::torque_curve(the_case, {100, 200, 300}, [](double) { throw Interrupted(); }),
                Interrupted);
+}
+
+// From far away to the shipped, calibrated case (docs/hydraulics.md).
+TEST(FrictionCalibration, FindsTheParametersOfTwoMeanTorques) {
+  Case the_case = case_named("bap63_rated_hydraulic.toml", 720);
+  const Friction shipped = the_case.pump.friction;
+  the_case.pump.friction.piston_coulomb = 5;
+  the_case.pump.friction.shaft_torque_factor = 0.9;
+  const auto steps = study::calibrate_friction(the_case, {294.7, 293.4});
+  EXPECT_EQ(steps.front().piston_coulomb, 5);
+  EXPECT_GT(std::abs(steps.front().torques.with_friction - 294.7), 1);
+  EXPECT_NEAR(steps.back().torques.with_friction, 294.7, 1e-3);
+  EXPECT_NEAR(steps.back().torques.without_friction, 293.4, 1e-3);
+  EXPECT_NEAR(steps.back().piston_coulomb, shipped.piston_coulomb, 0.01);
+  EXPECT_NEAR(steps.back().torque_factor, shipped.shaft_torque_factor, 1e-5);
+  EXPECT_THROW(study::calibrate_friction(the_case, {100, 99}), InputError);  // a factor above 1
+  the_case.pump.friction.piston_coulomb = 0;
+  EXPECT_THROW(study::calibrate_friction(the_case, {294.7, 293.4}), InputError);
+}
+
+// The table of docs/shaft_to_block_torque.md.
+TEST(BlockTorque, RowsAreThoseOfTheDocument) {
+  std::ifstream in(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "docs" /
+                   "shaft_to_block_torque.md");
+  const std::string document((std::istreambuf_iterator<char>(in)), {});
+  const auto rows = study::block_torques(case_named("bap63_rated.toml", 720),
+                                         case_named("bap63_rated_hydraulic.toml", 720));
+  EXPECT_EQ(rows.size(), 18U);
+  EXPECT_NE(document.find(study::block_torque_text(rows)), std::string::npos)
+      << study::block_torque_text(rows);
 }
 
 }  // namespace
