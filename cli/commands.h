@@ -16,6 +16,8 @@ struct Command {
 };
 
 Command add_run_command(CLI::App& app);
+Command add_blocktorque_command(CLI::App& app);
+Command add_calibrate_command(CLI::App& app);
 Command add_compare_command(CLI::App& app);
 Command add_hardcases_command(CLI::App& app);
 Command add_inertia_command(CLI::App& app);

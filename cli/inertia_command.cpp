@@ -6,23 +6,24 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/files/case_file.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/report/page.h"
 #include "bentaxis/report/report.h"
+#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/inertia.h"
+#include "bentaxis/study/run.h"
 #include "commands.h"
 #include "console.h"
-#include "hydraulic_case.h"
 #include "options.h"
-#include "pump_report.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
+
+using report::Json;
 
 using study::InertiaRun;
 
@@ -33,7 +34,8 @@ constexpr double kScenesAgree = 1e-11;
 constexpr double kSpinForRun = 600;  // rpm, where the case's pistons do not spin
 
 struct Options {
-  std::string case_file, out = "out";
+  CaseOption the_case;
+  std::string out = "out";
   std::vector<double> speeds;
   std::vector<double> map_speeds;  // from, to; empty: a third of the slowest to 3 times the fastest
   std::vector<double> map_factors = {0.25, 8};
@@ -535,7 +537,7 @@ Study compute(const Case& as_read, const Case& the_case, const Options& options)
   s.fastest = *std::max_element(options.speeds.begin(), options.speeds.end(),
                                 [](double a, double b) { return std::abs(a) < std::abs(b); });
   for (const double speed : options.speeds) {
-    const Case at = with_pressure(study::at_speed(as_read, speed)).the_case;
+    const Case at = study::prepare(study::at_speed(as_read, speed), progress_of).the_case;
     for (const bool loaded : {false, true}) {
       const std::string what = rpm(speed) + ", " + load_name(loaded);
       s.one_piston.push_back(study::run_both_pistons(at, speed, loaded, multibody::Scene::piston,
@@ -572,9 +574,9 @@ Study compute(const Case& as_read, const Case& the_case, const Options& options)
 
 int run(const Options& options) {
   check_range(options.map_factors, "--map-factors");
-  const Case as_read = read_case(options.case_file);
+  const Case as_read = options.the_case.read();
   OutputFolder folder(options.out);
-  const Case the_case = with_pressure(as_read).the_case;
+  const Case the_case = study::prepare(as_read, progress_of).the_case;
   const Study s = compute(as_read, the_case, options);
 
   double models = 0;
@@ -632,12 +634,15 @@ int run(const Options& options) {
   figures.push_back(map_figure(s, "Rs", s.map.rs));
   figures.push_back(approach_figure(s));
 
+  report::Document head;
+  head.the_case = study::case_section(the_case);
+  head.derived = study::derived_section(the_case);
   const Json report = {
       {"schema", 1},
       {"title", "Lumped or real pistons: " + the_case.name},
       {"program", versions()},
-      {"case", case_section(the_case)},
-      {"derived", derived_section(the_case)},
+      {"case", report::to_json(head)["case"]},
+      {"derived", report::to_json(head)["derived"]},
       {"verdict", {{"agrees", agrees}, {"headline", headline}, {"tolerance", kModelsAgree}}},
       {"runs", sections(the_case, s, models, scenes)},
       {"published", published(s)},
@@ -685,7 +690,7 @@ Command add_inertia_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "inertia", "What treating the pistons as two point masses does to the reactions");
-  add_case(*command, options->case_file);
+  add_case(*command, options->the_case);
   add_out(*command, options->out, "inertia.html, inertia.json and the curves");
   command->add_option("--speeds", options->speeds, "speeds to study, rpm")
       ->delimiter(',')

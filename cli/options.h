@@ -2,42 +2,66 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/scene.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/study/channel_choice.h"
+#include "bentaxis/study/run.h"
 
 namespace bentaxis::cli {
 
-/// How the multibody model is run.
-enum class Way { driven, integrated };
+/// The case of a command, and what is changed in it.
+struct CaseOption {
+  std::string file;
+  std::vector<std::string> changes;  ///< TABLE.KEY=VALUE
 
-void add_case(CLI::App& command, std::string& file);
+  /// The case as if its file said so. @throws InputError
+  Case read() const;
+};
+/// CASE and --set.
+void add_case(CLI::App& command, CaseOption& the_case);
 void add_out(CLI::App& command, std::string& folder, const std::string& what);
-void add_way(CLI::App& command, Way& way);
-CLI::Option* add_integrator(CLI::App& command, multibody::IntegrationOptions& options);
-std::vector<multibody::Integrator> all_integrators();
 /// A list of integrators; empty where not given.
 void add_integrators(CLI::App& command, std::vector<multibody::Integrator>& integrators);
-/// The error a user asks for instead of an accuracy.
-struct ErrorTarget {
-  double error = 0;  ///< of peak; 0: none asked for
-  const multibody::IntegrationOptions* integration = nullptr;
-  const CLI::Option* integrator = nullptr;  ///< where given, only that integrator is tried
 
-  std::vector<multibody::Integrator> integrators() const;
+/// How the multibody model is run, and which channels are asked for.
+class RunChoice {
+ public:
+  study::Way way = study::Way::driven;
+  multibody::SceneChoice scene;
+  multibody::IntegrationOptions integration;
+  std::vector<double> accuracies;  ///< of --accuracy; empty where not given
+
+  /// Adds --way, --scene, --reactions, --channels, --integrator, --accuracy, --error.
+  /// @param several  --accuracy takes a list
+  void add_to(CLI::App& command, bool several);
+
+  /// Refuses options that were given and would change nothing.
+  /// @param multibody  whether the multibody model is run at all
   /// @throws InputError
-  void refuse_unless(bool integrated) const;
+  void refuse_without_effect(bool multibody) const;
+
+  study::ChannelChoice channels() const { return study::ChannelChoice(channels_); }
+  /// The scene to build, which standard error names where it was not chosen by the user.
+  /// @throws InputError
+  multibody::SceneChoice scene_for(const Case& the_case) const;
+  /// The error asked for instead of an accuracy.
+  std::optional<study::ErrorTarget> target() const;
+
+ private:
+  bool given(const std::string& option) const { return (*command_)[option]->count() > 0; }
+
+  const CLI::App* command_ = nullptr;
+  std::vector<std::string> channels_;
+  double error_ = 0;
 };
-/// @param integrator, accuracy  options of the same command
-void add_error(CLI::App& command, ErrorTarget& target,
-               const multibody::IntegrationOptions& integration, CLI::Option* integrator,
-               CLI::Option* accuracy);
+
 /// A finite number in [low, high].
 CLI::Validator number_in(double low, double high);
-/// --scene (returned) and --reactions.
-CLI::Option* add_scene(CLI::App& command, multibody::SceneChoice& choice);
 /// Accuracies that Simbody's integrators accept.
 CLI::Validator accuracy_range();
 /// A finite number above 0.

@@ -6,10 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "console.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -148,6 +152,75 @@ nlohmann::json shown(const Measured& measured) {
   if (!is_computed(measured.low)) return nullptr;
   if (measured.low == measured.high) return measured.low;
   return fmt::format("{:.5g} .. {:.5g}", measured.low, measured.high);
+}
+
+namespace {
+
+// One turn of a case whose pressure is there.
+ResultTable driven(const Case& the_case, study::Model model) {
+  return study::run_turn({the_case, {}, PressureTrace(the_case.pressure)}, model, progress_of);
+}
+
+}  // namespace
+
+Verdicts set_against(const std::vector<PublishedRow>& rows, const study::OperatingPoint& point) {
+  std::map<std::tuple<bool, bool>, std::pair<ResultTable, ResultTable>> variants;
+  Verdicts verdicts;
+  compare::PublishedSection section;
+  section.models = {"analytic", "multibody"};
+  for (const PublishedRow& row : rows) {
+    const std::tuple key{row.piston_friction, row.block_viscous};
+    if (variants.count(key) == 0) {
+      if (row.piston_friction && row.block_viscous) {
+        variants[key] = {point.analytic, point.multibody};
+      } else {
+        Case changed = point.the_case();
+        if (!row.piston_friction)
+          changed.analytic.piston_friction = changed.multibody.piston_friction = false;
+        if (!row.block_viscous) changed.pump.friction.block_viscous = 0;
+        variants[key] = {driven(changed, study::Model::analytic),
+                         driven(changed, study::Model::multibody)};
+      }
+    }
+    const auto& [analytic, multibody] = variants[key];
+    const Measured first = measure(row, analytic), second = measure(row, multibody);
+    const bool inside = first.inside(row) && second.inside(row);
+    std::string where = row.where;
+    if (row.find_pressure)
+      where += fmt::format(
+          "; needs a mean delivery pressure of {:.1f} bar",
+          study::delivery_pressure_for(
+              point, row.quantity, row.low,
+              [&](const ResultTable& table) { return measure(row, table).low; }, progress_of) /
+              kPascalPerBar);
+    const std::size_t column = analytic.find(row.channel);
+    compare::PublishedRow shown_row;
+    shown_row.number.quantity = row.quantity;
+    shown_row.number.unit = analytic.channels[column].unit;
+    shown_row.number.status = row.status;
+    shown_row.printed = row.paper;
+    for (const Measured& value : {first, second})
+      shown_row.values.emplace_back(compare::PublishedValue{value.low, value.high});
+    shown_row.verdict =
+        inside ? compare::PublishedVerdict::inside : compare::PublishedVerdict::outside;
+    shown_row.where = where;
+    section.rows.push_back(std::move(shown_row));
+    const nlohmann::json value = shown(first);
+    verdicts.lines.push_back(
+        fmt::format("{:<44} {:>22} {:<3} {:<8} {:<14} paper {} ({})", row.quantity,
+                    value.is_string() ? value.get<std::string>() : fmt::format("{:.6g}", first.low),
+                    analytic.channels[column].unit, inside ? "inside" : "OUTSIDE", row.status,
+                    row.paper, where));
+    verdicts.inside = verdicts.inside && inside;
+  }
+  verdicts.table = {
+      "Used to infer: the number went into the geometry of this case, which is not published. "
+      "Calibrated: a parameter was set so that the number comes out. Only predicted rows say "
+      "something about the models; a window is the range of a printed axis, in which the lost "
+      "curve "
+      "must have been.",
+      std::move(section)};
+  return verdicts;
 }
 
 }  // namespace bentaxis::cli

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/report/document.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/study/operating_points.h"
 
 namespace bentaxis::cli {
 
@@ -41,6 +43,14 @@ struct Measured {
   bool inside(const PublishedRow& row) const { return low >= row.low && high <= row.high; }
 };
 Measured measure(const PublishedRow& row, const ResultTable& table);
+
+/// What both models say of the rows, for the report and in words.
+struct Verdicts {
+  report::PublishedTable table;
+  std::vector<std::string> lines;
+  bool inside = true;  ///< every row, by both
+};
+Verdicts set_against(const std::vector<PublishedRow>& rows, const study::OperatingPoint& point);
 
 /// "-10235 .. -9376" or one number, as JSON.
 nlohmann::json shown(const Measured& measured);

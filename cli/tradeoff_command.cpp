@@ -6,25 +6,27 @@
 #include <map>
 #include <memory>
 
-#include "bentaxis/files/case_file.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/report/page.h"
 #include "bentaxis/study/calibration.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/run.h"
 #include "bentaxis/study/tradeoff.h"
 #include "commands.h"
 #include "console.h"
-#include "hydraulic_case.h"
 #include "options.h"
-#include "pump_report.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
 
+using report::Json;
+
 struct Options {
-  std::string case_file, out = "out";
+  CaseOption the_case;
+  std::string out = "out";
   study::TradeoffOptions tradeoff;
 };
 
@@ -294,10 +296,10 @@ Json figure_of(const std::vector<study::TradeoffRun>& runs, const std::string& p
 }
 
 int tradeoff(Options options) {
-  const Case the_case = with_pressure(read_case(options.case_file)).the_case;
+  const Case the_case = study::prepare(options.the_case.read(), progress_of).the_case;
   if (the_case.operation.speed_rpm == 0)
     throw InputError(
-        options.case_file +
+        options.the_case.file +
         ": [operation] speed_rpm = 0: tradeoff integrates in time, which needs a speed "
         "other than 0");
   OutputFolder folder(options.out);
@@ -327,8 +329,10 @@ int tradeoff(Options options) {
     tables.push_back(orders_of(runs, options.tradeoff, both[v].name));
     all.insert(all.end(), runs.begin(), runs.end());
   }
+  report::Document head;
+  head.the_case = study::case_section(the_case);
   Json report = {{"schema", 1},           {"title", the_case.name + ": speed against error"},
-                 {"program", versions()}, {"case", case_section(the_case)},
+                 {"program", versions()}, {"case", report::to_json(head)["case"]},
                  {"summary", summary},    {"rows", json_of(all)},
                  {"runs", tables},        {"figures", figures}};
   folder.add("tradeoff.html",
@@ -367,7 +371,7 @@ Command add_tradeoff_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "tradeoff", "Time every model, scene, integrator and accuracy on a case against its error");
-  add_case(*command, options->case_file);
+  add_case(*command, options->the_case);
   add_out(*command, options->out, "tradeoff.html, tradeoff.json and tradeoff.csv");
   study::TradeoffOptions& tradeoff_options = options->tradeoff;
   add_integrators(*command, tradeoff_options.integrators);
@@ -387,7 +391,7 @@ Command add_tradeoff_command(CLI::App& app) {
       ->option_text("NUMBER [10]");
   return {command, [options] {
             study::TradeoffOptions& o = options->tradeoff;
-            if (o.integrators.empty()) o.integrators = all_integrators();
+            if (o.integrators.empty()) o.integrators = study::all_integrators();
             if (o.accuracies.empty())
               o.accuracies = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
             std::sort(o.accuracies.rbegin(), o.accuracies.rend());

@@ -34,8 +34,32 @@ std::complex<double> fourier(const ResultTable& table, std::size_t column, int o
   return sum * 2.0 / static_cast<double>(table.rows());
 }
 
-// Statistics of a channel that both tables have; leaves the verdict "not computed" where no angle
-// has both values or one table misses some that the other has.
+// A value that a table lacks.
+struct Gap {
+  bool expected = true;
+  std::string text;
+};
+
+// The first gap of a channel that is not expected, else one that leaves nothing to compare: where
+// one table has values that the other lacks. A column that is not there is missing at every row.
+std::optional<Gap> find_gap(const ResultTable& first, std::size_t a, const ResultTable& second,
+                            std::size_t b, const Channel& channel, const Options& options) {
+  std::optional<Gap> gap;
+  for (std::size_t row = 0; row < first.rows(); ++row) {
+    const bool x = a < first.columns() && is_computed(first.at(row, a));
+    const bool y = b < second.columns() && is_computed(second.at(row, b));
+    if (x && y) continue;
+    if (options.may_be_missing ? options.may_be_missing(channel, row) : x == y) {
+      if (x != y) gap = Gap{};
+      continue;
+    }
+    const std::string table = x ? second.name : y ? first.name : first.name + " and " + second.name;
+    return Gap{false, "no value of " + table + " at " + number_text(first.theta_deg[row]) + " deg"};
+  }
+  return gap;
+}
+
+// Statistics of a channel at the rows that both tables have.
 void compare_channel(const ResultTable& first, std::size_t a, const ResultTable& second,
                      std::size_t b, const Options& options, ChannelComparison& result) {
   std::size_t both = 0;
@@ -43,7 +67,6 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
   for (std::size_t row = 0; row < first.rows(); ++row) {
     const double x = first.at(row, a);
     const double y = second.at(row, b);
-    if (is_computed(x) != is_computed(y)) return;
     if (!is_computed(x)) continue;
     ++both;
     double difference = y - x;
@@ -71,6 +94,25 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
   result.verdict = result.largest <= result.allowed ? Verdict::agrees : Verdict::differs;
 }
 
+// Amplitude and phase of the orders that the samples resolve.
+void add_harmonics(const ResultTable& first, std::size_t a, const ResultTable& second,
+                   std::size_t b, std::size_t per_turn, const std::vector<int>& orders,
+                   ChannelComparison& result) {
+  for (const int order : orders) {
+    if (per_turn <= static_cast<std::size_t>(2 * order)) continue;  // would alias
+    Harmonic harmonic;
+    harmonic.order = order;
+    const std::complex<double> values[2] = {fourier(first, a, order), fourier(second, b, order)};
+    if (!std::isfinite(std::abs(values[0]))) continue;  // not computed everywhere
+    for (int i = 0; i < 2; ++i) {
+      harmonic.amplitude[i] = std::abs(values[i]);
+      if (harmonic.amplitude[i] > kZeroPeak * result.peak)
+        harmonic.phase_deg[i] = std::arg(values[i]) / kRadPerDegree;
+    }
+    result.harmonics.push_back(harmonic);
+  }
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -81,6 +123,8 @@ const char* to_string(Verdict verdict) {
       return "differs";
     case Verdict::explained:
       return "explained";
+    case Verdict::incomplete:
+      return "incomplete";
     case Verdict::not_computed:
       break;
   }
@@ -88,24 +132,29 @@ const char* to_string(Verdict verdict) {
 }
 
 bool Comparison::agrees() const {
-  return compared() > 0 && std::none_of(channels.begin(), channels.end(), [](const auto& c) {
-           return c.judged && c.verdict == Verdict::differs;
-         });
+  return compared() > 0 && incomplete() == nullptr &&
+         std::none_of(channels.begin(), channels.end(),
+                      [](const auto& c) { return c.judged && c.verdict == Verdict::differs; });
+}
+
+const ChannelComparison* Comparison::incomplete() const {
+  for (const auto& c : channels)
+    if (c.judged && c.verdict == Verdict::incomplete) return &c;
+  return nullptr;
 }
 
 const ChannelComparison* Comparison::worst() const {
   const ChannelComparison* worst = nullptr;
   for (const auto& c : channels) {
-    if (!c.judged || c.verdict == Verdict::not_computed) continue;
+    if (!c.judged || !c.compared()) continue;
     if (worst == nullptr || c.largest_over_peak() > worst->largest_over_peak()) worst = &c;
   }
   return worst;
 }
 
 int Comparison::compared() const {
-  return static_cast<int>(std::count_if(channels.begin(), channels.end(), [](const auto& c) {
-    return c.judged && c.verdict != Verdict::not_computed;
-  }));
+  return static_cast<int>(std::count_if(channels.begin(), channels.end(),
+                                        [](const auto& c) { return c.judged && c.compared(); }));
 }
 
 const ChannelComparison* Comparison::find(const std::string& channel_name) const {
@@ -132,13 +181,12 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
   comparison.tolerance = options.tolerance;
   const std::size_t per_turn = samples_per_turn(first.theta_deg);
   std::map<std::string, double> scales;  // by group
-  for (std::size_t a = 0; a < first.columns(); ++a) {
+  const auto add = [&](const Channel& channel, std::size_t a, std::size_t b) {
+    if (channel.kind == ChannelKind::check) return;
     ChannelComparison result;
-    result.channel = first.channels[a];
+    result.channel = channel;
     result.tolerance = options.tolerance;
-    const auto& channel = result.channel;
     result.judged = channel.kind == ChannelKind::reaction || channel.kind == ChannelKind::derived;
-    if (channel.kind == ChannelKind::check) continue;
     auto scale = scales.find(channel.group);
     if (scale == scales.end())
       scale = scales.emplace(channel.group, scale_of(first, channel, options.zero_scales)).first;
@@ -146,26 +194,20 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
     const auto absolute = options.absolute.find(channel.unit);
     result.allowed = options.tolerance * result.peak +
                      (absolute == options.absolute.end() ? 0 : absolute->second);
-    const std::size_t b = second.find(channel.name);
-    if (b < second.columns()) compare_channel(first, a, second, b, options, result);
-    if (result.verdict != Verdict::not_computed) {
-      for (const int order : options.orders) {
-        if (per_turn <= static_cast<std::size_t>(2 * order)) continue;  // would alias
-        Harmonic harmonic;
-        harmonic.order = order;
-        const std::complex<double> values[2] = {fourier(first, a, order),
-                                                fourier(second, b, order)};
-        if (!std::isfinite(std::abs(values[0]))) continue;  // not computed everywhere
-        for (int i = 0; i < 2; ++i) {
-          harmonic.amplitude[i] = std::abs(values[i]);
-          if (harmonic.amplitude[i] > kZeroPeak * result.peak)
-            harmonic.phase_deg[i] = std::arg(values[i]) / kRadPerDegree;
-        }
-        result.harmonics.push_back(harmonic);
-      }
+    if (const auto gap = find_gap(first, a, second, b, channel, options)) {
+      result.verdict = gap->expected ? Verdict::not_computed : Verdict::incomplete;
+      result.gap = gap->text;
+    } else if (a < first.columns() && b < second.columns()) {
+      compare_channel(first, a, second, b, options, result);
     }
+    if (result.compared()) add_harmonics(first, a, second, b, per_turn, options.orders, result);
     comparison.channels.push_back(std::move(result));
-  }
+  };
+  for (std::size_t a = 0; a < first.columns(); ++a)
+    add(first.channels[a], a, second.find(first.channels[a].name));
+  for (std::size_t b = 0; b < second.columns(); ++b)
+    if (first.find(second.channels[b].name) == first.columns())
+      add(second.channels[b], first.columns(), b);
   return comparison;
 }
 

@@ -688,7 +688,7 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
                       : wanted                  ? Finding::incomplete
                                                 : Finding::missing;
       if (wanted) entry.hint = "the reference lacks it";
-    } else if (entry.comparison.verdict == Verdict::not_computed) {
+    } else if (!entry.comparison.compared()) {
       entry.finding = Finding::incomplete;
       entry.hint = computed(result, column) ? "one of both has gaps where the other has values"
                                             : "the model did not compute it";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "bentaxis/pump/number.h"
 
@@ -63,8 +64,12 @@ Split split_difference(const ResultTable& first, const ResultTable& second,
       const double end = variants[all].at(row, column);
       const double target = second.at(row, other);
       const double start = first.at(row, column);
-      if (!is_computed(end) || !is_computed(target) || !is_computed(start)) {
-        result.computed = is_computed(start) == is_computed(target) && !is_computed(start);
+      if (!is_computed(target) || !is_computed(start)) {
+        result.computed = !is_computed(target) && !is_computed(start);
+        continue;
+      }
+      if (!is_computed(end)) {  // nothing says what equal assumptions give: not explained
+        result.rest = std::numeric_limits<double>::infinity();
         continue;
       }
       result.largest_difference = std::max(result.largest_difference, std::abs(target - start));

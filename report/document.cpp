@@ -300,7 +300,8 @@ Json json_of(const compare::ChannelComparison& c) {
               {"peak", c.peak},
               {"verdict", compare::to_string(c.verdict)},
               {"tolerance", c.tolerance}};
-  if (c.verdict == compare::Verdict::not_computed) {
+  if (!c.gap.empty()) row["gap"] = c.gap;
+  if (!c.compared()) {
     for (const char* key : {"max_abs", "max_over_peak", "rms", "rms_over_peak", "theta_of_max_deg",
                             "mean_difference", "digits"})
       row[key] = nullptr;

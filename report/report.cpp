@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace bentaxis::report {
@@ -53,29 +54,28 @@ Json curve(const ResultTable& table, const std::string& channel_name) {
 }
 
 std::string text_table(const compare::Comparison& comparison) {
-  // Worst channel of each group.
+  // Worst channel of each group; a gap is worse than any difference.
+  const auto rank = [](const compare::ChannelComparison* c) {
+    if (c->verdict == compare::Verdict::incomplete) return std::numeric_limits<double>::infinity();
+    return c->compared() ? c->largest_over_peak() : -1.0;
+  };
   std::map<std::string, const compare::ChannelComparison*> worst;
   for (const compare::ChannelComparison& c : comparison.channels) {
     if (!c.judged) continue;
     auto& entry = worst[c.channel.group];
-    if (entry == nullptr || (c.verdict != compare::Verdict::not_computed &&
-                             c.largest_over_peak() > entry->largest_over_peak()))
-      entry = &c;
+    if (entry == nullptr || rank(&c) > rank(entry)) entry = &c;
   }
   std::vector<const compare::ChannelComparison*> rows;
   for (const auto& [group, c] : worst) rows.push_back(c);
-  std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
-    const auto rank = [](const compare::ChannelComparison* c) {
-      return c->verdict == compare::Verdict::not_computed ? -1.0 : c->largest_over_peak();
-    };
-    return rank(a) > rank(b);
-  });
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](const auto* a, const auto* b) { return rank(a) > rank(b); });
   std::string text = fmt::format("{:<16} {:>12} {:>4}  {:>12} {:>10} {:>7}  {}\n", "worst channel",
                                  "peak", "", "difference", "over peak", "digits", "verdict");
   for (const auto* c : rows) {
-    if (c->verdict == compare::Verdict::not_computed)
+    if (!c->compared())
       text += fmt::format("{:<16} {:>12.5g} {:>4}  {:>12} {:>10} {:>7}  {}\n", c->channel.name,
-                          c->peak, c->channel.unit, "", "", "", "not computed by both");
+                          c->peak, c->channel.unit, "", "", "",
+                          c->gap.empty() ? "not computed by both" : "incomplete: " + c->gap);
     else
       text += fmt::format("{:<16} {:>12.5g} {:>4}  {:>12.2e} {:>10.1e} {:>7.1f}  {}\n",
                           c->channel.name, c->peak, c->channel.unit, c->largest,

@@ -29,8 +29,7 @@ AchievedError achieved_error(const Case& the_case, const Samples& samples,
       worst = value;
   };
   for (const compare::ChannelComparison& c : comparison.channels) {
-    if (c.channel.kind != ChannelKind::reaction || c.verdict == compare::Verdict::not_computed)
-      continue;
+    if (c.channel.kind != ChannelKind::reaction || !c.compared()) continue;
     const double value = c.largest_over_peak();
     const std::string& quantity = c.channel.quantity;
     if (quantity == "Rs") keep(error.rs, value);

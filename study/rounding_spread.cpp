@@ -29,7 +29,7 @@ std::map<std::string, double> largest_of_groups(const compare::Comparison& compa
   for (const auto& c : comparison.channels) {
     if (c.channel.kind != ChannelKind::reaction) continue;
     double& largest = groups[c.channel.group];
-    if (c.verdict != compare::Verdict::not_computed) keep_worst(largest, c.largest_over_peak());
+    if (c.compared()) keep_worst(largest, c.largest_over_peak());
   }
   return groups;
 }

@@ -211,6 +211,38 @@ class UsageTest(ProgramTest):
             with self.subTest(arguments[:1] + arguments[4:]):  # without the path of the case
                 self.assert_mentions(self.refused(*arguments), *words)
 
+    def test_options_that_would_change_nothing(self):
+        case = self.case()
+        analytic = ["run", case, "--model", "analytic", "--out", "out"]
+        multibody = ["run", case, "--model", "multibody", "--out", "out"]
+        compare = ["compare", case, "--out", "out"]
+        integrated = ["--way", "integrated"]
+        for arguments, option in (
+            ([*analytic, *integrated], "--way integrated"),
+            ([*analytic, "--scene", "piston"], "--scene"),
+            ([*analytic, "--scene", "full"], "--scene"),
+            ([*analytic, "--reactions", "residual"], "--reactions"),
+            ([*analytic, "--integrator", "rk3"], "--integrator"),
+            ([*analytic, "--accuracy", "1e-6"], "--accuracy"),
+            ([*analytic, "--error", "1e-6"], "--error"),
+            ([*multibody, "--integrator", "rk3"], "--integrator"),
+            ([*multibody, "--accuracy", "1e-6"], "--accuracy"),
+            ([*multibody, "--way", "driven", "--accuracy", "1e-6"], "--accuracy"),
+            ([*multibody, "--error", "1e-6"], "--error"),
+            ([*multibody, *integrated, "--scene", "piston"], "--scene"),
+            ([*multibody, *integrated, "--scene", "full"], "--scene"),
+            ([*multibody, *integrated, "--reactions", "residual"], "--reactions"),
+            ([*compare, "--accuracy", "1e-6"], "--accuracy"),
+            ([*compare, "--integrator", "rk3"], "--integrator"),
+            ([*compare, "--error", "1e-6"], "--error"),
+            ([*compare, *integrated, "--scene", "pistons"], "--scene"),
+            ([*compare, *integrated, "--reactions", "residual"], "--reactions"),
+        ):
+            with self.subTest(arguments[:1] + arguments[2:]):
+                self.assert_mentions(self.refused(*arguments), option)
+        # --way driven says what is done anyway.
+        self.run_program(*analytic, "--way", "driven")
+
     def test_second_case_must_be_the_same_run(self):
         case = self.case()
         for key, value in (("pump.pistons", 7), ("operation.samples_per_revolution", 72),
@@ -413,6 +445,19 @@ class CompareTest(ProgramTest):
     def test_unequal_assumptions_are_explained(self):
         self.run_program("compare", self.case(), "--multibody", "gear=imposed", "piston_friction=off", "--out", "out")
         self.assertEqual(set(self.column("out/multibody.csv", "Rcs_z4_N")), {""})
+
+    def test_tolerance_counts_under_unequal_assumptions(self):
+        case = self.case()
+        other = self.case("other.toml", **{"pump.tilt_deg": 40.0 * (1 + 1e-6)})  # no assumption explains that
+        command = ["compare", case, "--multibody-case", other, "--multibody", "piston_friction=off", "--out", "out"]
+        result = self.run_program(*command, status=OUT_OF_TOLERANCE)
+        self.assertIn("Not explained.", result.out)
+        self.assertIn("(tolerance 1e-10)", result.out)
+        result = self.run_program(*command, "--tolerance", "1e-3")
+        self.assertIn("Explained.", result.out)
+        self.assertIn("(tolerance 0.001)", result.out)
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        self.assertEqual(report["verdict"]["rest_tolerance"], 1e-3)
 
     def test_integrated(self):
         case = self.case(**{"operation.revolutions": 2})
@@ -787,6 +832,17 @@ class PressureTest(ProgramTest):
         self.assertEqual((torque, flow), (sorted(torque), sorted(flow, reverse=True)))
         for a, b in zip(torque, other):
             self.assertAlmostEqual(a, b, delta=1e-9 * torque[-1])
+
+    def test_calibrate_and_blocktorque(self):
+        result = self.run_program("calibrate", REPO / "cases" / "bap63_rated_hydraulic.toml")
+        self.assertEqual(result.out, 4 * ("piston_coulomb_N = 25.1777, shaft_torque_factor = 0.987746: 294.7000 Nm with, "
+                                          "293.4000 Nm without piston friction\n"))
+        cases = [REPO / "cases" / f"{name}.toml" for name in ("bap63_rated", "bap63_rated_hydraulic")]
+        result = self.run_program("blocktorque", *cases)
+        self.assertIn(result.out, (REPO / "docs" / "shaft_to_block_torque.md").read_text())
+        self.assert_mentions(self.refused("blocktorque", cases[0]), "hydraulic")
+        self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0})),
+                             "piston_coulomb_N")
 
     def test_overlay(self):
         self.run_program("pressure", self.hydraulic(), "--overlay", self.hydraulic("peak.toml", "bap63_peak"),

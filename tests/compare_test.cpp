@@ -101,21 +101,178 @@ TEST(Comparison, ZeroReactionIsHeldToTheLoadScale) {
   EXPECT_FALSE(compare_tables(a, b, options).agrees());
 }
 
-TEST(Comparison, WhatOneTableLacksIsNotComputedAndNotAgreeing) {
+// One spike in a turn: 1.2 times what is allowed, and by its rms a sixth of it.
+TEST(Verdict, IsAboutTheLargestDifferenceNotTheRms) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
-  const auto a = table("a", channels, {[](double) { return 1.0; }});
+  const auto a = table("a", channels, {[](double t) { return 100 * wave(t, 1); }});
+  auto b = a;
+  b.values[50] -= 1.2e-3;
+  Options options;
+  options.tolerance = 1e-5;
+  const Comparison c = compare_tables(a, b, options);
+  EXPECT_NEAR(c.channels[0].largest, 1.2e-3, 1e-13);
+  EXPECT_LT(c.channels[0].rms, c.channels[0].allowed / 6);
+  EXPECT_DOUBLE_EQ(c.channels[0].theta_of_largest_deg, 250);
+  EXPECT_EQ(c.channels[0].verdict, Verdict::differs);
+  EXPECT_FALSE(c.agrees());
+}
+
+// Powers of two: peak 1024, tolerance 1/128 of it, differences without rounding.
+TEST(Verdict, ToleranceItselfIsStillAgreement) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto a = table("a", channels, {[](double) { return 1024.0; }});
+  Options options;
+  options.tolerance = 0x1p-7;
+  const auto verdict = [&](double difference) {
+    const auto b = table("b", channels, {[=](double) { return 1024.0 + difference; }});
+    return compare_tables(a, b, options).channels[0].verdict;
+  };
+  const double more = std::nextafter(1024.0 + 8, 2000.0) - 1024.0;
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_EQ(verdict(sign * 8), Verdict::agrees);
+    EXPECT_EQ(verdict(sign * more), Verdict::differs);
+  }
+}
+
+TEST(Verdict, AbsoluteAllowanceOfTheUnitComesOnTop) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("T_Nm", "T", "Nm")};
+  const auto a = table("a", channels, {[](double) { return 1024.0; }, [](double) { return 64.0; }});
+  const auto b = table("b", channels, {[](double) { return 1044.0; }, [](double) { return 66.0; }});
+  Options options;
+  options.tolerance = 0x1p-7;  // 8 N, half a Nm
+  options.absolute = {{"N", 12.0}};
+  Comparison c = compare_tables(a, b, options);
+  EXPECT_DOUBLE_EQ(c.channels[0].allowed, 20);
+  EXPECT_EQ(c.channels[0].verdict, Verdict::agrees);
+  EXPECT_DOUBLE_EQ(c.channels[1].allowed, 0.5);
+  EXPECT_EQ(c.channels[1].verdict, Verdict::differs);
+  options.absolute = {{"N", 11.999}, {"Nm", 1.5}};
+  c = compare_tables(a, b, options);
+  EXPECT_EQ(c.channels[0].verdict, Verdict::differs);
+  EXPECT_EQ(c.channels[1].verdict, Verdict::agrees);
+}
+
+// A component may be small beside its vector; another vector's size does not count, nor does the
+// second table's.
+TEST(Verdict, IsScaledByThePeakOfTheChannelsOwnVectorInTheFirstTable) {
+  const std::vector<Channel> channels = {channel("X_x_N", "X"), channel("X_y_N", "X"),
+                                         channel("Y_N", "Y")};
+  const auto a = table("a", channels,
+                       {[](double t) { return 300 * wave(t, 1); },
+                        [](double t) { return 400 * wave(t, 1); }, [](double) { return 1e6; }});
+  const auto b = table("b", channels,
+                       {[](double t) { return 300 * wave(t, 1) + 4; },
+                        [](double t) { return 400 * wave(t, 1); }, [](double) { return 2e6; }});
+  Options options;
+  options.tolerance = 0.009;
+  const Comparison c = compare_tables(a, b, options);
+  EXPECT_DOUBLE_EQ(c.channels[0].peak, 500);
+  EXPECT_DOUBLE_EQ(c.channels[1].peak, 500);
+  EXPECT_DOUBLE_EQ(c.channels[2].peak, 1e6);
+  EXPECT_EQ(c.channels[0].verdict, Verdict::agrees);
+  EXPECT_EQ(c.channels[2].verdict, Verdict::differs);
+  EXPECT_DOUBLE_EQ(c.channels[2].largest_over_peak(), 1);
+  EXPECT_EQ(c.worst(), &c.channels[2]);
+}
+
+TEST(Verdict, WithinABandOnlyTheDistanceFromItCounts) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto constant = [&](double value) {
+    return table("t", channels, {[=](double) { return value; }});
+  };
+  const ResultTable middle = constant(1024), low = constant(1000), high = constant(1064);
+  Options options;
+  options.tolerance = 0x1p-7;
+  options.band = Band{&low, &high};
+  const auto compared = [&](double value) {
+    return compare_tables(middle, constant(value), options).channels[0];
+  };
+  for (const double inside : {1000.0, 1024.0, 1064.0}) EXPECT_EQ(compared(inside).largest, 0);
+  EXPECT_DOUBLE_EQ(compared(1072).mean_difference, 8);
+  EXPECT_DOUBLE_EQ(compared(992).mean_difference, -8);
+  EXPECT_EQ(compared(1072).verdict, Verdict::agrees);
+  EXPECT_EQ(compared(992).verdict, Verdict::agrees);
+  EXPECT_EQ(compared(1072.5).verdict, Verdict::differs);
+  EXPECT_EQ(compared(991.5).verdict, Verdict::differs);
+}
+
+TEST(Verdict, DigitsAreThoseOfTheLargestDifferenceOverThePeak) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto a = table("a", channels, {[](double) { return 1e3; }});
+  Options options;
+  const auto digits = [&](double difference) {
+    const auto b =
+        table("b", channels, {[=](double t) { return 1e3 + (t == 90 ? difference : 0); }});
+    return compare_tables(a, b, options).channels[0].digits;
+  };
+  EXPECT_NEAR(digits(1e-2), 5, 1e-9);
+  EXPECT_NEAR(digits(-1e-5), 8, 1e-6);
+  EXPECT_EQ(digits(0), 16);
+  EXPECT_EQ(digits(1e7), 0);  // not below none
+  options.most_digits = 6;    // what the poorer table has
+  EXPECT_EQ(digits(1e-5), 6);
+  EXPECT_EQ(digits(0), 6);
+}
+
+// A value that is missing in one table: nobody said that it may be.
+TEST(Verdict, OneMissingSampleIsNoAgreement) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
+  const auto a = table("a", channels, {[](double) { return 1.0; }, [](double) { return 2.0; }});
   auto gap = a;
-  gap.values[3] = not_computed();
-  EXPECT_EQ(compare_tables(a, gap, {}).channels[0].verdict, Verdict::not_computed);
-  auto other = a;
-  other.channels[0].name = "Y_N";
-  const Comparison none = compare_tables(a, other, {});
-  EXPECT_EQ(none.channels[0].verdict, Verdict::not_computed);
-  EXPECT_FALSE(none.agrees());  // nothing was compared
-  EXPECT_EQ(compare_tables(gap, gap, {}).channels[0].verdict, Verdict::agrees);
+  gap.name = "b";
+  gap.values[2 * 3] = not_computed();  // X at 15 deg
+  for (const auto& [first, second] :
+       {std::pair<const ResultTable*, const ResultTable*>{&a, &gap}, {&gap, &a}}) {
+    const Comparison c = compare_tables(*first, *second, {});
+    EXPECT_EQ(c.channels[0].verdict, Verdict::incomplete);
+    EXPECT_EQ(c.channels[0].gap, "no value of b at 15 deg");
+    EXPECT_EQ(c.channels[1].verdict, Verdict::agrees);
+    EXPECT_EQ(c.compared(), 1);
+    EXPECT_EQ(c.incomplete(), &c.channels[0]);
+    EXPECT_FALSE(c.agrees());
+  }
+  // Both lack it: the rest is compared, unless it should be there.
+  EXPECT_TRUE(compare_tables(gap, gap, {}).agrees());
+  Options strict;
+  strict.may_be_missing = [](const Channel&, std::size_t) { return false; };
+  EXPECT_EQ(compare_tables(gap, gap, strict).channels[0].verdict, Verdict::incomplete);
   auto shifted = a;
   shifted.theta_deg[5] += 1e-9;
   EXPECT_THROW(compare_tables(a, shifted, {}), InputError);
+}
+
+TEST(Verdict, WhatIsExpectedToBeMissingIsNotJudged) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
+  const auto a = table("a", channels, {[](double) { return 1.0; }, [](double) { return 2.0; }});
+  auto gap = a;
+  gap.values[2 * 3] = not_computed();
+  Options options;
+  options.may_be_missing = [](const Channel& c, std::size_t row) {
+    return c.name == "X_N" && row == 3;
+  };
+  const Comparison c = compare_tables(a, gap, options);
+  EXPECT_EQ(c.channels[0].verdict, Verdict::not_computed);
+  EXPECT_TRUE(c.agrees());
+  gap.values[2 * 4] = not_computed();  // the next one is not expected
+  EXPECT_EQ(compare_tables(a, gap, options).channels[0].verdict, Verdict::incomplete);
+}
+
+TEST(Verdict, AChannelThatOneTableLacksIsNoAgreement) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
+  const auto both = table("a", channels, {[](double) { return 1.0; }, [](double) { return 2.0; }});
+  const auto one = table("b", {channels[0]}, {[](double) { return 1.0; }});
+  for (const auto& [first, second] : {std::pair{&both, &one}, std::pair{&one, &both}}) {
+    const Comparison c = compare_tables(*first, *second, {});
+    ASSERT_EQ(c.channels.size(), 2U);
+    EXPECT_EQ(c.channels[0].verdict, Verdict::agrees);
+    EXPECT_EQ(c.find("Y_N")->verdict, Verdict::incomplete);
+    EXPECT_FALSE(c.agrees());
+  }
+  Options options;
+  options.may_be_missing = [](const Channel& c, std::size_t) { return c.name == "Y_N"; };
+  EXPECT_TRUE(compare_tables(both, one, options).agrees());
+  const auto other = table("c", {channels[1]}, {[](double) { return 2.0; }});
+  EXPECT_FALSE(compare_tables(one, other, {}).agrees());  // nothing was compared
 }
 
 TEST(Checks, AreJudgedTogetherOverThePistons) {
@@ -150,6 +307,19 @@ TEST(Split, AddsUpAndSharesInteractionsEvenly) {
   EXPECT_NEAR(x.rest, 1e-7, 1e-14);
   EXPECT_TRUE(split.explained());
   EXPECT_FALSE(split_difference(first, second, {"p", "q"}, variant, {}, 1e-9).explained());
+}
+
+// What equal assumptions give is missing: then nothing explains the difference.
+TEST(Split, IsNotExplainedByAVariantThatLacksTheValue) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto model = [&](double p) {
+    return table("m", channels, {[=](double) { return 10 + p; }});
+  };
+  auto variant = model(1);
+  variant.values[7] = not_computed();
+  const Split split = split_difference(
+      model(0), model(1), {"p"}, [&](unsigned) { return variant; }, {}, 1e-9);
+  EXPECT_FALSE(split.explained());
 }
 
 TEST(Split, MarksOnlyExplainedChannels) {

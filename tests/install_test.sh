@@ -9,7 +9,7 @@ cmake --install "$build" --prefix "$scratch/usr" > /dev/null
 cmake -S "$source_dir/tests/install" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/usr" \
   -DCMAKE_BUILD_TYPE=Release > "$scratch/log" || { cat "$scratch/log"; exit 1; }
 cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
-"$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml"
+"$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
 cd "$scratch"
 usr/bin/bentaxis compare usr/share/bentaxis/cases/bap63_rated.toml --out out > /dev/null
 usr/bin/bentaxis hardcases --filter tilt_45 --out out > /dev/null

@@ -1,13 +1,20 @@
-// The inertia study: what lumping does, against the paper's appendix and against scaling laws.
+// Studies: one call from a case to a verdict; the inertia study: what lumping does, against the
+// paper's appendix and against scaling laws.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/block_torque.h"
+#include "bentaxis/study/comparison.h"
+#include "bentaxis/study/friction_calibration.h"
 #include "bentaxis/study/hard_cases.h"
 #include "bentaxis/study/inertia.h"
+#include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "support.h"
 
@@ -274,6 +281,205 @@ TEST(LongRun, AGroupThatNothingLoadsIsHeldToTheScaleOfItsUnit) {
   EXPECT_EQ(study::errors_of_turns(reference, table, scales, 2), (std::vector<double>{0, 1e-3}));
   table.values[column] = std::nan("");
   EXPECT_TRUE(std::isnan(study::errors_of_turns(reference, table, scales, 2)[0]));
+}
+
+// ---- One call from a case to a verdict
+
+Case case_named(const std::string& name, int samples) {
+  Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / name);
+  the_case.operation.samples_per_revolution = samples;
+  return the_case;
+}
+
+TEST(Run, OneCallSolvesTheHydraulicsAndGivesATable) {
+  const study::ReadyCase ready = study::prepare(case_named("bap63_rated_hydraulic.toml", 36));
+  ASSERT_TRUE(ready.hydraulics);
+  for (const study::Model model : study::kModels) {
+    const ResultTable table = study::run_turn(ready, model);
+    EXPECT_EQ(table.name, to_string(model));
+    ASSERT_EQ(table.rows(), 36U);
+    const std::size_t pressure = table.find("p_1_bar");
+    for (std::size_t row = 0; row < table.rows(); ++row)
+      EXPECT_NEAR(table.at(row, pressure), ready.pressure(table.theta_deg[row]) / 1e5, 1e-12);
+  }
+}
+
+TEST(Run, RefusesOptionsThatContradictEachOther) {
+  const study::ReadyCase ready = study::prepare(case_named("bap63_rated.toml", 12));
+  study::RunOptions options;
+  options.way = study::Way::integrated;
+  EXPECT_THROW(study::run(ready, options), InputError);  // the analytic model
+  options.model = study::Model::multibody;
+  options.scene.scene = Scene::piston;
+  EXPECT_THROW(study::run(ready, options), InputError);
+  options.scene = {multibody::Scene::full, multibody::Method::residual};
+  EXPECT_THROW(study::run(ready, options), InputError);
+  study::RunOptions to_error;
+  to_error.model = study::Model::multibody;
+  to_error.target = study::ErrorTarget{1e-6, {}};
+  EXPECT_THROW(study::run(ready, to_error), InputError);  // driven runs have no error to choose
+}
+
+TEST(CompareModels, OneCallOnAHydraulicCase) {
+  const study::ComparisonResult result =
+      study::compare_models(case_named("bap63_rated_hydraulic.toml", 36), {}, {});
+  EXPECT_TRUE(result.first.hydraulics);
+  EXPECT_TRUE(result.agrees()) << result.headline();
+  EXPECT_EQ(result.tolerance, study::kDrivenTolerance);
+  EXPECT_EQ(result.comparison.incomplete(), nullptr);
+  EXPECT_GT(result.comparison.compared(), 40);
+  // One curve for both.
+  for (std::size_t row = 0; row < result.analytic.rows(); ++row)
+    EXPECT_EQ(result.analytic.at(row, result.analytic.find("p_3_bar")),
+              result.multibody.at(row, result.multibody.find("p_3_bar")));
+}
+
+TEST(CompareModels, AWrongInputToOneModelIsNoticed) {
+  Case wrong = case_named("bap63_rated.toml", 36);
+  wrong.pump.geometry.tilt *= 1 + 1e-6;
+  const auto result = study::compare_models(case_named("bap63_rated.toml", 36), wrong, {});
+  EXPECT_FALSE(result.agrees());
+  EXPECT_NE(result.headline().find("differ"), std::string::npos);
+  wrong.operation.samples_per_revolution = 72;
+  EXPECT_THROW(study::compare_models(case_named("bap63_rated.toml", 36), wrong, {}), InputError);
+}
+
+// Imposed gear, a smaller scene, a film force of zero: absent channels, all of them expected.
+TEST(CompareModels, WhatARunIsKnownNotToComputeDoesNotCountAgainstIt) {
+  Case the_case = case_named("bap63_rated.toml", 36);
+  the_case.analytic.gear = the_case.multibody.gear = BlockDrive::imposed;
+  const auto imposed = study::compare_models(the_case, {}, {});
+  EXPECT_EQ(imposed.comparison.find("Rcs_z4_N")->verdict, compare::Verdict::not_computed);
+  EXPECT_TRUE(imposed.agrees()) << imposed.headline();
+
+  study::ComparisonOptions options;
+  options.scene.scene = Scene::piston;
+  const auto piston = study::compare_models(case_named("bap63_rated.toml", 35), {}, options);
+  EXPECT_EQ(piston.comparison.find("Td_z1_Nm")->verdict, compare::Verdict::not_computed);
+  EXPECT_TRUE(piston.agrees()) << piston.headline();
+
+  // Nothing presses the block along its axis: one model has a force of zero, the other round-off.
+  the_case.pump.geometry.tilt = the_case.pump.geometry.axis_offset = 0;
+  the_case.pressure.ports = {0, 0};
+  the_case.pump.block.spring_force = the_case.pump.friction.piston_coulomb = 0;
+  the_case.pump.friction.block_viscous = 0;
+  const auto still = study::compare_models(the_case, {}, {});
+  EXPECT_EQ(still.comparison.find("xh_x2_mm")->verdict, compare::Verdict::not_computed);
+  EXPECT_EQ(still.comparison.incomplete(), nullptr) << still.headline();
+}
+
+TEST(CompareModels, AGapIsNoAgreementWhateverExplainsTheRest) {
+  for (const bool unequal : {false, true}) {
+    Case the_case = case_named("bap63_rated.toml", 36);
+    if (unequal) the_case.multibody.piston_friction = false;
+    auto result = study::compare_models(the_case, {}, {});
+    EXPECT_TRUE(result.agrees());
+    EXPECT_EQ(result.split.has_value(), unequal);
+    auto& channel = result.comparison.channels[3];
+    channel.verdict = compare::Verdict::incomplete;
+    channel.gap = "no value of multibody at 30 deg";
+    EXPECT_FALSE(result.agrees());
+    EXPECT_EQ(result.headline(), "The two models cannot be said to agree: " + channel.gap + " of " +
+                                     channel.channel.name + ".");
+  }
+}
+
+// Under unequal assumptions the rest is held to 1e-10, unless the user says otherwise.
+TEST(CompareModels, AToleranceThatTheUserNamesCountsForTheRestToo) {
+  Case the_case = case_named("bap63_rated.toml", 36);
+  the_case.multibody.piston_friction = false;
+  study::ComparisonOptions options;
+  EXPECT_EQ(study::compare_models(the_case, {}, options).split->tolerance,
+            study::kDrivenRestTolerance);
+  for (const double tolerance : {1e-3, 1e-25}) {
+    options.tolerance = tolerance;
+    const auto result = study::compare_models(the_case, {}, options);
+    EXPECT_EQ(result.split->tolerance, tolerance);
+    EXPECT_EQ(result.agrees(), tolerance == 1e-3);
+    EXPECT_NE(result.headline().find(tolerance == 1e-3 ? "(tolerance 0.001)" : "(tolerance 1e-25)"),
+              std::string::npos);
+  }
+  // A difference that no assumption explains, between both tolerances.
+  Case wrong = the_case;
+  wrong.pump.geometry.tilt *= 1 + 1e-6;
+  options.tolerance = 1e-3;
+  EXPECT_TRUE(study::compare_models(the_case, wrong, options).agrees());
+  options.tolerance.reset();
+  EXPECT_FALSE(study::compare_models(the_case, wrong, options).agrees());
+}
+
+TEST(CompareModels, IntegratedRunsAreTabledAndTheLastIsCompared) {
+  study::ComparisonOptions options;
+  options.way = study::Way::integrated;
+  options.accuracies = {1e-3, 1e-5};
+  const auto result = study::compare_models(case_named("bap63_rated.toml", 20), {}, options);
+  ASSERT_EQ(result.integrations.size(), 2U);
+  EXPECT_GT(result.integrations[0].rs, result.integrations[1].rs);
+  EXPECT_EQ(result.tolerance, study::kIntegratedFactor * 1e-5);
+  EXPECT_LT(result.integrations[1].torque_driven_speed_error, 1e-5);
+  EXPECT_TRUE(result.agrees()) << result.headline();
+}
+
+TEST(OperatingPoints, PressureForATorqueIsFoundAgain) {
+  Case the_case = case_named("bap63_rated_hydraulic.toml", 36);
+  const study::OperatingPoint start = study::run_point(the_case);
+  const auto torque = [](const ResultTable& table) { return study::mean(table, "Td_z1_Nm"); };
+  the_case.pressure.ports.delivery *= 1.2;
+  const study::OperatingPoint wanted = study::run_point(the_case);
+  EXPECT_NEAR(study::delivery_pressure_for(start, "torque", torque(wanted.analytic), torque) /
+                  the_case.pressure.ports.delivery,
+              1, 2e-6);
+  EXPECT_THROW(study::delivery_pressure_for(start, "torque", -5, torque), ComputationError);
+  EXPECT_THROW(study::run_point(case_named("bap63_rated.toml", 36)), InputError);
+}
+
+// In threads, and yet each point is what it is alone; an error or an interruption gets out.
+TEST(OperatingPoints, TorqueCurveIsItsPoints) {
+  const Case the_case = case_named("bap63_rated_hydraulic.toml", 20);
+  const study::TorqueCurve curve = study::torque_curve(the_case, {100, 200, 300});
+  for (std::size_t i = 0; i < curve.bar.size(); ++i) {
+    Case at = the_case;
+    at.pressure.ports.delivery = curve.bar[i] * 1e5;
+    const study::OperatingPoint point = study::run_point(at);
+    EXPECT_EQ(curve.analytic[i], study::mean(point.analytic, "Td_z1_Nm"));
+    EXPECT_EQ(curve.multibody[i], study::mean(point.multibody, "Td_z1_Nm"));
+    EXPECT_EQ(curve.flow[i], point.state().summary.flow * 6e4);
+  }
+  Case slow = the_case;
+  slow.operation.speed_rpm = 5;
+  EXPECT_THROW(study::torque_curve(slow, {100, 200}), ComputationError);
+  EXPECT_THROW(study::torque_curve(the_case, {100, 200, 300}, [](double) { throw Interrupted(); }),
+               Interrupted);
+}
+
+// From far away to the shipped, calibrated case (docs/hydraulics.md).
+TEST(FrictionCalibration, FindsTheParametersOfTwoMeanTorques) {
+  Case the_case = case_named("bap63_rated_hydraulic.toml", 720);
+  const Friction shipped = the_case.pump.friction;
+  the_case.pump.friction.piston_coulomb = 5;
+  the_case.pump.friction.shaft_torque_factor = 0.9;
+  const auto steps = study::calibrate_friction(the_case, {294.7, 293.4});
+  EXPECT_EQ(steps.front().piston_coulomb, 5);
+  EXPECT_GT(std::abs(steps.front().torques.with_friction - 294.7), 1);
+  EXPECT_NEAR(steps.back().torques.with_friction, 294.7, 1e-3);
+  EXPECT_NEAR(steps.back().torques.without_friction, 293.4, 1e-3);
+  EXPECT_NEAR(steps.back().piston_coulomb, shipped.piston_coulomb, 0.01);
+  EXPECT_NEAR(steps.back().torque_factor, shipped.shaft_torque_factor, 1e-5);
+  EXPECT_THROW(study::calibrate_friction(the_case, {100, 99}), InputError);  // a factor above 1
+  the_case.pump.friction.piston_coulomb = 0;
+  EXPECT_THROW(study::calibrate_friction(the_case, {294.7, 293.4}), InputError);
+}
+
+// The table of docs/shaft_to_block_torque.md.
+TEST(BlockTorque, RowsAreThoseOfTheDocument) {
+  std::ifstream in(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "docs" /
+                   "shaft_to_block_torque.md");
+  const std::string document((std::istreambuf_iterator<char>(in)), {});
+  const auto rows = study::block_torques(case_named("bap63_rated.toml", 720),
+                                         case_named("bap63_rated_hydraulic.toml", 720));
+  EXPECT_EQ(rows.size(), 18U);
+  EXPECT_NE(document.find(study::block_torque_text(rows)), std::string::npos)
+      << study::block_torque_text(rows);
 }
 
 }  // namespace

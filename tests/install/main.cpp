@@ -1,12 +1,12 @@
-// Evaluates both models at one instant and prints the drive torque and their difference.
+// Evaluates both models at one instant, then compares them on a hydraulic case in one call.
+// usage: uses_bentaxis CASE HYDRAULIC_CASE
 #include <cmath>
 #include <cstdio>
 
 #include "bentaxis/analytic/model.h"
-#include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/study/calibration.h"
+#include "bentaxis/study/comparison.h"
 
 int main(int, char** argv) {
   const bentaxis::Case the_case = bentaxis::read_case(argv[1]);
@@ -22,6 +22,8 @@ int main(int, char** argv) {
   const double torque = a[analytic.layout().Td()];
   const double difference = std::abs(m[analytic.layout().Td()] - torque);
   std::printf("Td = %.6f Nm, difference %.1e Nm\n", torque, difference);
-  const auto& integrator = bentaxis::study::name_of(bentaxis::multibody::Integrator{});
-  return difference < 1e-9 && !integrator.empty() ? 0 : 1;
+
+  const auto result = bentaxis::study::compare_models(bentaxis::read_case(argv[2]), {}, {});
+  std::printf("%s\n", result.headline().c_str());
+  return difference < 1e-9 && result.agrees() && result.first.hydraulics ? 0 : 1;
 }

@@ -1,6 +1,7 @@
 // Compares two result tables channel by channel. Knows columns, units and scale groups; no physics.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,7 +15,8 @@ enum class Verdict {
   agrees,  ///< largest difference within tolerance x peak
   differs,
   explained,     ///< differs, and differing assumptions account for it
-  not_computed,  ///< at least one table has no value of this channel
+  not_computed,  ///< a table has no value of this channel, as expected
+  incomplete,    ///< a table lacks a value that it should have: never agreement
 };
 
 /// One harmonic of the shaft angle: x = amplitude cos(order theta - phase).
@@ -41,7 +43,12 @@ struct ChannelComparison {
   double digits = 0;     ///< of agreement: -log10(largest / peak), at most Options::most_digits
   double tolerance = 0;  ///< over peak
   double allowed = 0;    ///< absolute + tolerance x peak, channel's unit
+  std::string gap;       ///< of an incomplete channel: which table lacks it, and where
 
+  /// Both tables have it, and the numbers above say how far apart they are.
+  bool compared() const {
+    return verdict != Verdict::not_computed && verdict != Verdict::incomplete;
+  }
   double largest_over_peak() const { return peak > 0 ? largest / peak : (largest > 0 ? 1e300 : 0); }
   double rms_over_peak() const { return peak > 0 ? rms / peak : (rms > 0 ? 1e300 : 0); }
 };
@@ -62,6 +69,10 @@ struct Options {
   ZeroScales zero_scales;
   double most_digits = 16;   ///< of agreement that can be claimed: those of the poorer table
   std::optional<Band> band;  ///< a difference is then the distance from the band
+  /// Whether a value of a channel may be missing at a row: then the channel is not computed,
+  /// without it incomplete. Where this is not given, a value may be missing in both tables, not in
+  /// one.
+  std::function<bool(const Channel& channel, std::size_t row)> may_be_missing;
 };
 
 struct Comparison {
@@ -69,14 +80,18 @@ struct Comparison {
   std::vector<ChannelComparison> channels;
   double tolerance = 0;
 
+  /// Something was compared, nothing differs and nothing is incomplete.
   bool agrees() const;
+  /// The first judged channel that lacks a value it should have; nullptr if there is none.
+  const ChannelComparison* incomplete() const;
   /// The judged channel with the largest difference over its peak; nullptr if none was compared.
   const ChannelComparison* worst() const;
   int compared() const;
   const ChannelComparison* find(const std::string& channel_name) const;
 };
 
-/// Compares channels of the same name. Both tables must have the same angles.
+/// Compares channels of the same name, at every row that both tables have a value of. A channel
+/// that one table lacks altogether is missing at every row. Both tables must have the same angles.
 /// @throws InputError if the angles differ.
 Comparison compare_tables(const ResultTable& first, const ResultTable& second,
                           const Options& options);

@@ -1,11 +1,10 @@
-#include "channel_choice.h"
+#include "bentaxis/study/channel_choice.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "bentaxis/pump/error.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 namespace {
 
 bool is_called(const Channel& channel, const std::string& name) {
@@ -26,27 +25,14 @@ std::string quantities(const ChannelLayout& layout) {
   return joined(known);
 }
 
-std::string name_of(multibody::Scene scene) {
-  return multibody::scene_names()[static_cast<std::size_t>(scene)];
-}
-
 }  // namespace
-
-void ChannelChoice::add_to(CLI::App& command, const CLI::Option* scene) {
-  scene_ = scene;
-  command
-      .add_option(
-          "--channels", names_,
-          "only these: quantities (Rs) or columns (Rs_1_z2_N); without --scene the smallest "
-          "scene that computes them is built")
-      ->delimiter(',')
-      ->option_text("NAME[,NAME..] [all]");
-}
 
 bool ChannelChoice::wants(const Channel& channel) const {
   return all() || std::any_of(names_.begin(), names_.end(),
                               [&](const auto& name) { return is_called(channel, name); });
 }
+
+std::string ChannelChoice::text() const { return all() ? "all" : joined(names_); }
 
 std::vector<Channel> ChannelChoice::of(const ChannelLayout& layout) const {
   const auto& channels = layout.channels();
@@ -61,24 +47,17 @@ std::vector<Channel> ChannelChoice::of(const ChannelLayout& layout) const {
   return wanted;
 }
 
-multibody::SceneChoice ChannelChoice::scene_for(const ChannelLayout& layout,
-                                                multibody::SceneChoice choice) const {
+multibody::Scene ChannelChoice::scene_for(const ChannelLayout& layout,
+                                          std::optional<multibody::Scene> asked) const {
   const auto wanted = of(layout);
-  if (all()) return choice;
-  if (scene_->count() == 0) {
-    choice.scene = multibody::smallest_scene(wanted);
-    if (choice.scene != multibody::Scene::full)
-      std::fprintf(stderr,
-                   "scene \"%s\": the smallest that computes %s; --scene full builds the whole "
-                   "pump\n",
-                   name_of(choice.scene).c_str(), joined(names_).c_str());
-    return choice;
-  }
+  if (all()) return asked.value_or(multibody::Scene::full);
+  if (!asked) return multibody::smallest_scene(wanted);
   for (const Channel& channel : wanted)
-    if (!multibody::computes(choice.scene, channel))
-      throw InputError("--scene " + name_of(choice.scene) + " does not compute " + channel.name +
+    if (!multibody::computes(*asked, channel))
+      throw InputError("--scene " + multibody::scene_names()[static_cast<std::size_t>(*asked)] +
+                       " does not compute " + channel.name +
                        ", which --channels asks for; leave --scene out or take full");
-  return choice;
+  return *asked;
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -1,15 +1,15 @@
-// Reference data as the commands use them: how a model is run on a reference's case.
+// Reference data as studies use them: how a model is run on a reference's case.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bentaxis/compare/reference.h"
-#include "bentaxis/pump/case.h"
-#include "bentaxis/results/result_table.h"
+#include "bentaxis/study/run.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// All references at or below a folder, as folder and name. The name is the path below `root`, or
 /// the folder's own name where root is itself a reference.
@@ -25,16 +25,25 @@ std::vector<std::filesystem::path> files_of(const Case& the_case);
 /// The cases that the models of a reference are given: read, with the description's number of
 /// samples, and with their chamber pressure computed where they leave it to the hydraulic model.
 /// @throws InputError, ComputationError
-struct ReferenceCases {
-  Case analytic, multibody;
+class ReferenceCases {
+ public:
+  explicit ReferenceCases(const compare::ReferenceDescription& description,
+                          const PartProgress& progress_of = silent());
+  const ReadyCase& of(Model model) const {
+    return model == Model::multibody && multibody_ ? *multibody_ : analytic_;
+  }
+
+ private:
+  ReadyCase analytic_;
+  std::optional<ReadyCase> multibody_;  ///< where it is another one
 };
-ReferenceCases cases_of(const compare::ReferenceDescription& description);
 
 /// Runs a model over one turn of a case, driven.
 struct ReferenceRun {
   ResultTable table;
   compare::ZeroScales zero_scales;
 };
-ReferenceRun run_for_reference(const std::string& model, const Case& the_case);
+ReferenceRun run_for_reference(const ReadyCase& ready, Model model,
+                               const PartProgress& progress_of = silent());
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -1,4 +1,4 @@
-#include "published_section.h"
+#include "bentaxis/study/published_section.h"
 
 #include <cmath>
 #include <map>
@@ -6,11 +6,9 @@
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
-#include "data_folder.h"
-#include "models.h"
-#include "reference_set.h"
+#include "bentaxis/study/reference_set.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 namespace {
 
 // Applies a variant's settings. @throws InputError for a fact that cannot be set.
@@ -54,12 +52,13 @@ compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
           {"real_pistons", assumptions.inertia == PistonInertia::real ? 1 : 0}};
 }
 
-std::optional<report::PublishedTable> published_section(const PublishedInput& analytic,
-                                                        const PublishedInput& multibody) {
+std::optional<report::PublishedTable> published_section(const std::filesystem::path& folder,
+                                                        const PublishedInput& analytic,
+                                                        const PublishedInput& multibody,
+                                                        const PartProgress& progress_of) {
   std::map<std::pair<std::string, std::string>, ResultTable> tables;
-  const auto shipped = shipped_reference_data();
-  if (!shipped || !std::filesystem::is_directory(*shipped / "published")) return std::nullopt;
-  for (const auto& place : references_below(*shipped / "published")) {
+  if (!std::filesystem::is_directory(folder)) return std::nullopt;
+  for (const auto& place : references_below(folder)) {
     const auto description = compare::read_description(place.folder, place.name);
     if (description.kind != compare::ReferenceKind::published) continue;
     const auto published = compare::read_published(description.numbers);
@@ -68,18 +67,23 @@ std::optional<report::PublishedTable> published_section(const PublishedInput& an
       described = described && published.describes(facts_of(*input->the_case, input->assumptions));
     if (!described) continue;
     compare::PublishedSection section = compare::judge_published(
-        published, {"analytic", "multibody"},
-        [&](const std::string& model, const compare::PublishedVariant& variant) {
-          const PublishedInput& input = model == "analytic" ? analytic : multibody;
+        published, {to_string(Model::analytic), to_string(Model::multibody)},
+        [&](const std::string& name, const compare::PublishedVariant& variant) {
+          const Model model =
+              name == to_string(Model::analytic) ? Model::analytic : Model::multibody;
+          const PublishedInput& input = model == Model::analytic ? analytic : multibody;
           Case the_case = *input.the_case;
           Assumptions assumptions = input.assumptions;
           apply(variant, the_case, assumptions);
           compare::PublishedRun run{input.table, facts_of(the_case, assumptions)};
           if (variant.set.empty()) return run;
-          const PressureTrace pressure(the_case.pressure);
-          const Samples samples = samples_of(the_case, pressure, Way::driven);
-          run.table = &(tables[{model, variant.name}] = run_model(
-                            model, the_case, assumptions, samples, pressure, Way::driven, {}));
+          PressureTrace pressure(the_case.pressure);
+          RunOptions options;
+          options.model = model;
+          options.assumptions = assumptions;
+          const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
+          run.table =
+              &(tables[{name, variant.name}] = study::run(ready, options, progress_of).table);
           return run;
         });
     const std::string text =
@@ -91,4 +95,4 @@ std::optional<report::PublishedTable> published_section(const PublishedInput& an
   return std::nullopt;
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -1,4 +1,4 @@
-#include "rounding_report.h"
+#include "bentaxis/study/lost_digits.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/rounding_spread.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 namespace {
 
 constexpr int kAngles = 24;
@@ -34,12 +34,12 @@ std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions
   const PressureTrace pressure(thin.pressure);
   const Samples samples = sample_case(thin, pressure);
   const ResultTable table = analytic::run(thin, assumptions, samples);
-  const compare::ZeroScales zero_scales = study::zero_scales(thin, samples);
+  const compare::ZeroScales scales = zero_scales(thin, samples);
   std::vector<RoundingLine> lines;
   for (const auto& g : analytic::estimate_rounding(thin, assumptions, samples, pressure, kAngles)) {
     const auto channel = std::find_if(table.channels.begin(), table.channels.end(),
                                       [&](const Channel& c) { return c.group == g.group; });
-    const double peak = compare::scale_of(table, *channel, zero_scales);
+    const double peak = compare::scale_of(table, *channel, scales);
     if (!(peak > 0)) continue;
     lines.push_back({g.group, g.inputs / peak, g.arithmetic / peak, g.theta_deg, g.input});
   }
@@ -70,9 +70,9 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
   std::map<std::string, double> lost;
   try {
     compare::Options options;
-    options.zero_scales = study::zero_scales(thin, samples);
-    lost = study::rounding_spread(thin, run(thin), options, run);
-  } catch (const study::NoEstimate& none) {
+    options.zero_scales = zero_scales(thin, samples);
+    lost = rounding_spread(thin, run(thin), options, run);
+  } catch (const NoEstimate& none) {
     return {std::string("the multibody model: ") + none.what()};
   } catch (const ComputationError&) {
     return {};  // the run itself will say why
@@ -93,22 +93,4 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
           : "the analytic model loses less")};
 }
 
-nlohmann::json rounding_block(const std::vector<RoundingLine>& lines) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const RoundingLine& line : lines)
-    rows.push_back({line.group, line.inputs, line.arithmetic,
-                    std::round(-10 * std::log10(std::max(line.total(), 1e-16))) / 10, line.input,
-                    line.theta_deg});
-  return {
-      {"title", "What rounding leaves of the digits"},
-      {"text",
-       "First-order estimate of the analytic model: the effect of one unit in the last place of "
-       "every input, and of rounding every operation the other way; shares of the reaction's "
-       "peak."},
-      {"table",
-       {{"columns",
-         {"reaction", "inputs", "arithmetic", "digits left", "weakest input", "at, deg"}},
-        {"rows", rows}}}};
-}
-
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -1,10 +1,10 @@
-#include "assumptions.h"
+#include "bentaxis/study/assumptions.h"
 
 #include <algorithm>
 
 #include "bentaxis/pump/error.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 void apply_assumption(const std::string& text, const PumpParameters& pump,
                       Assumptions& assumptions) {
@@ -35,4 +35,4 @@ void apply_assumption(const std::string& text, const PumpParameters& pump,
   }
 }
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -5,7 +5,7 @@
 
 #include "bentaxis/pump/parameters.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// Applies KEY=VALUE (piston_friction=on|off, inertia=lumped|real|dynamically_equivalent,
 /// gear=mesh|imposed).
@@ -13,4 +13,4 @@ namespace bentaxis::cli {
 void apply_assumption(const std::string& text, const PumpParameters& pump,
                       Assumptions& assumptions);
 
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -1,14 +1,13 @@
-// What rounding leaves of the digits of a case, in words and for the report.
+// What rounding leaves of the digits of a case.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 
-namespace bentaxis::cli {
+namespace bentaxis::study {
 
 /// Estimated rounding error of one group of reactions over its peak.
 struct RoundingLine {
@@ -33,7 +32,4 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
                                             const multibody::SceneChoice& scene,
                                             const std::vector<RoundingLine>& lines);
 
-/// A block for the report, as in its section "runs".
-nlohmann::json rounding_block(const std::vector<RoundingLine>& lines);
-
-}  // namespace bentaxis::cli
+}  // namespace bentaxis::study

@@ -1,0 +1,42 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bentaxis/study/block_torque.h"
+#include "commands.h"
+#include "console.h"
+#include "options.h"
+
+namespace bentaxis::cli {
+namespace {
+
+struct Options {
+  CaseOption the_case;
+  std::string hydraulic;
+};
+
+int blocktorque(const Options& options) {
+  const auto rows = study::block_torques(
+      options.the_case.read(), CaseOption{options.hydraulic, options.the_case.changes}.read(),
+      progress_of);
+  std::printf("%s", study::block_torque_text(rows).c_str());
+  return kDone;
+}
+
+}  // namespace
+
+Command add_blocktorque_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "blocktorque",
+      "What explains the paper's torque from shaft to block against ADAMS: one change at a time");
+  add_case(*command, options->the_case);
+  command
+      ->add_option("hydraulic", options->hydraulic,
+                   "the same pump with the hydraulic model, changed by --set alike")
+      ->required()
+      ->option_text("HYDRAULIC_CASE");
+  return {command, [options] { return blocktorque(*options); }};
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,49 @@
+#include <cstdio>
+#include <memory>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/study/friction_calibration.h"
+#include "commands.h"
+#include "console.h"
+#include "options.h"
+
+namespace bentaxis::cli {
+namespace {
+
+struct Options {
+  CaseOption the_case;
+  study::MeanTorques wanted{294.7, 293.4};  // Nm, Fig. 30 of the paper
+};
+
+int calibrate(const Options& options) {
+  for (const auto& step :
+       study::calibrate_friction(options.the_case.read(), options.wanted, progress_of))
+    std::printf(
+        "piston_coulomb_N = %.6g, shaft_torque_factor = %.6g: %.4f Nm with, %.4f Nm without piston "
+        "friction\n",
+        step.piston_coulomb, step.torque_factor, step.torques.with_friction,
+        step.torques.without_friction);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_calibrate_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "Find the piston friction and shaft losses that give two mean torques");
+  add_case(*command, options->the_case);
+  command
+      ->add_option("--with", options->wanted.with_friction,
+                   "mean drive torque wanted with piston friction, Nm")
+      ->check(positive_number())
+      ->option_text("NUMBER [294.7]");
+  command
+      ->add_option("--without", options->wanted.without_friction,
+                   "the same without piston friction")
+      ->check(positive_number())
+      ->option_text("NUMBER [293.4]");
+  return {command, [options] { return calibrate(*options); }};
+}
+
+}  // namespace bentaxis::cli

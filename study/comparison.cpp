@@ -1,0 +1,314 @@
+#include "bentaxis/study/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/published_section.h"
+
+namespace bentaxis::study {
+namespace {
+
+// A film force below this share of the load scale is round-off: its point (53) means nothing.
+constexpr double kNoFilmForce = 1e-12;
+
+double worst_of_group(const compare::Comparison& comparison, const std::string& group) {
+  double worst = 0;
+  for (const auto& c : comparison.channels)
+    if (c.channel.group == group && c.compared()) worst = std::max(worst, c.largest_over_peak());
+  return worst;
+}
+
+// The comparison while it is made.
+class Maker {
+ public:
+  Maker(ReadyCase first, ReadyCase second, const ComparisonOptions& options,
+        const PartProgress& progress_of)
+      : progress_of_(progress_of),
+        samples_(first.samples(options.way)),
+        multibody_samples_(second.samples(options.way)),
+        zero_scales_(zero_scales(first.the_case, samples_)) {
+    result_.first = std::move(first);
+    result_.second = std::move(second);
+    result_.options = options;
+  }
+
+  ComparisonResult make() {
+    ComparisonResult& r = result_;
+    run_models();
+    compare_tables();
+    split_assumptions();
+    run_without_viscous();
+    r.published = published_section(
+        r.options.published, {&r.first.the_case, r.first.the_case.analytic, &r.analytic},
+        {&r.second.the_case, r.second.the_case.multibody, &r.multibody}, progress_of_);
+    r.limits =
+        analytic::check_validity(r.first.the_case, r.first.the_case.analytic, samples_, r.analytic);
+    warn();
+    return std::move(result_);
+  }
+
+ private:
+  bool integrated() const { return result_.options.way == Way::integrated; }
+
+  RunOptions multibody_run(double accuracy) const {
+    RunOptions options;
+    options.model = Model::multibody;
+    options.way = result_.options.way;
+    options.scene = result_.options.scene;
+    options.integration = result_.options.integration;
+    options.integration.accuracy = accuracy;
+    return options;
+  }
+
+  void run_models();
+  void integrate_all();
+  double torque_driven_speed_error(const multibody::IntegrationOptions& integration) const;
+  compare::Options comparison_options() const;
+  bool may_be_missing(const Channel& channel, std::size_t row) const;
+  void compare_tables();
+  void split_assumptions();
+  void run_without_viscous();
+  void warn();
+
+  ComparisonResult result_;
+  const PartProgress& progress_of_;
+  Samples samples_, multibody_samples_;
+  compare::ZeroScales zero_scales_;
+};
+
+void Maker::run_models() {
+  ComparisonResult& r = result_;
+  ComparisonOptions& o = r.options;
+  if (o.target && !integrated())
+    throw InputError("only an integrated run of the multibody model has an error to choose");
+  if (o.target) {
+    RunOptions to_error = multibody_run(0);
+    to_error.target = o.target;
+    const ModelRun run = study::run(r.second, multibody_samples_, to_error, progress_of_);
+    r.choice = run.choice;
+    o.integration = run.integration;
+    o.accuracies = {run.integration.accuracy};
+  }
+  r.tolerance = o.tolerance    ? *o.tolerance
+                : o.target     ? o.target->error
+                : integrated() ? kIntegratedFactor * o.accuracies.back()
+                               : kDrivenTolerance;
+  r.analytic = study::run(r.first, samples_, {}, progress_of_).table;
+  if (integrated())
+    integrate_all();
+  else
+    r.multibody = study::run(r.second, multibody_samples_, multibody_run(0), progress_of_).table;
+}
+
+// Integrated runs at every accuracy asked for. The last one's table is the one compared.
+void Maker::integrate_all() {
+  ComparisonResult& r = result_;
+  for (const double accuracy : r.options.accuracies) {
+    const RunOptions options = multibody_run(accuracy);
+    ModelRun run = study::run(r.second, multibody_samples_, options, progress_of_);
+    r.multibody = std::move(run.table);
+    const auto comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
+    const auto worst = [&](const std::string& group) { return worst_of_group(comparison, group); };
+    r.integrations.push_back(
+        {accuracy, worst("Rs"), worst("Rc"), std::max(worst("Rb1"), worst("Rb2")), worst("Rcs"),
+         worst("Td"), std::move(*run.record), torque_driven_speed_error(options.integration)});
+  }
+}
+
+// The shaft free under the analytic torque: how far its speed strays from omega.
+double Maker::torque_driven_speed_error(const multibody::IntegrationOptions& integration) const {
+  const ComparisonResult& r = result_;
+  const analytic::Model model(r.first.the_case.pump, r.second.the_case.multibody);
+  std::vector<double> values(model.layout().size());
+  Instant instant;
+  instant.ports = samples_.ports;
+  instant.chamber_pressure.resize(samples_.pistons);
+  const auto torque = [&](double theta_deg) {
+    instant.turn(radians(std::fmod(theta_deg, 360.0)), samples_.omega);
+    for (int k = 1; k <= samples_.pistons; ++k)
+      instant.chamber_pressure[k - 1] =
+          r.first.pressure(piston_angle_deg(theta_deg, k, samples_.pistons));
+    model.reactions(instant, values);
+    return values[model.layout().Td()];
+  };
+  return multibody::run_torque_driven(r.second.the_case, r.second.the_case.multibody,
+                                      multibody_samples_, r.second.pressure, torque, integration,
+                                      progress_of_("torque-driven"))
+      .whole.speed_error;
+}
+
+compare::Options Maker::comparison_options() const {
+  const int n = result_.first.the_case.pump.geometry.pistons;
+  compare::Options options;
+  options.tolerance = result_.tolerance;
+  options.orders = {n, 2 * n};
+  options.zero_scales = zero_scales_;
+  options.may_be_missing = [this](const Channel& channel, std::size_t row) {
+    return may_be_missing(channel, row);
+  };
+  return options;
+}
+
+// What a run is known not to compute: what its scene or an imposed gear leaves out, and the point
+// of the film force where there is none (53).
+bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
+  const ComparisonResult& r = result_;
+  if (!computes({}, r.first.the_case.analytic, channel) ||
+      !computes(multibody_run(0), r.second.the_case.multibody, channel))
+    return true;
+  if (channel.quantity != "xh" && channel.quantity != "yh") return false;
+  const std::size_t fh = ChannelLayout(r.first.the_case.pump.geometry.pistons).Fh();
+  const double scale = zero_scales_.at("N");
+  return std::abs(r.analytic.at(row, fh)) <= kNoFilmForce * scale ||
+         std::abs(r.multibody.at(row, fh)) <= kNoFilmForce * scale;
+}
+
+void Maker::compare_tables() {
+  ComparisonResult& r = result_;
+  r.comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
+  std::erase_if(r.comparison.channels,
+                [&](const auto& c) { return !r.options.channels.wants(c.channel); });
+  for (const ResultTable* table : {&r.analytic, &r.multibody})
+    for (auto& check : compare::judge_checks(*table, zero_scales_, r.tolerance))
+      r.checks.push_back(std::move(check));
+}
+
+// Takes the difference apart where the models' assumptions differ.
+void Maker::split_assumptions() {
+  ComparisonResult& r = result_;
+  const Assumptions& from = r.first.the_case.analytic;
+  const Assumptions& to = r.second.the_case.multibody;
+  using Change = void (*)(Assumptions&, const Assumptions&);
+  const Change all_changes[] = {
+      [](Assumptions& a, const Assumptions& b) { a.piston_friction = b.piston_friction; },
+      [](Assumptions& a, const Assumptions& b) { a.inertia = b.inertia; },
+      [](Assumptions& a, const Assumptions& b) { a.gear = b.gear; }};
+  const auto from_words = in_words(from);
+  const auto to_words = in_words(to);
+  std::vector<Change> changes;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < from_words.size(); ++i) {
+    if (from_words[i].second == to_words[i].second) continue;
+    r.changes.push_back({from_words[i].first, from_words[i].second, to_words[i].second});
+    names.push_back(from_words[i].first);
+    changes.push_back(all_changes[i]);
+  }
+  if (names.empty()) return;
+  const auto variant = [&](unsigned mask) {
+    RunOptions options;
+    options.assumptions = from;
+    for (std::size_t i = 0; i < changes.size(); ++i)
+      if ((mask & (1U << i)) != 0) changes[i](*options.assumptions, to);
+    return study::run(r.first, samples_, options).table;
+  };
+  // A tolerance that the user names counts as it is.
+  const double tolerance = r.options.tolerance || integrated() ? r.tolerance : kDrivenRestTolerance;
+  r.split =
+      compare::split_difference(r.analytic, r.multibody, names, variant, zero_scales_, tolerance);
+  compare::mark_explained(r.comparison, *r.split);
+}
+
+// Fig. 32 with and without the block's viscous torque.
+void Maker::run_without_viscous() {
+  ComparisonResult& r = result_;
+  if (r.first.the_case.pump.friction.block_viscous <= 0 || integrated() ||
+      r.options.scene.scene != multibody::Scene::full)
+    return;
+  const auto still = [](const ReadyCase& ready) {
+    Case the_case = ready.the_case;
+    the_case.pump.friction.block_viscous = 0;
+    PressureTrace pressure(the_case.pressure);
+    return ReadyCase{std::move(the_case), {}, std::move(pressure)};
+  };
+  r.without_viscous.push_back(study::run(still(r.first), samples_, {}).table);
+  r.without_viscous.push_back(
+      study::run(still(r.second), multibody_samples_, multibody_run(0),
+                 [&](const std::string& part) { return progress_of_(part + ", Cc = 0"); })
+          .table);
+}
+
+void Maker::warn() {
+  ComparisonResult& r = result_;
+  for (const auto& limit : r.limits)
+    if (limit.applicable && limit.violated_share > 0)
+      r.warnings.push_back(
+          {limit.name, fmt::format("over {:.3g} % of the turn, worst {:.4g} {} at {:g} deg: {}.",
+                                   100 * limit.violated_share, limit.worst, limit.unit,
+                                   limit.theta_deg, limit.consequence)});
+  r.rounding = rounding_lines(r.first.the_case, r.first.the_case.analytic);
+  for (const auto& text : rounding_warnings(r.rounding))
+    r.warnings.push_back({"digits lost to rounding", text});
+  if (!integrated())
+    for (const auto& text : multibody_warnings(r.second.the_case, r.second.the_case.multibody,
+                                               r.options.scene, r.rounding))
+      r.warnings.push_back({"digits lost in Simbody", text});
+}
+
+}  // namespace
+
+report::Lines in_words(const Assumptions& a) {
+  return {{"piston friction", a.piston_friction ? "on" : "off"},
+          {"piston inertia", to_string(a.inertia)},
+          {"gear", to_string(a.gear)}};
+}
+
+bool ComparisonResult::checks_hold() const {
+  return std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.holds(); });
+}
+
+bool ComparisonResult::agrees() const {
+  if (!checks_hold() || comparison.incomplete() != nullptr) return false;
+  return split ? split->explained() : comparison.agrees();
+}
+
+std::string ComparisonResult::headline() const {
+  if (const auto* gap = comparison.incomplete())
+    return fmt::format("The two models cannot be said to agree: {} of {}.", gap->gap,
+                       gap->channel.name);
+  const auto* worst = comparison.worst();
+  const std::string where =
+      worst == nullptr ? ""
+                       : fmt::format("{} at {:g} deg: {:.1e} of its peak", worst->channel.name,
+                                     worst->theta_of_largest_deg, worst->largest_over_peak());
+  if (split)
+    return fmt::format(
+        "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak is "
+        "left (tolerance {:g}).",
+        agrees() ? "Explained." : "Not explained.", where,
+        agrees() ? "After accounting for each assumption" : "Each assumption accounted for",
+        split->largest_rest(), split->tolerance);
+  return fmt::format("{} Largest difference {} (tolerance {:g}).",
+                     agrees() ? "The two models agree." : "The two models differ.", where,
+                     comparison.tolerance);
+}
+
+void check_same_run(const Case& first, const Case& second) {
+  const auto differs = [&](const char* what) {
+    throw InputError(second.file.string() + ": must have the same " + what + " as " +
+                     first.file.string());
+  };
+  if (first.pump.geometry.pistons != second.pump.geometry.pistons) differs("number of pistons");
+  if (first.operation.samples_per_revolution != second.operation.samples_per_revolution)
+    differs("samples_per_revolution");
+  if (first.operation.revolutions != second.operation.revolutions) differs("revolutions");
+}
+
+ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibody_case,
+                                const ComparisonOptions& options, const PartProgress& progress_of) {
+  if (multibody_case) check_same_run(analytic_case, *multibody_case);
+  ReadyCase first = prepare(std::move(analytic_case), progress_of);
+  // The same case is solved once: both models get the very same curve.
+  ReadyCase second = multibody_case ? prepare(std::move(*multibody_case), progress_of)
+                                    : ReadyCase{first.the_case, first.hydraulics,
+                                                PressureTrace(first.the_case.pressure)};
+  return Maker(std::move(first), std::move(second), options, progress_of).make();
+}
+
+}  // namespace bentaxis::study

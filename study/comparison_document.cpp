@@ -1,0 +1,191 @@
+#include "bentaxis/study/comparison_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/units.h"
+#include "bentaxis/report/report.h"
+#include "bentaxis/study/calibration.h"
+#include "bentaxis/study/case_sections.h"
+#include "comparison_figures.h"
+#include "hydraulic_sections.h"
+
+namespace bentaxis::study {
+namespace {
+
+report::Verdict verdict_of(const ComparisonResult& r) {
+  report::Verdict verdict{r.agrees(), r.headline()};
+  verdict.tolerance = r.tolerance;
+  verdict.compared = r.comparison.compared();
+  verdict.checks_hold = r.checks_hold();
+  if (const auto* worst = r.comparison.worst()) {
+    verdict.digits = worst->digits;
+    verdict.worst = {worst->channel.name, worst->largest_over_peak(), worst->theta_of_largest_deg};
+  }
+  if (r.split) {
+    verdict.word = r.agrees() ? "Explained" : "Not explained";
+    verdict.rest_over_peak = r.split->largest_rest();
+    verdict.rest_tolerance = r.split->tolerance;
+  }
+  return verdict;
+}
+
+report::Section integration_section(const ComparisonResult& r) {
+  report::Section section;
+  section.title = "Integrated run and torque-driven run";
+  section.text = fmt::format(
+      "Integrator {}, {} revolution(s). Errors are the largest difference from the analytic model "
+      "over the peak. In the torque-driven run the shaft is free and fed the analytic Td; its "
+      "speed "
+      "error is relative to omega. Facts are of the last accuracy.",
+      name_of(r.options.integration.integrator), r.second.the_case.operation.revolutions);
+  section.table.columns = {"accuracy asked",
+                           "error Rs",
+                           "error Rc",
+                           "error Rb",
+                           "error Rcs",
+                           "error Td",
+                           "constraint error, m",
+                           "constraint rate error, m/s",
+                           "gear phase, deg",
+                           "work lost, J",
+                           "torque-driven speed error",
+                           "steps",
+                           "evaluations"};
+  for (const IntegrationRow& row : r.integrations)
+    section.table.rows.push_back({row.accuracy, row.rs, row.rc, row.bearings, row.rcs, row.td,
+                                  row.record.whole.position_error, row.record.whole.velocity_error,
+                                  row.record.whole.gear_phase / kRadPerDegree,
+                                  row.record.whole.work_residual, row.torque_driven_speed_error,
+                                  row.record.steps, row.record.evaluations});
+  const multibody::IntegrationRecord& last = r.integrations.back().record;
+  section.facts = {{"gear phase, worst (block minus shaft)",
+                    fmt::format("{:.2e} deg", last.whole.gear_phase / kRadPerDegree)},
+                   {"shaft angle against omega t, worst",
+                    fmt::format("{:.2e} deg", last.whole.shaft_angle / kRadPerDegree)},
+                   {"work of loads", fmt::format("{:.6g} J", last.work_of_loads)},
+                   {"work of the drive", fmt::format("{:.6g} J", last.work_of_drives)},
+                   {"kinetic energy gained", fmt::format("{:.3g} J", last.kinetic_energy_gained)},
+                   {"work unaccounted for", fmt::format("{:.3g} J", last.whole.work_residual)}};
+  if (!r.choice.empty()) section.facts.emplace_back("chosen", r.choice);
+  return section;
+}
+
+report::Section rounding_section(const std::vector<RoundingLine>& lines) {
+  report::Section section;
+  section.title = "What rounding leaves of the digits";
+  section.text =
+      "First-order estimate of the analytic model: the effect of one unit in the last place of "
+      "every input, and of rounding every operation the other way; shares of the reaction's peak.";
+  section.table.columns = {"reaction",    "inputs",        "arithmetic",
+                           "digits left", "weakest input", "at, deg"};
+  for (const RoundingLine& line : lines)
+    section.table.rows.push_back({line.group, line.inputs, line.arithmetic,
+                                  std::round(-10 * std::log10(std::max(line.total(), 1e-16))) / 10,
+                                  line.input, line.theta_deg});
+  return section;
+}
+
+// What both models are given, and what would catch a mistake in it.
+std::vector<report::CommonInput> common_inputs(const Case& the_case) {
+  const std::string once = ", evaluated once per sample and given to both models";
+  std::string trace = "ideal trace" + once;
+  if (the_case.pressure.kind == PressureKind::curve)
+    trace = "periodic cubic spline through " + the_case.pressure.file.filename().string() + once;
+  if (the_case.pressure.kind == PressureKind::hydraulic)
+    trace = fmt::format("hydraulic model, periodic cubic spline through {} points{}",
+                        the_case.pressure.points, once);
+  return {
+      {"chamber pressure", trace,
+       "high-precision curves (computed with their own trace); mean torque of a frictionless pump "
+       "= "
+       "displacement x pressure / 2 pi"},
+      {"geometry, masses, loads of the case file", "read and converted to SI once",
+       "high-precision curves, which read the case file with another parser"},
+      {"law of the port-plate film", "full pressure between r2 and r3, linear to 0 at r1 and r4",
+       "high-precision curves; the integral itself is taken twice (closed form, quadrature)"},
+      {"law of piston friction",
+       the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
+       "high-precision curves; power balance; written once in each model"},
+      {"line of action of the teeth (22)",
+       "as printed, turned by the sense of rotation; written once in each model",
+       "high-precision curves and the frame of O4 check the algebra; that real teeth push "
+       "otherwise "
+       "backwards and on the other flank is among the limits of validity"},
+      {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
+      {"constant speed, equal for shaft and block (1:1)",
+       "omega given; no torsion, no play in the gear",
+       "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, "
+       "holds "
+       "its speed"},
+      {"rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
+       "nothing here: a rig or an elastic model"},
+      {"frames, signs and the names of the reactions", "docs/theory.md",
+       "free-body diagrams written in the tests; signs printed in the paper"}};
+}
+
+std::vector<report::ValidityRow> validity_of(const std::vector<analytic::ValidityLimit>& limits) {
+  std::vector<report::ValidityRow> rows;
+  for (const auto& limit : limits)
+    rows.push_back({limit.limit, limit.unit, limit.consequence, limit.applicable,
+                    limit.violated_share, limit.worst, limit.theta_deg});
+  return rows;
+}
+
+}  // namespace
+
+report::Document comparison_document(const ComparisonResult& r, const report::Lines& program) {
+  const Case& the_case = r.first.the_case;
+  report::Document document;
+  document.title = the_case.name;
+  document.program = program;
+  document.the_case = case_section(the_case);
+  document.derived = derived_section(the_case);
+  document.verdict = verdict_of(r);
+  document.meaning =
+      "Two models that agree have solved the same equations correctly: that is verification. It "
+      "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
+      "so is validation, and needs measurements.";
+  document.warnings = r.warnings;
+  document.common = common_inputs(the_case);
+  document.validity = validity_of(r.limits);
+  document.models = {report::model_of(r.analytic, in_words(the_case.analytic)),
+                     report::model_of(r.multibody, in_words(r.second.the_case.multibody))};
+  document.comparison = r.comparison;
+  document.checks = r.checks;
+  if (r.split)
+    document.assumptions = {
+        "The models were asked to assume different things. Each assumption's contribution is its "
+        "effect in the analytic model, averaged over the orders in which the assumptions can be "
+        "taken over; what is left is a difference between the models themselves.",
+        r.changes, *r.split};
+  document.published = r.published;
+  document.runs.emplace();
+  if (!r.integrations.empty()) document.runs->push_back(integration_section(r));
+  document.figures = comparison_figures(r);
+  if (r.first.hydraulics) {
+    document.runs->push_back(hydraulic_section(the_case, *r.first.hydraulics));
+    for (auto& figure : hydraulic_figures(the_case, *r.first.hydraulics))
+      document.figures->push_back(std::move(figure));
+  }
+  document.runs->push_back(rounding_section(r.rounding));
+  return document;
+}
+
+std::string comparison_text(const ComparisonResult& r) {
+  std::string text = fmt::format("{}\n{}\n\n{}", r.first.the_case.name, r.headline(),
+                                 report::text_table(r.comparison));
+  if (!r.choice.empty()) text += fmt::format("chosen {}\n", r.choice);
+  for (const auto& check : r.checks)
+    text += fmt::format("{}: {}: {:.1e} of scale, {}\n", check.table, check.name, check.relative(),
+                        check.holds() ? "holds" : "violated");
+  for (const report::Warning& warning : r.warnings)
+    text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
+  if (r.published)
+    text += fmt::format("published numbers: {}\n", r.published->section.summary.text());
+  return text;
+}
+
+}  // namespace bentaxis::study

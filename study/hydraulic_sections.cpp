@@ -1,0 +1,97 @@
+#include "hydraulic_sections.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::study {
+
+report::Figure own_figure(const std::string& id, const std::string& title, const std::string& paper,
+                          const std::string& unit, const std::string& axis,
+                          const std::vector<double>& x) {
+  return {id, title, paper, report::OwnFigure{unit, axis, false, x}};
+}
+
+report::Figure angle_figure(const std::string& id, const std::string& title,
+                            const std::string& paper, const std::string& unit,
+                            const std::vector<double>& theta_deg) {
+  return {id, title, paper, report::OwnFigure{unit, "shaft angle (deg)", true, theta_deg}};
+}
+
+void add_series(report::Figure& figure, const std::string& label, std::vector<double> values) {
+  std::get<report::OwnFigure>(figure.content).series.push_back({label, std::move(values)});
+}
+
+report::Section hydraulic_section(const Case& the_case, const hydraulics::SteadyState& state) {
+  report::Section section;
+  section.title = "Hydraulic model";
+  section.text =
+      "Chamber pressures by balance of mass (docs/hydraulics.md), as the periodic steady state. "
+      "Both mechanical models get one and the same curve of it.";
+  const auto& convergence = state.convergence;
+  section.facts = {
+      {"points of the curve", std::to_string(the_case.pressure.points)},
+      {"Newton steps", std::to_string(convergence.iterations)},
+      {"change of ln P from period to period", fmt::format("{:.1e}", convergence.residual)},
+      {"error of ln P allowed per step", fmt::format("{:g}", the_case.hydraulics->tolerance)},
+      {"steps of CVODES in all", std::to_string(convergence.steps)}};
+  section.table.columns = {"quantity", "value", "unit"};
+  for (const auto& line : hydraulics::lines(state))
+    section.table.rows.push_back({line.name, line.value, line.unit});
+  return section;
+}
+
+std::vector<report::Figure> hydraulic_figures(const Case& the_case,
+                                              const hydraulics::SteadyState& state) {
+  std::vector<report::Figure> figures;
+  const auto add = [&](const std::string& id, const std::string& title, const std::string& paper,
+                       const std::string& unit,
+                       const std::vector<std::pair<std::string, std::string>>& curves) {
+    figures.push_back(angle_figure(id, title, paper, unit, state.table.theta_deg));
+    for (const auto& [label, name] : curves)
+      add_series(figures.back(), label, report::values_of(state.table, name));
+  };
+  add("hydraulic_pressure", "Pressure in chamber 1 and in the delivery volume", "Fig. 10, 17",
+      "bar", {{"chamber 1", "p_1_bar"}, {"delivery volume", "p_delivery_bar"}});
+  const auto& s = state.summary;
+  figures.back().note = fmt::format(
+      "Chamber: greatest {:.5g} bar at {:.4g} deg, least {:.3g} bar at {:.4g} deg. Delivery: "
+      "{:.5g} "
+      "to {:.5g} bar, mean {:.5g} bar. The chamber is above the delivery volume by the pressure "
+      "drop of the port.",
+      s.chamber_greatest / kPascalPerBar, s.chamber_greatest_deg, s.chamber_least / kPascalPerBar,
+      s.chamber_least_deg, s.delivery_least / kPascalPerBar, s.delivery_greatest / kPascalPerBar,
+      s.delivery_mean / kPascalPerBar);
+  add("openings", "Openings of chamber 1", "Fig. 10", "mm2",
+      {{"to the suction port", "as_1_mm2"}, {"to the delivery port", "ad_1_mm2"}});
+
+  // The spline itself between its points, over two turns.
+  const PressureTrace spline(the_case.pressure);
+  std::vector<double> theta, pressure;
+  constexpr int kPerTurn = 1440;
+  for (int i = 0; i < 2 * kPerTurn; ++i) {
+    theta.push_back(360.0 * i / kPerTurn);
+    pressure.push_back(spline(theta.back()) / kPascalPerBar);
+  }
+  figures.push_back(angle_figure(
+      "spline",
+      fmt::format("Pressure of piston 1 as both models get it: periodic cubic spline of {} points",
+                  the_case.pressure.points),
+      "Fig. 25", "bar", theta));
+  add_series(figures.back(), "spline", pressure);
+
+  add("port_flow", "Flow through both ports, leakage and load, all chambers", "", "l/min",
+      {{"suction port", "Qs_l_per_min"},
+       {"delivery port", "Qd_l_per_min"},
+       {"load orifice", "Qload_l_per_min"},
+       {"leakage", "Ql_l_per_min"}});
+  add("chamber_flow", "Flow of chamber 1", "", "l/min",
+      {{"from the suction port", "Qs_1_l_per_min"},
+       {"into the delivery port", "Qd_1_l_per_min"},
+       {"leakage", "Ql_1_l_per_min"}});
+  return figures;
+}
+
+}  // namespace bentaxis::study

@@ -1,0 +1,17 @@
+// What every report says of the case itself.
+#pragma once
+
+#include <vector>
+
+#include "bentaxis/pump/case.h"
+#include "bentaxis/report/document.h"
+
+namespace bentaxis::study {
+
+/// The case as it was read.
+report::CaseSection case_section(const Case& the_case);
+
+/// Displacement, stroke, ideal flow and torque, ..
+std::vector<report::DerivedQuantity> derived_section(const Case& the_case);
+
+}  // namespace bentaxis::study

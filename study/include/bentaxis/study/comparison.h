@@ -1,0 +1,86 @@
+// One call from a case, or two, to a verdict: both models run, their tables compared, and what
+// there is to know about the difference.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bentaxis/analytic/validity.h"
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/compare/split.h"
+#include "bentaxis/report/document.h"
+#include "bentaxis/study/channel_choice.h"
+#include "bentaxis/study/lost_digits.h"
+#include "bentaxis/study/run.h"
+
+namespace bentaxis::study {
+
+/// What counts as agreement where the user names no tolerance: largest difference over the peak.
+inline constexpr double kDrivenTolerance = 1e-9;  ///< both models are exact to round-off
+inline constexpr double kIntegratedFactor = 100;  ///< achieved error over the accuracy per step
+/// Of what no assumption explains, driven: the same equations on both sides.
+inline constexpr double kDrivenRestTolerance = 1e-10;
+
+struct ComparisonOptions {
+  Way way = Way::driven;
+  std::optional<double> tolerance;            ///< of peak, of differences and of rests alike
+  ChannelChoice channels;                     ///< what is compared and judged
+  multibody::SceneChoice scene;               ///< driven
+  multibody::IntegrationOptions integration;  ///< integrated; its accuracy is the last of these:
+  std::vector<double> accuracies = {1e-4, 1e-6};
+  std::optional<ErrorTarget> target;  ///< integrated: chooses integrator and accuracy instead
+  /// Printed numbers to hold the results to (reference_data/published); empty: none.
+  std::filesystem::path published;
+};
+
+/// Assumptions in words: name and value.
+report::Lines in_words(const Assumptions& assumptions);
+
+/// An integrated run at one accuracy, and the shaft set free under the analytic torque.
+struct IntegrationRow {
+  double accuracy = 0;
+  double rs = 0, rc = 0, bearings = 0, rcs = 0, td = 0;  ///< largest difference over peak
+  multibody::IntegrationRecord record;
+  double torque_driven_speed_error = 0;  ///< of omega
+};
+
+/// Everything that a comparison came to.
+struct ComparisonResult {
+  ReadyCase first, second;          ///< of the analytic and of the multibody model
+  ComparisonOptions options;        ///< as used: with the integration that was chosen
+  double tolerance = 0;             ///< of differences over peak
+  ResultTable analytic, multibody;  ///< all channels
+  compare::Comparison comparison;   ///< of the channels asked for
+  std::vector<compare::Check> checks;
+  std::vector<report::AssumptionRow> changes;  ///< where the models assume different things
+  std::optional<compare::Split> split;         ///< then: the difference taken apart
+  std::vector<IntegrationRow> integrations;  ///< integrated: one per accuracy, the last is compared
+  std::string choice;                        ///< integrated to an error: what was chosen
+  std::vector<ResultTable> without_viscous;  ///< both models with Cc = 0 (Fig. 32), where it is not
+  std::vector<analytic::ValidityLimit> limits;
+  std::vector<RoundingLine> rounding;
+  std::vector<report::Warning> warnings;
+  std::optional<report::PublishedTable> published;
+
+  bool checks_hold() const;
+  /// The verdict: every check holds, no channel lacks a value it should have, and each difference
+  /// is within tolerance, or where the models assume different things, what no assumption explains.
+  bool agrees() const;
+  /// The verdict in a sentence, with the tolerance that counted.
+  std::string headline() const;
+};
+
+/// Runs both models on a case, or on one each, and compares.
+/// @param multibody_case  of the multibody model where it is another one: what would a wrong input
+///                        do? Must have the same pistons, samples and revolutions.
+/// @throws InputError, ComputationError
+ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibody_case,
+                                const ComparisonOptions& options,
+                                const PartProgress& progress_of = silent());
+
+/// @throws InputError where two cases cannot be compared angle by angle
+void check_same_run(const Case& first, const Case& second);
+
+}  // namespace bentaxis::study

@@ -1,0 +1,17 @@
+// A comparison as the document of report.json and of the page (docs/report_json.md).
+#pragma once
+
+#include <string>
+
+#include "bentaxis/report/document.h"
+#include "bentaxis/study/comparison.h"
+
+namespace bentaxis::study {
+
+/// @param program  what computed it: names and versions
+report::Document comparison_document(const ComparisonResult& result, const report::Lines& program);
+
+/// The result in words for a terminal: verdict, worst channels, checks, warnings.
+std::string comparison_text(const ComparisonResult& result);
+
+}  // namespace bentaxis::study

@@ -1,0 +1,27 @@
+// Operating points as the document of pressure.json and of its page.
+#pragma once
+
+#include <string>
+
+#include "bentaxis/report/document.h"
+#include "bentaxis/study/operating_points.h"
+
+namespace bentaxis::study {
+
+/// One operating point: its hydraulic state, pressures, flows, torque.
+/// @param program  what computed it: names and versions
+report::Document pressure_document(const OperatingPoint& point, const report::Lines& program);
+
+/// Adds torque and flow against delivery pressure (Fig. 18).
+void add_curve(report::Document& document, const TorqueCurve& curve);
+/// Adds the reactions of two operating points in the same figures, over three turns (Fig. 19-24).
+/// @throws InputError where their samples differ
+void add_overlay(report::Document& document, const OperatingPoint& first,
+                 const OperatingPoint& second);
+/// Adds pressures from rest (hydraulics::transient_from_rest).
+void add_transient(report::Document& document, const ResultTable& transient);
+
+/// The operating point in words, for a terminal.
+std::string pressure_text(const OperatingPoint& point);
+
+}  // namespace bentaxis::study

@@ -1,0 +1,33 @@
+// How a case stands against printed numbers of its pump, for the report of compare.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "bentaxis/compare/published.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/report/document.h"
+#include "bentaxis/results/result_table.h"
+#include "bentaxis/study/progress.h"
+
+namespace bentaxis::study {
+
+/// Facts of a case under a model's assumptions, by the names that files of printed numbers use.
+compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions);
+
+/// A model's case and the result already computed from it.
+struct PublishedInput {
+  const Case* the_case;
+  Assumptions assumptions;
+  const ResultTable* table;
+};
+
+/// The section for the first pump of a folder of published data that both cases are one of, by
+/// their facts; nothing where there is none or no folder. Recomputes the variants that the
+/// publication compares, driven.
+std::optional<report::PublishedTable> published_section(const std::filesystem::path& folder,
+                                                        const PublishedInput& analytic,
+                                                        const PublishedInput& multibody,
+                                                        const PartProgress& progress_of = silent());
+
+}  // namespace bentaxis::study

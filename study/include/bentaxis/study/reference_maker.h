@@ -1,0 +1,55 @@
+// Folders of reference data: made for a foreign curve, with a guess at what its columns are, made
+// from today's results, and brought up to date.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bentaxis/compare/reference.h"
+#include "bentaxis/study/run.h"
+
+namespace bentaxis::study {
+
+/// A golden curve says that something changed, not what: few angles are enough.
+inline constexpr int kGoldenSamples = 36;
+
+/// A folder made for the curve of another tool or a rig.
+struct NewReference {
+  std::vector<std::filesystem::path> files;
+  int recognised = 0;       ///< columns that look like one of ours
+  std::size_t columns = 0;  ///< of the curve beside the angle
+};
+/// Copies the case and the curve into a new folder, with a description to be completed.
+/// @param changed  the case is not as its file has it: it is written anew instead of copied
+/// @throws InputError where the folder is not new or the curve cannot be read
+NewReference make_reference(const Case& the_case, bool changed, const std::filesystem::path& curve,
+                            const std::filesystem::path& out);
+
+/// Makes a folder with the curves that both models give a case today. Returns the paths of its
+/// files.
+/// @param changed  as above; the folder of an unchanged case refers to its file
+/// @throws InputError, ComputationError
+std::vector<std::filesystem::path> make_golden(Case the_case, bool changed, int samples,
+                                               const std::filesystem::path& out,
+                                               const PartProgress& progress_of = silent());
+
+/// What became of one golden folder, in words: what changed by how much, per curve.
+struct GoldenUpdate {
+  bool rewritten = false;
+  std::string text;
+};
+/// Rewrites the curves of one golden reference that differ beyond its tolerance.
+GoldenUpdate update_golden(const compare::ReferenceDescription& description,
+                           const PartProgress& progress_of = silent());
+
+/// The golden references below a folder, and the rest, which the program never writes.
+struct GoldenSet {
+  std::vector<compare::ReferenceDescription> golden;
+  int others = 0;
+  std::string kinds;  ///< of the others, in words
+};
+/// @throws InputError where there is no golden one
+GoldenSet find_golden(const std::filesystem::path& root);
+
+}  // namespace bentaxis::study

@@ -1,0 +1,22 @@
+// A regression for continuous integration and for people.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bentaxis/report/document.h"
+#include "bentaxis/report/junit.h"
+#include "bentaxis/study/regression.h"
+
+namespace bentaxis::study {
+
+/// One outcome as JUnit knows it: a test per model and group of channels.
+report::TestSuite suite_of(const Outcome& outcome);
+
+/// All outcomes as the document of a page, with the curves that fail.
+/// @param what     what was held: the name of the folder
+/// @param program  names and versions
+report::Document regression_document(const std::vector<Outcome>& outcomes, const std::string& what,
+                                     const report::Lines& program);
+
+}  // namespace bentaxis::study

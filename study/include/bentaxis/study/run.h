@@ -1,0 +1,98 @@
+// One call from a case to tables: the pressure of a case, and either model on it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bentaxis/files/output_folder.h"
+#include "bentaxis/hydraulics/steady_state.h"
+#include "bentaxis/multibody/integrated.h"
+#include "bentaxis/multibody/scene.h"
+#include "bentaxis/pump/case.h"
+#include "bentaxis/results/result_table.h"
+#include "bentaxis/study/progress.h"
+
+namespace bentaxis::study {
+
+enum class Model { analytic, multibody };
+inline constexpr Model kModels[] = {Model::analytic, Model::multibody};
+/// "analytic", "multibody": names of tables and files.
+std::string to_string(Model model);
+
+/// How the multibody model is run. The analytic model has no time to integrate over.
+enum class Way {
+  driven,      ///< reactions at given angles of one turn
+  integrated,  ///< in time, over the case's revolutions
+};
+
+/// A case that the models can be run on, with what the hydraulic model found if it was asked.
+struct ReadyCase {
+  Case the_case;
+  std::optional<hydraulics::SteadyState> hydraulics;  ///< of kind "hydraulic"
+  PressureTrace pressure{PressureSpec{}};
+
+  /// Angles and pressures of a run: one turn where driven, all revolutions (falling angles where
+  /// the speed is negative) where integrated.
+  Samples samples(Way way) const;
+  /// What the case lets a model assume.
+  const Assumptions& assumptions(Model model) const;
+};
+
+/// Computes the chamber pressure of a case where its pressure is of kind "hydraulic" and puts it
+/// into the case: one curve, which both models then get. The pressure of other cases is there.
+/// @throws InputError, ComputationError
+ReadyCase prepare(Case the_case, const PartProgress& progress_of = silent());
+
+/// The largest error of any reaction over its peak that an integrated run may have: integrator and
+/// accuracy are chosen for it by a short calibration, and the run is verified.
+struct ErrorTarget {
+  double error = 0;                                ///< of peak
+  std::vector<multibody::Integrator> integrators;  ///< to try; empty: all
+};
+
+struct RunOptions {
+  Model model = Model::analytic;
+  std::optional<Assumptions> assumptions;  ///< instead of the case's
+  // Of the multibody model:
+  Way way = Way::driven;
+  multibody::SceneChoice scene;               ///< driven; an integrated run is of the full pump
+  multibody::IntegrationOptions integration;  ///< integrated, without a target
+  std::optional<ErrorTarget> target;          ///< integrated: chooses the integration instead
+};
+
+struct ModelRun {
+  ResultTable table;
+  multibody::IntegrationOptions integration;           ///< of an integrated run: as it was run
+  std::optional<multibody::IntegrationRecord> record;  ///< of an integrated run
+  std::string choice;  ///< of a run to an error: what was chosen, and what it then did
+};
+
+/// Runs one model.
+/// @throws InputError where the options contradict each other or the case refuses them (integrated
+///         at standstill, say); ComputationError where a model fails
+ModelRun run(const ReadyCase& ready, const RunOptions& options,
+             const PartProgress& progress_of = silent());
+/// The same at samples that are already there: of ready.samples(way).
+ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& options,
+             const PartProgress& progress_of = silent());
+
+/// One turn by one model, driven, as the case assumes.
+ResultTable run_turn(const ReadyCase& ready, Model model,
+                     const PartProgress& progress_of = silent());
+
+/// Whether a run computes a channel at all: a smaller scene leaves some out, and where the block's
+/// speed is imposed there is no tooth force.
+bool computes(const RunOptions& options, const Assumptions& assumptions, const Channel& channel);
+
+/// Runs the analytic model over one turn and writes its curves as CSV, row by row: memory does not
+/// grow with the number of samples. Only channels that are wanted.
+void stream_analytic(const ReadyCase& ready, const Assumptions& assumptions,
+                     const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
+                     const PartProgress& progress_of = silent());
+
+/// All integrators there are.
+std::vector<multibody::Integrator> all_integrators();
+
+}  // namespace bentaxis::study

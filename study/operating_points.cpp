@@ -1,0 +1,135 @@
+#include "bentaxis/study/operating_points.h"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <mutex>
+#include <thread>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr int kMostThreads = 8;  // every one holds models of its own
+// A delivery pressure is printed to 0.1 bar of some hundred.
+constexpr double kPressureTolerance = 1e-6;
+// The first guess is in proportion and off by a few per cent: the first step to either side of it.
+constexpr double kBracketFactor = 1.05;
+
+}  // namespace
+
+void require_hydraulic(const Case& the_case) {
+  if (the_case.pressure.kind != PressureKind::hydraulic)
+    throw InputError(the_case.file.string() +
+                     ": [pressure] kind must be \"hydraulic\" for this command");
+}
+
+OperatingPoint run_point(Case the_case, const PartProgress& progress_of) {
+  require_hydraulic(the_case);
+  OperatingPoint point;
+  point.ready = prepare(std::move(the_case), progress_of);
+  point.analytic = run_turn(point.ready, Model::analytic, progress_of);
+  point.multibody = run_turn(point.ready, Model::multibody, progress_of);
+  return point;
+}
+
+double mean(const ResultTable& table, const std::string& channel) {
+  const std::size_t column = table.find(channel);
+  double sum = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) sum += table.at(row, column);
+  return sum / static_cast<double>(table.rows());
+}
+
+TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delivery_bar,
+                         const Progress& progress) {
+  const std::size_t count = delivery_bar.size();
+  TorqueCurve curve;
+  curve.bar = delivery_bar;
+  for (auto* values :
+       {&curve.analytic, &curve.multibody, &curve.ideal, &curve.flow, &curve.efficiency})
+    values->resize(count);
+  // Whoever listens is called by one thread at a time, and may throw. The lock also shows the
+  // thread sanitizer, which cannot see into oneTBB, that points come between what lies before and
+  // after.
+  std::mutex reporting;
+  std::size_t done = 0;
+  const auto report = [&](std::size_t more) {
+    const std::lock_guard lock(reporting);
+    done += more;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
+  };
+  const PartProgress within = [&](const std::string&) { return [&](double) { report(0); }; };
+  const auto compute = [&](std::size_t i) {
+    report(0);
+    Case at = the_case;
+    at.pressure.ports.delivery = pascals(delivery_bar[i]);
+    const OperatingPoint point = run_point(std::move(at), within);
+    const auto& s = point.state().summary;
+    curve.analytic[i] = mean(point.analytic, "Td_z1_Nm");
+    curve.multibody[i] = mean(point.multibody, "Td_z1_Nm");
+    curve.ideal[i] =
+        s.displacement * (pascals(delivery_bar[i]) - the_case.pressure.ports.suction) / (2 * kPi);
+    curve.flow[i] = s.flow * 6e4;
+    curve.efficiency[i] = 100 * s.volumetric_efficiency;
+    report(1);
+  };
+  report(0);
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  oneapi::tbb::task_arena(std::min(processors, kMostThreads)).execute([&] {
+    oneapi::tbb::parallel_for(std::size_t{0}, count, compute);
+  });
+  report(0);
+  return curve;
+}
+
+std::string to_csv(const TorqueCurve& curve) {
+  std::string text =
+      "delivery_bar,mean_Td_analytic_Nm,mean_Td_multibody_Nm,ideal_Td_Nm,flow_l_per_min,"
+      "volumetric_efficiency_percent\n";
+  for (std::size_t i = 0; i < curve.bar.size(); ++i) {
+    const double row[] = {curve.bar[i],   curve.analytic[i], curve.multibody[i],
+                          curve.ideal[i], curve.flow[i],     curve.efficiency[i]};
+    for (std::size_t c = 0; c < std::size(row); ++c) {
+      if (c > 0) text += ',';
+      append_number(text, row[c]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+double delivery_pressure_for(const OperatingPoint& start, const std::string& name, double wanted,
+                             const std::function<double(const ResultTable&)>& statistic,
+                             const PartProgress& progress_of) {
+  const auto excess = [&](double pressure) {
+    Case at = start.the_case();
+    at.pressure.ports.delivery = pressure;
+    return statistic(run_turn(prepare(std::move(at), progress_of), Model::analytic, progress_of)) -
+           wanted;
+  };
+  const double guess =
+      start.the_case().pressure.ports.delivery * wanted / statistic(start.analytic);
+  const auto close_enough = [](double low, double high) {
+    return high - low <= kPressureTolerance * high;
+  };
+  std::uintmax_t evaluations = 30;
+  try {
+    if (guess > 0 && std::isfinite(guess)) {
+      const auto [low, high] = boost::math::tools::bracket_and_solve_root(
+          excess, guess, kBracketFactor, true, close_enough, evaluations);
+      if (close_enough(low, high)) return (low + high) / 2;
+    }
+  } catch (const boost::math::evaluation_error&) {
+    // No bracket: said below.
+  }
+  throw ComputationError("published numbers: no delivery pressure found at which " + name +
+                         " reaches " + number_text(wanted));
+}
+
+}  // namespace bentaxis::study

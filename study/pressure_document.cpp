@@ -1,0 +1,135 @@
+#include "bentaxis/study/pressure_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/case_sections.h"
+#include "hydraulic_sections.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr int kOverlayTurns = 3;  // as in Fig. 19-24
+
+double bar(const OperatingPoint& point) {
+  return point.the_case().pressure.ports.delivery / kPascalPerBar;
+}
+
+}  // namespace
+
+report::Document pressure_document(const OperatingPoint& point, const report::Lines& program) {
+  const Case& the_case = point.the_case();
+  report::Document document;
+  document.title = the_case.name;
+  document.program = program;
+  document.the_case = case_section(the_case);
+  document.derived = derived_section(the_case);
+  document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
+  document.runs = {hydraulic_section(the_case, point.state())};
+  document.figures = hydraulic_figures(the_case, point.state());
+  document.figures->push_back(
+      {"td", "Drive torque Td", "Fig. 17", report::ChannelFigure{"Nm", {"Td_z1_Nm"}},
+       fmt::format("Mean torque: analytic {:.5g} Nm, multibody {:.5g} Nm.",
+                   mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"))});
+  return document;
+}
+
+void add_curve(report::Document& document, const TorqueCurve& curve) {
+  const char* axis = "mean delivery pressure (bar)";
+  report::Figure torque = own_figure("torque_curve", "Mean drive torque against delivery pressure",
+                                     "Fig. 18", "Nm", axis, curve.bar);
+  add_series(torque, "analytic", curve.analytic);
+  add_series(torque, "multibody", curve.multibody);
+  add_series(torque, "ideal: displacement x pressure / 2 pi", curve.ideal);
+  report::Figure flow =
+      own_figure("flow_curve", "Mean flow against delivery pressure", "", "l/min", axis, curve.bar);
+  add_series(flow, "to the load, at delivery pressure", curve.flow);
+  document.figures->push_back(std::move(torque));
+  document.figures->push_back(std::move(flow));
+  report::Section section;
+  section.title = "Torque and flow against delivery pressure";
+  section.text =
+      "Each point: periodic hydraulic state, then both models over a turn. 0 bar is an open line.";
+  section.table.columns = {"delivery, bar",
+                           "mean torque, analytic, Nm",
+                           "mean torque, multibody, Nm",
+                           "ideal torque, Nm",
+                           "flow, l/min",
+                           "volumetric efficiency, %"};
+  for (std::size_t i = 0; i < curve.bar.size(); ++i)
+    section.table.rows.push_back({curve.bar[i], curve.analytic[i], curve.multibody[i],
+                                  curve.ideal[i], curve.flow[i], curve.efficiency[i]});
+  document.runs->push_back(std::move(section));
+}
+
+void add_overlay(report::Document& document, const OperatingPoint& first,
+                 const OperatingPoint& second) {
+  const std::size_t rows = first.analytic.rows();
+  if (second.analytic.rows() != rows)
+    throw InputError(second.the_case().file.string() +
+                     ": must have the same samples_per_revolution as " +
+                     first.the_case().file.string());
+  std::vector<double> theta;
+  for (int turn = 0; turn < kOverlayTurns; ++turn)
+    for (const double angle : first.analytic.theta_deg) theta.push_back(angle + 360 * turn);
+  const auto add = [&](const std::string& id, const std::string& title, const std::string& paper,
+                       const std::vector<std::string>& channels) {
+    report::Figure figure = angle_figure(id, title, paper, "N", theta);
+    double worst = 0;
+    for (const OperatingPoint* point : {&first, &second}) {
+      const auto comparison = compare::compare_tables(point->analytic, point->multibody, {});
+      for (const std::string& channel : channels) {
+        const std::vector<double> turn = report::values_of(point->analytic, channel);
+        std::vector<double> values;
+        for (int i = 0; i < kOverlayTurns; ++i)
+          values.insert(values.end(), turn.begin(), turn.end());
+        add_series(figure, fmt::format("{} at {:.4g} bar", channel, bar(*point)), values);
+        worst = std::max(worst, comparison.find(channel)->largest_over_peak());
+      }
+    }
+    figure.note = fmt::format(
+        "Analytic model, three times the same turn; the multibody model differs by up to {:.1e} of "
+        "peak.",
+        worst);
+    document.figures->push_back(std::move(figure));
+  };
+  add("overlay_rc_x2", "Bore force Rc on piston 1, x2: both loads", "Fig. 19", {"Rc_1_x2_N"});
+  add("overlay_rc_y2", "Bore force Rc on piston 1, y2: both loads", "Fig. 20", {"Rc_1_y2_N"});
+  add("overlay_rs_xy", "Joint force Rs on piston 1 across the block axis: both loads", "Fig. 21",
+      {"Rs_1_x2_N", "Rs_1_y2_N"});
+  add("overlay_rs_z2", "Joint force Rs on piston 1, z2: both loads", "Fig. 22", {"Rs_1_z2_N"});
+  add("overlay_rb1", "Tapered bearing force Rb1: both loads", "Fig. 23",
+      {"Rb1_x1_N", "Rb1_y1_N", "Rb1_z1_N"});
+  add("overlay_rb2", "Cylindrical bearing force Rb2: both loads", "Fig. 24",
+      {"Rb2_x1_N", "Rb2_y1_N"});
+  report::Section section = hydraulic_section(second.the_case(), second.state());
+  section.title = "Hydraulic model: " + second.the_case().name;
+  document.runs->push_back(std::move(section));
+}
+
+void add_transient(report::Document& document, const ResultTable& transient) {
+  report::Figure figure =
+      angle_figure("transient", "From rest: pressures with the shaft at full speed at once", "",
+                   "bar", transient.theta_deg);
+  add_series(figure, "chamber 1", report::values_of(transient, transient.channels[0].name));
+  add_series(figure, "delivery volume", report::values_of(transient, transient.channels[1].name));
+  figure.note = "The load orifice is that of the periodic state.";
+  document.figures->push_back(std::move(figure));
+}
+
+std::string pressure_text(const OperatingPoint& point) {
+  std::string text = point.the_case().name + "\n\n";
+  const auto add = [&](const std::string& name, double value, const std::string& unit) {
+    text += fmt::format("{:<42} {:>12.6g} {}\n", name, value, unit);
+  };
+  for (const auto& line : hydraulics::lines(point.state())) add(line.name, line.value, line.unit);
+  add("mean drive torque, analytic", mean(point.analytic, "Td_z1_Nm"), "Nm");
+  add("mean drive torque, multibody", mean(point.multibody, "Td_z1_Nm"), "Nm");
+  return text;
+}
+
+}  // namespace bentaxis::study

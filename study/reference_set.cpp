@@ -1,0 +1,53 @@
+#include "bentaxis/study/reference_set.h"
+
+#include <algorithm>
+
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/study/achieved_error.h"
+
+namespace bentaxis::study {
+namespace fs = std::filesystem;
+
+std::vector<ReferencePlace> references_below(const fs::path& root) {
+  std::vector<ReferencePlace> places;
+  for (const auto& folder : compare::find_references(root)) {
+    fs::path name = folder.lexically_relative(root);
+    if (name == ".") name = fs::absolute(folder / ".").lexically_normal().parent_path().filename();
+    places.push_back({folder, name.generic_string()});
+  }
+  return places;
+}
+
+std::vector<fs::path> files_of(const Case& the_case) {
+  if (the_case.pressure.kind != PressureKind::curve) return {};
+  return {the_case.pressure.file};
+}
+
+namespace {
+
+ReadyCase read(const compare::ReferenceDescription& description, const fs::path& file,
+               const PartProgress& progress_of) {
+  ReadyCase ready = prepare(read_case(file), progress_of);
+  if (description.samples_per_revolution)
+    ready.the_case.operation.samples_per_revolution = *description.samples_per_revolution;
+  return ready;
+}
+
+}  // namespace
+
+ReferenceCases::ReferenceCases(const compare::ReferenceDescription& description,
+                               const PartProgress& progress_of)
+    : analytic_(read(description, description.case_file, progress_of)) {
+  if (description.multibody_case_file != description.case_file)
+    multibody_ = read(description, description.multibody_case_file, progress_of);
+}
+
+ReferenceRun run_for_reference(const ReadyCase& ready, Model model,
+                               const PartProgress& progress_of) {
+  const Samples samples = ready.samples(Way::driven);
+  RunOptions options;
+  options.model = model;
+  return {run(ready, samples, options, progress_of).table, zero_scales(ready.the_case, samples)};
+}
+
+}  // namespace bentaxis::study

@@ -1,0 +1,134 @@
+#include "bentaxis/study/run.h"
+
+#include <utility>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/study/calibration.h"
+
+namespace bentaxis::study {
+namespace {
+
+// Options that say nothing to each other are mistakes of whoever set them.
+void check(const RunOptions& options) {
+  const bool integrated = options.way == Way::integrated;
+  if (options.model == Model::analytic && integrated)
+    throw InputError("the analytic model has no time to integrate over: it is run driven only");
+  if (options.target && !integrated)
+    throw InputError("only an integrated run of the multibody model has an error to choose");
+  if (integrated && (options.scene.scene != multibody::Scene::full ||
+                     options.scene.method != multibody::Method::multipliers))
+    throw InputError(
+        "scenes and ways to find reactions are for driven runs: an integrated run is of the full "
+        "pump, by its equations of motion");
+}
+
+}  // namespace
+
+std::string to_string(Model model) { return model == Model::analytic ? "analytic" : "multibody"; }
+
+Samples ReadyCase::samples(Way way) const {
+  if (way == Way::driven) return sample_case(the_case, pressure);
+  return sample_case(the_case, pressure, the_case.operation.revolutions,
+                     the_case.operation.speed_rpm < 0);
+}
+
+const Assumptions& ReadyCase::assumptions(Model model) const {
+  return model == Model::analytic ? the_case.analytic : the_case.multibody;
+}
+
+ReadyCase prepare(Case the_case, const PartProgress& progress_of) {
+  std::optional<hydraulics::SteadyState> state;
+  if (the_case.pressure.kind == PressureKind::hydraulic) {
+    state = hydraulics::steady_state(the_case, {}, progress_of("hydraulics"));
+    hydraulics::give_to(the_case, *state);
+  }
+  PressureTrace pressure(the_case.pressure);
+  return {std::move(the_case), std::move(state), std::move(pressure)};
+}
+
+ModelRun run(const ReadyCase& ready, const RunOptions& options, const PartProgress& progress_of) {
+  check(options);
+  return run(ready, ready.samples(options.way), options, progress_of);
+}
+
+ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& options,
+             const PartProgress& progress_of) {
+  check(options);
+  const Case& the_case = ready.the_case;
+  const Assumptions& assumptions =
+      options.assumptions ? *options.assumptions : ready.assumptions(options.model);
+  ModelRun result;
+  if (options.model == Model::analytic) {
+    result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"));
+  } else if (options.way == Way::driven) {
+    result.table = multibody::run_driven(the_case, assumptions, samples, progress_of("multibody"),
+                                         options.scene.scene, options.scene.method);
+  } else if (options.target) {
+    const auto& among = options.target->integrators;
+    VerifiedRun verified =
+        run_to_error(the_case, assumptions, samples, ready.pressure, options.target->error,
+                     among.empty() ? all_integrators() : among, progress_of);
+    result.choice = verified.text();
+    result.integration = verified.calibration.chosen;
+    result.table = std::move(verified.run.table);
+    result.record = std::move(verified.run.record);
+  } else {
+    result.integration = options.integration;
+    auto integrated = multibody::run_integrated(the_case, assumptions, samples, ready.pressure,
+                                                options.integration, progress_of("multibody"));
+    result.table = std::move(integrated.table);
+    result.record = std::move(integrated.record);
+  }
+  return result;
+}
+
+ResultTable run_turn(const ReadyCase& ready, Model model, const PartProgress& progress_of) {
+  RunOptions options;
+  options.model = model;
+  return run(ready, options, progress_of).table;
+}
+
+bool computes(const RunOptions& options, const Assumptions& assumptions, const Channel& channel) {
+  if (assumptions.gear == BlockDrive::imposed && channel.quantity == "Rcs") return false;
+  return options.model == Model::analytic || options.way == Way::integrated ||
+         multibody::computes(options.scene.scene, channel);
+}
+
+void stream_analytic(const ReadyCase& ready, const Assumptions& assumptions,
+                     const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
+                     const PartProgress& progress_of) {
+  const analytic::Model model(ready.the_case.pump, assumptions);
+  const Sampler sampler(ready.the_case, ready.pressure);
+  std::vector<Channel> channels;
+  std::vector<std::size_t> columns;
+  for (std::size_t c = 0; c < model.layout().size(); ++c)
+    if (wanted(model.layout().channels()[c])) {
+      columns.push_back(c);
+      channels.push_back(model.layout().channels()[c]);
+    }
+  out.write(csv_header(channels));
+  std::string line;
+  std::vector<double> values(columns.size());
+  stream_rows(
+      "analytic", model.layout(), sampler,
+      [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
+      [&](double theta_deg, const std::vector<double>& row) {
+        line.clear();
+        for (std::size_t i = 0; i < columns.size(); ++i) values[i] = row[columns[i]];
+        append_csv_row(line, theta_deg, values.data(), values.size());
+        out.write(line);
+      },
+      progress_of("analytic"));
+}
+
+std::vector<multibody::Integrator> all_integrators() {
+  std::vector<multibody::Integrator> all;
+  for (std::size_t i = 0; i < multibody::integrator_names().size(); ++i)
+    all.push_back(static_cast<multibody::Integrator>(i));
+  return all;
+}
+
+}  // namespace bentaxis::study
