@@ -104,6 +104,18 @@ class ProgramTest(unittest.TestCase):
     def schema(self):
         return json.loads(self.run_program("schema").out)
 
+    def controls(self):
+        """Cases with the numbers that must count there. A number is what the program's schema says is one."""
+        numbers = {f"{table}.{key}" for table, schema in self.schema()["properties"].items() if table != "hydraulics"
+                   for key, parameter in schema.get("properties", {}).items()
+                   if parameter.get("type") in ("number", "integer", "array")} - STRUCTURE
+        self.assertGreater(len(numbers), 40)
+        without_effect = {name for base, name, _ in WITHOUT_EFFECT if base is RATED}
+        rated = {name for name in numbers if Case(**RATED).line_of(name)} - HIDDEN_BY_PRESSURE - without_effect
+        tried = rated.union(*(names for _, names in CONTROLS))
+        self.assertEqual(numbers - tried - without_effect, set(), "forgotten")
+        return ((RATED, rated), *CONTROLS)
+
     def finish(self, process, status):
         try:
             process.out, process.err = process.communicate(timeout=SECONDS)
@@ -911,18 +923,6 @@ class NegativeControlTest(ProgramTest):
         (self.folder / "curve.csv").write_text(CURVE)
         for base in (RATED, LIGHT, REAL, CURVED):
             self.compare(Case(**base), Case(**base), DONE)
-
-    def controls(self):
-        """Cases with the numbers that must count there. A number is what the program's schema says is one."""
-        numbers = {f"{table}.{key}" for table, schema in self.schema()["properties"].items() if table != "hydraulics"
-                   for key, parameter in schema.get("properties", {}).items()
-                   if parameter.get("type") in ("number", "integer", "array")} - STRUCTURE
-        self.assertGreater(len(numbers), 40)
-        without_effect = {name for base, name, _ in WITHOUT_EFFECT if base is RATED}
-        rated = {name for name in numbers if Case(**RATED).line_of(name)} - HIDDEN_BY_PRESSURE - without_effect
-        tried = rated.union(*(names for _, names in CONTROLS))
-        self.assertEqual(numbers - tried - without_effect, set(), "forgotten")
-        return ((RATED, rated), *CONTROLS)
 
     def test_every_parameter_counts(self):
         for base, names in self.controls():
