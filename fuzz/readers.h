@@ -11,8 +11,8 @@ namespace bentaxis::fuzz {
 /// Anything but InputError and ComputationError escapes.
 void read_as_case(const std::uint8_t* data, std::size_t size);
 
-/// Takes bytes as a change, --set TABLE.KEY=VALUE, of a shipped case, which must write and read back
-/// to the same.
+/// Takes bytes as a change, --set TABLE.KEY=VALUE, of a shipped case, which must write and read
+/// back to the same.
 void read_as_change(const std::uint8_t* data, std::size_t size);
 
 /// Reads bytes as a CSV file of numbers, with and without empty fields.

@@ -112,15 +112,15 @@ View view_of(PumpParameters& pump) {
   return view;
 }
 
-View view_of(Case& c) {
+View view_of(Case& the_case) {
   View view;
-  view.pump = &c.pump;
-  view.name = &c.name;
-  view.operation = &c.operation;
-  view.pressure = &c.pressure;
-  view.hydraulics = &c.hydraulics;
-  view.analytic = &c.analytic;
-  view.multibody = &c.multibody;
+  view.pump = &the_case.pump;
+  view.name = &the_case.name;
+  view.operation = &the_case.operation;
+  view.pressure = &the_case.pressure;
+  view.hydraulics = &the_case.hydraulics;
+  view.analytic = &the_case.analytic;
+  view.multibody = &the_case.multibody;
   return view;
 }
 
@@ -130,15 +130,15 @@ ConstView view_of(const PumpParameters& pump) {
   return view;
 }
 
-ConstView view_of(const Case& c) {
+ConstView view_of(const Case& the_case) {
   ConstView view;
-  view.pump = &c.pump;
-  view.name = &c.name;
-  view.operation = &c.operation;
-  view.pressure = &c.pressure;
-  view.hydraulics = &c.hydraulics;
-  view.analytic = &c.analytic;
-  view.multibody = &c.multibody;
+  view.pump = &the_case.pump;
+  view.name = &the_case.name;
+  view.operation = &the_case.operation;
+  view.pressure = &the_case.pressure;
+  view.hydraulics = &the_case.hydraulics;
+  view.analytic = &the_case.analytic;
+  view.multibody = &the_case.multibody;
   return view;
 }
 
@@ -218,7 +218,7 @@ std::optional<Value> value_of(const Parameter& parameter, const ConstView& view)
                  [&](const CurveField&) -> std::optional<Value> {
                    if (view.pressure == nullptr) return std::nullopt;
                    const std::filesystem::path& file = view.pressure->file;
-            return file.empty() ? std::string() : std::filesystem::absolute(file).string();
+                   return file.empty() ? std::string() : std::filesystem::absolute(file).string();
                  }},
       parameter.field);
 }

@@ -45,7 +45,7 @@ const When kHydraulic{"pressure", "kind", {"hydraulic"}};
 
 const Part kRealPiston{{"piston", "inertia", {"real", "dynamically_equivalent"}},
                        [](const ConstView& v) { return v.real_piston() != nullptr; },
-                       [](const View& v) { v.pump->piston.real.emplace(); }};
+                       [](const View& v) { v.pump->piston.real = PistonMass::Real(); }};
 const Part kPortPlate{{},
                       [](const ConstView& v) { return v.port_plate() != nullptr; },
                       [](const View& v) { v.pump->port_plate.emplace(); }};

@@ -15,8 +15,7 @@ std::string case_schema(const Registry& registry = standard_registry());
 
 /// The keys of a table as a Markdown table: key, symbol, meaning, range, default, and values met in
 /// practice where there are any.
-/// @param table  "pump"; "" for the top level. @throws InputError where there is none
-std::string markdown_table(const std::string& table,
-                           const Registry& registry = standard_registry());
+/// @param name  "pump"; "" for the top level. @throws InputError where there is none
+std::string markdown_table(const std::string& name, const Registry& registry = standard_registry());
 
 }  // namespace bentaxis

@@ -6,11 +6,9 @@
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/parameters.h"
+#include "bentaxis/pump/standard_registry.h"
 
 namespace bentaxis {
-
-struct Registry;
-const Registry& standard_registry();
 
 /// One number of a pump's description, SI.
 struct PumpInput {

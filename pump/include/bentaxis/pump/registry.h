@@ -17,6 +17,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/pump/pressure.h"
+#include "bentaxis/pump/standard_registry.h"
 
 namespace bentaxis {
 
@@ -53,7 +54,7 @@ View view_of(Case& the_case);
 View view_of(PumpParameters& pump);
 ConstView view_of(const Case& the_case);
 ConstView view_of(const PumpParameters& pump);
-ConstView as_const(const View& view);
+ConstView as_const(const View& v);
 
 /// Field of a part that may be missing: null where it is.
 template <class Part, class Field, class Owner>
@@ -217,8 +218,6 @@ struct Table {
 struct Registry {
   std::vector<Table> tables;
 };
-
-const Registry& standard_registry();
 
 /// @throws std::logic_error where there is none
 const Table& table_of(const Registry& registry, const std::string& name);

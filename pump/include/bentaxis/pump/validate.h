@@ -3,12 +3,9 @@
 
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/parameters.h"
+#include "bentaxis/pump/standard_registry.h"
 
 namespace bentaxis {
-
-struct Registry;
-/// The parameters of this program (registry.h).
-const Registry& standard_registry();
 
 /// Holds every parameter of a pump to its range and the parameters to each other, as the reader of
 /// case files does. A closed bound may be left by a few units in the last place where the number
