@@ -223,6 +223,20 @@ class UsageTest(ProgramTest):
             with self.subTest(arguments[:1] + arguments[4:]):  # without the path of the case
                 self.assert_mentions(self.refused(*arguments), *words)
 
+    def test_every_command_that_reads_a_case_takes_changes(self):
+        case = self.case()
+        hydraulic = REPO / "cases" / "bap63_rated_hydraulic.toml"
+        (self.folder / "curve.csv").write_text("theta_deg,Td_z1_Nm\n0,1\n120,2\n240,3\n")
+        for command in (
+            ["run", case, "--model", "analytic"], ["run", case, "--model", "multibody"], ["compare", case],
+            ["compare", case, "--multibody-case", case], ["inertia", case], ["tradeoff", case],
+            ["pressure", hydraulic], ["reference", "new", case, "--from", "curve.csv"],
+            ["reference", "golden", case, "--out", "golden"], ["calibrate", hydraulic],
+            ["blocktorque", case, hydraulic],
+        ):
+            with self.subTest(command):
+                self.assert_mentions(self.refused(*command, "--set", "pump.tilt_deg=95"), "tilt_deg", "95")
+
     def test_options_that_would_change_nothing(self):
         case = self.case()
         analytic = ["run", case, "--model", "analytic", "--out", "out"]
