@@ -7,7 +7,6 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/report/page.h"
-#include "bentaxis/report/report.h"
 
 namespace bentaxis::bench {
 namespace {
@@ -43,9 +42,10 @@ BENCHMARK(write_csv)->Unit(benchmark::kMillisecond);
 void render_page(benchmark::State& state) {
   const auto comparison = compare::compare_tables(tables().first, tables().second, {});
   for (auto _ : state) {
-    const report::Json report = {{"channels", report::channel_rows(comparison)}};
+    report::Document document;
+    document.comparison = comparison;
     benchmark::DoNotOptimize(
-        report::render_page("x", report, report::curve_section(tables().first, tables().second)));
+        report::render_page(document, report::curves_of(tables().first, tables().second)));
   }
 }
 BENCHMARK(render_page)->Unit(benchmark::kMillisecond);

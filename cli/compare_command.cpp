@@ -5,7 +5,6 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
-#include "bentaxis/report/page.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
@@ -13,6 +12,7 @@
 #include "console.h"
 #include "data_folder.h"
 #include "options.h"
+#include "report_files.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -54,14 +54,13 @@ int compare(const Options& options) {
       study::compare_models(std::move(first), std::move(second), how, progress_of);
 
   const auto wanted = [&](const Channel& channel) { return how.channels.wants(channel); };
-  const report::Document document = study::comparison_document(result, versions());
-  if (result.first.hydraulics) folder.add("pressure.csv", to_csv(result.first.hydraulics->table));
-  folder.add("report.html",
-             report::render_page(document, report::curves_of(result.analytic, result.multibody)));
-  folder.add("report.json", report::json_text(document));
-  folder.add("analytic.csv", to_csv(select_channels(result.analytic, wanted)));
-  folder.add("multibody.csv", to_csv(select_channels(result.multibody, wanted)));
-  const auto paths = folder.commit();
+  std::vector<TextFile> curves = {
+      {"analytic.csv", to_csv(select_channels(result.analytic, wanted))},
+      {"multibody.csv", to_csv(select_channels(result.multibody, wanted))}};
+  if (result.first.hydraulics)
+    curves.emplace_back("pressure.csv", to_csv(result.first.hydraulics->table));
+  const auto paths = write_report(folder, "report", study::comparison_document(result, versions()),
+                                  report::curves_of(result.analytic, result.multibody), curves);
 
   std::printf("%s\n", study::comparison_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());

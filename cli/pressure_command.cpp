@@ -8,13 +8,12 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/report/page.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/pressure_document.h"
 #include "commands.h"
 #include "console.h"
 #include "options.h"
-#include "published.h"
+#include "report_files.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -62,47 +61,40 @@ int pressure(const Options& options) {
     second = read_case(options.overlay);
     study::require_hydraulic(*second);
   }
-  std::vector<PublishedRow> published;
-  if (!options.published.empty()) published = read_published(options.published);
+  std::optional<compare::Published> published;
+  if (!options.published.empty()) published = compare::read_published(options.published);
   std::vector<double> pressures;
   if (!options.delivery.empty()) pressures = delivery_pressures(options.delivery);
   OutputFolder folder(options.out);
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
   report::Document document = study::pressure_document(point, versions());
-  Verdicts verdicts;
-  if (!published.empty()) {
-    verdicts = set_against(published, point);
-    document.published = verdicts.table;
-  }
+  if (published) study::add_published(document, *published, point, progress_of);
   if (second)
     study::add_overlay(document, point, study::run_point(std::move(*second), progress_of));
+  std::vector<TextFile> curves = {{"pressure.csv", to_csv(point.state().table)}};
   std::optional<study::TorqueCurve> curve;
   if (!pressures.empty()) {
     curve = study::torque_curve(point.the_case(), pressures, progress_of("torque curve"));
     study::add_curve(document, *curve);
-    folder.add("torque_curve.csv", to_csv(*curve));
+    curves.emplace_back("torque_curve.csv", to_csv(*curve));
   }
   if (options.transient > 0) {
     const ResultTable transient =
         hydraulics::transient_from_rest(point.the_case(), point.state().summary.load_area,
                                         options.transient, 72, progress_of("transient"));
     study::add_transient(document, transient);
-    folder.add("transient.csv", to_csv(transient));
+    curves.emplace_back("transient.csv", to_csv(transient));
   }
-  folder.add("pressure.html",
-             report::render_page(document, report::curves_of(point.analytic, point.multibody)));
-  folder.add("pressure.json", report::json_text(document));
-  folder.add("pressure.csv", to_csv(point.state().table));
-  const auto paths = folder.commit();
+  const auto paths = write_report(folder, "pressure", document,
+                                  report::curves_of(point.analytic, point.multibody), curves);
 
   std::printf("%s", study::pressure_text(point).c_str());
-  if (!verdicts.lines.empty()) std::printf("\n");
-  for (const auto& line : verdicts.lines) std::printf("%s\n", line.c_str());
+  if (published) std::printf("\n%s", study::text_of(document.published->section).c_str());
   if (curve) std::printf("\n%s", to_csv(*curve).c_str());
   std::printf("\n");
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
-  return verdicts.inside ? kDone : kOutOfTolerance;
+  return !published || document.published->section.calibrated() ? kDone : kOutOfTolerance;
 }
 
 }  // namespace
@@ -124,7 +116,7 @@ Command add_pressure_command(CLI::App& app) {
   command
       ->add_option(
           "--published", options->published,
-          "published numbers to set the results against; outside any window: exit status 1")
+          "printed numbers to set the results against; a calibrated one outside: exit status 1")
       ->option_text("FILE");
   command
       ->add_option("--transient", options->transient,

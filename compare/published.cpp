@@ -169,7 +169,7 @@ std::optional<double> value_at(double at_deg, const std::vector<double>& theta_d
 
 }  // namespace
 
-bool Published::describes(const Facts& facts) const { return unmet(identity, facts).empty(); }
+std::string Published::mismatch(const Facts& facts) const { return unmet(identity, facts); }
 
 Published read_published(const std::filesystem::path& file) {
   const TomlFile toml = TomlFile::read(file, "file of printed numbers");
@@ -196,6 +196,15 @@ Published read_published(const std::filesystem::path& file) {
   if (published.numbers.empty()) in.fail("number", "at least one [[number]] is needed");
   in.finish();
   return published;
+}
+
+void PublishedSummary::count(const PublishedRow& row) {
+  if (row.number.repeats) return;
+  const bool any = row.verdict != PublishedVerdict::not_comparable;
+  const bool inside = row.verdict == PublishedVerdict::inside;
+  predicted += row.number.predicted();
+  (row.number.predicted() ? predicted_comparable : other_comparable) += any;
+  (row.number.predicted() ? predicted_inside : other_inside) += inside;
 }
 
 std::string PublishedSummary::text() const {
@@ -280,6 +289,17 @@ const char* to_string(PublishedVerdict verdict) {
   return "not comparable";
 }
 
+std::string text_of(const PublishedValue& value) {
+  if (value.low == value.high) return number_of(value.low);
+  return fmt::format("{:.5g} to {:.5g}", value.low, value.high);
+}
+
+bool PublishedSection::calibrated() const {
+  return std::none_of(rows.begin(), rows.end(), [](const PublishedRow& row) {
+    return row.number.calibrated() && row.verdict == PublishedVerdict::outside;
+  });
+}
+
 PublishedSection judge_published(
     const Published& published, const std::vector<std::string>& models,
     const std::function<PublishedRun(const std::string&, const PublishedVariant&)>& run,
@@ -348,12 +368,8 @@ PublishedSection judge_published(
     if (!n.note.empty()) row.where += ". " + n.note;
     if (n.repeats) row.where += ". Repeats another row: not counted";
     if (!any && !why.empty()) row.where += ". Not comparable: " + why;
+    section.summary.count(row);
     section.rows.push_back(std::move(row));
-    if (n.repeats) continue;
-    PublishedSummary& summary = section.summary;
-    summary.predicted += n.predicted();
-    (n.predicted() ? summary.predicted_comparable : summary.other_comparable) += any;
-    (n.predicted() ? summary.predicted_inside : summary.other_inside) += any && inside;
   }
   return section;
 }

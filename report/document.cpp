@@ -91,6 +91,7 @@ Json list_of(const Items& items) {
 // ---- Blocks
 
 Json json_of(const Cell& cell) {
+  if (const auto* flag = std::get_if<bool>(&cell)) return *flag;
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
   if (const auto* count = std::get_if<long>(&cell)) return *count;
   if (const auto* number = std::get_if<double>(&cell)) return number_or_null(*number);
@@ -372,7 +373,7 @@ Json json_of(const AssumptionSplit& assumptions) {
 Json json_of(const std::optional<compare::PublishedValue>& value) {
   if (!value) return nullptr;
   if (value->low == value->high) return rounded(value->low, 6);
-  return fmt::format("{:.5g} to {:.5g}", value->low, value->high);
+  return compare::text_of(*value);
 }
 
 Json json_of(const PublishedTable& published) {
@@ -450,6 +451,7 @@ ModelSection model_of(const ResultTable& table, const Lines& assumptions) {
 
 Json to_json(const Document& document) {
   Json json = {{"schema", 1}, {"title", document.title}, {"program", document.program}};
+  if (!document.files.empty()) json["files"] = document.files;
   add(json, "case", document.the_case);
   add(json, "derived", document.derived);
   add(json, "verdict", document.verdict);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bentaxis/pump/units.h"
-#include "bentaxis/report/report.h"
+#include "bentaxis/report/text.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
 #include "comparison_figures.h"

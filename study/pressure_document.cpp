@@ -8,6 +8,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/published_section.h"
 #include "hydraulic_sections.h"
 
 namespace bentaxis::study {
@@ -109,6 +110,50 @@ void add_overlay(report::Document& document, const OperatingPoint& first,
   report::Section section = hydraulic_section(second.the_case(), second.state());
   section.title = "Hydraulic model: " + second.the_case().name;
   document.runs->push_back(std::move(section));
+}
+
+void add_published(report::Document& document, const compare::Published& published,
+                   const OperatingPoint& point, const PartProgress& progress_of) {
+  const Case& the_case = point.the_case();
+  const std::string mismatch = published.mismatch(facts_of(the_case, the_case.analytic));
+  if (!mismatch.empty())
+    throw InputError(the_case.file.string() + ": the printed numbers are of another pump (" +
+                     published.name + "): " + mismatch);
+  compare::PublishedSection section =
+      judge_case(published, {&the_case, the_case.analytic, &point.analytic},
+                 {&the_case, the_case.multibody, &point.multibody}, progress_of);
+  for (auto& row : section.rows) {
+    const compare::PublishedNumber& number = row.number;
+    if (!number.find_pressure || row.verdict == compare::PublishedVerdict::not_comparable) continue;
+    const double pressure = delivery_pressure_for(
+        point, number.quantity, number.low,
+        [&](const ResultTable& table) {
+          return compare::value_of(number, {&table, {}})->low;
+        },
+        progress_of);
+    row.where +=
+        fmt::format("; needs a mean delivery pressure of {:.1f} bar", pressure / kPascalPerBar);
+  }
+  const std::string text =
+      section.summary.text() +
+      " Used to infer: the number went into the geometry of this case, which is not published. "
+      "Calibrated: a parameter was set so that the number comes out. Only predicted rows say "
+      "something about the models; a window is the range of a printed axis, in which the lost "
+      "curve must have been.";
+  document.published = report::PublishedTable{text, std::move(section)};
+}
+
+std::string text_of(const compare::PublishedSection& section) {
+  std::string text;
+  for (const auto& row : section.rows) {
+    if (row.verdict == compare::PublishedVerdict::not_comparable) continue;
+    text += fmt::format("{:<60} {:>20} {:<8} {:<27} paper {} ({})\n",
+                        row.number.quantity + (row.at.empty() ? "" : ", " + row.at),
+                        row.values[0] ? compare::text_of(*row.values[0]) : "",
+                        row.verdict == compare::PublishedVerdict::inside ? "inside" : "OUTSIDE",
+                        row.number.status, row.printed, row.where);
+  }
+  return text;
 }
 
 void add_transient(report::Document& document, const ResultTable& transient) {

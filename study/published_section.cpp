@@ -1,5 +1,6 @@
 #include "bentaxis/study/published_section.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -52,47 +53,60 @@ compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
           {"real_pistons", assumptions.inertia == PistonInertia::real ? 1 : 0}};
 }
 
-std::optional<report::PublishedTable> published_section(const std::filesystem::path& folder,
-                                                        const PublishedInput& analytic,
-                                                        const PublishedInput& multibody,
-                                                        const PartProgress& progress_of) {
-  std::map<std::pair<std::string, std::string>, ResultTable> tables;
+std::optional<PrintedNumbers> printed_numbers_of(const std::filesystem::path& folder,
+                                                 const std::vector<compare::Facts>& all_facts) {
   if (!std::filesystem::is_directory(folder)) return std::nullopt;
   for (const auto& place : references_below(folder)) {
     const auto description = compare::read_description(place.folder, place.name);
     if (description.kind != compare::ReferenceKind::published) continue;
-    const auto published = compare::read_published(description.numbers);
-    bool described = true;
-    for (const auto* input : {&analytic, &multibody})
-      described = described && published.describes(facts_of(*input->the_case, input->assumptions));
-    if (!described) continue;
-    compare::PublishedSection section = compare::judge_published(
-        published, {to_string(Model::analytic), to_string(Model::multibody)},
-        [&](const std::string& name, const compare::PublishedVariant& variant) {
-          const Model model =
-              name == to_string(Model::analytic) ? Model::analytic : Model::multibody;
-          const PublishedInput& input = model == Model::analytic ? analytic : multibody;
-          Case the_case = *input.the_case;
-          Assumptions assumptions = input.assumptions;
-          apply(variant, the_case, assumptions);
-          compare::PublishedRun run{input.table, facts_of(the_case, assumptions)};
-          if (variant.set.empty()) return run;
-          PressureTrace pressure(the_case.pressure);
-          RunOptions options;
-          options.model = model;
-          options.assumptions = assumptions;
-          const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
-          run.table =
-              &(tables[{name, variant.name}] = study::run(ready, options, progress_of).table);
-          return run;
-        });
-    const std::string text =
-        published.name + ": " + description.source + ". " + section.summary.text() +
-        " A window is the range of a figure's axis, which the curve must not leave; it is not the "
-        "curve.";
-    return report::PublishedTable{text, std::move(section)};
+    PrintedNumbers printed{compare::read_published(description.numbers), description.source};
+    if (std::all_of(all_facts.begin(), all_facts.end(),
+                    [&](const compare::Facts& facts) { return printed.numbers.describes(facts); }))
+      return printed;
   }
   return std::nullopt;
+}
+
+compare::PublishedSection judge_case(const compare::Published& published,
+                                     const PublishedInput& analytic,
+                                     const PublishedInput& multibody,
+                                     const PartProgress& progress_of) {
+  std::map<std::pair<std::string, std::string>, ResultTable> tables;
+  return compare::judge_published(
+      published, {to_string(Model::analytic), to_string(Model::multibody)},
+      [&](const std::string& name, const compare::PublishedVariant& variant) {
+        const Model model = name == to_string(Model::analytic) ? Model::analytic : Model::multibody;
+        const PublishedInput& input = model == Model::analytic ? analytic : multibody;
+        Case the_case = *input.the_case;
+        Assumptions assumptions = input.assumptions;
+        apply(variant, the_case, assumptions);
+        compare::PublishedRun run{input.table, facts_of(the_case, assumptions)};
+        if (variant.set.empty()) return run;
+        PressureTrace pressure(the_case.pressure);
+        RunOptions options;
+        options.model = model;
+        options.assumptions = assumptions;
+        const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
+        run.table = &(tables[{name, variant.name}] = study::run(ready, options, progress_of).table);
+        return run;
+      });
+}
+
+std::optional<report::PublishedTable> published_section(const std::filesystem::path& folder,
+                                                        const PublishedInput& analytic,
+                                                        const PublishedInput& multibody,
+                                                        const PartProgress& progress_of) {
+  const auto printed =
+      printed_numbers_of(folder, {facts_of(*analytic.the_case, analytic.assumptions),
+                                  facts_of(*multibody.the_case, multibody.assumptions)});
+  if (!printed) return std::nullopt;
+  compare::PublishedSection section =
+      judge_case(printed->numbers, analytic, multibody, progress_of);
+  const std::string text = printed->numbers.name + ": " + printed->source + ". " +
+                           section.summary.text() +
+                           " A window is the range of a figure's axis, which the curve must not "
+                           "leave; it is not the curve.";
+  return report::PublishedTable{text, std::move(section)};
 }
 
 }  // namespace bentaxis::study

@@ -7,7 +7,6 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/report/page.h"
-#include "bentaxis/report/report.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -339,8 +338,10 @@ TEST(Split, MarksOnlyExplainedChannels) {
 }
 
 TEST(Page, HoldsTheDataAndNeedsNoNetwork) {
-  const report::Json report = {{"title", "</script><b>x"}};
-  const std::string page = report::render_page("<T>", report, {{"theta_deg", {0, 1}}});
+  report::Document document;
+  document.title = "<T>";
+  document.meaning = "</script><b>x";
+  const std::string page = report::render_page(document, {{0, 1}, {}, {}});
   EXPECT_THAT(page, HasSubstr("&lt;T&gt;"));
   EXPECT_EQ(page.find("</script><b>x"), std::string::npos);
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(http"})
@@ -351,7 +352,7 @@ TEST(Curves, DifferencesAreTakenBeforeRounding) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto a = table("a", channels, {[](double) { return 11017.123456789; }});
   const auto b = table("b", channels, {[](double) { return 11017.123456789 + 1e-9; }});
-  const report::Json curves = report::curve_section(a, b);
+  const report::Json curves = report::to_json(report::curves_of(a, b));
   EXPECT_NEAR(curves["difference"]["X_N"][0].get<double>(), 1e-9, 3e-12);
   EXPECT_EQ(curves["tables"][0]["columns"]["X_N"][0], curves["tables"][1]["columns"]["X_N"][0]);
 }

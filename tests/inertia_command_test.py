@@ -58,7 +58,13 @@ class InertiaTest(WithFolder):
         self.assertEqual({p.name for p in (self.folder / "out").iterdir()},
                          {"inertia.html", "inertia.json", "inertia.csv", "inertia_errors.csv", "inertia_map.csv"})
         self.assertIs(report["verdict"]["agrees"], True)
-        self.assertEqual([row["verdict"] for row in report["published"]["rows"]], ["inside"] * 4)
+        # Two speeds, two reactions: a window for each kind of piston, and the order of the two.
+        rows = report["published"]["rows"]
+        self.assertEqual([row["verdict"] for row in rows], ["inside"] * 12)
+        self.assertEqual({(row["at"], row["paper"]) for row in rows if "Fig. 36" in row["where"]}, {
+            (f"no load, {speed} rpm; {of}", paper) for speed in (1500, 2350) for of, paper in (
+                ("two masses", "window 10 to 70 N"), ("real pistons", "window 10 to 70 N"),
+                ("two masses minus real pistons", "above 0 N"))})
         curves = self.table("out/inertia.csv")
         self.assertEqual(len(curves), 60)
         self.assertEqual(len(curves[0]), 1 + 2 * 2 * 4 * 7)  # speeds, loads, variants, components and magnitudes

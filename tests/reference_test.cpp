@@ -13,8 +13,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
+#include "bentaxis/report/document.h"
 #include "bentaxis/report/junit.h"
-#include "bentaxis/report/report.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -347,7 +347,10 @@ class PublishedNumbers : public ReferenceFolder {
                                  for (const auto& [name, value] : variant.set) all[name] = value;
                                  return PublishedRun{&table_, all};
                                });
-    return report::published_section({"", section_})["rows"][0];
+    report::Document document;
+    document.published = report::PublishedTable{"", section_};
+    const auto rows = report::to_json(document)["published"]["rows"];
+    return rows.empty() ? nlohmann::json() : rows[0];
   }
 
   ResultTable table_ = result(360);
@@ -415,6 +418,37 @@ TEST_F(PublishedNumbers, ConditionsDecideAndNothingIsRunInVain) {
   EXPECT_FALSE(published_.describes({}));
 }
 
+TEST_F(PublishedNumbers, OneVariantMinusAnother) {
+  const std::string t =
+      "status = \"predicted\"\nmeasure = \"mean\"\nchannels = [\"T_Nm\"]\nvariant = \"v\"\n"
+      "minus = \"v\"\n";
+  EXPECT_EQ(row(t + "below = 1\n")["model"], 0);
+  EXPECT_EQ(row(t + "below = 1\n")["at"], "without minus without");
+  EXPECT_EQ(row(t + "above = 1\n")["verdict"], "outside");
+}
+
+TEST_F(PublishedNumbers, AStudyJudgesItsOwn) {
+  const std::string t = "status = \"predicted\"\nmeasure = \"mean\"\nchannels = [\"T_Nm\"]\n";
+  EXPECT_TRUE(row(t + "above = 0\nstudy = \"s\"\n").is_null());
+  const auto run = [&](const std::string&, const PublishedVariant&) {
+    return PublishedRun{&table_, {}};
+  };
+  EXPECT_EQ(judge_published(published_, {"model"}, run, "s").rows.size(), 1U);
+  EXPECT_EQ(judge_published(published_, {"model"}, run, "r").rows.size(), 0U);
+}
+
+TEST_F(PublishedNumbers, OnlyACalibratedNumberMustBeMet) {
+  const std::string t = "measure = \"mean\"\nchannels = [\"T_Nm\"]\nstatus = ";
+  row(t + "\"calibrated\"\nabove = 49\n");
+  EXPECT_TRUE(section_.calibrated());
+  row(t + "\"calibrated\"\nabove = 51\n");
+  EXPECT_FALSE(section_.calibrated());
+  row(t + "\"predicted\"\nabove = 51\n");
+  EXPECT_TRUE(section_.calibrated());
+  row(t + "\"calibrated\"\nabove = 51\ncondition = \"rated\"\n", {{"speed_rpm", 1000}});
+  EXPECT_TRUE(section_.calibrated()) << "not comparable";
+}
+
 TEST_F(PublishedNumbers, RefusesWhatIsIncomplete) {
   const auto refusal = [&](const std::string& number) { return thrown([&] { row(number); }); };
   const std::string t = "measure = \"mean\"\nchannels = [\"T_Nm\"]\n";
@@ -423,8 +457,12 @@ TEST_F(PublishedNumbers, RefusesWhatIsIncomplete) {
   EXPECT_THAT(refusal(t + "status = \"predicted\"\nvalue = 1\n"), HasSubstr("tolerance"));
   EXPECT_THAT(refusal(t + "status = \"predicted\"\nvalue = 1\ntolerance = 1\n"),
               HasSubstr("tolerance_reason"));
+  EXPECT_THAT(refusal(t + "status = \"predicted\"\nbelow = 1\nfind_pressure = true\n"),
+              HasSubstr("needs above > 0"));
   EXPECT_THAT(refusal(t + "status = \"predicted\"\nabove = 0\ncondition = \"x\"\n"),
               HasSubstr("not defined"));
+  EXPECT_THAT(refusal(t + "status = \"predicted\"\nabove = 0\nminus = \"x\"\n"),
+              testing::AllOf(HasSubstr("minus"), HasSubstr("not defined")));
   EXPECT_THAT(refusal("measure = \"fact\"\nstatus = \"predicted\"\nabove = 0\n"),
               HasSubstr("fact"));
 }

@@ -69,6 +69,7 @@ struct PublishedNumber {
   double low, high;  ///< window, or value -+ tolerance
 
   bool predicted() const { return status == "predicted"; }
+  bool calibrated() const { return status == "calibrated"; }
 };
 
 struct Published {
@@ -79,7 +80,9 @@ struct Published {
   std::vector<PublishedNumber> numbers;
 
   /// Whether a case is one of this pump: by its facts, never by its name.
-  bool describes(const Facts& facts) const;
+  bool describes(const Facts& facts) const { return mismatch(facts).empty(); }
+  /// What a case differs in from this pump, in words; "" where it is one.
+  std::string mismatch(const Facts& facts) const;
 };
 
 /// Reads a file of printed numbers. @throws InputError naming file, line and key.
@@ -91,16 +94,6 @@ struct PublishedRun {
   Facts facts;
 };
 
-/// Where results stand against printed numbers.
-struct PublishedSummary {
-  int predicted = 0;             ///< rows that count as validation
-  int predicted_comparable = 0;  ///< of them, rows this case can be held to
-  int predicted_inside = 0;
-  int other_comparable = 0;  ///< rows used to infer the geometry, or calibrated
-  int other_inside = 0;
-  std::string text() const;
-};
-
 /// A model's number under a row's measure: [low, high], equal where it is one number.
 struct PublishedValue {
   double low = 0, high = 0;
@@ -108,6 +101,9 @@ struct PublishedValue {
     return low >= number.low && high <= number.high;
   }
 };
+
+/// In words: "22181 to 35803", or one number.
+std::string text_of(const PublishedValue& value);
 
 /// The number that one run gives for a row; nothing where the run did not compute it.
 std::optional<PublishedValue> value_of(const PublishedNumber& number, const PublishedRun& run);
@@ -128,10 +124,25 @@ struct PublishedRow {
   bool counted() const { return number.predicted() && !number.repeats; }
 };
 
+/// Where results stand against printed numbers.
+struct PublishedSummary {
+  int predicted = 0;             ///< rows that count as validation
+  int predicted_comparable = 0;  ///< of them, rows this case can be held to
+  int predicted_inside = 0;
+  int other_comparable = 0;  ///< rows used to infer the geometry, or calibrated
+  int other_inside = 0;
+  void count(const PublishedRow& row);  ///< a row that repeats another does not count
+  std::string text() const;
+};
+
 struct PublishedSection {
   std::vector<std::string> models;
   std::vector<PublishedRow> rows;
   PublishedSummary summary;
+
+  /// Whether no number that a parameter of the case was set to is outside. Only these a case must
+  /// meet: how it stands against the others is what was to be found out.
+  bool calibrated() const;
 };
 
 /// Holds results to printed numbers.

@@ -26,8 +26,8 @@ using Values = std::vector<double>;
 
 // ---- Tables of the section "runs"
 
-/// A cell: nothing, a text, a count or a number (null where not computed).
-using Cell = std::variant<std::monostate, std::string, long, double>;
+/// A cell: nothing, yes or no, a text, a count or a number (null where not computed).
+using Cell = std::variant<std::monostate, bool, std::string, long, double>;
 
 struct Table {
   std::vector<std::string> columns;
@@ -258,6 +258,8 @@ struct LongRunSection {
 struct Document {
   std::string title;
   Lines program;  ///< versions
+  std::vector<std::string> files =
+      {};  ///< written together with the report, it too; none: it stands alone
   std::optional<CaseSection> the_case = std::nullopt;
   std::optional<std::vector<DerivedQuantity>> derived = std::nullopt;
   std::optional<Verdict> verdict = std::nullopt;

@@ -18,6 +18,13 @@ void add_curve(report::Document& document, const TorqueCurve& curve);
 /// @throws InputError where their samples differ
 void add_overlay(report::Document& document, const OperatingPoint& first,
                  const OperatingPoint& second);
+/// Adds how the operating point stands against printed numbers, with the delivery pressure that a
+/// number needs where the file asks for it.
+/// @throws InputError where the numbers are of another pump
+void add_published(report::Document& document, const compare::Published& published,
+                   const OperatingPoint& point, const PartProgress& progress_of = silent());
+/// Its rows that the case can be held to, for a terminal.
+std::string text_of(const compare::PublishedSection& section);
 /// Adds pressures from rest (hydraulics::transient_from_rest).
 void add_transient(report::Document& document, const ResultTable& transient);
 

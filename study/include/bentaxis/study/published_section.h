@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "bentaxis/compare/published.h"
 #include "bentaxis/pump/case.h"
@@ -15,6 +17,16 @@ namespace bentaxis::study {
 /// Facts of a case under a model's assumptions, by the names that files of printed numbers use.
 compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions);
 
+/// A publication about a pump: its numbers, and where they are from.
+struct PrintedNumbers {
+  compare::Published numbers;
+  std::string source;
+};
+/// The first publication of a folder of published data whose pump all these facts describe; nothing
+/// where there is none or no folder.
+std::optional<PrintedNumbers> printed_numbers_of(const std::filesystem::path& folder,
+                                                 const std::vector<compare::Facts>& all_facts);
+
 /// A model's case and the result already computed from it.
 struct PublishedInput {
   const Case* the_case;
@@ -22,9 +34,15 @@ struct PublishedInput {
   const ResultTable* table;
 };
 
+/// Holds both models to printed numbers. Recomputes the variants that the publication compares,
+/// driven.
+compare::PublishedSection judge_case(const compare::Published& published,
+                                     const PublishedInput& analytic,
+                                     const PublishedInput& multibody,
+                                     const PartProgress& progress_of = silent());
+
 /// The section for the first pump of a folder of published data that both cases are one of, by
-/// their facts; nothing where there is none or no folder. Recomputes the variants that the
-/// publication compares, driven.
+/// their facts; nothing where there is none or no folder.
 std::optional<report::PublishedTable> published_section(const std::filesystem::path& folder,
                                                         const PublishedInput& analytic,
                                                         const PublishedInput& multibody,

@@ -1,4 +1,4 @@
-#include "bentaxis/report/report.h"
+#include "bentaxis/report/text.h"
 
 #include <fmt/format.h>
 
@@ -7,51 +7,6 @@
 #include <map>
 
 namespace bentaxis::report {
-
-Json channel_rows(const compare::Comparison& comparison) {
-  Document part;
-  part.comparison = comparison;
-  return to_json(part)["channels"];
-}
-
-Json check_rows(const std::vector<compare::Check>& checks) {
-  Document part;
-  part.checks = checks;
-  return to_json(part)["checks"];
-}
-
-Json split_section(const compare::Split& split, const std::vector<AssumptionRow>& rows,
-                   const std::string& text) {
-  Document part;
-  part.assumptions = {text, rows, split};
-  return to_json(part)["assumptions"];
-}
-
-Json published_section(const PublishedTable& published) {
-  Document part;
-  part.published = published;
-  return to_json(part)["published"];
-}
-
-Json model_section(const ResultTable& table, const Lines& assumptions) {
-  Document part;
-  part.models = {model_of(table, assumptions)};
-  return to_json(part)["models"][0];
-}
-
-Json curve_section(const ResultTable& first, const ResultTable& second) {
-  return to_json(curves_of(first, second));
-}
-
-Json plot_values(const Values& values, double unit_in_si) {
-  Values scaled;
-  for (const double value : values) scaled.push_back(value / unit_in_si);
-  return to_json(Curves{{}, {{"", {{"", scaled}}}}, {}})["tables"][0]["columns"][""];
-}
-
-Json curve(const ResultTable& table, const std::string& channel_name) {
-  return plot_values(values_of(table, channel_name));
-}
 
 std::string text_table(const compare::Comparison& comparison) {
   // Worst channel of each group; a gap is worse than any difference.

@@ -1,0 +1,94 @@
+// Elements, numbers as text, tables: what the sections and figures are made of.
+
+// Okabe-Ito without its yellow (too pale on white), then four dark colours for pumps with many pistons.
+const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000",
+                 "#7f3b08", "#542788", "#5f6b75"];
+const EXTRA_COLOURS = ["#444c55", "#8a5a00", "#7a3b8f"];
+const DASHES = [null, [8, 5], [2, 4]];  // by table; the first is solid
+const DASH = "\u2013";                  // stands for "not computed", never for zero
+const GOOD = ["agrees", "holds", "explained", "inside"];
+const BAD = ["incomplete", "differs", "violated", "unexplained", "not explained", "outside"];
+
+// ---- Elements
+
+// Browsers may break a line inside 2.1e-14; such numbers are kept whole.
+const unbroken = text => text.split(/(\d[\d.]*e-\d+)/).map((part, i) => {
+  if (i % 2 === 0) return part;
+  const span = document.createElement("span");
+  span.className = "whole";
+  span.textContent = part;
+  return span;
+});
+
+// el("p.note", {title: "..."}, children...): strings become text nodes, null children are skipped.
+function el(spec, attributes, ...children) {
+  const [tag, ...classes] = spec.split(".");
+  const node = document.createElement(tag);
+  if (classes.length) node.className = classes.join(" ");
+  for (const [name, value] of Object.entries(attributes || {}))
+    if (value != null && value !== false) node.setAttribute(name, value === true ? "" : value);
+  for (const child of children.flat(2))
+    if (child != null) node.append(...(child instanceof Node ? [child] : unbroken(String(child))));
+  return node;
+}
+
+function svg(tag, attributes, text) {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  if (text != null) node.textContent = text;
+  return node;
+}
+
+const list = value => (Array.isArray(value) ? value : []);
+const phrases = (...parts) => parts.filter(Boolean).join(", ");
+const chip = word => {
+  const tone = GOOD.includes(word) ? "good" : BAD.includes(word) ? "bad" : "neutral";
+  return el("span.chip." + tone, {}, word || DASH);
+};
+
+// Names and values of a short list of facts: [["compiler", "..."], ...].
+const facts = (pairs, style = "") => !list(pairs).length ? null :
+  el("dl.facts" + style, {}, pairs.map(([name, value]) =>
+    el("div", {}, el("dt", {}, String(name)), el("dd", {}, value instanceof Node ? value : number(value)))));
+
+// ---- Numbers
+
+const scientific = (v, digits) =>
+  v.toExponential(digits - 1).replace(/\.?0*e\+?/, "e");  // 2.10e+3 -> 2.1e3
+
+function number(v, digits = 5) {
+  if (v == null || v === "") return DASH;
+  if (typeof v !== "number") return String(v);
+  const size = Math.abs(v);
+  if (size === 0) return "0";
+  if (size < 1e-3 || size >= 1e7) return scientific(v, digits);
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return String(Number(v.toFixed(decimals)));
+}
+
+// Differences are known to their order of magnitude only: more digits would be noise.
+const small = v => typeof v === "number" && Math.abs(v) < 1e-3 ? number(v, 2) : number(v, 3);
+// A ratio reads as per cent where per cent is a natural size.
+const ratio = v => typeof v === "number" && Math.abs(v) >= 1e-5 ? number(100 * v, 3) + " %" : small(v);
+const unit = (text, name) => (text === DASH || !name ? text : text + "\u00a0" + name);
+const degrees = v => unit(typeof v === "number" ? number(Number(v.toFixed(3)), 6) : DASH, "deg");
+
+// ---- Tables
+
+const tableCell = (tag, head, ...content) =>
+  el(tag, { role: "cell", "data-head": head }, el("div", {}, ...content));
+
+// columns: {head, cell: row -> text or node, num: right-aligned, main: names the row}. Every cell carries
+// its heading, because on a narrow page the style sheet shows each row as a block of "heading: value"
+// (then the roles keep it a table for a screen reader).
+function table(columns, rows, { rowClass, fold = true, style = "" } = {}) {
+  const head = el("tr", { role: "row" }, columns.map(c =>
+    el(c.num ? "th.num" : "th", { scope: "col", role: "columnheader" }, c.head)));
+  const body = rows.map(row => el("tr", { role: "row", class: rowClass && rowClass(row) || null }, columns.map(c => {
+    const style = c.num ? ".num" : "";
+    return c.main ? el("th" + style, { scope: "row", role: "rowheader" }, c.cell(row))
+                  : tableCell("td" + style, c.head, c.cell(row));
+  })));
+  return el("div.scroll", {}, el("table" + style + (fold ? ".fold" : ""), { role: "table" },
+    el("thead", { role: "rowgroup" }, head), el("tbody", { role: "rowgroup" }, body)));
+}

@@ -1,0 +1,124 @@
+// The page: which figures and sections there are, in their order.
+
+// Every other kind is made of curves: "curves" (of the page) and "own_axis".
+const DRAWN = { piston_bars: barsFigure, xy: xyFigure, map: mapFigure, scatter: scatterFigure };
+
+// A figure may bring curves of its own, at angles of its own.
+const dataOf = (figure, report, data) => !figure.curves ? data
+  : { ...prepare(report, figure.curves), mounts: data.mounts, redraws: data.redraws };
+
+function figures(report, data) {
+  const figures = list(report.figures).filter(f => f.curves || f.kind === "xy" || f.kind === "map"
+    || f.kind === "scatter" || data.order.length);
+  if (!figures.length) return null;
+  return el("div", {},
+    figures.some(f => !DRAWN[f.kind]) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
+      + "double-click to see all again. Point at a curve to read the values in the table above it.") : null,
+    figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
+      f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
+      (DRAWN[f.kind] || curvesFigure)(f, dataOf(f, report, data)))));
+}
+
+// What the sections need of the curves. A run backwards has falling angles: `order` lists the samples by
+// rising angle. The axis is rounded out to whole turns where the last step of a turn is all that is missing.
+function orderOf(theta, angle) {
+  const order = theta.map((_, i) => i).sort((a, b) => theta[a] - theta[b]);
+  const first = theta[order[0]], last = theta[order[order.length - 1]];
+  const step = order.length > 1 ? (last - first) / (order.length - 1) : 360;
+  const turns = (v, round) =>
+    (angle && Math.abs(360 * round(v / 360) - v) <= 1.01 * step ? 360 * round(v / 360) : v);
+  return { theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil) };
+}
+
+function prepare(report, curves) {
+  const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
+  const channels = new Map(list(report.channels).map(c => [c.name, c]));
+  const about = name => channels.get(name) || {};
+  const usual = ["analytic", "multibody"];
+  const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
+  return {
+    ...orderOf(list(curves.theta_deg), true), axis: { label: "shaft angle (deg)", angle: true }, tables, pair,
+    difference: curves.difference || {}, mounts: [], redraws: [],
+    ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
+    meaning: name => phrases(about(name).meaning, about(name).on_body && "on " + about(name).on_body),
+    pistonOf: name => String(about(name).piston || name),
+  };
+}
+
+const SECTIONS = [
+  ["verdict", "Verdict", verdictBanner], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
+  ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
+  ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
+  ["runs", "Runs", runs], ["published", "Against the published numbers", published],
+  ["checks", "Checks of each model", checks],
+  ["figures", "Figures", figures], ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
+  ["models", "How each model was obtained", models], ["versions", "Versions", versions],
+];
+
+function header(report, data) {
+  const { theta, tables } = data, n = theta.length;
+  const angles = n === 0 ? null : n === 1 ? "1 angle, " + degrees(theta[0])
+    : `${n} angles from ${degrees(theta[0])} to ${degrees(theta[n - 1])}`;
+  const parts = [report.case && report.case.file, tables.map(t => t.name).join(" and "), angles,
+                 list(list(report.program)[0]).join(" ")];
+  return [el("h1", {}, report.title || document.title),
+          el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))];
+}
+
+// Contents beside the report where there is room, folded above it where there is not.
+function contents(sections, report) {
+  const link = (id, text, inner) => el("li", {}, el("a", { href: "#" + id }, text), inner);
+  const inner = () => el("ul", {}, report.figures.map(f => link("figure-" + f.id, f.title)));
+  const folding = el("details", {}, el("summary", {}, "Contents"),
+    el("ul", {}, sections.map(s => link(s.id, s.title, s.id === "figures" ? inner() : null))));
+  const wide = matchMedia("(min-width: 1100px)");
+  const fold = () => { folding.open = wide.matches; };
+  wide.addEventListener("change", fold);
+  fold();
+  const links = new Map([...folding.querySelectorAll("a")].map(a => [a.getAttribute("href").slice(1), a]));
+  folding.addEventListener("click", e => { if (e.target.closest("a") && !wide.matches) folding.open = false; });
+  const watcher = new IntersectionObserver(entries => entries.forEach(e => {
+    const a = links.get(e.target.id);
+    if (e.isIntersecting) a.setAttribute("aria-current", "true"); else a.removeAttribute("aria-current");
+  }), { rootMargin: "-15% 0px -80% 0px" });
+  links.forEach((_, id) => watcher.observe(document.getElementById(id)));
+  return folding;
+}
+
+// Canvases do not follow the width of the paper by themselves.
+function fitToPaper(redraws) {
+  const fit = printing => {
+    document.documentElement.classList.toggle("printing", printing);
+    redraws.forEach(redraw => redraw());
+  };
+  addEventListener("beforeprint", () => fit(true));
+  addEventListener("afterprint", () => fit(false));
+}
+
+function render() {
+  const read = id => JSON.parse(document.getElementById(id).textContent);
+  const report = read("report"), data = prepare(report, read("curves") || {});
+  document.getElementById("head").append(...header(report, data));
+  const main = document.getElementById("main");
+  const shown = [];
+  for (const [id, title, build] of SECTIONS) {
+    const body = build(report, data);
+    if (!body) continue;
+    main.append(el("section", { id, "aria-labelledby": id + "-title" },
+      el("h2", { id: id + "-title" }, title), body));
+    shown.push({ id, title });
+  }
+  data.mounts.forEach(mount => mount());  // a plot needs its box in the page, to know its width
+  document.getElementById("contents").append(contents(shown, report));
+  fitToPaper(data.redraws);
+}
+
+try {
+  render();
+  document.documentElement.dataset.ready = "true";
+} catch (error) {
+  document.body.prepend(el("p.error-box", { role: "alert" }, "This report could not be drawn: " + error.message
+    + ". The numbers are in report.json and in the CSV files of the same directory."));
+  document.documentElement.dataset.ready = "error";
+  console.error(error);
+}

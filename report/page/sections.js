@@ -1,0 +1,148 @@
+// The sections of the report but for the comparison and the figures.
+
+function verdictBanner({ verdict, meaning }, data) {
+  if (!verdict && !meaning) return null;
+  const tiles = [];
+  if (verdict) {
+    const worst = verdict.worst || {};
+    if (verdict.compared != null) tiles.push(["channels compared", verdict.compared]);
+    if (worst.max_over_peak != null) tiles.push(["worst difference", ratio(worst.max_over_peak) + " of peak"]);
+    if (worst.channel) tiles.push(["found in", el("span", {}, el("code", {}, worst.channel),
+      worst.theta_deg == null ? null : " at " + degrees(worst.theta_deg))]);
+    if (verdict.rest_over_peak != null) {  // unequal assumptions: the rest is what is judged
+      tiles.push(["left unexplained", ratio(verdict.rest_over_peak) + " of peak"]);
+      tiles.push(["tolerance of the rest", small(verdict.rest_tolerance) + " of peak"]);
+    } else {
+      if (verdict.tolerance != null) tiles.push(["tolerance", small(verdict.tolerance) + " of peak"]);
+      if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
+    }
+  }
+  const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
+  return el("div", {},
+    el("div.banner." + tone, { role: "status" },
+      el("p.word", {}, verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
+      el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
+      facts(tiles, ".tiles")),
+    meaning ? el("p.meaning", {}, meaning) : null);
+}
+
+// What a report has to say in words: {text, groups: [{title, lines}]}.
+const summary = ({ summary }) => !summary ? null : el("div", {},
+  summary.text ? el("p", {}, summary.text) : null,
+  list(summary.groups).map(g => el("div.block", {}, g.title ? el("h3", {}, g.title) : null,
+    el("ul.plain", {}, list(g.lines).map(line => el("li", {}, line))))));
+
+const warnings = ({ warnings }) => !list(warnings).length ? null :
+  el("ul.warnings", {}, warnings.map(w => el("li", {}, el("strong", {}, w.name), el("span", {}, w.text))));
+
+const commonInputs = ({ common }) => !list(common).length ? null : table([
+  { head: "Input", main: true, cell: r => r.input },
+  { head: "How both models get it", cell: r => r.value },
+  { head: "What would catch an error in it", cell: r => r.caught_by || DASH },
+], common);
+
+const validity = ({ validity }) => !list(validity).length ? null : table([
+  { head: "Limit", main: true, cell: r => r.limit },
+  { head: "State", cell: r => chip(r.violated == null ? "not computed" : r.violated ? "violated" : "holds") },
+  { head: "Share of the turn", num: true, cell: r => unit(number(r.share_percent, 3), "%") },
+  { head: "Worst value", num: true, cell: r => unit(number(r.worst), r.unit) },
+  { head: "at", num: true, cell: r => degrees(r.theta_deg) },
+  { head: "Consequence", cell: r => r.consequence || DASH },
+], validity, { rowClass: r => (r.violated ? "flag" : "") });
+
+function assumptionSplit({ assumptions }, data) {
+  if (!assumptions || !list(assumptions.rows).length && !list(assumptions.channels).length) return null;
+  const share = (c, channel) => el("li", {}, el("b", {}, c.assumption), ": " + unit(small(c.max_abs), channel.unit)
+    + ` (${ratio(c.over_peak)} of peak)` + (c.mean == null ? "" : ", mean " + unit(small(c.mean), channel.unit)));
+  return el("div", {},
+    assumptions.text ? el("p", {}, assumptions.text) : null,
+    !list(assumptions.rows).length ? null : table([
+      { head: "Assumption", main: true, cell: r => r.name },
+      ...data.pair.map((name, i) => ({ head: name, cell: r => number(data.ofTable(r, i)) })),
+      { head: "Equal", cell: r => (data.ofTable(r, 0) === data.ofTable(r, 1) ? "yes" : el("span.chip.warn", {}, "no")) },
+    ], assumptions.rows),
+    !list(assumptions.channels).length ? null : el("div", {},
+      el("p.hint", {}, "The channel of each reaction with the largest difference:"),
+      splitTable(worstOfGroups(assumptions.channels)),
+      el("details.others", {}, el("summary", {}, `All channels (${assumptions.channels.length})`),
+        splitTable(assumptions.channels))));
+
+  function splitTable(channels) {
+    return table([
+      { head: "Channel", main: true, cell: r => el("code", {}, r.name) },
+      { head: "Peak", num: true, cell: r => unit(number(r.peak), r.unit) },
+      { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), r.unit) },
+      { head: "of peak", num: true, cell: r => ratio(r.over_peak) },
+      { head: "Made up of", cell: r => list(r.contributions).length
+          ? el("ul.plain", {}, r.contributions.map(c => share(c, r))) : DASH },
+      { head: "Rest", num: true, cell: r => el("span", {}, unit(small(r.rest), r.unit),
+          r.rest_over_peak == null ? null : el("small", {}, ratio(r.rest_over_peak) + " of peak")) },
+      { head: "Verdict", cell: r => chip(r.verdict) },
+    ], channels);
+  }
+}
+
+// The channel with the largest difference of each group, in the order of the groups.
+function worstOfGroups(channels) {
+  const worst = new Map();
+  for (const channel of channels) {
+    const key = channel.group + "|" + channel.kind;
+    if (!worst.has(key) || channel.over_peak > worst.get(key).over_peak) worst.set(key, channel);
+  }
+  return [...worst.values()];
+}
+
+const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(run => el("div.block", {},
+  el("h3", {}, run.title), run.text ? el("p", {}, run.text) : null, facts(run.facts),
+  !run.table || !list(run.table.rows).length ? null : table(run.table.columns.map((head, i) => ({
+    head, main: i === 0, num: run.table.rows.every(r => r[i] == null || typeof r[i] === "number"),
+    cell: r => small(r[i]) })), run.table.rows, { fold: run.table.columns.length > 3, style: ".narrow" }))));
+
+const published = ({ published }, data) => !published || !list(published.rows).length ? null : el("div", {},
+  published.text ? el("p", {}, published.text) : null,
+  table([
+    { head: "Quantity", main: true, cell: r => r.quantity },
+    ...(published.rows.some(r => r.at) ? [{ head: "At", cell: r => r.at || DASH }] : []),
+    { head: "Paper", cell: r => number(r.paper) },
+    ...data.pair.map((name, i) => ({ head: name, num: true, cell: r => unit(number(data.ofTable(r, i)), r.unit) })),
+    { head: "Verdict", cell: r => chip(r.verdict) },
+    { head: "Status", cell: r => r.status || DASH },
+    { head: "Where", cell: r => r.where || DASH },
+  ], published.rows));
+
+const checks = ({ checks }) => !list(checks).length ? null : table([
+  { head: "Check", main: true, cell: r => r.name },
+  { head: "Model", cell: r => r.model },
+  { head: "Verdict", cell: r => chip(r.verdict) },
+  { head: "Worst", num: true, cell: r => unit(small(r.worst), r.unit) },
+  { head: "Scale", num: true, cell: r => unit(number(r.scale), r.unit) },
+  { head: "Relative", num: true, cell: r => small(r.relative) },
+  { head: "Tolerance", num: true, cell: r => small(r.tolerance) },
+  { head: "at", num: true, cell: r => degrees(r.theta_deg) },
+], checks, { rowClass: r => (r.verdict === "violated" ? "flag" : "") });
+
+function caseTable(report) {
+  const entries = list(report.case && report.case.entries);
+  if (!entries.length) return null;
+  const tables = [...new Set(entries.map(e => e.table || ""))];
+  return el("div", {}, report.case.file ? el("p", {}, "Case file ", el("code", {}, report.case.file)) : null,
+    el("div.columns", {}, tables.map(name => el("div.block", {}, el("h3", {}, name ? `[${name}]` : "top level"),
+      facts(entries.filter(e => (e.table || "") === name).map(e => [e.key, el("span", {}, String(e.value),
+        e.defaulted ? el("span.default", {}, "default") : null)]), ".rows")))));
+}
+
+const derived = ({ derived }) => !list(derived).length ? null : table([
+  { head: "Quantity", main: true, cell: r => r.name },
+  { head: "Symbol", cell: r => r.symbol || DASH },
+  { head: "Value", num: true, cell: r => unit(number(r.value), r.unit) },
+  { head: "From", cell: r => r.source || DASH },
+], derived);
+
+function models({ models }) {
+  const time = m => (m.seconds == null ? [] : [["time", unit(number(m.seconds, 3), "s")]]);
+  return !list(models).length ? null : el("div.cards", {}, models.map(m => el("div.block.card", {},
+    el("h3", {}, m.name), facts([...list(m.facts), ...time(m)], ".pairs"),
+    list(m.assumptions).length ? [el("h4", {}, "Assumptions"), facts(m.assumptions, ".pairs")] : null)));
+}
+
+const versions = ({ program }) => facts(program, ".pairs");

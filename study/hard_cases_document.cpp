@@ -1,0 +1,234 @@
+#include "bentaxis/study/hard_cases_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::study {
+namespace {
+
+double digits(double loss) { return loss > 0 ? std::clamp(-std::log10(loss), 0.0, 16.0) : 16; }
+
+std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const auto& part : parts) {
+    if (!text.empty()) text += between;
+    text += part;
+  }
+  return text;
+}
+
+const char* expected(const HardOutcome& outcome) {
+  return outcome.refusal_expected ? "refused" : "accurate";
+}
+
+bool misjudged(const HardOutcome& outcome) {
+  const auto ratio = outcome.worst_ratio();
+  return ratio && (*ratio > kPredictionFactor || *ratio < 1 / kPredictionFactor);
+}
+
+long misjudged(const HardCaseStudy& study) {
+  return std::count_if(study.runs.begin(), study.runs.end(),
+                       [](const HardCaseRun& run) { return misjudged(run.outcome); });
+}
+
+long count(const HardCaseStudy& study, HardVerdict verdict) {
+  return std::count_if(study.runs.begin(), study.runs.end(),
+                       [&](const HardCaseRun& run) { return run.outcome.verdict == verdict; });
+}
+
+bool bounded(const HardCaseStudy& study) { return !study.long_run || study.long_run->bounded(); }
+
+std::string cell(const HardOutcome& o) {
+  if (o.verdict == HardVerdict::refused) return "refused";
+  const GroupLoss* worst = o.worst();
+  if (worst == nullptr) return to_string(o.verdict);
+  return fmt::format("{}{:.1f} ({:.1f})", o.verdict == HardVerdict::wrong ? "WRONG " : "",
+                     digits(worst->measured), digits(worst->predicted));
+}
+
+report::HardCaseRow::Model record_of(const HardOutcome& o) {
+  report::HardCaseRow::Model model{o.model,      expected(o),     to_string(o.verdict),
+                                   o.message,    std::nullopt,    {},
+                                   o.weak_point, o.worst_ratio(), o.seconds_per_angle * 1e6};
+  if (o.worst() != nullptr) model.digits = digits(o.worst()->measured);
+  for (const GroupLoss& g : o.groups) model.groups.push_back({g.group, g.measured, g.predicted});
+  return model;
+}
+
+std::vector<report::HardCaseRow> records(const HardCaseStudy& study) {
+  std::vector<report::HardCaseRow> rows;
+  for (const auto& [hard, outcome] : study.runs) {
+    if (rows.empty() || rows.back().name != hard.name)
+      rows.push_back({hard.name, hard.group, hard.hard, hard.changes, {}});
+    rows.back().models.push_back(record_of(outcome));
+  }
+  return rows;
+}
+
+// One block per group of cases, a row per case.
+std::vector<report::Section> sections(const HardCaseStudy& study) {
+  std::vector<std::string> columns = {"case", "what is hard", "set to"};
+  columns.insert(columns.end(), hard_models().begin(), hard_models().end());
+  columns.emplace_back("message");
+  std::vector<report::Section> blocks;
+  for (std::size_t i = 0; i < study.runs.size(); i += hard_models().size()) {
+    const HardCase& hard = study.runs[i].hard;
+    auto block = std::find_if(blocks.begin(), blocks.end(),
+                              [&](const report::Section& b) { return b.title == hard.group; });
+    if (block == blocks.end())
+      block = blocks.insert(
+          block, {hard.group,
+                  "Digits of the worst reaction, in brackets those predicted, and which reaction "
+                  "it is.",
+                  {},
+                  {columns, {}}});
+    std::vector<report::Cell> row = {hard.name, hard.hard, joined(hard.changes, ", ")};
+    std::vector<std::string> messages;
+    for (std::size_t m = 0; m < hard_models().size(); ++m) {
+      const HardOutcome& o = study.runs[i + m].outcome;
+      row.emplace_back(o.worst() ? fmt::format("{} {}", cell(o), o.worst()->group) : cell(o));
+      if (!o.message.empty()) messages.push_back(fmt::format("{}: {}", o.model, o.message));
+    }
+    row.emplace_back(joined(messages, "; "));
+    block->table.rows.push_back(std::move(row));
+  }
+  return blocks;
+}
+
+report::Section section_of(const LongRun& run) {
+  report::Table table{{"turn", "constraint error, m", "its rate, m/s", "gear phase, rad",
+                       "spin error, rad/s", "work lost, J", "reaction error, of peak"},
+                      {}};
+  for (const auto& t : run.shown)
+    table.rows.push_back({long{t.number}, t.record.position_error, t.record.velocity_error,
+                          t.record.gear_phase, t.record.spin_error, t.record.work_residual,
+                          t.reaction_error});
+  return {fmt::format("{} turns integrated", run.turns),
+          fmt::format("Real pistons spinning, accuracy {:g}; worst within the turn, work since the "
+                      "start of {:.4g} J that the loads did. {:.3g} s a turn. Second half over "
+                      "first half: constraint error {:.2g}, reaction error {:.2g}.",
+                      run.accuracy, run.work_of_loads, run.seconds / run.turns,
+                      run.position_error[1] / run.position_error[0],
+                      run.reaction_error[1] / run.reaction_error[0]),
+          {},
+          std::move(table)};
+}
+
+std::string text_of(const LongRun& run) {
+  std::string text = fmt::format(
+      "\n{} turns integrated, accuracy {:g}, {:.3g} s a turn; worst within the turn:\n{:>6} {:>12} "
+      "{:>12} {:>12} {:>12} {:>12} {:>12}\n",
+      run.turns, run.accuracy, run.seconds / run.turns, "turn", "constraint/m", "rate/(m/s)",
+      "phase/rad", "spin/(rad/s)", "work lost/J", "reaction");
+  for (const auto& t : run.shown)
+    text +=
+        fmt::format("{:>6} {:>12.1e} {:>12.1e} {:>12.1e} {:>12.1e} {:>12.1e} {:>12.1e}\n", t.number,
+                    t.record.position_error, t.record.velocity_error, t.record.gear_phase,
+                    t.record.spin_error, t.record.work_residual, t.reaction_error);
+  return text;
+}
+
+}  // namespace
+
+bool HardCaseStudy::good() const {
+  return count(*this, HardVerdict::wrong) == 0 && misjudged(*this) == 0 && bounded(*this);
+}
+
+std::string HardCaseStudy::headline() const {
+  std::string text = fmt::format(
+      "{} cases, each by {} ways: {} accurate within the predicted loss, {} refused with a "
+      "message, "
+      "{} wrong. Losses above {:g} of peak that were not predicted within a factor of {:g}: {}.",
+      runs.size() / hard_models().size(), hard_models().size(), count(*this, HardVerdict::accurate),
+      count(*this, HardVerdict::refused), count(*this, HardVerdict::wrong), kNoticeableLoss,
+      kPredictionFactor, misjudged(*this));
+  if (long_run)
+    text += fmt::format(" Over {} integrated turns errors {}.", long_run->turns,
+                        bounded(*this) ? "do not grow" : "GROW");
+  return text;
+}
+
+report::Document hard_cases_document(const HardCaseStudy& study, const report::Lines& program) {
+  report::Document document;
+  document.title = "Hard cases";
+  document.program = program;
+  document.verdict =
+      report::Verdict{study.good(), study.headline(), study.good() ? "Holds" : "Fails"};
+  document.meaning =
+      "Digits are -log10 of the largest difference from the 50-digit curve over the peak of the "
+      "reaction; predicted are the digits that the rounding of inputs and arithmetic leaves "
+      "(docs/trust.md).";
+  document.hard_cases = records(study);
+  document.runs = sections(study);
+  if (study.long_run) {
+    document.runs->push_back(section_of(*study.long_run));
+    document.long_run = report::LongRunSection{document.runs->back(), bounded(study)};
+  }
+  return document;
+}
+
+std::string hard_cases_csv(const HardCaseStudy& study) {
+  std::string text =
+      "case,model,expected,verdict,group,loss_over_peak,predicted_over_peak,digits,us_per_angle\n";
+  for (const auto& [hard, o] : study.runs) {
+    const GroupLoss* worst = o.worst();
+    text += fmt::format("{},{},{},{},", hard.name, o.model, expected(o), to_string(o.verdict));
+    if (worst != nullptr)
+      text += fmt::format("{},{},{},{:.1f},{:.1f}\n", worst->group, number_text(worst->measured),
+                          number_text(worst->predicted), digits(worst->measured),
+                          o.seconds_per_angle * 1e6);
+    else
+      text += ",,,,\n";
+  }
+  return text;
+}
+
+std::string hard_cases_markdown(const HardCaseStudy& study) {
+  std::string text = "| case | what is hard |";
+  std::string rule = "|---|---|";
+  for (const auto& model : hard_models()) {
+    text += fmt::format(" {} |", model);
+    rule += "---|";
+  }
+  text += fmt::format("\n{}\n", rule);
+  for (std::size_t i = 0; i < study.runs.size(); i += hard_models().size()) {
+    text += fmt::format("| `{}` | {} |", study.runs[i].hard.name, study.runs[i].hard.hard);
+    for (std::size_t m = 0; m < hard_models().size(); ++m)
+      text += fmt::format(" {} |", cell(study.runs[i + m].outcome));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string hard_cases_heading() {
+  return fmt::format("{:<24} {:<10} {:<9} {:>7} {:>10} {:>9}  {}\n", "case", "model", "verdict",
+                     "digits", "predicted", "us/angle", "least in, message");
+}
+
+std::string text_of(const HardCaseRun& run) {
+  const HardOutcome& o = run.outcome;
+  const GroupLoss* worst = o.worst();
+  const std::string text =
+      fmt::format("{:<24} {:<10} {:<9}", run.hard.name, o.model, to_string(o.verdict));
+  if (worst == nullptr)
+    return text + fmt::format(" {:>7} {:>10} {:>9}  {}\n", "", "", "", o.message);
+  return text + fmt::format(" {:>7.1f} {:>10.1f} {:>9.1f}  {} {}\n", digits(worst->measured),
+                            digits(worst->predicted), o.seconds_per_angle * 1e6, worst->group,
+                            o.message);
+}
+
+std::string hard_cases_text(const HardCaseStudy& study) {
+  std::string text;
+  for (const auto& [hard, outcome] : study.runs)
+    if (misjudged(outcome))
+      text += fmt::format("{}, {}: measured over predicted loss {:.1e}\n", hard.name, outcome.model,
+                          *outcome.worst_ratio());
+  if (study.long_run) text += text_of(*study.long_run);
+  return text + fmt::format("\n{}\n\n", study.headline());
+}
+
+}  // namespace bentaxis::study

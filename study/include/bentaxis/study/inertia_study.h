@@ -1,0 +1,53 @@
+// The whole study of lumped and real pistons: what `bentaxis inertia` computes.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bentaxis/study/inertia.h"
+
+namespace bentaxis::study {
+
+struct InertiaOptions {
+  std::vector<double> speeds = {1500, 2350};  ///< rpm
+  MapAxis map_axis = MapAxis::mass;
+  /// Range of speed of the map, rpm; absent: a third of the slowest to 3 times the fastest.
+  std::optional<std::pair<double, double>> map_speeds;
+  std::pair<double, double> map_factors = {0.25, 8};  ///< on mass or length
+  int map_size = 30;                                  ///< values along each side of the map
+};
+
+struct InertiaStudy {
+  Case the_case;                       ///< with its chamber pressure
+  std::vector<InertiaRun> one_piston;  ///< by speed: without load, loaded
+  std::vector<InertiaRun> full;        ///< likewise
+  ErrorCauses causes, multibody_causes;
+  std::vector<Lumping> lumpings, over_fraction;
+  ThreeMasses masses;
+  ErrorMap map;
+  std::vector<Approach> approach;
+  std::optional<SpinRun> spin;  ///< absent: a piston without axial inertia has no freedom to spin
+  std::vector<SceneCost> costs;
+  double fastest = 0;       ///< rpm
+  double models_apart = 0;  ///< largest difference of the two models, of peak
+  double scenes_apart = 0;  ///< of the one-piston scene from the full pump, of peak
+
+  /// The run of a list at the same speed, loaded.
+  static const InertiaRun& loaded(const std::vector<InertiaRun>& runs, double speed_rpm);
+  bool agrees() const;
+};
+
+/// Both models solve the same equations; what they may differ by, of peak.
+inline constexpr double kInertiaModelsAgree = 1e-10;
+/// The one-piston scene against the full pump, of peak.
+inline constexpr double kInertiaScenesAgree = 1e-11;
+
+/// @param as_read  a chamber pressure of kind "hydraulic" is computed at each speed
+/// @throws InputError where the case has no data of the real piston or a speed is 0;
+///         ComputationError
+InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& options,
+                               const PartProgress& progress_of);
+
+}  // namespace bentaxis::study

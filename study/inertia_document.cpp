@@ -1,0 +1,469 @@
+#include "bentaxis/study/inertia_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/published_section.h"
+
+namespace bentaxis::study {
+namespace {
+
+using report::Cell;
+using report::Curves;
+using report::Figure;
+using report::Values;
+using report::values_of;
+using Names = std::vector<std::string>;
+
+const Names kRs = {"Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N"};
+const Names kRc = {"Rc_1_x2_N", "Rc_1_y2_N"};
+
+std::string rpm(double speed) { return fmt::format("{:g} rpm", speed); }
+std::string load_name(bool loaded) { return loaded ? "loaded" : "no load"; }
+
+// Magnitude of a vector of piston 1 over the turn.
+Values magnitude(const ResultTable& table, const Names& names) {
+  Values result(table.rows(), 0.0);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (const auto& name : names) {
+      const double value = table.at(row, table.find(name));
+      result[row] += value * value;
+    }
+    result[row] = std::sqrt(result[row]);
+  }
+  return result;
+}
+
+const ResultTable& analytic_of(const InertiaRun& run, bool real) {
+  return real ? run.analytic_real : run.analytic_lumped;
+}
+const ResultTable& multibody_of(const InertiaRun& run, bool real) {
+  return real ? run.multibody_real : run.multibody_lumped;
+}
+
+// ---- Figures
+
+// Adds one name's curve by each model and their difference.
+void add(Curves& curves, const std::string& name, const Values& analytic, const Values& multibody) {
+  Values difference;
+  for (std::size_t i = 0; i < analytic.size(); ++i)
+    difference.push_back(multibody[i] - analytic[i]);
+  curves.tables[0].columns.emplace_back(name, analytic);
+  curves.tables[1].columns.emplace_back(name, multibody);
+  curves.difference.emplace_back(name, std::move(difference));
+}
+
+// |R| of both kinds of piston at all speeds, without load or loaded.
+Figure magnitude_figure(const InertiaStudy& s, Curves& curves, const std::string& id,
+                        const std::string& symbol, const Names& parts, bool loaded,
+                        const std::string& paper) {
+  Names names;
+  for (const InertiaRun& run : s.one_piston) {
+    if (run.loaded != loaded) continue;
+    for (const bool real : {false, true}) {
+      names.push_back(fmt::format("|{}| {}, {}, {}", symbol, rpm(run.speed_rpm),
+                                  real ? "real piston" : "2 masses", load_name(loaded)));
+      add(curves, names.back(), magnitude(analytic_of(run, real), parts),
+          magnitude(multibody_of(run, real), parts));
+    }
+  }
+  return {id, fmt::format("|{}| of a piston, {}", symbol, load_name(loaded)), paper,
+          report::ChannelFigure{"N", names}};
+}
+
+// Components at the fastest speed, without load.
+Figure component_figure(const InertiaRun& run, Curves& curves, const std::string& id,
+                        const std::string& symbol, const Names& parts) {
+  Names names;
+  for (const auto& part : parts) {
+    for (const bool real : {false, true}) {
+      names.push_back(part + (real ? ", real piston" : ", 2 masses"));
+      add(curves, names.back(), values_of(analytic_of(run, real), part),
+          values_of(multibody_of(run, real), part));
+    }
+  }
+  return {id, fmt::format("{} by component, no load, {}", symbol, rpm(run.speed_rpm)), "",
+          report::ChannelFigure{"N", names}};
+}
+
+// lumped - real of channels of the full pump.
+Figure effect_figure(const InertiaRun& run, Curves& curves, const std::string& id,
+                     const std::string& title, const std::string& unit, const Names& channels) {
+  Names names;
+  const ResultTable analytic = difference(run.analytic_lumped, run.analytic_real, "");
+  const ResultTable multibody = difference(run.multibody_lumped, run.multibody_real, "");
+  for (const auto& channel : channels) {
+    names.push_back(channel + ", 2 masses - real");
+    add(curves, names.back(), values_of(analytic, channel), values_of(multibody, channel));
+  }
+  return {id, fmt::format("{}, {}, {}", title, rpm(run.speed_rpm), load_name(run.loaded)), "",
+          report::ChannelFigure{unit, names}};
+}
+
+Figure cause_figure(const InertiaStudy& s, Curves& curves, const std::string& id,
+                    const std::string& symbol, const Names& parts) {
+  Names names;
+  for (const auto part :
+       {&ErrorCauses::all, &ErrorCauses::centre, &ErrorCauses::transverse, &ErrorCauses::spin}) {
+    names.push_back(fmt::format("|error of {}| by {}", symbol, (s.causes.*part).name));
+    add(curves, names.back(), magnitude(s.causes.*part, parts),
+        magnitude(s.multibody_causes.*part, parts));
+  }
+  return {
+      id,
+      fmt::format("Error of {} that lumping causes, each cause alone, {}", symbol, rpm(s.fastest)),
+      "", report::ChannelFigure{"N", names},
+      "Magnitudes of vectors; the vectors add up, their magnitudes need not."};
+}
+
+// Rs and Rc over something, of a list of results.
+template <class Result>
+std::vector<report::XySeries> both_errors(const std::vector<Result>& results,
+                                          double Result::*argument) {
+  std::vector<report::XySeries> series = {{"Rs", {}, {}}, {"Rc", {}, {}}};
+  for (const Result& result : results) {
+    for (auto& s : series) s.x.push_back(result.*argument);
+    series[0].y.push_back(result.error_rs);
+    series[1].y.push_back(result.error_rc);
+  }
+  return series;
+}
+
+Figure fraction_figure(const InertiaStudy& s) {
+  return {"fraction", "Error of two masses over chi, no load, " + rpm(s.fastest), "",
+          report::XyFigure{{"chi, share of the mass at A"},
+                           {"largest error over the turn", "N", false, 0},
+                           both_errors(s.over_fraction, &Lumping::joint_mass_fraction)}};
+}
+
+Figure approach_figure(const InertiaStudy& s) {
+  return {"approach",
+          "Simbody: the real piston tends to the lumped one as its inertia does, " + rpm(s.fastest),
+          "",
+          report::XyFigure{{"t: 1 = real piston, 0 = moments of the lumped one", "", true},
+                           {"difference from the lumped scene", "N", true},
+                           both_errors(s.approach, &Approach::t)},
+          "A rigid body with free spin against a massless rod with two point masses: two "
+          "different Simbody bodies and joints."};
+}
+
+Figure map_figure(const InertiaStudy& s, const std::string& symbol,
+                  const std::vector<Values>& shares) {
+  std::vector<Values> percent = shares;
+  for (auto& row : percent)
+    for (double& v : row) v = is_computed(v) ? 100 * v : v;
+  const bool mass = s.map.axis == MapAxis::mass;
+  return {"map_" + symbol, fmt::format("Lumping error of {} over the loaded reaction", symbol), "",
+          report::MapFigure{
+              {"speed", "rpm", true},
+              {mass ? "mass of the piston over the case's" : "length over the case's", "", true},
+              {"error", "%"},
+              s.map.speed_rpm,
+              s.map.factor,
+              std::move(percent),
+              {0.1, 1, 5},
+              {{"case", std::abs(s.one_piston.front().speed_rpm), 1},
+               {"case", std::abs(s.fastest), 1}}},
+          "Largest |two masses - real| over the turn, divided by the real piston's largest "
+          "loaded reaction of the same pump."};
+}
+
+std::vector<Figure> all_figures(const InertiaStudy& s, Curves& curves) {
+  const auto fast = [&](const std::vector<InertiaRun>& runs, bool loaded) -> const InertiaRun& {
+    return *std::find_if(runs.begin(), runs.end(), [&](const InertiaRun& run) {
+      return run.speed_rpm == s.fastest && run.loaded == loaded;
+    });
+  };
+  const InertiaRun& bare = fast(s.one_piston, false);
+  const InertiaRun& full = fast(s.full, true);
+  std::vector<Figure> figures = {
+      magnitude_figure(s, curves, "rc", "Rc", kRc, false, "Fig. 36"),
+      magnitude_figure(s, curves, "rs", "Rs", kRs, false, "Fig. 37"),
+      component_figure(bare, curves, "rc_parts", "Rc", kRc),
+      component_figure(bare, curves, "rs_parts", "Rs", kRs),
+      magnitude_figure(s, curves, "rc_loaded", "Rc", kRc, true, "Fig. 14"),
+      magnitude_figure(s, curves, "rs_loaded", "Rs", kRs, true, "Fig. 12"),
+      cause_figure(s, curves, "causes_rs", "Rs", kRs),
+      cause_figure(s, curves, "causes_rc", "Rc", kRc),
+      fraction_figure(s),
+      effect_figure(full, curves, "bearings", "Effect of lumping on the bearings", "N",
+                    {"Rb1_x1_N", "Rb1_y1_N", "Rb1_z1_N", "Rb2_x1_N", "Rb2_y1_N"})};
+  if (full.analytic_real.find("Rcs_z4_N") < full.analytic_real.columns())
+    figures.push_back(effect_figure(full, curves, "gear", "Effect of lumping on the tooth force",
+                                    "N", {"Rcs_z4_N"}));
+  figures.push_back(effect_figure(full, curves, "torque", "Effect of lumping on the drive torque",
+                                  "Nm", {"Td_z1_Nm"}));
+  figures.push_back(map_figure(s, "Rc", s.map.rc));
+  figures.push_back(map_figure(s, "Rs", s.map.rs));
+  figures.push_back(approach_figure(s));
+  return figures;
+}
+
+// ---- Tables
+
+report::Table error_table(const std::vector<InertiaRun>& runs, const Names& groups) {
+  report::Table table{
+      {"reaction", "speed, rpm", "load", "error of lumping, analytic", "the same, multibody",
+       "peak of this run", "peak loaded", "error, % of peak loaded"},
+      {}};
+  for (const InertiaRun& run : runs)
+    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(runs, run.speed_rpm)))
+      if (std::find(groups.begin(), groups.end(), error.group) != groups.end())
+        table.rows.push_back({fmt::format("{} ({})", error.group, error.unit), error.speed_rpm,
+                              load_name(error.loaded), error.analytic, error.multibody, error.peak,
+                              error.loaded_peak, 100 * error.fraction()});
+  return table;
+}
+
+report::Section causes_section(const InertiaStudy& s) {
+  report::Table table{{"cause", "error of Rs, N", "error of Rc, N"}, {}};
+  for (const ResultTable* cause :
+       {&s.causes.centre, &s.causes.transverse, &s.causes.spin, &s.causes.all})
+    table.rows.push_back({cause->name, cause->peak("Rs"), cause->peak("Rc")});
+  return {"Where the error comes from",
+          "From two masses to the real piston three things change; each is switched alone, without "
+          "load at " +
+              rpm(s.fastest) + ". As vectors the three add up to the whole exactly.",
+          {{"largest part the three do not explain", fmt::format("{:.1e} N", s.causes.rest)}},
+          std::move(table)};
+}
+
+report::Section lumping_section(const InertiaStudy& s) {
+  report::Table table{{"lumping", "chi", "error of Rs, N", "error of Rc, N"}, {}};
+  for (const auto& lumping : s.lumpings)
+    table.rows.push_back(
+        {lumping.name, lumping.joint_mass_fraction, lumping.error_rs, lumping.error_rc});
+  report::Lines facts;
+  if (s.masses.exists)
+    facts = {{"mass at A", fmt::format("{:.5g} kg", s.masses.at_joint)},
+             {"mass at the centre", fmt::format("{:.5g} kg", s.masses.at_centre)},
+             {"mass at B", fmt::format("{:.5g} kg", s.masses.at_ring)},
+             {"three real masses would do", s.masses.positive
+                                                ? "yes, all are positive"
+                                                : "no, one is negative; the equations still hold"}};
+  else
+    facts = {{"three point masses", "do not exist: the centre of mass is not between A and B"}};
+  return {"Which lumping is best",
+          "Error left, largest over the turn, without load at " + rpm(s.fastest) +
+              ". Three point masses ([piston] inertia = \"dynamically_equivalent\") leave the "
+              "gyroscopic moment of spin only.",
+          std::move(facts), std::move(table)};
+}
+
+report::Section approach_section(const InertiaStudy& s) {
+  report::Table table{{"t", "difference of Rs, N", "difference of Rc, N"}, {}};
+  for (const auto& step : s.approach) table.rows.push_back({step.t, step.error_rs, step.error_rc});
+  report::Lines facts = {{"spin", "none: the piston has no axial inertia"}};
+  if (s.spin)
+    facts = {{"spin at the start", rpm(s.spin->spin_rpm)},
+             {"largest change over a turn integrated",
+              fmt::format("{:.1e} rad/s (accuracy {:g} per step)", s.spin->worst_change,
+                          s.spin->accuracy)}};
+  return {"Simbody: from the real piston to the lumped one",
+          "Centre of mass, transverse and axial inertia go to those of the two masses with t.",
+          std::move(facts), std::move(table)};
+}
+
+report::Section cost_section(const InertiaStudy& s) {
+  double full = not_computed();
+  for (const auto& cost : s.costs)
+    if (cost.scene == "full" && cost.method == "multipliers") full = cost.microseconds_per_angle;
+  report::Table table{{"scene", "reactions by", "bodies", "mobilities", "constraint equations",
+                       "microseconds per angle", "times cheaper than the full pump"},
+                      {}};
+  for (const auto& cost : s.costs)
+    table.rows.push_back({cost.scene, cost.method, long{cost.bodies}, long{cost.mobilities},
+                          long{cost.equations}, cost.microseconds_per_angle,
+                          full / cost.microseconds_per_angle});
+  return {"What each scene costs",
+          "Real pistons, processor time measured in this run (fastest of three turns). Curves of "
+          "this report are of the one-piston scene, tables of bearings of the full one.",
+          {{"largest difference of the models, of peak", fmt::format("{:.1e}", s.models_apart)},
+           {"one-piston scene against full pump, of peak", fmt::format("{:.1e}", s.scenes_apart)},
+           {"pistons in the pump", std::to_string(s.the_case.pump.geometry.pistons)}},
+          std::move(table)};
+}
+
+// ---- Printed numbers
+
+// The unloaded runs of both kinds of piston against the numbers of their speeds.
+report::PublishedTable published_table(const InertiaStudy& s, const compare::Published& published) {
+  compare::PublishedSection all;
+  for (const InertiaRun& run : s.one_piston) {
+    if (run.loaded) continue;
+    const Case bare = without_loads(at_speed(s.the_case, run.speed_rpm));
+    for (const bool real_pistons : {false, true}) {
+      auto section = compare::judge_published(
+          published, {"analytic", "multibody"},
+          [&](const std::string& model, const compare::PublishedVariant& variant) {
+            const auto set = variant.set.find("real_pistons");
+            const bool real = set == variant.set.end() ? real_pistons : set->second != 0;
+            Assumptions assumptions = bare.analytic;
+            assumptions.inertia = real ? PistonInertia::real : PistonInertia::lumped;
+            return compare::PublishedRun{
+                model == "analytic" ? &analytic_of(run, real) : &multibody_of(run, real),
+                facts_of(bare, assumptions)};
+          },
+          "inertia");
+      for (auto& row : section.rows) {
+        // What holds at any condition says nothing of this study; rows that take one kind of piston
+        // from the other are the same for both.
+        if (row.verdict == compare::PublishedVerdict::not_comparable ||
+            row.number.condition.empty() || (real_pistons && !row.number.minus.empty()))
+          continue;
+        if (row.number.minus.empty()) row.at += real_pistons ? "; real pistons" : "; two masses";
+        all.rows.push_back(std::move(row));
+      }
+      all.models = section.models;
+    }
+  }
+  for (const auto& row : all.rows) all.summary.count(row);
+  return {
+      "The paper's figures are of the Casappa BAP 63 at 1500 and 2350 rpm without load. They say "
+      "something about this case as far as it is that pump at those speeds; its geometry and "
+      "masses are not printed and were inferred.",
+      std::move(all)};
+}
+
+std::string headline(const InertiaStudy& s) {
+  const InertiaRun& fast = InertiaStudy::loaded(s.one_piston, s.fastest);
+  std::string text = fmt::format("At {} two masses are off by", rpm(s.fastest));
+  for (const auto& error : lumping_errors(fast, fast))
+    if (error.group == "Rs" || error.group == "Rc")
+      text += fmt::format("{} {:.3g} N of {} ({:.2g} % of its loaded peak)",
+                          error.group == "Rc" ? " and" : "", error.analytic, error.group,
+                          100 * error.fraction());
+  return text + fmt::format(". The models agree to {:.1e} of peak.", s.models_apart);
+}
+
+}  // namespace
+
+InertiaReport inertia_report(const InertiaStudy& s, const compare::Published* published,
+                             const report::Lines& program) {
+  InertiaReport result;
+  Curves& curves = result.curves;
+  curves.theta_deg = s.one_piston.front().analytic_real.theta_deg;
+  curves.tables = {{"analytic", {}}, {"multibody", {}}};
+  report::Document& document = result.document;
+  document.title = "Lumped or real pistons: " + s.the_case.name;
+  document.program = program;
+  document.the_case = case_section(s.the_case);
+  document.derived = derived_section(s.the_case);
+  document.verdict = report::Verdict{s.agrees(), headline(s)};
+  document.verdict->tolerance = kInertiaModelsAgree;
+  document.runs = {
+      {"Error of lumping on a piston's reactions",
+       "Largest magnitude of two masses - real over the turn. Reactions are linear in the inertia "
+       "forces, so load does not change the error (but for the weight); it changes what the error "
+       "is measured by.",
+       {},
+       error_table(s.one_piston, {"Rs", "Rc"})},
+      {"Error of lumping on bearings, gear and torque",
+       "Full pump, both models.",
+       {},
+       error_table(s.full, {"Rb1", "Rb2", "Rcs", "Rcn", "Td"})},
+      causes_section(s),
+      lumping_section(s),
+      approach_section(s),
+      cost_section(s)};
+  if (published != nullptr) document.published = published_table(s, *published);
+  document.figures = all_figures(s, curves);
+  return result;
+}
+
+std::string inertia_curves_csv(const InertiaStudy& s) {
+  std::string text = "theta_deg";
+  std::vector<Values> columns;
+  for (const InertiaRun& run : s.one_piston) {
+    for (const auto& [name, table] : {std::pair{"analytic_lumped", &run.analytic_lumped},
+                                      std::pair{"analytic_real", &run.analytic_real},
+                                      std::pair{"multibody_lumped", &run.multibody_lumped},
+                                      std::pair{"multibody_real", &run.multibody_real}}) {
+      const std::string prefix =
+          fmt::format(",{}_{}_{:g}rpm_", name, run.loaded ? "loaded" : "noload", run.speed_rpm);
+      for (const auto* parts : {&kRs, &kRc}) {
+        for (const auto& part : *parts) {
+          text += prefix + part;
+          columns.push_back(values_of(*table, part));
+        }
+        text += prefix + (parts == &kRs ? "Rs_1_magnitude_N" : "Rc_1_magnitude_N");
+        columns.push_back(magnitude(*table, *parts));
+      }
+    }
+  }
+  text += "\n";
+  const ResultTable& first = s.one_piston.front().analytic_real;
+  for (std::size_t row = 0; row < first.rows(); ++row) {
+    append_number(text, first.theta_deg[row]);
+    for (const auto& values : columns) {
+      text += ',';
+      append_number(text, values[row]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string inertia_errors_csv(const InertiaStudy& s) {
+  std::string text =
+      "reaction,unit,speed_rpm,load,error_analytic,error_multibody,peak,peak_loaded,"
+      "error_over_peak_loaded\n";
+  for (const InertiaRun& run : s.full) {
+    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm))) {
+      text += error.group + "," + error.unit + ",";
+      append_number(text, error.speed_rpm);
+      text += error.loaded ? ",loaded" : ",no_load";
+      for (const double v :
+           {error.analytic, error.multibody, error.peak, error.loaded_peak, error.fraction()}) {
+        text += ',';
+        append_number(text, v);
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string inertia_map_csv(const ErrorMap& map) {
+  std::string text = map.axis == MapAxis::mass ? "mass_factor" : "length_factor";
+  text += ",speed_rpm,Rs_error_over_loaded,Rc_error_over_loaded\n";
+  for (std::size_t i = 0; i < map.factor.size(); ++i) {
+    for (std::size_t j = 0; j < map.speed_rpm.size(); ++j) {
+      append_number(text, map.factor[i]);
+      for (const double v : {map.speed_rpm[j], map.rs[i][j], map.rc[i][j]}) {
+        text += ',';
+        append_number(text, v);
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string inertia_text(const InertiaStudy& s) {
+  std::string text = s.the_case.name + "\n" + headline(s) + "\n\n";
+  text += "error of lumping    speed rpm  load      N or Nm   % of loaded peak\n";
+  for (const InertiaRun& run : s.full)
+    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm)))
+      text += fmt::format("{:<20}{:>9g}  {:<8} {:>9.4g}   {:.3g}\n", error.group, error.speed_rpm,
+                          load_name(error.loaded), error.analytic, 100 * error.fraction());
+  text += fmt::format("\nbest lumping at {}, no load (error of Rs, Rc in N)\n", rpm(s.fastest));
+  for (const auto& lumping : s.lumpings)
+    text += fmt::format("{:<50} chi {:<8} {:>9.4g} {:>9.4g}\n", lumping.name,
+                        is_computed(lumping.joint_mass_fraction)
+                            ? fmt::format("{:.5f}", lumping.joint_mass_fraction)
+                            : "-",
+                        lumping.error_rs, lumping.error_rc);
+  text += "\nscene     reactions by  bodies  equations  us per angle\n";
+  for (const auto& cost : s.costs)
+    text += fmt::format("{:<9} {:<13} {:>6}  {:>9}  {:>12.1f}\n", cost.scene, cost.method,
+                        cost.bodies, cost.equations, cost.microseconds_per_angle);
+  return text;
+}
+
+}  // namespace bentaxis::study

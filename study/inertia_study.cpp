@@ -1,0 +1,96 @@
+#include "bentaxis/study/inertia_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/run.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr double kSpinForRun = 600;  // rpm, where the case's pistons do not spin
+
+bool slower(double a, double b) { return std::abs(a) < std::abs(b); }
+
+// Values from low to high in equal ratios.
+std::vector<double> ratios(const std::pair<double, double>& range, int count) {
+  const auto& [low, high] = range;
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i)
+    values.push_back(low * std::pow(high / low, static_cast<double>(i) / (count - 1)));
+  return values;
+}
+
+void compare_models_and_scenes(InertiaStudy& s) {
+  const double radius = s.the_case.pump.geometry.joint_circle_radius;
+  for (std::size_t i = 0; i < s.full.size(); ++i) {
+    // Runs come in pairs: without load, loaded. The inertia forces alone are the smallest scale.
+    const double least = s.one_piston[i - i % 2].analytic_real.peak("Rs");
+    const auto differ = [&](const ResultTable& first, const ResultTable& second) {
+      return largest_over_peak(first, second, least, radius);
+    };
+    for (const InertiaRun* run : {&s.full[i], &s.one_piston[i]})
+      s.models_apart =
+          std::max({s.models_apart, differ(run->analytic_lumped, run->multibody_lumped),
+                    differ(run->analytic_real, run->multibody_real)});
+    s.scenes_apart =
+        std::max({s.scenes_apart, differ(s.full[i].multibody_real, s.one_piston[i].multibody_real),
+                  differ(s.full[i].multibody_lumped, s.one_piston[i].multibody_lumped)});
+  }
+}
+
+}  // namespace
+
+const InertiaRun& InertiaStudy::loaded(const std::vector<InertiaRun>& runs, double speed_rpm) {
+  return *std::find_if(runs.begin(), runs.end(), [&](const InertiaRun& run) {
+    return run.loaded && run.speed_rpm == speed_rpm;
+  });
+}
+
+bool InertiaStudy::agrees() const {
+  return models_apart <= kInertiaModelsAgree && scenes_apart <= kInertiaScenesAgree;
+}
+
+InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& options,
+                               const PartProgress& progress_of) {
+  InertiaStudy s;
+  s.the_case = prepare(as_read, progress_of).the_case;
+  const Case& the_case = s.the_case;
+  for (const double speed : options.speeds) at_speed(the_case, speed);  // refuses early
+  s.fastest = *std::max_element(options.speeds.begin(), options.speeds.end(), slower);
+  for (const double speed : options.speeds) {
+    const Case at = prepare(at_speed(as_read, speed), progress_of).the_case;
+    for (const bool loaded : {false, true}) {
+      const std::string what = fmt::format("{:g} rpm, {}", speed, loaded ? "loaded" : "no load");
+      s.one_piston.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::piston,
+                                              progress_of("one piston, " + what)));
+      s.full.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::full,
+                                        progress_of("full pump, " + what)));
+    }
+  }
+  compare_models_and_scenes(s);
+  s.causes = causes_of_error(the_case, s.fastest, By::analytic);
+  s.multibody_causes = causes_of_error(the_case, s.fastest, By::multibody);
+  s.lumpings = lumpings(the_case, s.fastest);
+  s.over_fraction = lumping_over_fraction(the_case, s.fastest, 51);
+  s.masses = three_masses(the_case.pump);
+  const double slowest =
+      std::abs(*std::min_element(options.speeds.begin(), options.speeds.end(), slower));
+  const auto map_speeds =
+      options.map_speeds.value_or(std::pair(slowest / 3, 3 * std::abs(s.fastest)));
+  s.map = error_map(the_case, options.map_axis, ratios(map_speeds, options.map_size),
+                    ratios(options.map_factors, options.map_size), progress_of("map"));
+  s.approach = approach_to_lumped(the_case, s.fastest);
+  const double own_spin = the_case.pump.piston.real->spin / kRadPerSecondPerRpm;
+  // Without axial inertia a piston has no freedom to spin.
+  if (the_case.pump.piston.real->axial_inertia > 0)
+    s.spin = spin_run(the_case, s.fastest, own_spin != 0 ? own_spin : kSpinForRun,
+                      progress_of("integrated, spinning pistons"));
+  s.costs = scene_costs(the_case);
+  return s;
+}
+
+}  // namespace bentaxis::study
