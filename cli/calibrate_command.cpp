@@ -12,7 +12,7 @@ namespace {
 
 struct Options {
   CaseOption the_case;
-  study::MeanTorques wanted{294.7, 293.4};  // Nm, Fig. 30 of the paper
+  study::MeanTorques wanted;  // Nm
 };
 
 int calibrate(const Options& options) {
@@ -36,13 +36,15 @@ Command add_calibrate_command(CLI::App& app) {
   command
       ->add_option("--with", options->wanted.with_friction,
                    "mean drive torque wanted with piston friction, Nm")
+      ->required()
       ->check(positive_number())
-      ->option_text("NUMBER [294.7]");
+      ->option_text("NUMBER");
   command
       ->add_option("--without", options->wanted.without_friction,
                    "the same without piston friction")
+      ->required()
       ->check(positive_number())
-      ->option_text("NUMBER [293.4]");
+      ->option_text("NUMBER");
   return {command, [options] { return calibrate(*options); }};
 }
 

@@ -54,12 +54,11 @@ int run_program(int argc, char** argv) {
   app.footer(
       "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
       "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out");
-  const std::vector<Command> commands = {add_run_command(app),       add_compare_command(app),
-                                         add_regress_command(app),   add_reference_command(app),
-                                         add_hardcases_command(app), add_inertia_command(app),
-                                         add_pressure_command(app),  add_tradeoff_command(app),
-                                         add_schema_command(app),     add_calibrate_command(app),
-                                         add_blocktorque_command(app)};
+  const std::vector<Command> commands = {
+      add_run_command(app),       add_compare_command(app),    add_regress_command(app),
+      add_reference_command(app), add_hardcases_command(app),  add_inertia_command(app),
+      add_pressure_command(app),  add_tradeoff_command(app),   add_schema_command(app),
+      add_calibrate_command(app), add_blocktorque_command(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

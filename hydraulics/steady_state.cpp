@@ -2,13 +2,13 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/stopwatch.h"
 #include "integrator.h"
 #include "network.h"
 
@@ -305,7 +305,7 @@ void record(const Case& the_case, const Network& network, PeriodMap& map, const 
 
 SteadyState steady_state(const Case& the_case, const std::optional<Start>& start,
                          const Progress& progress) {
-  const auto began = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const Network network(the_case);
   const double tolerance = the_case.hydraulics->tolerance;
   PeriodMap map(network);
@@ -349,8 +349,7 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
   const Work& work = map.integrator().work();
   result.convergence.steps = work.steps;
   result.convergence.evaluations = work.evaluations;
-  result.convergence.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  result.convergence.seconds = stopwatch.seconds();
   result.table.provenance.seconds = result.convergence.seconds;
   if (progress) progress(1);
   return result;

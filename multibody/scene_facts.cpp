@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/pump/validate.h"
 #include "bentaxis/multibody/versions.h"
+#include "bentaxis/pump/validate.h"
 #include "scene/pump_system.h"
 
 namespace bentaxis::multibody {

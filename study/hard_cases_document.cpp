@@ -143,9 +143,9 @@ std::string HardCaseStudy::headline() const {
       "{} cases, each by {} ways: {} accurate within the predicted loss, {} refused with a "
       "message, "
       "{} wrong. Losses above {:g} of peak that were not predicted within a factor of {:g}: {}.",
-      runs.size() / hard_models().size(), hard_models().size(), count(*this, HardVerdict::accurate),
-      count(*this, HardVerdict::refused), count(*this, HardVerdict::wrong), kNoticeableLoss,
-      kPredictionFactor, misjudged(*this));
+      runs.size() / hard_models().size(), hard_models().size(),
+      count(*this, HardVerdict::as_predicted), count(*this, HardVerdict::refused),
+      count(*this, HardVerdict::wrong), kNoticeableLoss, kPredictionFactor, misjudged(*this));
   if (long_run)
     text += fmt::format(" Over {} integrated turns errors {}.", long_run->turns,
                         bounded(*this) ? "do not grow" : "GROW");

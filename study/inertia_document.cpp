@@ -452,6 +452,9 @@ std::string inertia_text(const InertiaStudy& s) {
     for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm)))
       text += fmt::format("{:<20}{:>9g}  {:<8} {:>9.4g}   {:.3g}\n", error.group, error.speed_rpm,
                           load_name(error.loaded), error.analytic, 100 * error.fraction());
+  for (const PistonInertia inertia : s.full.front().by_inverse_dynamics)
+    text += to_string(inertia) +
+            " pistons have no inertia about A: their multibody reactions are by inverse dynamics\n";
   text += fmt::format("\nbest lumping at {}, no load (error of Rs, Rc in N)\n", rpm(s.fastest));
   for (const auto& lumping : s.lumpings)
     text += fmt::format("{:<50} chi {:<8} {:>9.4g} {:>9.4g}\n", lumping.name,

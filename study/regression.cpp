@@ -6,7 +6,7 @@
 
 #include "bentaxis/compare/published.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/study/stopwatch.h"
+#include "bentaxis/results/stopwatch.h"
 
 namespace bentaxis::study {
 
@@ -50,7 +50,7 @@ void hold_to_curves(const compare::ReferenceDescription& description,
   bool any = false;
   for (const Model which : kModels) {
     const std::string model = to_string(which);
-    const auto start = Clock::now();
+    const Stopwatch stopwatch;
     const auto holds = [&](const auto& curve) {
       return std::find(curve.models.begin(), curve.models.end(), model) != curve.models.end();
     };
@@ -69,7 +69,7 @@ void hold_to_curves(const compare::ReferenceDescription& description,
           "{}: the reference has other angles than the case and was resampled, which adds an error "
           "of about {:.1e} of peak",
           model, judgement.resampling_error));
-    const double seconds = seconds_since(start);
+    const double seconds = stopwatch.seconds();
     auto lines = group_lines(judgement);
     for (auto& line : lines) {
       line.reference = description.name;
@@ -145,7 +145,7 @@ std::string GroupLine::text() const {
 }
 
 Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
-  const auto start = Clock::now();
+  const Stopwatch stopwatch;
   Outcome outcome;
   outcome.name = place.name;
   outcome.kind = "unknown";
@@ -168,7 +168,7 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
     outcome.state = Outcome::State::failed;
     outcome.error = error.what();
   }
-  outcome.seconds = seconds_since(start);
+  outcome.seconds = stopwatch.seconds();
   return outcome;
 }
 

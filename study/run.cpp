@@ -101,7 +101,6 @@ void stream_analytic(const ReadyCase& ready, const Assumptions& assumptions,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
                      const PartProgress& progress_of) {
   const analytic::Model model(ready.the_case.pump, assumptions);
-  const Sampler sampler(ready.the_case, ready.pressure);
   std::vector<Channel> channels;
   std::vector<std::size_t> columns;
   for (std::size_t c = 0; c < model.layout().size(); ++c)
@@ -113,7 +112,7 @@ void stream_analytic(const ReadyCase& ready, const Assumptions& assumptions,
   std::string line;
   std::vector<double> values(columns.size());
   stream_rows(
-      "analytic", model.layout(), sampler,
+      "analytic", model.layout(), ready.the_case, ready.pressure,
       [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
       [&](double theta_deg, const std::vector<double>& row) {
         line.clear();

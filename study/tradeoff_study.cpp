@@ -98,6 +98,10 @@ template <auto member>
 Cell record_cell(const TradeoffRun& run) {
   return run.record ? Cell((*run.record).*member) : Cell();
 }
+template <double multibody::WorstErrors::*member>
+Cell drift_cell(const TradeoffRun& run) {
+  return run.record ? Cell(run.record->whole.*member) : Cell();
+}
 const std::vector<Column>& columns() {
   static const std::vector<Column> list = {
       {"pressure", "pressure", [](const TradeoffRun& r) { return Cell(r.pressure); }},
@@ -115,11 +119,10 @@ const std::vector<Column>& columns() {
       {"error_Rcs", "error Rcs", error_cell<&AchievedError::rcs>},
       {"error_Td", "error Td", error_cell<&AchievedError::td>},
       {"position_drift_m", "constraint error, m",
-       record_cell<&multibody::IntegrationRecord::worst_position_error>},
+       drift_cell<&multibody::WorstErrors::position_error>},
       {"velocity_drift_m_per_s", "constraint rate error, m/s",
-       record_cell<&multibody::IntegrationRecord::worst_velocity_error>},
-      {"gear_phase_rad", "gear phase, rad",
-       record_cell<&multibody::IntegrationRecord::worst_gear_phase>},
+       drift_cell<&multibody::WorstErrors::velocity_error>},
+      {"gear_phase_rad", "gear phase, rad", drift_cell<&multibody::WorstErrors::gear_phase>},
       {"steps", "steps", record_cell<&multibody::IntegrationRecord::steps>},
       {"evaluations", "evaluations", record_cell<&multibody::IntegrationRecord::evaluations>},
       {"status", "status",
@@ -330,7 +333,7 @@ std::string tradeoff_text(const TradeoffStudy& study) {
     }
     text += fmt::format("{:>12} {:>9.1e}", time_text(run.seconds_per_turn), run.error.worst);
     if (run.record)
-      text += fmt::format(" {:>9.1e} {:>8} {:>8}", run.record->worst_position_error,
+      text += fmt::format(" {:>9.1e} {:>8} {:>8}", run.record->whole.position_error,
                           run.record->steps, run.record->evaluations);
     text += "\n";
   }

@@ -223,6 +223,20 @@ class UsageTest(ProgramTest):
             with self.subTest(arguments[:1] + arguments[4:]):  # without the path of the case
                 self.assert_mentions(self.refused(*arguments), *words)
 
+    def test_set_is_as_if_the_file_said_so(self):
+        changes = {"pump.tilt_deg": 30.0, "friction.piston_coulomb_N": 50.0}
+        self.run_program("run", self.case("changed.toml", **changes), "--model", "analytic", "--out", "file")
+        settings = [word for key, value in changes.items() for word in ("--set", f"{key}={value}")]
+        self.run_program("run", self.case(), "--model", "analytic", "--out", "set", *settings)
+        self.assertEqual(*[(self.folder / out / "analytic.csv").read_bytes() for out in ("file", "set")])
+        self.run_program("compare", self.case(), *settings, "--out", "set")
+        report = json.loads((self.folder / "set" / "report.json").read_text())
+        entries = {(e["table"], e["key"]): e["value"] for e in report["case"]["entries"]}
+        self.assertEqual(float(entries["pump", "tilt_deg"]), 30.0)
+        # Golden curves of a changed case belong to the case as changed.
+        self.run_program("reference", "golden", self.case(), *settings, "--out", "golden")
+        self.run_program("regress", "golden")
+
     def test_every_command_that_reads_a_case_takes_changes(self):
         case = self.case()
         hydraulic = REPO / "cases" / "bap63_rated_hydraulic.toml"
@@ -231,7 +245,7 @@ class UsageTest(ProgramTest):
             ["run", case, "--model", "analytic"], ["run", case, "--model", "multibody"], ["compare", case],
             ["compare", case, "--multibody-case", case], ["inertia", case], ["tradeoff", case],
             ["pressure", hydraulic], ["reference", "new", case, "--from", "curve.csv"],
-            ["reference", "golden", case, "--out", "golden"], ["calibrate", hydraulic],
+            ["reference", "golden", case, "--out", "golden"], ["calibrate", hydraulic, "--with", "294.7", "--without", "293.4"],
             ["blocktorque", case, hydraulic],
         ):
             with self.subTest(command):
@@ -886,14 +900,15 @@ class PressureTest(ProgramTest):
             self.assertAlmostEqual(a, b, delta=1e-9 * torque[-1])
 
     def test_calibrate_and_blocktorque(self):
-        result = self.run_program("calibrate", REPO / "cases" / "bap63_rated_hydraulic.toml")
+        result = self.run_program("calibrate", REPO / "cases" / "bap63_rated_hydraulic.toml", "--with", "294.7",
+                                  "--without", "293.4")
         self.assertEqual(result.out, 4 * ("piston_coulomb_N = 25.1777, shaft_torque_factor = 0.987746: 294.7000 Nm with, "
                                           "293.4000 Nm without piston friction\n"))
         cases = [REPO / "cases" / f"{name}.toml" for name in ("bap63_rated", "bap63_rated_hydraulic")]
         result = self.run_program("blocktorque", *cases)
         self.assertIn(result.out, (REPO / "docs" / "shaft_to_block_torque.md").read_text())
         self.assert_mentions(self.refused("blocktorque", cases[0]), "hydraulic")
-        self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0})),
+        self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0}), "--with", 2, "--without", 1),
                              "piston_coulomb_N")
 
     def test_overlay(self):

@@ -3,12 +3,10 @@
 
 #include <cstddef>
 
+#include "bentaxis/pump/parameters.h"
 #include "closed_form/pump.h"
 
 namespace bentaxis::analytic {
-
-/// A pump has 99 pistons at most.
-inline constexpr int kMostPistons = 99;
 
 struct BatchJob {
   struct Column {
