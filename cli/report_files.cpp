@@ -14,7 +14,7 @@ std::vector<std::filesystem::path> write_report(OutputFolder& folder, const std:
   folder.add(name + ".html", report::render_page(document, curves));
   for (const auto& [file, content] : further) folder.add(file, content);
   folder.add(name + ".json", report::json_text(document));  // last: it is the record of the set
-  return folder.commit(name + ".json");
+  return folder.commit(name + ".json", report::files_of);
 }
 
 }  // namespace bentaxis::cli

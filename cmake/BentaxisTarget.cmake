@@ -50,8 +50,22 @@ endfunction()
 
 # For what runs once a command and is long to compile (documents, JSON, option parsing): less optimisation
 # costs nothing there. Never for what computes at angles.
+#   bentaxis_compile_fast(<target> [<source>...])    all of the target, or these sources of it
 function(bentaxis_compile_fast target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(ARGN)
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+  else()
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
+endfunction()
+
+# For rooms of many short sources behind long headers: the compiler reads the headers once for several sources.
+# Off for tools that look at single sources (scripts/check_tidy).
+option(BENTAXIS_JOIN_SOURCES "Compile several sources of a room at a time" ON)
+function(bentaxis_join_sources target count)
+  if(BENTAXIS_JOIN_SOURCES)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
+  endif()
 endfunction()
 
 # For tests that look inside a room: its internal headers too.

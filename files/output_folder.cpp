@@ -11,7 +11,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "bentaxis/pump/error.h"
 
@@ -56,7 +56,7 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     created_.clear();
     fail(folder_, error ? error.message() : "is not a folder");
   }
-  if (access(folder_.c_str(), W_OK | X_OK) != 0) fail(folder_, std::strerror(errno));
+  if (::access(folder_.c_str(), W_OK | X_OK) != 0) fail(folder_, std::strerror(errno));
 }
 
 OutputFolder::~OutputFolder() {
@@ -109,18 +109,16 @@ std::vector<std::string> OutputFolder::names() const {
 }
 
 // Files of an earlier set, as its record names them.
-std::vector<fs::path> OutputFolder::superseded(const std::string& record) const {
+std::vector<fs::path> OutputFolder::superseded(const std::string& record,
+                                               const NamesIn& names_in) const {
   std::vector<fs::path> files;
   std::error_code error;
   const fs::path old_record = folder_ / record;
   const auto written = fs::last_write_time(old_record, error);
-  if (record.empty() || error) return files;
-  std::ifstream in(old_record, std::ios::binary);
-  const auto json = nlohmann::json::parse(in, nullptr, false);
-  if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) return files;
-  for (const auto& entry : json["files"]) {
-    if (!entry.is_string()) continue;
-    const fs::path name = entry.get<std::string>();
+  if (record.empty() || !names_in || error) return files;
+  std::ostringstream text;
+  text << std::ifstream(old_record, std::ios::binary).rdbuf();
+  for (const fs::path name : names_in(text.str())) {
     if (name.empty() || name != name.filename() || name == "." || name == "..") continue;
     const fs::path file = folder_ / name;
     const bool in_this_set =
@@ -147,12 +145,13 @@ void OutputFolder::put_back() noexcept {
   }
 }
 
-std::vector<fs::path> OutputFolder::commit(const std::string& record) {
+std::vector<fs::path> OutputFolder::commit(const std::string& record,
+                                           const NamesIn& names_in) {
   for (const auto& stream : streams_) stream->finish();
   const FolderLock lock(folder_);
   for (const Pending& file : pending_)
     if (fs::is_directory(file.final_path)) fail(file.final_path, "is a folder");
-  const std::vector<fs::path> old = superseded(record);
+  const std::vector<fs::path> old = superseded(record, names_in);
   std::vector<fs::path> paths;
   const auto move = [&](const fs::path& from, const fs::path& to, const fs::path& shown) {
     std::error_code error;

@@ -4,11 +4,16 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "bentaxis/pump/number.h"
 
 namespace bentaxis::report {
 namespace {
+
+using Json = nlohmann::json;
+
+Json to_json(const Curves& curves);
 
 constexpr int kPlotDigits = 9;
 constexpr int kDifferenceDigits = 4;  // differences are known to their order of magnitude
@@ -212,7 +217,8 @@ Json json_of(const CaseSection& section) {
                                      return Json{{"table", entry.table},
                                                  {"key", entry.key},
                                                  {"value", entry.value},
-                                                 {"defaulted", entry.defaulted}};
+                                                 {"defaulted", entry.defaulted},
+                                                 {"changed", entry.changed}};
                                    })}};
 }
 
@@ -443,12 +449,6 @@ void add(Json& json, const char* key, const std::optional<std::vector<Item>>& it
   if (items) json[key] = list_of(*items);
 }
 
-}  // namespace
-
-ModelSection model_of(const ResultTable& table, const Lines& assumptions) {
-  return {table.name, assumptions, table.provenance.facts, table.provenance.seconds, table.rows()};
-}
-
 Json to_json(const Document& document) {
   Json json = {{"schema", 1}, {"title", document.title}, {"program", document.program}};
   if (!document.files.empty()) json["files"] = document.files;
@@ -478,10 +478,6 @@ Json to_json(const Document& document) {
   return json;
 }
 
-std::string json_text(const Document& document) {
-  return to_json(document).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 Json to_json(const Curves& curves) {
   const auto columns = [](const auto& named, int digits) {
     Json json = Json::object();
@@ -497,6 +493,29 @@ Json to_json(const Curves& curves) {
              return Json{{"name", table.name}, {"columns", columns(table.columns, kPlotDigits)}};
            })},
       {"difference", columns(curves.difference, kDifferenceDigits)}};
+}
+
+std::string dumped(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+ModelSection model_of(const ResultTable& table, const Lines& assumptions) {
+  return {table.name, assumptions, table.provenance.facts, table.provenance.seconds, table.rows()};
+}
+
+std::string json_text(const Document& document) { return dumped(to_json(document), 1) + "\n"; }
+std::string compact_json(const Document& document) { return dumped(to_json(document), -1); }
+std::string compact_json(const Curves& curves) { return dumped(to_json(curves), -1); }
+
+std::vector<std::string> files_of(const std::string& json_text) {
+  std::vector<std::string> names;
+  const Json json = Json::parse(json_text, nullptr, false);
+  if (!json.is_object() || !json.contains("files")) return names;
+  for (const Json& name : json["files"])
+    if (name.is_string()) names.push_back(name.get<std::string>());
+  return names;
 }
 
 Values values_of(const ResultTable& table, const std::string& channel_name) {

@@ -31,10 +31,9 @@ std::string escape_html(const std::string& text) {
 }
 
 // JSON inside a script element must not contain "</" or "<!--".
-std::string script_safe(const nlohmann::json& value) {
+std::string script_safe(const std::string& json) {
   std::string out;
-  for (const char c : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace))
-    out += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  for (const char c : json) out += c == '<' ? std::string("\\u003c") : std::string(1, c);
   return out;
 }
 
@@ -65,8 +64,8 @@ std::string render_page(const Document& document, const Curves& curves) {
            {"@DYGRAPHS_CSS@", parts.at("dygraph.min.css")},
            {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},
            {"@REPORT_JS@", script()},
-           {"@CURVES_JSON@", script_safe(to_json(curves))},
-           {"@REPORT_JSON@", script_safe(to_json(document))}})
+           {"@CURVES_JSON@", script_safe(compact_json(curves))},
+           {"@REPORT_JSON@", script_safe(compact_json(document))}})
     replace_once(page, marker, value);
   return page;
 }

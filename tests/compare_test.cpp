@@ -1,6 +1,7 @@
 // The comparison: made-up tables with known answers; no model is run here.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/compare/split.h"
@@ -352,7 +353,7 @@ TEST(Curves, DifferencesAreTakenBeforeRounding) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto a = table("a", channels, {[](double) { return 11017.123456789; }});
   const auto b = table("b", channels, {[](double) { return 11017.123456789 + 1e-9; }});
-  const report::Json curves = report::to_json(report::curves_of(a, b));
+  const auto curves = nlohmann::json::parse(report::compact_json(report::curves_of(a, b)));
   EXPECT_NEAR(curves["difference"]["X_N"][0].get<double>(), 1e-9, 3e-12);
   EXPECT_EQ(curves["tables"][0]["columns"]["X_N"][0], curves["tables"][1]["columns"]["X_N"][0]);
 }

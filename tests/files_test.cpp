@@ -9,7 +9,9 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
@@ -19,6 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::UnorderedElementsAre;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
 
 class OutputFolderTest : public testing::Test {
  protected:
@@ -105,42 +114,41 @@ TEST_F(OutputFolderTest, WhatAnEarlierSetHasLeftIsRemoved) {
     OutputFolder folder(folder_);
     folder.add("pressure.csv", "1");
     folder.add("curve.csv", "1");
-    folder.add("report.json", R"({"files": ["pressure.csv", "curve.csv", "report.json"]})");
-    folder.commit("report.json");
+    folder.add("report.txt", "pressure.csv\ncurve.csv\nreport.txt");
+    folder.commit("report.txt", lines_of);
   }
   file("mine.csv", "not of any set");
   {
     OutputFolder folder(folder_);
     folder.add("curve.csv", "2");
-    folder.add("report.json", R"({"files": ["curve.csv", "report.json"]})");
-    EXPECT_THAT(folder.names(), testing::ElementsAre("curve.csv", "report.json"));
-    folder.commit("report.json");
+    folder.add("report.txt", "curve.csv\nreport.txt");
+    EXPECT_THAT(folder.names(), testing::ElementsAre("curve.csv", "report.txt"));
+    folder.commit("report.txt", lines_of);
   }
-  EXPECT_THAT(contents(), UnorderedElementsAre("mine.csv", "curve.csv", "report.json"));
+  EXPECT_THAT(contents(), UnorderedElementsAre("mine.csv", "curve.csv", "report.txt"));
   EXPECT_EQ(text("curve.csv"), "2");
 }
 
 TEST_F(OutputFolderTest, WhatIsNotOfTheEarlierSetStays) {
   const auto write_with = [&](const std::string& record) {
     OutputFolder folder(folder_);
-    folder.add("report.json", record);
-    folder.commit("report.json");
+    folder.add("report.txt", record);
+    folder.commit("report.txt", lines_of);
   };
   file("changed.csv", "1");
   fs::create_directory(folder_ / "folder");
   file("outside.csv", "1");
   write_with(
-      R"({"files": ["changed.csv", "folder", "../outside.csv", "..", "", 7, "missing.csv"]})");
+      "changed.csv\nfolder\n../outside.csv\n..\n\nmissing.csv");
   // Changed since: somebody else's now.
   fs::last_write_time(folder_ / "changed.csv",
-                      fs::last_write_time(folder_ / "report.json") + std::chrono::seconds(1));
-  write_with("not JSON");
+                      fs::last_write_time(folder_ / "report.txt") + std::chrono::seconds(1));
+  write_with("");
   EXPECT_THAT(contents(),
-              UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.json"));
-  write_with(R"({"files": "none"})");
-  write_with("{}");
+              UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.txt"));
+  write_with("report.txt");
   EXPECT_THAT(contents(),
-              UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.json"));
+              UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.txt"));
 }
 
 }  // namespace

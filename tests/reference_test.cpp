@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "bentaxis/compare/published.h"
 #include "bentaxis/files/toml_reader.h"
@@ -349,7 +350,7 @@ class PublishedNumbers : public ReferenceFolder {
                                });
     report::Document document;
     document.published = report::PublishedTable{"", section_};
-    const auto rows = report::to_json(document)["published"]["rows"];
+    const auto rows = nlohmann::json::parse(report::json_text(document))["published"]["rows"];
     return rows.empty() ? nlohmann::json() : rows[0];
   }
 

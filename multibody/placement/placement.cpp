@@ -20,7 +20,7 @@ namespace {
 // it goes on until Newton's step no longer helps.
 constexpr double kAssemblyGoal = 1e-17;
 // An error this small cannot be improved: round-off of coordinates of 0.1 m.
-constexpr double kRoundOff = 5e-17;
+constexpr double kPositionRoundOff = 5e-17;
 // A step in theta, rad, up to which the last assembly is a better start than a fresh guess: pistons
 // move by a fraction of the bore's radius. A guess follows where it fails.
 constexpr double kNearby = 0.2;
@@ -83,7 +83,7 @@ void Placement::assemble(double theta, double omega) {
       system_.realize(assembly_, SimTK::Stage::Position);
       const double after = assembly_.getQErr().normInf();
       done = after <= kAssemblyTolerance;
-      if (after <= kRoundOff || !(after < before / 2)) break;
+      if (after <= kPositionRoundOff || !(after < before / 2)) break;
       before = after;
     }
     const Vec3 z2(bodies_.block_frame.z());

@@ -128,7 +128,8 @@ function caseTable(report) {
   return el("div", {}, report.case.file ? el("p", {}, "Case file ", el("code", {}, report.case.file)) : null,
     el("div.columns", {}, tables.map(name => el("div.block", {}, el("h3", {}, name ? `[${name}]` : "top level"),
       facts(entries.filter(e => (e.table || "") === name).map(e => [e.key, el("span", {}, String(e.value),
-        e.defaulted ? el("span.default", {}, "default") : null)]), ".rows")))));
+        e.defaulted ? el("span.default", {}, "default") :
+          e.changed ? el("span.default", {}, "--set") : null)]), ".rows")))));
 }
 
 const derived = ({ derived }) => !list(derived).length ? null : table([

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -49,11 +50,14 @@ class OutputFolder {
   std::vector<std::string> names() const;
 
   /// Puts all files in place; returns their paths.
-  /// @param record  one of the files, JSON whose list "files" names the whole set. Files that the
-  ///                record of an earlier run names and that this set lacks are removed: they belong
-  ///                to a result that is no longer there. Not those changed since.
+  /// @param record    one of the files, which names the whole set. Files that the record of an
+  ///                  earlier run names and that this set lacks are removed: they belong to a
+  ///                  result that is no longer there. Not those changed since.
+  /// @param names_in  reads the names from the text of a record
   /// @throws InputError
-  std::vector<std::filesystem::path> commit(const std::string& record = "");
+  using NamesIn = std::function<std::vector<std::string>(const std::string& text)>;
+  std::vector<std::filesystem::path> commit(const std::string& record = "",
+                                            const NamesIn& names_in = {});
 
  private:
   std::filesystem::path folder_;
@@ -61,7 +65,8 @@ class OutputFolder {
   struct Pending {
     std::filesystem::path temporary, final_path, before;  // before: where what it replaces waits
   };
-  std::vector<std::filesystem::path> superseded(const std::string& record) const;
+  std::vector<std::filesystem::path> superseded(const std::string& record,
+                                                const NamesIn& names_in) const;
   void put_back() noexcept;
 
   std::vector<Pending> pending_;

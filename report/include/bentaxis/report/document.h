@@ -1,9 +1,8 @@
-// What a command has to report, as typed data. to_json makes the report's JSON of it
+// What a command has to report, as typed data. json_text makes the report's JSON of it
 // (docs/report_json.md, docs/report.schema.json), the page draws that. Whoever fills a document has
 // computed everything in it: nothing here computes.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,7 +17,6 @@
 
 namespace bentaxis::report {
 
-using Json = nlohmann::json;
 /// Names and values of a short list of facts, in the order in which they are shown.
 using Lines = std::vector<std::pair<std::string, std::string>>;
 /// Values of a curve; what was not computed (pump/number.h) becomes null.
@@ -280,14 +278,17 @@ struct Document {
   std::optional<LongRunSection> long_run = std::nullopt;
 };
 
-/// The report as docs/report.schema.json describes it.
-Json to_json(const Document& document);
-
-/// The same as the text of a file. Text that is no UTF-8 is replaced, never refused.
+/// The report as docs/report.schema.json describes it, as the text of a file: JSON. Text that is no
+/// UTF-8 is replaced, never refused.
 std::string json_text(const Document& document);
 
-/// Curves for the page, to 9 digits: enough for a plot; differences to 4.
-Json to_json(const Curves& curves);
+/// Its list "files"; empty where the text is no report.
+std::vector<std::string> files_of(const std::string& json_text);
+
+// Without a blank between the values, for the page. Curves to 9 digits: enough for a plot;
+// differences to 4.
+std::string compact_json(const Document& document);
+std::string compact_json(const Curves& curves);
 
 /// Curves of both tables, but for their checks, and the difference of what was computed.
 /// Differences are taken before rounding.
