@@ -25,17 +25,17 @@ int blocktorque(const Options& options) {
 
 }  // namespace
 
-Command add_blocktorque_command(CLI::App& app) {
+Command add_blocktorque_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  CommandParser command = program.subcommand(
       "blocktorque",
       "What explains the paper's torque from shaft to block against ADAMS: one change at a time");
-  add_case(*command, options->the_case);
+  add_case(command, options->the_case);
   command
-      ->add_option("hydraulic", options->hydraulic,
-                   "the same pump with the hydraulic model, changed by --set alike")
-      ->required()
-      ->option_text("HYDRAULIC_CASE");
+      .option("hydraulic", options->hydraulic,
+              "the same pump with the hydraulic model, changed by --set alike")
+      .required()
+      .text("HYDRAULIC_CASE");
   return {command, [options] { return blocktorque(*options); }};
 }
 

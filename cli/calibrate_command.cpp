@@ -28,23 +28,21 @@ int calibrate(const Options& options) {
 
 }  // namespace
 
-Command add_calibrate_command(CLI::App& app) {
+Command add_calibrate_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  CommandParser command = program.subcommand(
       "calibrate", "Find the piston friction and shaft losses that give two mean torques");
-  add_case(*command, options->the_case);
+  add_case(command, options->the_case);
   command
-      ->add_option("--with", options->wanted.with_friction,
-                   "mean drive torque wanted with piston friction, Nm")
-      ->required()
-      ->check(positive_number())
-      ->option_text("NUMBER");
-  command
-      ->add_option("--without", options->wanted.without_friction,
-                   "the same without piston friction")
-      ->required()
-      ->check(positive_number())
-      ->option_text("NUMBER");
+      .option("--with", options->wanted.with_friction,
+              "mean drive torque wanted with piston friction, Nm")
+      .required()
+      .positive_number()
+      .text("NUMBER");
+  command.option("--without", options->wanted.without_friction, "the same without piston friction")
+      .required()
+      .positive_number()
+      .text("NUMBER");
   return {command, [options] { return calibrate(*options); }};
 }
 

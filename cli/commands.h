@@ -1,8 +1,9 @@
 // The commands of the program, one per job and file.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "command_parser.h"
 
 namespace bentaxis::cli {
 
@@ -11,20 +12,20 @@ enum ExitStatus { kDone = 0, kOutOfTolerance = 1, kBadInput = 2, kComputationFai
 
 /// A command as the parser knows it, and what it does once its options are parsed.
 struct Command {
-  CLI::App* parser;
+  CommandParser parser;
   std::function<int()> run;  ///< returns the exit status
 };
 
-Command add_run_command(CLI::App& app);
-Command add_blocktorque_command(CLI::App& app);
-Command add_calibrate_command(CLI::App& app);
-Command add_compare_command(CLI::App& app);
-Command add_hardcases_command(CLI::App& app);
-Command add_inertia_command(CLI::App& app);
-Command add_pressure_command(CLI::App& app);
-Command add_regress_command(CLI::App& app);
-Command add_reference_command(CLI::App& app);
-Command add_schema_command(CLI::App& app);
-Command add_tradeoff_command(CLI::App& app);
+Command add_run_command(CommandParser program);
+Command add_blocktorque_command(CommandParser program);
+Command add_calibrate_command(CommandParser program);
+Command add_compare_command(CommandParser program);
+Command add_hardcases_command(CommandParser program);
+Command add_inertia_command(CommandParser program);
+Command add_pressure_command(CommandParser program);
+Command add_regress_command(CommandParser program);
+Command add_reference_command(CommandParser program);
+Command add_schema_command(CommandParser program);
+Command add_tradeoff_command(CommandParser program);
 
 }  // namespace bentaxis::cli

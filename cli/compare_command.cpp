@@ -69,31 +69,31 @@ int compare(const Options& options) {
 
 }  // namespace
 
-Command add_compare_command(CLI::App& app) {
+Command add_compare_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("compare", "Run both models and report where and by how much they differ");
-  add_case(*command, options->the_case);
-  add_out(*command, options->out, "report.html, report.json and the curves");
+  CommandParser command =
+      program.subcommand("compare", "Run both models and report where and by how much they differ");
+  add_case(command, options->the_case);
+  add_out(command, options->out, "report.html, report.json and the curves");
   command
-      ->add_option("--tolerance", options->tolerance,
-                   "largest difference over peak that counts as agreement")
-      ->check(positive_number())
-      ->option_text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
-  options->choice.add_to(*command, true);
+      .option("--tolerance", options->tolerance,
+              "largest difference over peak that counts as agreement")
+      .positive_number()
+      .text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
+  options->choice.add_to(command, true);
   command
-      ->add_option("--analytic", options->analytic,
-                   "assumption of the analytic model: piston_friction=on|off, "
-                   "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed; overrides the "
-                   "case file")
-      ->option_text("KEY=VALUE ..");
-  command->add_option("--multibody", options->multibody, "the same for the multibody model")
-      ->option_text("KEY=VALUE ..");
+      .option("--analytic", options->analytic,
+              "assumption of the analytic model: piston_friction=on|off, "
+              "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed; overrides the "
+              "case file")
+      .text("KEY=VALUE ..");
+  command.option("--multibody", options->multibody, "the same for the multibody model")
+      .text("KEY=VALUE ..");
   command
-      ->add_option("--multibody-case", options->multibody_case,
-                   "give the multibody model another case, changed by --set alike: what would a "
-                   "wrong input do?")
-      ->option_text("CASE");
+      .option("--multibody-case", options->multibody_case,
+              "give the multibody model another case, changed by --set alike: what would a "
+              "wrong input do?")
+      .text("CASE");
   return {command, [options] { return compare(*options); }};
 }
 

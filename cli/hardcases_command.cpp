@@ -51,22 +51,20 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_hardcases_command(CLI::App& app) {
+Command add_hardcases_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  CommandParser command = program.subcommand(
       "hardcases", "Run the catalogue of hard cases: digits achieved and predicted, refusals");
-  add_out(*command, options->out, "hardcases.html, .json, .csv and .md");
-  command->add_option("--filter", options->filter, "only cases whose name contains this")
-      ->option_text("TEXT");
+  add_out(command, options->out, "hardcases.html, .json, .csv and .md");
+  command.option("--filter", options->filter, "only cases whose name contains this").text("TEXT");
   command
-      ->add_option("--turns", options->turns,
-                   "length of the integrated run; 0 leaves it out, as --filter does")
-      ->check(CLI::Range(0, 100000))
-      ->option_text("NUMBER [20]");
+      .option("--turns", options->turns,
+              "length of the integrated run; 0 leaves it out, as --filter does")
+      .integer_in(0, 100000)
+      .text("NUMBER [20]");
   command
-      ->add_option("--catalogue", options->catalogue,
-                   "folder with another catalogue.toml and its cases")
-      ->option_text("DIR");
+      .option("--catalogue", options->catalogue, "folder with another catalogue.toml and its cases")
+      .text("DIR");
   return {command, [options] { return run(*options); }};
 }
 

@@ -50,31 +50,26 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_inertia_command(CLI::App& app) {
+Command add_inertia_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  CommandParser command = program.subcommand(
       "inertia", "What treating the pistons as two point masses does to the reactions");
-  add_case(*command, options->the_case);
-  add_out(*command, options->out, "inertia.html, inertia.json and the curves");
-  command->add_option("--speeds", options->study.speeds, "speeds to study, rpm")
-      ->delimiter(',')
-      ->option_text("NUMBER[,NUMBER..] [1500,2350]");
-  command
-      ->add_option("--map", options->study.map_axis,
-                   "what grows along the map beside the speed: the piston's mass or its length")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, study::MapAxis>{
-          {"mass", study::MapAxis::mass}, {"length", study::MapAxis::length}}))
-      ->option_text("mass|length [mass]");
-  command->add_option("--map-speeds", options->map_speeds, "range of speed of the map, rpm")
-      ->delimiter(',')
-      ->option_text("FROM,TO [slowest / 3, 3 x fastest]");
-  command
-      ->add_option("--map-factors", options->map_factors, "range of the factor on mass or length")
-      ->delimiter(',')
-      ->option_text("FROM,TO [0.25,8]");
-  command->add_option("--map-size", options->study.map_size, "values along each side of the map")
-      ->check(CLI::Range(2, 100))
-      ->option_text("NUMBER [30]");
+  add_case(command, options->the_case);
+  add_out(command, options->out, "inertia.html, inertia.json and the curves");
+  command.option("--speeds", options->study.speeds, "speeds to study, rpm")
+      .list()
+      .text("NUMBER[,NUMBER..] [1500,2350]");
+  command.choice("--map", options->study.map_axis, {"mass", "length"},
+                 "what grows along the map beside the speed: the piston's mass or its length");
+  command.option("--map-speeds", options->map_speeds, "range of speed of the map, rpm")
+      .list()
+      .text("FROM,TO [slowest / 3, 3 x fastest]");
+  command.option("--map-factors", options->map_factors, "range of the factor on mass or length")
+      .list()
+      .text("FROM,TO [0.25,8]");
+  command.option("--map-size", options->study.map_size, "values along each side of the map")
+      .integer_in(2, 100)
+      .text("NUMBER [30]");
   return {command, [options] {
             study::InertiaOptions& study = options->study;
             study.map_factors = range_of(options->map_factors, "--map-factors");

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -43,35 +42,31 @@ int checked_output(int status) {
   return kBadInput;
 }
 
+ProgramParser::Texts texts() {
+  return {"bentaxis",
+          "bentaxis: reaction forces and drive torque of bent-axis piston pumps by two independent "
+          "models\n(analytic: closed form after Roccatello & Nervegna 2009; multibody: Simbody), "
+          "and how far they are apart.",
+          "bentaxis " BENTAXIS_VERSION,
+          "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
+          "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out"};
+}
+
 int run_program(int argc, char** argv) {
-  CLI::App app{
-      "bentaxis: reaction forces and drive torque of bent-axis piston pumps by two independent "
-      "models\n(analytic: closed form after Roccatello & Nervegna 2009; multibody: Simbody), and "
-      "how far they are apart.",
-      "bentaxis"};
-  app.set_version_flag("--version", "bentaxis " BENTAXIS_VERSION);
-  app.require_subcommand(0, 1);
-  app.footer(
-      "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
-      "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out");
+  ProgramParser parser(texts());
+  const CommandParser program = parser.root();
   const std::vector<Command> commands = {
-      add_run_command(app),       add_compare_command(app),    add_regress_command(app),
-      add_reference_command(app), add_hardcases_command(app),  add_inertia_command(app),
-      add_pressure_command(app),  add_tradeoff_command(app),   add_schema_command(app),
-      add_calibrate_command(app), add_blocktorque_command(app)};
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {
-    return app.exit(success);
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "bentaxis: %s (see bentaxis --help)\n", error.what());
-    return kBadInput;
-  }
-  watch_for_interruption();
-  for (const Command& command : commands)
-    if (command.parser->parsed()) return guarded(command.run);
-  std::fprintf(stderr, "bentaxis: a command is needed, such as compare (see bentaxis --help)\n");
-  return kBadInput;
+      add_run_command(program),       add_compare_command(program),    add_regress_command(program),
+      add_reference_command(program), add_hardcases_command(program),  add_inertia_command(program),
+      add_pressure_command(program),  add_tradeoff_command(program),   add_schema_command(program),
+      add_calibrate_command(program), add_blocktorque_command(program)};
+  return guarded([&]() -> int {
+    if (!parser.parse(argc, argv)) return kDone;
+    watch_for_interruption();
+    for (const Command& command : commands)
+      if (command.parser.parsed()) return command.run();
+    throw InputError("a command is needed, such as compare (see bentaxis --help)");
+  });
 }
 
 }  // namespace

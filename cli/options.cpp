@@ -1,106 +1,67 @@
 #include "options.h"
 
-#include <cmath>
 #include <cstdio>
-#include <functional>
-#include <map>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/pump/number.h"
 
 namespace bentaxis::cli {
 
 Case CaseOption::read() const { return read_case(file, changes); }
 
-void add_case(CLI::App& command, CaseOption& the_case) {
-  command.add_option("case", the_case.file, "case file (TOML)")->required()->option_text("CASE");
+void add_case(CommandParser command, CaseOption& the_case) {
+  command.option("case", the_case.file, "case file (TOML)").required().text("CASE");
   command
-      .add_option("--set", the_case.changes,
-                  "change a key of the case, as if its file said so; can be given again")
-      ->expected(1)
-      ->take_all()
-      ->option_text("TABLE.KEY=VALUE");
+      .option("--set", the_case.changes,
+              "change a key of the case, as if its file said so; can be given again")
+      .repeatable()
+      .text("TABLE.KEY=VALUE");
 }
 
-void add_out(CLI::App& command, std::string& folder, const std::string& what) {
-  command.add_option("--out", folder, "folder for " + what + ", made where missing")
-      ->option_text("DIR [" + folder + "]");
+void add_out(CommandParser command, std::string& folder, const std::string& what) {
+  command.option("--out", folder, "folder for " + what + ", made where missing")
+      .text("DIR [" + folder + "]");
 }
 
-namespace {
-
-// An option whose values are an enumeration's names in its order.
-template <class Enumeration>
-CLI::Option* add_choice(CLI::App& command, const std::string& name, Enumeration& value,
-                        const std::vector<std::string>& words, const std::string& what) {
-  std::map<std::string, Enumeration> names;
-  std::string list;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    names[words[i]] = static_cast<Enumeration>(i);
-    list += (i == 0 ? "" : "|") + words[i];
-  }
-  return command.add_option(name, value, what)
-      ->transform(CLI::CheckedTransformer(names))
-      ->option_text(list + " [" + words[static_cast<std::size_t>(value)] + "]");
+void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators) {
+  command.choices("--integrators", integrators, multibody::integrator_names(),
+                  "time integrators to try");
 }
 
-}  // namespace
-
-void add_integrators(CLI::App& command, std::vector<multibody::Integrator>& integrators) {
-  std::map<std::string, multibody::Integrator> names;
-  std::string list;
-  for (const auto integrator : study::all_integrators()) {
-    const std::string& name = multibody::integrator_names()[static_cast<std::size_t>(integrator)];
-    names[name] = integrator;
-    list += (list.empty() ? "" : ",") + name;
-  }
-  command.add_option("--integrators", integrators, "time integrators to try")
-      ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(names))
-      ->option_text("NAME[,NAME..] [" + list + "]");
-}
-
-void RunChoice::add_to(CLI::App& command, bool several) {
-  command_ = &command;
+void RunChoice::add_to(CommandParser command, bool several) {
+  command_ = command;
+  command.choice("--way", way, {"driven", "integrated"},
+                 "multibody: driven (reactions at given angles, no time integration) or "
+                 "integrated (in time, over the case's revolutions)");
+  command.choice("--scene", scene.scene, multibody::scene_names(),
+                 "multibody, driven: what is built; what a scene does not compute stays empty");
+  command.choice("--reactions", scene.method, multibody::method_names(),
+                 "multibody, driven: by forward dynamics and its multipliers, or by inverse "
+                 "dynamics (faster; serves massless pistons too)");
   command
-      .add_option("--way", way,
-                  "multibody: driven (reactions at given angles, no time integration) or "
-                  "integrated (in time, over the case's revolutions)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, study::Way>{
-          {"driven", study::Way::driven}, {"integrated", study::Way::integrated}}))
-      ->option_text("driven|integrated [driven]");
-  add_choice(command, "--scene", scene.scene, multibody::scene_names(),
-             "multibody, driven: what is built; what a scene does not compute stays empty");
-  add_choice(command, "--reactions", scene.method, multibody::method_names(),
-             "multibody, driven: by forward dynamics and its multipliers, or by inverse dynamics "
-             "(faster; serves massless pistons too)");
-  command
-      .add_option("--channels", channels_,
-                  "only these: quantities (Rs) or columns (Rs_1_z2_N); without --scene the "
-                  "smallest scene that computes them is built")
-      ->delimiter(',')
-      ->option_text("NAME[,NAME..] [all]");
-  add_choice(command, "--integrator", integration.integrator, multibody::integrator_names(),
-             "time integrator of an integrated run");
-  CLI::Option* accuracy =
-      command
-          .add_option("--accuracy", accuracies,
-                      several ? "accuracies of an integrated run; all are tabled, the last is "
-                                "compared"
-                              : "relative accuracy per step of an integrated run")
-          ->check(accuracy_range());
+      .option("--channels", channels_,
+              "only these: quantities (Rs) or columns (Rs_1_z2_N); without --scene the "
+              "smallest scene that computes them is built")
+      .list()
+      .text("NAME[,NAME..] [all]");
+  command.choice("--integrator", integration.integrator, multibody::integrator_names(),
+                 "time integrator of an integrated run");
+  Option accuracy = command.option("--accuracy", accuracies,
+                                   several ? "accuracies of an integrated run; all are tabled, the "
+                                             "last is compared"
+                                           : "relative accuracy per step of an integrated run");
+  accuracy.accuracy();
   if (several)
-    accuracy->delimiter(',')->option_text("NUMBER[,NUMBER..] [1e-4,1e-6]");
+    accuracy.list().text("NUMBER[,NUMBER..] [1e-4,1e-6]");
   else
-    accuracy->expected(1)->option_text("NUMBER [1e-6]");
+    accuracy.one_value().text("NUMBER [1e-6]");
   command
-      .add_option("--error", error_,
-                  "integrated: choose integrator and accuracy for this error of every reaction, of "
-                  "peak, by a short calibration, and verify it")
-      ->check(number_in(1e-11, 0.1))
-      ->excludes(accuracy)
-      ->option_text("NUMBER");
+      .option("--error", error_,
+              "integrated: choose integrator and accuracy for this error of every reaction, of "
+              "peak, by a short calibration, and verify it")
+      .number_in(1e-11, 0.1)
+      .excludes(accuracy)
+      .text("NUMBER");
 }
 
 void RunChoice::refuse_without_effect(bool multibody) const {
@@ -157,31 +118,6 @@ std::optional<study::ErrorTarget> RunChoice::target() const {
   target.error = error_;
   if (given("--integrator")) target.integrators = {integration.integrator};
   return target;
-}
-
-namespace {
-
-CLI::Validator number_that(const std::string& range, const std::function<bool(double)>& allowed) {
-  return {[=](const std::string& text) {
-            double value = 0;
-            if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value))
-              return std::string();
-            return text + ": must be " + range;
-          },
-          ""};
-}
-
-}  // namespace
-
-CLI::Validator number_in(double low, double high) {
-  return number_that("in [" + number_text(low) + ", " + number_text(high) + "]",
-                     [=](double value) { return value >= low && value <= high; });
-}
-
-CLI::Validator accuracy_range() { return number_in(1e-12, 0.1); }
-
-CLI::Validator positive_number() {
-  return number_that("a finite number > 0", [](double value) { return value > 0; });
 }
 
 }  // namespace bentaxis::cli

@@ -1,7 +1,6 @@
 // Options that several commands share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "bentaxis/pump/case.h"
 #include "bentaxis/study/channel_choice.h"
 #include "bentaxis/study/run.h"
+#include "command_parser.h"
 
 namespace bentaxis::cli {
 
@@ -23,10 +23,10 @@ struct CaseOption {
   Case read() const;
 };
 /// CASE and --set.
-void add_case(CLI::App& command, CaseOption& the_case);
-void add_out(CLI::App& command, std::string& folder, const std::string& what);
+void add_case(CommandParser command, CaseOption& the_case);
+void add_out(CommandParser command, std::string& folder, const std::string& what);
 /// A list of integrators; empty where not given.
-void add_integrators(CLI::App& command, std::vector<multibody::Integrator>& integrators);
+void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators);
 
 /// How the multibody model is run, and which channels are asked for.
 class RunChoice {
@@ -38,7 +38,7 @@ class RunChoice {
 
   /// Adds --way, --scene, --reactions, --channels, --integrator, --accuracy, --error.
   /// @param several  --accuracy takes a list
-  void add_to(CLI::App& command, bool several);
+  void add_to(CommandParser command, bool several);
 
   /// Refuses options that were given and would change nothing.
   /// @param multibody  whether the multibody model is run at all
@@ -53,18 +53,11 @@ class RunChoice {
   std::optional<study::ErrorTarget> target() const;
 
  private:
-  bool given(const std::string& option) const { return (*command_)[option]->count() > 0; }
+  bool given(const std::string& option) const { return command_->given(option); }
 
-  const CLI::App* command_ = nullptr;
+  std::optional<CommandParser> command_;
   std::vector<std::string> channels_;
   double error_ = 0;
 };
-
-/// A finite number in [low, high].
-CLI::Validator number_in(double low, double high);
-/// Accuracies that Simbody's integrators accept.
-CLI::Validator accuracy_range();
-/// A finite number above 0.
-CLI::Validator positive_number();
 
 }  // namespace bentaxis::cli

@@ -99,30 +99,28 @@ int pressure(const Options& options) {
 
 }  // namespace
 
-Command add_pressure_command(CLI::App& app) {
+Command add_pressure_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  CommandParser command = program.subcommand(
       "pressure", "Compute chamber and delivery pressures, flows and the torque they need");
-  add_case(*command, options->the_case);
-  add_out(*command, options->out, "pressure.html, pressure.json and the curves");
+  add_case(command, options->the_case);
+  add_out(command, options->out, "pressure.html, pressure.json and the curves");
   command
-      ->add_option("--delivery-bar", options->delivery,
-                   "also mean torque and flow at these delivery pressures; 0 is an open line")
-      ->option_text("FROM:TO:STEP");
+      .option("--delivery-bar", options->delivery,
+              "also mean torque and flow at these delivery pressures; 0 is an open line")
+      .text("FROM:TO:STEP");
   command
-      ->add_option("--overlay", options->overlay,
-                   "another hydraulic case, drawn into one figure with the first over three turns")
-      ->option_text("CASE");
+      .option("--overlay", options->overlay,
+              "another hydraulic case, drawn into one figure with the first over three turns")
+      .text("CASE");
   command
-      ->add_option(
-          "--published", options->published,
-          "printed numbers to set the results against; a calibrated one outside: exit status 1")
-      ->option_text("FILE");
+      .option("--published", options->published,
+              "printed numbers to set the results against; a calibrated one outside: exit status 1")
+      .text("FILE");
   command
-      ->add_option("--transient", options->transient,
-                   "also the transient from rest over so many turns")
-      ->check(CLI::Range(1, 1000))
-      ->option_text("TURNS");
+      .option("--transient", options->transient, "also the transient from rest over so many turns")
+      .integer_in(1, 1000)
+      .text("TURNS");
   return {command, [options] { return pressure(*options); }};
 }
 

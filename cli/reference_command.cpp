@@ -56,33 +56,31 @@ int update(const Options& options) {
 
 }  // namespace
 
-Command add_reference_command(CLI::App& app) {
+Command add_reference_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("reference", "Make reference data for regress, and update golden curves");
-  command->require_subcommand(1);
-  CLI::App* make = command->add_subcommand(
+  CommandParser command =
+      program.subcommand("reference", "Make reference data for regress, and update golden curves");
+  command.require_subcommand();
+  CommandParser make = command.subcommand(
       "new", "Folder for a curve of another tool or a rig, with a guess at what its columns are");
-  add_case(*make, options->the_case);
-  make->add_option("--from", options->from, "the curve (CSV, one header line)")
-      ->required()
-      ->option_text("CURVE.csv");
-  make->add_option("--out", options->out, "new folder")->option_text("DIR [reference_CASE]");
-  CLI::App* golden = command->add_subcommand(
+  add_case(make, options->the_case);
+  make.option("--from", options->from, "the curve (CSV, one header line)")
+      .required()
+      .text("CURVE.csv");
+  make.option("--out", options->out, "new folder").text("DIR [reference_CASE]");
+  CommandParser golden = command.subcommand(
       "golden", "Folder with the curves that both models give today, to detect changes");
-  add_case(*golden, options->the_case);
-  golden->add_option("--samples", options->samples, "angles in the turn")
-      ->check(CLI::Range(3, 100000))
-      ->option_text("NUMBER [36]");
-  golden->add_option("--out", options->out, "new folder")->required()->option_text("DIR");
-  CLI::App* renew = command->add_subcommand(
+  add_case(golden, options->the_case);
+  golden.option("--samples", options->samples, "angles in the turn")
+      .integer_in(3, 100000)
+      .text("NUMBER [36]");
+  golden.option("--out", options->out, "new folder").required().text("DIR");
+  CommandParser renew = command.subcommand(
       "update", "Rewrite golden curves and say what changed; never touches other data");
-  renew->add_option("dir", options->folder, "folder with references")
-      ->required()
-      ->option_text("DIR");
+  renew.option("dir", options->folder, "folder with references").required().text("DIR");
   return {command, [=] {
-            if (make->parsed()) return make_new(*options);
-            if (golden->parsed()) return make_golden(*options);
+            if (make.parsed()) return make_new(*options);
+            if (golden.parsed()) return make_golden(*options);
             return update(*options);
           }};
 }

@@ -82,18 +82,16 @@ int regress(const Options& options) {
 
 }  // namespace
 
-Command add_regress_command(CLI::App& app) {
+Command add_regress_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  CommandParser command = program.subcommand(
       "regress", "Hold both models to stored curves: the shipped reference data or your own");
-  command->add_option("dir", options->folder, "folder with references (default: the shipped set)")
-      ->option_text("[DIR]");
-  command->add_option("--junit", options->junit, "write the results as JUnit XML")
-      ->option_text("FILE");
-  command->add_option("--html", options->html, "write a page with the curves that fail")
-      ->option_text("FILE");
-  command->add_option("--filter", options->filter, "only cases whose name contains this text")
-      ->option_text("TEXT");
+  command.option("dir", options->folder, "folder with references (default: the shipped set)")
+      .text("[DIR]");
+  command.option("--junit", options->junit, "write the results as JUnit XML").text("FILE");
+  command.option("--html", options->html, "write a page with the curves that fail").text("FILE");
+  command.option("--filter", options->filter, "only cases whose name contains this text")
+      .text("TEXT");
   return {command, [options] { return regress(*options); }};
 }
 

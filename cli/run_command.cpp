@@ -69,23 +69,21 @@ int run(const Options& options) {
 
 }  // namespace
 
-Command add_run_command(CLI::App& app) {
+Command add_run_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "Run one model and write its curves as CSV");
-  add_case(*command, options->the_case);
-  command->add_option("--model", options->model, "which model")
-      ->required()
-      ->transform(CLI::CheckedTransformer(std::map<std::string, study::Model>{
-          {"analytic", study::Model::analytic}, {"multibody", study::Model::multibody}}))
-      ->option_text("analytic|multibody");
-  add_out(*command, options->out, "the curves");
-  options->choice.add_to(*command, false);
+  CommandParser command = program.subcommand("run", "Run one model and write its curves as CSV");
+  add_case(command, options->the_case);
+  command.choice("--model", options->model, {"analytic", "multibody"}, "which model")
+      .required()
+      .text("analytic|multibody");
+  add_out(command, options->out, "the curves");
+  options->choice.add_to(command, false);
   command
-      ->add_option("--gear", options->gear,
-                   "tooth force between shaft and block, or block speed imposed; overrides the "
-                   "case file")
-      ->check(CLI::IsMember({"mesh", "imposed"}))
-      ->option_text("mesh|imposed [mesh]");
+      .option("--gear", options->gear,
+              "tooth force between shaft and block, or block speed imposed; overrides the "
+              "case file")
+      .one_of({"mesh", "imposed"})
+      .text("mesh|imposed [mesh]");
   return {command, [options] { return run(*options); }};
 }
 

@@ -9,15 +9,15 @@
 
 namespace bentaxis::cli {
 
-Command add_schema_command(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
+Command add_schema_command(CommandParser program) {
+  CommandParser command = program.subcommand(
       "schema", "print the JSON Schema of case files, for editors that complete and check TOML");
   const auto tables = std::make_shared<std::vector<std::string>>();
   command
-      ->add_option("--markdown", *tables,
-                   "print the keys of these tables as Markdown tables instead (docs/case_file.md); "
-                   "top stands for the keys above all tables")
-      ->option_text("TABLE..");
+      .option("--markdown", *tables,
+              "print the keys of these tables as Markdown tables instead (docs/case_file.md); "
+              "top stands for the keys above all tables")
+      .text("TABLE..");
   return {command, [tables] {
             std::string text;
             for (const std::string& table : *tables)

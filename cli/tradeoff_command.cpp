@@ -34,28 +34,28 @@ int tradeoff(const Options& options) {
 
 }  // namespace
 
-Command add_tradeoff_command(CLI::App& app) {
+Command add_tradeoff_command(CommandParser program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  CommandParser command = program.subcommand(
       "tradeoff", "Time every model, scene, integrator and accuracy on a case against its error");
-  add_case(*command, options->the_case);
-  add_out(*command, options->out, "tradeoff.html, tradeoff.json and tradeoff.csv");
+  add_case(command, options->the_case);
+  add_out(command, options->out, "tradeoff.html, tradeoff.json and tradeoff.csv");
   study::TradeoffOptions& tradeoff_options = options->tradeoff;
-  add_integrators(*command, tradeoff_options.integrators);
-  command->add_option("--accuracies", tradeoff_options.accuracies, "accuracies of integrated runs")
-      ->delimiter(',')
-      ->check(accuracy_range())
-      ->option_text("NUMBER[,NUMBER..] [1e-2,1e-3,..,1e-10]");
+  add_integrators(command, tradeoff_options.integrators);
+  command.option("--accuracies", tradeoff_options.accuracies, "accuracies of integrated runs")
+      .list()
+      .accuracy()
+      .text("NUMBER[,NUMBER..] [1e-2,1e-3,..,1e-10]");
   command
-      ->add_option("--samples", tradeoff_options.samples_per_revolution,
-                   "angles per turn at which results are taken; each ends a step")
-      ->check(CLI::Range(1, 100000))
-      ->option_text("NUMBER [8 per piston]");
+      .option("--samples", tradeoff_options.samples_per_revolution,
+              "angles per turn at which results are taken; each ends a step")
+      .integer_in(1, 100000)
+      .text("NUMBER [8 per piston]");
   command
-      ->add_option("--max-seconds-per-run", tradeoff_options.max_seconds_per_run,
-                   "stop an integrated run that takes longer, and try no tighter accuracy")
-      ->check(positive_number())
-      ->option_text("NUMBER [10]");
+      .option("--max-seconds-per-run", tradeoff_options.max_seconds_per_run,
+              "stop an integrated run that takes longer, and try no tighter accuracy")
+      .positive_number()
+      .text("NUMBER [10]");
   return {command, [options] {
             study::TradeoffOptions& o = options->tradeoff;
             if (o.integrators.empty()) o.integrators = study::all_integrators();

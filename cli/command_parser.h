@@ -1,0 +1,113 @@
+// The parser of the command line as the commands see it. The library that does the work, CLI11, is
+// seen by command_parser.cpp alone: its headers cost every file that includes them seconds.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace bentaxis::cli {
+
+/// An option or argument of a command. What is said about it can be chained.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option& required();
+  /// Its values in the help text, as in "NUMBER [36]".
+  Option& text(const std::string& values);
+  Option& list();        ///< values are parted by commas too
+  Option& one_value();   ///< of an option that could take several
+  Option& repeatable();  ///< one value each time it is given; all are kept
+  Option& excludes(const Option& other);
+
+  Option& number_in(double low, double high);  ///< finite, in [low, high]
+  Option& positive_number();                   ///< finite, above 0
+  Option& accuracy();                          ///< what Simbody's integrators accept
+  Option& integer_in(int low, int high);       ///< in [low, high]
+  Option& one_of(const std::vector<std::string>& words);
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command and its options. Variables that options fill must live until the line is parsed; they
+/// stay as they are where the option is not given. A name without dashes is that of an argument.
+class CommandParser {
+ public:
+  explicit CommandParser(CLI::App* app) : app_(app) {}
+
+  CommandParser subcommand(const std::string& name, const std::string& what);
+  void require_subcommand();
+
+  Option option(const std::string& name, int& value, const std::string& what);
+  Option option(const std::string& name, double& value, const std::string& what);
+  Option option(const std::string& name, std::string& value, const std::string& what);
+  Option option(const std::string& name, std::optional<double>& value, const std::string& what);
+  Option option(const std::string& name, std::vector<double>& values, const std::string& what);
+  Option option(const std::string& name, std::vector<std::string>& values, const std::string& what);
+
+  /// An option whose values are an enumeration's names in its order. Its text is
+  /// "WORD|WORD.. [default]".
+  template <class Enumeration>
+  Option choice(const std::string& name, Enumeration& value, const std::vector<std::string>& words,
+                const std::string& what) {
+    return choice_of(
+        name, [&value](int index) { value = static_cast<Enumeration>(index); }, words, what,
+        words[static_cast<std::size_t>(value)]);
+  }
+  /// A list of such values. Its text is "NAME[,NAME..] [all words]".
+  template <class Enumeration>
+  Option choices(const std::string& name, std::vector<Enumeration>& values,
+                 const std::vector<std::string>& words, const std::string& what) {
+    const auto set = [&values](const std::vector<int>& indices) {
+      values.clear();
+      for (const int index : indices) values.push_back(static_cast<Enumeration>(index));
+    };
+    return choices_of(name, set, words, what);
+  }
+
+  bool parsed() const;                        ///< was this command given?
+  bool given(const std::string& name) const;  ///< was this option of it given?
+
+ private:
+  Option choice_of(const std::string& name, const std::function<void(int)>& set,
+                   const std::vector<std::string>& words, const std::string& what,
+                   const std::string& otherwise);
+  Option choices_of(const std::string& name,
+                    const std::function<void(const std::vector<int>&)>& set,
+                    const std::vector<std::string>& words, const std::string& what);
+
+  CLI::App* app_;
+};
+
+/// The parser of the whole program, which owns those of its commands.
+class ProgramParser {
+ public:
+  struct Texts {
+    std::string name, what, version, footer;
+  };
+  explicit ProgramParser(const Texts& texts);
+  ~ProgramParser();
+  ProgramParser(const ProgramParser&) = delete;
+  ProgramParser& operator=(const ProgramParser&) = delete;
+
+  /// The program as the command that the commands are added to.
+  CommandParser root() { return CommandParser(app_.get()); }
+
+  /// @return false where the line asked for --help or --version, which are then printed
+  /// @throws InputError
+  bool parse(int argc, char** argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace bentaxis::cli
