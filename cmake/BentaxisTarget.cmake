@@ -30,9 +30,9 @@ endfunction()
 # A room is a folder of the top level: include/bentaxis/ROOM/ is what others see (and what is
 # installed), everything beside it is the room's own. A target finds the headers of what it links and no
 # others, so that what is not in target_link_libraries cannot be included.
-#   bentaxis_library(<room> STANDARD <17|20> SOURCES ... [PRECOMPILE <header>...])
+#   bentaxis_library(<room> STANDARD <17|20> SOURCES ...)
 function(bentaxis_library room)
-  cmake_parse_arguments(ARG "" "STANDARD" "SOURCES;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "" "STANDARD" "SOURCES" ${ARGN})
   set(name bentaxis_${room})
   add_library(${name} STATIC ${ARG_SOURCES})
   add_library(bentaxis::${room} ALIAS ${name})
@@ -41,9 +41,6 @@ function(bentaxis_library room)
   target_include_directories(${name}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
-  if(ARG_PRECOMPILE)
-    target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
-  endif()
   install(TARGETS ${name} EXPORT bentaxisTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 endfunction()
