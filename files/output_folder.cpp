@@ -145,8 +145,7 @@ void OutputFolder::put_back() noexcept {
   }
 }
 
-std::vector<fs::path> OutputFolder::commit(const std::string& record,
-                                           const NamesIn& names_in) {
+std::vector<fs::path> OutputFolder::commit(const std::string& record, const NamesIn& names_in) {
   for (const auto& stream : streams_) stream->finish();
   const FolderLock lock(folder_);
   for (const Pending& file : pending_)

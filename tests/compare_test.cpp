@@ -1,6 +1,7 @@
 // The comparison: made-up tables with known answers; no model is run here.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "bentaxis/compare/comparison.h"

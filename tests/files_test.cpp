@@ -138,8 +138,7 @@ TEST_F(OutputFolderTest, WhatIsNotOfTheEarlierSetStays) {
   file("changed.csv", "1");
   fs::create_directory(folder_ / "folder");
   file("outside.csv", "1");
-  write_with(
-      "changed.csv\nfolder\n../outside.csv\n..\n\nmissing.csv");
+  write_with("changed.csv\nfolder\n../outside.csv\n..\n\nmissing.csv");
   // Changed since: somebody else's now.
   fs::last_write_time(folder_ / "changed.csv",
                       fs::last_write_time(folder_ / "report.txt") + std::chrono::seconds(1));
