@@ -79,6 +79,28 @@ TEST(Comparison, OrdersThatTheSamplesCannotResolveAreLeftOut) {
   EXPECT_EQ(c.channels[0].harmonics[0].order, 5);
 }
 
+TEST(Comparison, OrdersOfATableOverSeveralTurnsAreOfOneTurn) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  ResultTable a = table("a", channels, {[](double t) { return 3 * wave(2 * t, 3); }}, 24);
+  for (double& angle : a.theta_deg) angle *= 2;  // 12 samples in each of two turns
+  Options options;
+  options.orders = {3, 7};
+  const Comparison c = compare_tables(a, a, options);
+  ASSERT_EQ(c.channels.at(0).harmonics.size(), 1U);  // 12 samples do not resolve order 7
+  EXPECT_EQ(c.channels[0].harmonics[0].order, 3);
+  EXPECT_NEAR(c.channels[0].harmonics[0].amplitude[0], 3, 1e-12);
+}
+
+TEST(Comparison, WorstIsTheFirstOfEquals) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
+  const auto one = [](double) { return 1.0; };
+  const auto two = [](double) { return 2.0; };
+  const Comparison c =
+      compare_tables(table("a", channels, {one, one}), table("b", channels, {two, two}), {});
+  ASSERT_NE(c.worst(), nullptr);
+  EXPECT_EQ(c.worst()->channel.name, "X_N");
+}
+
 TEST(Comparison, PeakIsSharedByTheComponentsOfAVector) {
   const std::vector<Channel> channels = {channel("X_x_N", "X"), channel("X_y_N", "X")};
   const auto a = table("a", channels, {[](double) { return 300.0; }, [](double) { return 0.0; }});
