@@ -106,14 +106,11 @@ void validate(const ConstView& view, const Registry& registry) {
 
 }  // namespace
 
-View view_of(PumpParameters& pump) {
-  View view;
-  view.pump = &pump;
-  return view;
-}
+namespace {
 
-View view_of(Case& the_case) {
-  View view;
+template <class AnyView, class AnyCase>
+AnyView whole_view(AnyCase& the_case) {
+  AnyView view;
   view.pump = &the_case.pump;
   view.name = &the_case.name;
   view.operation = &the_case.operation;
@@ -123,6 +120,16 @@ View view_of(Case& the_case) {
   view.multibody = &the_case.multibody;
   return view;
 }
+
+}  // namespace
+
+View view_of(PumpParameters& pump) {
+  View view;
+  view.pump = &pump;
+  return view;
+}
+
+View view_of(Case& the_case) { return whole_view<View>(the_case); }
 
 ConstView view_of(const PumpParameters& pump) {
   ConstView view;
@@ -130,17 +137,7 @@ ConstView view_of(const PumpParameters& pump) {
   return view;
 }
 
-ConstView view_of(const Case& the_case) {
-  ConstView view;
-  view.pump = &the_case.pump;
-  view.name = &the_case.name;
-  view.operation = &the_case.operation;
-  view.pressure = &the_case.pressure;
-  view.hydraulics = &the_case.hydraulics;
-  view.analytic = &the_case.analytic;
-  view.multibody = &the_case.multibody;
-  return view;
-}
+ConstView view_of(const Case& the_case) { return whole_view<ConstView>(the_case); }
 
 ConstView as_const(const View& v) {
   ConstView view;

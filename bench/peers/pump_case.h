@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
@@ -15,6 +14,8 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/stopwatch.h"
+#include "kinematics.h"
 
 namespace bentaxis::peers {
 
@@ -75,16 +76,6 @@ class PumpCase {
 
  private:
   double worst_ = 0, peak_ = 0;
-};
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// Steps per turn of integrated runs: multiples of 180, so that every pressure edge ends a step.
