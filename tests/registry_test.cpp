@@ -248,6 +248,18 @@ TEST(Set, ReadsAsIfTheFileSaidSo) {
   EXPECT_EQ(case_text(changed({"pump.tilt_deg=35"})), case_text(parse_case(text, "x.toml")));
 }
 
+// A range that follows from another number is converted there and back.
+TEST(Set, BoundsFromOtherNumbersAllowForTheirRounding) {
+  std::mt19937 engine(1);
+  for (int n = 0; n < 1000; ++n) {
+    const double transverse = std::uniform_real_distribution<double>(1, 100)(engine);
+    EXPECT_NO_THROW(
+        changed({"piston.centre_of_mass_mm=20",
+                 "piston.transverse_inertia_kg_mm2=" + number_text(transverse),
+                 "piston.axial_inertia_kg_mm2=" + number_text(2 * transverse)}));
+  }
+}
+
 TEST(Set, IsRecorded) {
   for (const InputEntry& entry : changed({"pump.tilt_deg=35", "name=other"}).entries)
     EXPECT_EQ(entry.changed, entry.key == "tilt_deg" || entry.key == "name") << entry.key;
@@ -303,6 +315,15 @@ TEST(Validate, HoldsConvertedBoundsToAFewUnitsInTheLastPlace) {
   EXPECT_THROW(validate(pump), InputError);
   pump.piston.joint_mass_fraction = 0.5;
   pump.geometry.tilt = radians(90);  // an open bound
+  EXPECT_THROW(validate(pump), InputError);
+}
+
+TEST(Validate, HoldsBoundsFromOtherNumbersAlike) {
+  PumpParameters pump = reference_case("seven_real_spinning").pump;
+  PistonMass::Real& real = *pump.piston.real;
+  real.axial_inertia = std::nextafter(2 * real.transverse_inertia, 1.0);
+  EXPECT_NO_THROW(validate(pump));
+  real.axial_inertia = 2 * real.transverse_inertia * (1 + 1e-12);
   EXPECT_THROW(validate(pump), InputError);
 }
 
