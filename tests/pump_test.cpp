@@ -395,6 +395,21 @@ TEST(Table, PeakIsThatOfTheVectorOverAllPistons) {
   EXPECT_DOUBLE_EQ(t.peak("Rs"), 5);
 }
 
+TEST(Samples, PartsOfARunAreItsRows) {
+  Case c = reference_case("reversed");
+  c.operation.samples_per_revolution = 5;
+  const PressureTrace pressure(c.pressure);
+  const Samples all = sample_case(c, pressure, 2);
+  ASSERT_EQ(all.theta_deg.size(), 10U);
+  const Samples part = sample_case(c, pressure, 2, false, {3, 4});
+  EXPECT_EQ(part.theta_deg,
+            std::vector<double>(all.theta_deg.begin() + 3, all.theta_deg.begin() + 7));
+  const auto first = all.chamber_pressure.begin() + 3 * all.pistons;
+  EXPECT_EQ(part.chamber_pressure, std::vector<double>(first, first + 4 * all.pistons));
+  EXPECT_EQ(sample_case(c, pressure, 2, false, {8, 100}).theta_deg.size(), 2U);
+  EXPECT_TRUE(sample_case(c, pressure, 2, false, {2, 0}).theta_deg.empty());
+}
+
 TEST(Samples, FallBackwardsAndReduceExactly) {
   Case c = reference_case("reversed");
   c.operation.samples_per_revolution = 4;

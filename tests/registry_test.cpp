@@ -253,10 +253,9 @@ TEST(Set, BoundsFromOtherNumbersAllowForTheirRounding) {
   std::mt19937 engine(1);
   for (int n = 0; n < 1000; ++n) {
     const double transverse = std::uniform_real_distribution<double>(1, 100)(engine);
-    EXPECT_NO_THROW(
-        changed({"piston.centre_of_mass_mm=20",
-                 "piston.transverse_inertia_kg_mm2=" + number_text(transverse),
-                 "piston.axial_inertia_kg_mm2=" + number_text(2 * transverse)}));
+    EXPECT_NO_THROW(changed({"piston.centre_of_mass_mm=20",
+                             "piston.transverse_inertia_kg_mm2=" + number_text(transverse),
+                             "piston.axial_inertia_kg_mm2=" + number_text(2 * transverse)}));
   }
 }
 
