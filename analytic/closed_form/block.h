@@ -15,7 +15,7 @@ struct BlockNumbers {
 };
 
 void prepare(const PumpParameters& pump, const PistonNumbers<double>& piston,
-             BlockNumbers<double>& block);
+             BlockNumbers<double>& p);
 
 /// Sums over the pistons.
 template <class Real>

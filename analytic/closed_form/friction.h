@@ -24,7 +24,7 @@ struct FrictionLaw {
 };
 
 /// @param any  false: pistons without friction
-FrictionLaw prepare(const PumpParameters& pump, bool any, FrictionNumbers<double>& numbers);
+FrictionLaw prepare(const PumpParameters& pump, bool any, FrictionNumbers<double>& p);
 
 /// Friction force Fpf along z2 on a piston whose ring moves with `velocity` along z2 (25).
 template <class Par, class Real>

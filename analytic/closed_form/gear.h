@@ -12,7 +12,7 @@ struct GearNumbers {
   T y, z1, z2, line_x, line_y1, line_z1, line_y2, line_z2, inverse_arm;
 };
 
-void prepare(const PumpParameters& pump, GearNumbers<double>& gear);
+void prepare(const PumpParameters& pump, GearNumbers<double>& p);
 
 /// Force and its moment: on the block in S2 about O2, on the shaft in S1 about O1.
 template <class Real>

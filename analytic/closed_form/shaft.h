@@ -18,7 +18,7 @@ struct ShaftNumbers {
 };
 
 void prepare(const PumpParameters& pump, const FrameNumbers<double>& frame,
-             ShaftNumbers<double>& shaft);
+             ShaftNumbers<double>& p);
 
 /// Sums of Rs over the pistons.
 template <class Real>
