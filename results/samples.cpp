@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis {
 
 void Samples::instant(std::size_t row, Instant& instant) const {
+  if (row >= theta_deg.size() || (row + 1) * pistons > chamber_pressure.size())
+    throw InputError("samples: row " + std::to_string(row + 1) + " of " +
+                     std::to_string(theta_deg.size()) + " angles and " +
+                     std::to_string(chamber_pressure.size()) + " chamber pressures of " +
+                     std::to_string(pistons) + " pistons");
   instant.turn(radians(std::fmod(theta_deg[row], 360.0)), omega);
   instant.ports = ports;
   const auto first = chamber_pressure.begin() + static_cast<std::ptrdiff_t>(row) * pistons;

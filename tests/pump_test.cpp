@@ -410,6 +410,19 @@ TEST(Samples, PartsOfARunAreItsRows) {
   EXPECT_TRUE(sample_case(c, pressure, 2, false, {2, 0}).theta_deg.empty());
 }
 
+TEST(Samples, ARowNeedsAnAngleAndAPressureForEachPiston) {
+  Samples samples;
+  samples.pistons = 3;
+  samples.theta_deg = {0, 120};
+  samples.chamber_pressure = {1, 2, 3, 4, 5};
+  Instant instant;
+  samples.instant(0, instant);
+  EXPECT_EQ(instant.chamber_pressure, (std::vector<double>{1, 2, 3}));
+  EXPECT_THROW(samples.instant(1, instant), InputError);
+  samples.chamber_pressure.resize(9);
+  EXPECT_THROW(samples.instant(2, instant), InputError);
+}
+
 TEST(Samples, FallBackwardsAndReduceExactly) {
   Case c = reference_case("reversed");
   c.operation.samples_per_revolution = 4;

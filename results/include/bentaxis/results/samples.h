@@ -19,6 +19,7 @@ struct Samples {
   int pistons = 0;
 
   /// Copies sample `row` into `instant`. theta is reduced to one turn first, exactly.
+  /// @throws InputError where there is no such row, or not a pressure for each of its pistons
   void instant(std::size_t row, Instant& instant) const;
 };
 
