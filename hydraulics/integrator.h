@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "bentaxis/pump/error.h"
 #include "network.h"
 
 namespace bentaxis::hydraulics {
@@ -13,6 +14,12 @@ namespace bentaxis::hydraulics {
 struct Integrals {
   double suction = 0, delivery = 0, leakage = 0, load = 0;
   double work = 0;  ///< of the pistons on the oil, gauge pressure
+};
+
+/// The integration does not get through the period from here; from elsewhere it may.
+class StepsEnd : public ComputationError {
+ public:
+  using ComputationError::ComputationError;
 };
 
 /// What an integration cost.
@@ -24,32 +31,45 @@ struct Work {
 /// dense Newton iteration with the network's own Jacobian, and its forward sensitivities.
 class Integrator {
  public:
-  explicit Integrator(const Network& network);
+  /// @param alive  called now and then; may throw
+  explicit Integrator(const Network& network, std::function<void()> alive = {});
 
-  /// Receives the state at angles of the period, rising.
-  using Observer = std::function<void(double x, const double* y)>;
-  struct Watch {
-    std::vector<double> at;  ///< angles in [0, period) where `sample` is called, rising
-    Observer sample;
-    Observer step;  ///< called after every step of the integrator
+  /// What the integration knows of one of its steps.
+  struct Step {
+    double from = 0, to = 0;  ///< degrees of the period
+    bool at_edge = false;     ///< it ends at a port edge or at the end of the period
+    /// State at an angle of the step, by the integrator's own polynomial; until the next call.
+    std::function<const double*(double x)> state;
+    /// Integrals from the start of the period, where they were asked for.
+    std::function<Integrals(double x)> integrals;
   };
+  using Watch = std::function<void(const Step& step)>;
 
   /// State at the end of the period from the state at its start (pressures; the mean starts at 0).
   /// @param tolerance    error of s (so relative error of P) allowed per step
   /// @param sensitivity  if not null: receives d(end state)/d(start pressures, ln load_area),
   ///                     column-major, size() rows; the last column only with a load
   /// @param integrals    if not null: receives the integrals, with the same control of error
-  /// @throws ComputationError naming the angle where the integration fails
+  /// @param watch        called after every step
+  /// @throws StepsEnd naming the angle where the integration fails
+  /// @throws ComputationError where all integrations so far have taken more steps than any pump
+  ///         needs
   std::vector<double> over_period(const std::vector<double>& pressures, double load_area,
                                   double tolerance, std::vector<double>* sensitivity = nullptr,
-                                  Integrals* integrals = nullptr, const Watch* watch = nullptr);
+                                  Integrals* integrals = nullptr, const Watch& watch = {});
 
   const Work& work() const { return work_; }  ///< of all calls so far
+  /// Of the effort after which every call fails, what is gone.
+  double share_of_effort() const;
+  void spend_at_most(double share) { most_ = share; }
 
  private:
   struct Implementation;
   const Network& network_;
+  std::function<void()> alive_;
   Work work_;
+  double effort_ = 0;  // of all calls so far, see kMostEffort
+  double most_ = 1;    // of kMostEffort
 };
 
 }  // namespace bentaxis::hydraulics

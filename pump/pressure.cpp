@@ -16,15 +16,26 @@ double smooth_step(double t) { return t * t * (3 - 2 * t); }
 
 }  // namespace
 
+double ComputedPressure::gauge(double theta_k_deg) const {
+  return atmosphere * std::expm1(log_pressure(theta_k_deg));
+}
+
 PressureTrace::PressureTrace(const PressureSpec& spec)
     : kind_(spec.kind),
       ports_(spec.ports),
       transition_deg_(spec.transition_deg),
       delivery_start_deg_(spec.delivery_start_deg) {
-  if (kind_ != PressureKind::ideal) {
-    if (kind_ == PressureKind::hydraulic && spec.curve.theta_deg.empty())
+  if (kind_ == PressureKind::hydraulic) {
+    if (!spec.computed)
       throw InputError(
           "[pressure] kind = \"hydraulic\": this job needs the pressure to be computed first");
+    if (spec.points == 0) {
+      computed_ = spec.computed;
+      edges_deg_ = computed_->edges_deg;
+      return;
+    }
+  }
+  if (kind_ != PressureKind::ideal) {
     try {
       spline_ = std::make_unique<PeriodicSpline>(spec.curve.theta_deg, spec.curve.pressure);
     } catch (const InputError& error) {
@@ -44,7 +55,9 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
 }
 
 double PressureTrace::operator()(double theta_k_deg) const {
-  return spline_ ? (*spline_)(theta_k_deg) : ideal(theta_k_deg);
+  return spline_     ? (*spline_)(theta_k_deg)
+         : computed_ ? computed_->gauge(theta_k_deg)
+                     : ideal(theta_k_deg);
 }
 
 double PressureTrace::ideal(double theta_k_deg) const {

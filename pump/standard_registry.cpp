@@ -562,60 +562,70 @@ Table operation_table() {
            .meaning = "angles of a turn, equally far apart"}}};
 }
 
+std::string too_few_points(const ConstView& v) {
+  const int* points = in(v.pressure, &PressureSpec::points);
+  return points == nullptr || *points == 0 || *points >= 16 ? "" : "must be 0 or in [16, 100000]";
+}
+
 Table pressure_table() {
   return {
       .name = "pressure",
       .meaning = "gauge pressure in the chambers over their own angle theta_k",
-      .parameters = {
-          {.key = "kind",
-           .field = choice_at([](const auto& v) { return in(v.pressure, &PressureSpec::kind); }),
-           .words = {"ideal", "curve", "hydraulic"},
-           .meaning = "smoothed steps between the port pressures; points of a file; or computed "
-                      "from `[hydraulics]`"},
-          {.key = "suction_bar",
-           .field = number_at([](const auto& v) {
-             return in(in(v.pressure, &PressureSpec::ports), &PortPressures::suction);
-           }),
-           .symbol = "p_s",
-           .unit = kBar,
-           .meaning = "ideal: in the chambers; always: in the port, where it loads the lands"},
-          {.key = "delivery_bar",
-           .field = number_at([](const auto& v) {
-             return in(in(v.pressure, &PressureSpec::ports), &PortPressures::delivery);
-           }),
-           .symbol = "p_d",
-           .unit = kBar,
-           .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
-             if (v.pressure->kind != PressureKind::hydraulic) return std::nullopt;
-             return NumberRange{0, 10000};
-           },
-           .range_words = "hydraulic: [0, 10000]",
-           .meaning = "likewise; hydraulic: the mean asked for, 0 is an open line"},
-          {.key = "points",
-           .field = integer_at([](const auto& v) { return in(v.pressure, &PressureSpec::points); }),
-           .range = {16, 100000},
-           .fallback = {800},
-           .meaning = "of the computed curve per turn; as many as the paper gave ADAMS",
-           .active = kHydraulic},
-          {.key = "transition_deg",
-           .field = number_at(
-               [](const auto& v) { return in(v.pressure, &PressureSpec::transition_deg); }),
-           .symbol = "w",
-           .unit = kDegrees,
-           .range = {0, 180},
-           .meaning = "width of each rise and fall; 0 is a step",
-           .active = kIdeal},
-          {.key = "delivery_start_deg",
-           .field = number_at(
-               [](const auto& v) { return in(v.pressure, &PressureSpec::delivery_start_deg); }),
-           .unit = kDegrees,
-           .fallback = {180.0},
-           .meaning = "middle of the rise",
-           .active = kIdeal},
-          {.key = "file",
-           .field = CurveField{},
-           .meaning = "CSV `theta_deg,pressure_bar`, path relative to the case file",
-           .active = kCurve}}};
+      .parameters =
+          {{.key = "kind",
+            .field = choice_at([](const auto& v) { return in(v.pressure, &PressureSpec::kind); }),
+            .words = {"ideal", "curve", "hydraulic"},
+            .meaning = "smoothed steps between the port pressures; points of a file; or computed "
+                       "from `[hydraulics]`"},
+           {.key = "suction_bar",
+            .field = number_at([](const auto& v) {
+              return in(in(v.pressure, &PressureSpec::ports), &PortPressures::suction);
+            }),
+            .symbol = "p_s",
+            .unit = kBar,
+            .meaning = "ideal: in the chambers; always: in the port, where it loads the lands"},
+           {.key = "delivery_bar",
+            .field = number_at([](const auto& v) {
+              return in(in(v.pressure, &PressureSpec::ports), &PortPressures::delivery);
+            }),
+            .symbol = "p_d",
+            .unit = kBar,
+            .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+              if (v.pressure->kind != PressureKind::hydraulic) return std::nullopt;
+              return NumberRange{0, 10000};
+            },
+            .range_words = "hydraulic: [0, 10000]",
+            .meaning = "likewise; hydraulic: the mean asked for, 0 is an open line"},
+           {.key = "points",
+            .field =
+                integer_at([](const auto& v) { return in(v.pressure, &PressureSpec::points); }),
+            .range = {0, 100000},
+            .range_words = "0 or [16, 100000]",
+            .fallback = {0},
+            .meaning = "0: both models get the computed curve, within `curve_error`; otherwise a "
+                       "periodic cubic spline through as many of its points per turn, as the paper "
+                       "gave ADAMS 800; its error is in the report",
+            .active = kHydraulic},
+           {.key = "transition_deg",
+            .field = number_at(
+                [](const auto& v) { return in(v.pressure, &PressureSpec::transition_deg); }),
+            .symbol = "w",
+            .unit = kDegrees,
+            .range = {0, 180},
+            .meaning = "width of each rise and fall; 0 is a step",
+            .active = kIdeal},
+           {.key = "delivery_start_deg",
+            .field = number_at(
+                [](const auto& v) { return in(v.pressure, &PressureSpec::delivery_start_deg); }),
+            .unit = kDegrees,
+            .fallback = {180.0},
+            .meaning = "middle of the rise",
+            .active = kIdeal},
+           {.key = "file",
+            .field = CurveField{},
+            .meaning = "CSV `theta_deg,pressure_bar`, path relative to the case file",
+            .active = kCurve}},
+      .rules = {{.key = "points", .after = "points", .broken = too_few_points}}};
 }
 
 // The arcs of [port_plate].
@@ -853,7 +863,15 @@ Table hydraulics_table() {
                  [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::tolerance); }),
              .range = {1e-12, 1e-4},
              .fallback = {1e-10},
-             .meaning = "relative error of pressure per step of the time integration"}}}),
+             .meaning = "relative error of pressure per step of the time integration at first"},
+            {.key = "curve_error",
+             .field = number_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::curve_error); }),
+             .range = {1e-9, 1e-2},
+             .fallback = {1e-7},
+             .meaning =
+                 "largest error of the curve that the models get, of its peak: `tolerance` is "
+                 "tightened until the estimate of it is smaller"}}}),
       .rules = {
           {.key = "delivery_arc_deg",
            .after = "delivery_arc_deg",

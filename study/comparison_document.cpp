@@ -95,8 +95,11 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case) {
   if (the_case.pressure.kind == PressureKind::curve)
     trace = "periodic cubic spline through " + the_case.pressure.file.filename().string() + once;
   if (the_case.pressure.kind == PressureKind::hydraulic)
-    trace = fmt::format("hydraulic model, periodic cubic spline through {} points{}",
-                        the_case.pressure.points, once);
+    trace = (the_case.pressure.points == 0
+                 ? "hydraulic model, the computed curve"
+                 : fmt::format("hydraulic model, periodic cubic spline through {} points",
+                               the_case.pressure.points)) +
+            once;
   return {
       {"chamber pressure", trace,
        "high-precision curves (computed with their own trace); mean torque of a frictionless pump "

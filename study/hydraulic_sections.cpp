@@ -24,6 +24,22 @@ void add_series(report::Figure& figure, const std::string& label, std::vector<do
   std::get<report::OwnFigure>(figure.content).series.push_back({label, std::move(values)});
 }
 
+namespace {
+
+std::string error_text(const hydraulics::SteadyState& state, double error) {
+  return fmt::format("{:.1e} bar, {:.1e} of peak", error / kPascalPerBar,
+                     error / state.computed->peak);
+}
+
+std::string curve_text(const Case& the_case, const hydraulics::SteadyState& state) {
+  if (the_case.pressure.points == 0)
+    return fmt::format("the computed one, in {} cubic pieces", state.convergence.pieces);
+  return fmt::format("periodic cubic spline through {} points, off the computed curve by up to {}",
+                     the_case.pressure.points, error_text(state, state.spline_error));
+}
+
+}  // namespace
+
 report::Section hydraulic_section(const Case& the_case, const hydraulics::SteadyState& state) {
   report::Section section;
   section.title = "Hydraulic model";
@@ -32,10 +48,11 @@ report::Section hydraulic_section(const Case& the_case, const hydraulics::Steady
       "Both mechanical models get one and the same curve of it.";
   const auto& convergence = state.convergence;
   section.facts = {
-      {"points of the curve", std::to_string(the_case.pressure.points)},
+      {"curve that both models get", curve_text(the_case, state)},
+      {"its largest error, estimated", error_text(state, state.computed->error)},
       {"Newton steps", std::to_string(convergence.iterations)},
       {"change of ln P from period to period", fmt::format("{:.1e}", convergence.residual)},
-      {"error of ln P allowed per step", fmt::format("{:g}", the_case.hydraulics->tolerance)},
+      {"error of ln P allowed per step", fmt::format("{:g}", convergence.tolerance)},
       {"steps of CVODES in all", std::to_string(convergence.steps)}};
   section.table.columns = {"quantity", "value", "unit"};
   for (const auto& line : hydraulics::lines(state))
@@ -67,20 +84,18 @@ std::vector<report::Figure> hydraulic_figures(const Case& the_case,
   add("openings", "Openings of chamber 1", "Fig. 10", "mm2",
       {{"to the suction port", "as_1_mm2"}, {"to the delivery port", "ad_1_mm2"}});
 
-  // The spline itself between its points, over two turns.
-  const PressureTrace spline(the_case.pressure);
+  // The curve itself, over two turns.
+  const PressureTrace curve(the_case.pressure);
   std::vector<double> theta, pressure;
   constexpr int kPerTurn = 1440;
   for (int i = 0; i < 2 * kPerTurn; ++i) {
     theta.push_back(360.0 * i / kPerTurn);
-    pressure.push_back(spline(theta.back()) / kPascalPerBar);
+    pressure.push_back(curve(theta.back()) / kPascalPerBar);
   }
-  figures.push_back(angle_figure(
-      "spline",
-      fmt::format("Pressure of piston 1 as both models get it: periodic cubic spline of {} points",
-                  the_case.pressure.points),
-      "Fig. 25", "bar", theta));
-  add_series(figures.back(), "spline", pressure);
+  figures.push_back(angle_figure("spline", "Pressure of piston 1 as both models get it", "Fig. 25",
+                                 "bar", theta));
+  figures.back().note = curve_text(the_case, state) + ".";
+  add_series(figures.back(), "chamber 1", pressure);
 
   add("port_flow", "Flow through both ports, leakage and load, all chambers", "", "l/min",
       {{"suction port", "Qs_l_per_min"},

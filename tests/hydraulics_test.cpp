@@ -238,6 +238,11 @@ TEST(Limit, IncompressibleFlowIsThatOfThePistons) {
     const double omega = rad_per_second(the_case.operation.speed_rpm);
     const Chamber chamber(the_case.pump.geometry, 1e-9);
     const auto flow = column(state.table, "Qd_l_per_min");
+    // Kinematic ripple of 5 pistons: 1 - cos 18 deg over the mean; the window of a quarter of a
+    // degree rounds off the cusps of it. What opens in an instant does not count.
+    if (pistons == 5) {
+      EXPECT_NEAR(state.summary.port_flow_ripple, 0.0498, scaled(6e-4));
+    }
     for (std::size_t i = 0; i < flow.size(); ++i) {
       double pistons_push = 0;
       for (int k = 1; k <= pistons; ++k) {
@@ -346,18 +351,74 @@ TEST(PeriodicState, OpenLineStaysAtAtmosphere) {
   EXPECT_GT(state.summary.volumetric_efficiency, 0.98);
 }
 
-TEST(PeriodicState, ConvergesWithTheTolerance) {
-  Case the_case = rated();
-  the_case.hydraulics->tolerance = 1e-12;
-  const PressureCurve best = steady_state(the_case).chamber;
-  double before = 1;
-  for (const double tolerance : {1e-5, 1e-7, 1e-9, 1e-11}) {
-    the_case.hydraulics->tolerance = tolerance;
-    const double error = log_difference(the_case, steady_state(the_case).chamber, best);
-    EXPECT_LT(error, scaled(kStepsAddUp) * tolerance);
-    EXPECT_LT(error, before);
-    before = error;
+TEST(PeriodicState, ErrorIsBelowTheOneStated) {
+  for (const double starved : {false, true}) {
+    Case the_case = rated();
+    if (starved) the_case.operation.speed_rpm = 3000;  // oil tears
+    the_case.operation.samples_per_revolution = 7200;
+    the_case.hydraulics->tolerance = 1e-12;
+    the_case.hydraulics->curve_error = 1e-9;
+    const SteadyState best = steady_state(the_case);
+    double before = 1;
+    for (const double allowed : {1e-3, 1e-5, 1e-7}) {
+      the_case.hydraulics->tolerance = 1e-5;
+      the_case.hydraulics->curve_error = allowed;
+      const SteadyState state = steady_state(the_case);
+      double error = 0;
+      for (std::size_t i = 0; i < state.chamber.pressure.size(); ++i)
+        error = std::max(error, std::abs(state.chamber.pressure[i] - best.chamber.pressure[i]));
+      EXPECT_LE(error, state.computed->error + best.computed->error) << starved << " " << allowed;
+      EXPECT_LE(state.computed->error, allowed * state.computed->peak);
+      EXPECT_LT(error, before * state.computed->peak);
+      before = error / state.computed->peak / 10;
+    }
   }
+}
+
+// What the models get has no wiggle that the solution has not: where the pressure rises from port
+// edge to port edge it does so between its points, and nothing is below absolute zero.
+TEST(PeriodicState, CurveIsMonotoneWhereTheSolutionIs) {
+  Case the_case = rated();
+  the_case.operation.speed_rpm = 3000;
+  SteadyState state = steady_state(the_case);
+  give_to(the_case, state);
+  const PressureTrace trace(the_case.pressure);
+  int turning = 0;
+  double least = 0, slope = 0;
+  for (double theta = 0.005, before = trace(0); theta <= 360; theta += 0.005) {
+    const double p = trace(theta);
+    least = std::min(least, p);
+    // Turning points that can be seen: those above the stated error.
+    if (std::abs(p - before) < state.computed->error) continue;
+    if ((p - before) * slope < 0) ++turning;
+    slope = p - before;
+    before = p;
+  }
+  EXPECT_GT(least, -the_case.hydraulics->atmosphere);
+  EXPECT_LT(least, -0.9 * the_case.hydraulics->atmosphere);  // a hard case: the oil tears
+  EXPECT_LT(turning, 40);
+  // Negative control: the spline through 800 points dips below absolute zero.
+  the_case.pressure.points = 800;
+  give_to(the_case, steady_state(the_case));
+  const PressureTrace spline(the_case.pressure);
+  double dip = 0;
+  for (double theta = 0; theta < 360; theta += 0.01) dip = std::min(dip, spline(theta));
+  EXPECT_LT(dip, -the_case.hydraulics->atmosphere);
+}
+
+TEST(PeriodicState, SplineSaysHowFarItIsOff) {
+  Case the_case = rated();
+  the_case.pressure.points = 800;
+  const SteadyState state = steady_state(the_case);
+  give_to(the_case, state);
+  const PressureTrace spline(the_case.pressure);
+  the_case.pressure.points = 0;
+  const PressureTrace curve(the_case.pressure);
+  double off = 0;
+  for (double theta = 0; theta < 360; theta += 0.001)
+    off = std::max(off, std::abs(spline(theta) - curve(theta)));
+  EXPECT_NEAR(state.spline_error / off, 1, 0.05);
+  EXPECT_GT(off, pascals(0.1));
 }
 
 TEST(PeriodicState, DoesNotDependOnTheStart) {
@@ -434,12 +495,12 @@ TEST(PeriodicState, AnyNumberOfPistons) {
     the_case.pressure.ports.delivery = pascals(pistons < 3 ? 60 : 275);
     const SteadyState state = steady_state(the_case);
     EXPECT_NEAR(state.summary.mass_in / state.summary.mass_out, 1, scaled(kMassBalance)) << pistons;
-    EXPECT_EQ(state.chamber.pressure.size(), 800);
+    EXPECT_EQ(state.chamber.pressure.size(), 720);
     // Neighbouring points belong together across the seams of the N pieces.
     const Fluid fluid(*the_case.hydraulics);
-    for (std::size_t i = 0; i < 800; ++i)
+    for (std::size_t i = 0; i < 720; ++i)
       EXPECT_LT(std::abs(fluid.log_pressure(state.chamber.pressure[i]) -
-                         fluid.log_pressure(state.chamber.pressure[(i + 1) % 800])),
+                         fluid.log_pressure(state.chamber.pressure[(i + 1) % 720])),
                 3)
           << pistons << " pistons, point " << i;
   }
@@ -503,7 +564,7 @@ TEST(HardInput, StepLikePortEdges) {
   h.suction.arc = {0, 180};
   const SteadyState state = steady_state(the_case);
   EXPECT_NEAR(state.summary.mass_in / state.summary.mass_out, 1, scaled(1e-7));
-  EXPECT_GT(state.summary.flow_ripple, 1);  // back-flow through the whole kidney at once
+  EXPECT_GT(state.summary.port_flow_ripple, 1);  // back-flow through the whole kidney at once
 }
 
 TEST(HardInput, StiffAndSoft) {
@@ -543,8 +604,60 @@ TEST(HardInput, WhatHasNoPeriodicStateIsRefused) {
 
 TEST(HardInput, PressureThatThePumpCannotReach) {
   Case the_case = rated();
-  the_case.operation.speed_rpm = 5;  // leakage takes more than the 0.3 l/min
-  EXPECT_THROW(steady_state(the_case), ComputationError);
+  the_case.hydraulics->leakage *= 50;
+  const auto refusal = [&](double bar) {
+    the_case.pressure.ports.delivery = pascals(bar);
+    try {
+      steady_state(the_case);
+    } catch (const ComputationError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  // The limit named is one: just below it there is a state, just above there is none.
+  const std::string text = refusal(400);
+  const auto at = text.find("delivery pressure is ");
+  ASSERT_NE(at, std::string::npos) << text;
+  const double largest = std::stod(text.substr(at + 21));
+  EXPECT_GT(largest, 50);
+  EXPECT_EQ(refusal(largest * 0.99), "");
+  EXPECT_THAT(refusal(largest * 1.01), testing::HasSubstr("out of reach"));
+}
+
+// Stiff enough for steps of no length: it ends, and says why in words.
+TEST(HardInput, EveryRunEnds) {
+  Case the_case = rated();
+  the_case.pump.geometry.pistons = 7;
+  the_case.operation.speed_rpm = 0.02;
+  the_case.pressure.ports.delivery = pascals(0.01);
+  the_case.hydraulics->transition_pressure = 10;  // Pa
+  the_case.hydraulics->bulk_modulus = 1e14;
+  the_case.hydraulics->dead_volume = 1e-9;
+  the_case.hydraulics->delivery_volume = 1e-9;
+  try {
+    const SteadyState state = steady_state(the_case);
+    EXPECT_LT(state.convergence.residual, 1e-6);
+  } catch (const ComputationError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("hydraulics"));
+    EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("CV_")));
+  }
+}
+
+TEST(HardInput, InterruptionIsSeenWithinAPeriod) {
+  const Case the_case = rated();
+  int calls = 0;
+  EXPECT_THROW(steady_state(the_case, {},
+                            [&](double) {
+                              if (++calls == 3) throw Interrupted();
+                            }),
+               Interrupted);
+  // Not once per Newton step only: a single integration asks as well.
+  calls = 0;
+  const Network network(the_case);
+  Integrator integrator(network, [&] { ++calls; });
+  const SteadyState state = steady_state(the_case);
+  integrator.over_period(state.log_pressures, state.summary.load_area, 1e-10);
+  EXPECT_GE(calls, integrator.work().steps / 250);
 }
 
 TEST(Control, EveryNumberOfTheTableCounts) {

@@ -1,6 +1,7 @@
 // Pressures in the chambers and in the delivery line of a running pump.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,15 +14,20 @@ namespace bentaxis::hydraulics {
 
 /// What an engineer reads off a turn. SI, pressures gauge.
 struct Summary {
-  double displacement = 0;  ///< m3 per revolution, N A stroke
-  double ideal_flow = 0;    ///< m3/s, displacement x speed
-  double flow = 0;  ///< m3/s, mean mass flow to the load / density at mean delivery pressure
-  double flow_at_inlet = 0;          ///< m3/s, the same / density in the suction port
-  double volumetric_efficiency = 0;  ///< flow_at_inlet / ideal_flow
-  double leakage = 0;                ///< m3/s, mean, at inlet density
+  double displacement = 0;           ///< m3 per revolution, N A stroke
+  double ideal_flow = 0;             ///< m3/s, displacement x speed
+  double density = 0;                ///< kg/m3, in the suction port: that of all volume flows here
+  double mass_flow = 0;              ///< kg/s, mean, to the load
+  double flow = 0;                   ///< m3/s, the same / density
+  double volumetric_efficiency = 0;  ///< flow / ideal_flow
+  double leakage = 0;                ///< m3/s, mean, of all chambers
   double delivery_mean = 0, delivery_least = 0,
          delivery_greatest = 0;  ///< Pa, of the delivery volume
-  double flow_ripple = 0;        ///< (greatest - least)/mean of the flow through the delivery port
+  /// (greatest - least)/mean of a flow averaged over a quarter of a degree, so that what passes in
+  /// the instant at which a port opens does not decide it.
+  double flow_ripple = 0;  ///< of the flow to the load, what the user's line sees
+  double port_flow_ripple =
+      0;  ///< of the flow through the delivery port, into the volume behind it
   double chamber_least = 0, chamber_least_deg = 0;        ///< Pa; angle of the chamber
   double chamber_greatest = 0, chamber_greatest_deg = 0;  ///< Pa
   double overshoot = 0;                                   ///< Pa, chamber_greatest - delivery_mean
@@ -33,19 +39,24 @@ struct Summary {
 
 /// How the periodic state was found.
 struct Convergence {
-  int iterations = 0;   ///< Newton steps
-  double residual = 0;  ///< largest difference of s = ln P between end and start, and of the mean
+  int iterations = 0;    ///< Newton steps
+  double residual = 0;   ///< largest difference of s = ln P between end and start, and of the mean
+  double tolerance = 0;  ///< error of s allowed per step in the end
+  std::size_t pieces = 0;           ///< cubic ones of the curve, per turn
   long steps = 0, evaluations = 0;  ///< of all time integrations
   double seconds = 0;
 };
 
 /// The periodic steady state: every chamber has one and the same curve, shifted by 360/N degrees.
 struct SteadyState {
-  PressureCurve chamber;   ///< `points` per turn, from 0 degrees; Pa gauge
+  std::shared_ptr<const ComputedPressure> computed;  ///< of a chamber, with its error
+  PressureCurve chamber;   ///< the same at the angles of the table; Pa gauge
   PressureCurve delivery;  ///< of the delivery volume, at the same angles
   ResultTable table;       ///< pressures, flows, volume and openings at the same angles
   Summary summary;
   Convergence convergence;
+  /// Pa, of a spline through the `points` of the case from the computed curve; 0 without.
+  double spline_error = 0;
   std::vector<double>
       log_pressures;  ///< ln(P/P0) of chambers 1..N and delivery volume at theta = 0
 };

@@ -46,6 +46,7 @@ struct HydraulicData {
   double dead_volume = 0;      ///< V0, m3: smallest volume of a chamber
   double delivery_volume = 0;  ///< m3, between pump and load orifice
   double tolerance = 0;        ///< relative error of pressure per step of the time integration
+  double curve_error = 1e-7;   ///< largest of the computed curve, of its peak
 };
 
 }  // namespace bentaxis

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/periodic_cubic.h"
 #include "bentaxis/pump/periodic_spline.h"
 
 namespace bentaxis {
@@ -19,7 +20,7 @@ struct PortPressures {
 enum class PressureKind {
   ideal,      ///< smoothed steps between the port pressures
   curve,      ///< periodic cubic spline through the points of a file
-  hydraulic,  ///< the same through points that a hydraulic model has computed
+  hydraulic,  ///< computed by a hydraulic model
 };
 
 /// A periodic pressure curve: angles in degrees (strictly increasing, spanning less than 360, end
@@ -29,6 +30,18 @@ struct PressureCurve {
   std::vector<double> pressure;
 };
 
+/// A chamber's pressure over its own angle, computed with an error that is known. It is kept as
+/// ln(P/P0), so that nothing between its points is below absolute zero.
+struct ComputedPressure {
+  PeriodicCubic log_pressure;
+  double atmosphere = 0;          ///< P0, Pa absolute
+  std::vector<double> edges_deg;  ///< where its slope changes fast: the edges of the ports
+  double peak = 0;                ///< Pa gauge, largest magnitude
+  double error = 0;               ///< Pa, estimate of the largest
+
+  double gauge(double theta_k_deg) const;  ///< Pa
+};
+
 /// What the case file says about pressure.
 struct PressureSpec {
   PressureKind kind = PressureKind::ideal;
@@ -36,8 +49,11 @@ struct PressureSpec {
   double transition_deg = 0;        ///< w, width of each rise and fall
   double delivery_start_deg = 180;  ///< middle of the rise
   std::filesystem::path file;       ///< of a curve
-  int points = 800;                 ///< of a computed curve, per turn
-  PressureCurve curve;              ///< of kind hydraulic: empty until it has been computed
+  /// Of kind hydraulic: points per turn of a spline that stands for the computed curve, as the
+  /// paper gave it to ADAMS; 0: the computed curve itself.
+  int points = 0;
+  PressureCurve curve;  ///< of a file; of kind hydraulic with `points`, once it has been computed
+  std::shared_ptr<const ComputedPressure> computed;  ///< of kind hydraulic, once it has been
 };
 
 /// Pressure over a turn. Works in degrees, where edges are exact.
@@ -60,6 +76,7 @@ class PressureTrace {
   PortPressures ports_;
   double transition_deg_, delivery_start_deg_;
   std::unique_ptr<PeriodicSpline> spline_;
+  std::shared_ptr<const ComputedPressure> computed_;
   std::vector<double> edges_deg_;
 };
 

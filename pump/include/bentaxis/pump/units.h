@@ -9,6 +9,7 @@ inline constexpr double kPi = 3.14159265358979323846264338327950288;
 inline constexpr double kRadPerDegree = kPi / 180.0;
 inline constexpr double kRadPerSecondPerRpm = kPi / 30.0;
 inline constexpr double kPascalPerBar = 1e5;
+inline constexpr double kLitrePerMinute = 1e-3 / 60;  // m3/s
 
 // Division by a power of ten is correctly rounded; multiplication by 1e-3 is not.
 inline double metres(double millimetres) { return millimetres / 1e3; }

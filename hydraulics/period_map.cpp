@@ -1,0 +1,99 @@
+#include "period_map.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+// Largest change of ln P and of ln(load area) in one Newton step.
+constexpr double kLongestStep = 2;
+constexpr int kMostIterations = 40;
+constexpr int kMostHalvings = 12;
+
+}  // namespace
+
+double PeriodMap::load_area(const Vector& z) const {
+  return sized_ ? std::exp(z[network_.pressures()]) : 0;
+}
+
+std::vector<double> PeriodMap::pressures(const Vector& z) const {
+  return {z.data(), z.data() + network_.pressures()};
+}
+
+std::vector<double> PeriodMap::relabelled(const std::vector<double>& end) const {
+  const int n = network_.pistons();
+  std::vector<double> next(network_.pressures());
+  for (int k = 0; k < n; ++k) next[(k + n - 1) % n] = end[k];
+  if (!network_.open_line()) next[n] = end[n];
+  return next;
+}
+
+PeriodMap::Vector PeriodMap::residual(const Vector& z, double tolerance, Matrix* jacobian,
+                                      Integrals* integrals, const Integrator::Watch& watch) {
+  std::vector<double> sensitivity;
+  const auto end =
+      integrator_.over_period(pressures(z), load_area(z), tolerance,
+                              jacobian != nullptr ? &sensitivity : nullptr, integrals, watch);
+  const int n = network_.pistons();
+  const int size = network_.size();
+  Vector result(unknowns());
+  const auto next = relabelled(end);
+  for (int i = 0; i < network_.pressures(); ++i) result[i] = next[i] - z[i];
+  if (sized_) result[unknowns() - 1] = end[size - 1] - 1;
+  if (jacobian != nullptr) {
+    const Eigen::Map<const Matrix> end_by_start(sensitivity.data(), size, unknowns());
+    jacobian->resize(unknowns(), unknowns());
+    for (int k = 0; k < n; ++k) jacobian->row((k + n - 1) % n) = end_by_start.row(k);
+    for (int i = n; i < unknowns(); ++i) jacobian->row(i) = end_by_start.row(i);
+    for (int i = 0; i < network_.pressures(); ++i) (*jacobian)(i, i) -= 1;
+  }
+  return result;
+}
+
+double size_of(const PeriodMap::Vector& v) { return v.lpNorm<Eigen::Infinity>(); }
+
+void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::Matrix& jacobian,
+            int& iterations, const std::function<void()>& alive) {
+  PeriodMap::Vector f = map.residual(z, tolerance, &jacobian);
+  double best = size_of(f);
+  for (; best > kNoise * tolerance; ++iterations) {
+    if (alive) alive();
+    if (iterations >= kMostIterations)
+      throw ComputationError("hydraulics: no periodic state found after " +
+                             std::to_string(iterations) +
+                             " Newton steps; pressures still change by a factor of up to exp(" +
+                             number_text(best) + ") per period");
+    PeriodMap::Vector step = -jacobian.partialPivLu().solve(f);
+    if (!step.allFinite())
+      throw ComputationError(
+          "hydraulics: no periodic state found: no load orifice holds this mean delivery pressure");
+    step *= std::min(1.0, kLongestStep / size_of(step));
+    bool accepted = false;
+    for (int halving = 0; halving < kMostHalvings && !accepted; ++halving, step /= 2) {
+      try {
+        const PeriodMap::Vector trial = z + step;
+        PeriodMap::Matrix trial_jacobian;
+        const PeriodMap::Vector trial_f = map.residual(trial, tolerance, &trial_jacobian);
+        // A longer residual is allowed at first: the orifice roots make the map far from linear.
+        if (size_of(trial_f) < (1 - 1e-4) * best) {
+          z = trial;
+          f = trial_f;
+          jacobian = trial_jacobian;
+          best = size_of(f);
+          accepted = true;
+        }
+      } catch (const StepsEnd&) {
+        // Too far: the integration does not get through the period from there.
+      }
+    }
+    if (!accepted) return;  // at the noise of the integration, or stuck: the caller looks at it
+  }
+}
+
+}  // namespace bentaxis::hydraulics
