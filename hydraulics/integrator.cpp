@@ -23,7 +23,7 @@ namespace {
 // Effort is counted in steps x states, with sensitivities x states again: about a microsecond each.
 // A usual operating point takes 1e5, the wildest of our tests that ends 3e6.
 constexpr double kMostEffort = 1.5e7;
-constexpr long kStepsBetweenSigns = 200;  // of life
+constexpr double kEffortBetweenSigns = 1e4;  // of life
 constexpr int kIntegrals = 5;
 
 double* data(N_Vector v) { return N_VGetArrayPointer(v); }
@@ -227,7 +227,10 @@ std::vector<double> Integrator::over_period(const std::vector<double>& pressures
             "hydraulics: no periodic state within " + std::to_string(work_.steps + steps) +
             " steps: the pressures are too stiff (see transition_pressure_bar, dead_volume_cm3, "
             "delivery_volume_l)");
-      if (alive_ && steps % kStepsBetweenSigns == 0) alive_();
+      if (alive_ && (since_sign_ += effort) > kEffortBetweenSigns) {
+        since_sign_ = 0;
+        alive_();
+      }
     }
     long evaluations = 0, setups = 0;
     CVodeGetNumRhsEvals(cv.memory, &evaluations);

@@ -70,6 +70,7 @@ class Integrator {
   Work work_;
   double effort_ = 0;  // of all calls so far, see kMostEffort
   double most_ = 1;    // of kMostEffort
+  double since_sign_ = 0;
 };
 
 }  // namespace bentaxis::hydraulics

@@ -657,7 +657,8 @@ TEST(HardInput, InterruptionIsSeenWithinAPeriod) {
   Integrator integrator(network, [&] { ++calls; });
   const SteadyState state = steady_state(the_case);
   integrator.over_period(state.log_pressures, state.summary.load_area, 1e-10);
-  EXPECT_GE(calls, integrator.work().steps / 250);
+  EXPECT_GE(calls, 1);
+  EXPECT_GE(calls, integrator.work().steps * network.size() / 11000);
 }
 
 TEST(Control, EveryNumberOfTheTableCounts) {

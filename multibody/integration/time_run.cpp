@@ -98,6 +98,7 @@ TimeRun::TimeRun(const Case& the_case, const Assumptions& assumptions, const Sam
   start_ = system_.dynamics().getTime();
   enter_segment(0);
   integrator_ = make_integrator(system_.system(), options);
+  integrator_->setReturnEveryInternalStep(true);  // so that every step asks whether to go on
   integrator_->initialize(system_.dynamics());
   energy_at_start_ = system_.system().calcKineticEnergy(integrator_->getState());
 }
@@ -109,13 +110,16 @@ double TimeRun::angle_in_segment(double theta) const {
 }
 
 void TimeRun::run(const Progress& progress, const std::function<void(std::size_t row)>& at_sample) {
+  const auto rows = static_cast<double>(samples_.theta_deg.size());
   for (std::size_t row = 0; row < samples_.theta_deg.size(); ++row) {
+    alive_ = [&] {
+      if (progress) progress(static_cast<double>(row) / rows);
+    };
     advance_to(std::abs(samples_.theta_deg[row]));
     note(row);
     if (at_sample) at_sample(row);
-    if (progress)
-      progress(static_cast<double>(row + 1) / static_cast<double>(samples_.theta_deg.size()));
   }
+  if (progress) progress(1);
   const SimTK::State& state = integrator_->getState();
   system_.system().realize(state, Stage::Acceleration);
   record_.work_of_loads = system_.work().of_loads(state);
@@ -153,7 +157,10 @@ void TimeRun::advance_to(double distance) {
 void TimeRun::step_to(double distance) {
   const double time = start_ + radians(distance) / std::abs(samples_.omega);
   try {
-    while (integrator_->getTime() < time) integrator_->stepTo(time);
+    while (integrator_->getTime() < time) {
+      alive_();
+      integrator_->stepTo(time);
+    }
   } catch (const SimTK::Exception::Base& error) {
     std::string why = error.getMessageText();
     std::replace(why.begin(), why.end(), '\n', ' ');

@@ -48,6 +48,7 @@ class TimeRun {
   const Samples& samples_;
   const PressureTrace& pressure_;
   PumpSystem system_;
+  std::function<void()> alive_ = [] {};  // asked at every step; may throw
   double direction_;
   std::vector<double> edges_;
   std::size_t next_edge_ = 0;
