@@ -150,6 +150,23 @@ class InertiaWordsTest(WordsTest):
                 self.assertNotIn("published", {key for key, value in report.items() if value})
 
 
+class PageTest(WordsTest):
+    def test_each_value_has_a_heading(self):
+        browser = shutil.which("chromium")
+        if browser is None:
+            self.skipTest("no browser")
+        self.run_program("compare", REPO / "cases" / "bap63_rated_hydraulic.toml", "--out", "out")
+        page = self.run_program("--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", "--dump-dom",
+                                f"file://{self.folder}/out/report.html", program=browser).stdout
+        tables = re.findall(r'<table class="readout">(.*?)</table>', page, re.S)
+        self.assertGreater(len(tables), 10)
+        def columns(row):
+            return sum(int((re.search(r'colspan="(\d+)"', cell) or [0, 1])[1]) for cell in re.findall("<t[hd][^>]*>", row))
+        for table in tables:
+            head, *rows = re.findall(r"<tr.*?</tr>", table, re.S)
+            self.assertEqual({columns(row) for row in rows}, {columns(head)}, head)
+
+
 class CompletionTest(WordsTest):
     def words(self, *typed):
         kind, *lines = self.run_program("completion", "words", "--", *typed).stdout.splitlines()
