@@ -11,12 +11,14 @@ namespace {
 
 const char* const kHelp = "--help";
 
-// Text as roff takes it: nothing is a request, a dash is the one of the keyboard.
+// Text as roff takes it: nothing is a request, a dash is the one of the keyboard, a line may end
+// after | and comma.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
     if (c == '-') out += '\\';
     out += c == '\\' ? "\\e" : std::string(1, c);
+    if (c == '|' || c == ',') out += "\\:";
   }
   return out.find_first_of(".'") == 0 ? "\\&" + out : out;
 }
@@ -59,7 +61,7 @@ std::string section(const std::string& name, const CommandInfo& command) {
 
 std::string manual(const CommandInfo& program, const std::string& footer) {
   std::string text = fmt::format(
-      ".TH BENTAXIS 1 \"\" \"bentaxis {}\" \"User Commands\"\n.nh\n.SH NAME\nbentaxis \\- reaction "
+      ".TH BENTAXIS 1 \"\" \"bentaxis {}\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\nbentaxis \\- reaction "
       "forces "
       "and drive torque of bent\\-axis piston pumps by two independent models\n.SH SYNOPSIS\n"
       "\\fBbentaxis\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n.SH DESCRIPTION\n{}\n.SH OPTIONS\n",
