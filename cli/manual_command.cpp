@@ -61,7 +61,8 @@ std::string section(const std::string& name, const CommandInfo& command) {
 
 std::string manual(const CommandInfo& program, const std::string& footer) {
   std::string text = fmt::format(
-      ".TH BENTAXIS 1 \"\" \"bentaxis {}\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\nbentaxis \\- reaction "
+      ".TH BENTAXIS 1 \"\" \"bentaxis {}\" \"User Commands\"\n.nh\n.ad l\n.SH NAME\nbentaxis \\- "
+      "reaction "
       "forces "
       "and drive torque of bent\\-axis piston pumps by two independent models\n.SH SYNOPSIS\n"
       "\\fBbentaxis\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR]\n.SH DESCRIPTION\n{}\n.SH OPTIONS\n",
