@@ -1,32 +1,115 @@
 #include "command_parser.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/words.h"
 
 namespace bentaxis::cli {
 namespace {
 
-CLI::Validator number_that(const std::string& range, const std::function<bool(double)>& allowed) {
+constexpr const char* kAnyNumber = "number";  // the check of options without a range
+
+CLI::Validator number_that(const std::string& range, const std::function<bool(double)>& allowed,
+                           bool integer = false) {
   return {[=](const std::string& text) {
             double value = 0;
             if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && allowed(value))
               return std::string();
-            return text + ": must be " + range;
+            return text + ": must be " + range + (integer ? "" : decimal_point_hint(text));
           },
           ""};
 }
 
-CLI::CheckedTransformer index_of(const std::vector<std::string>& words) {
-  std::map<std::string, int> indices;
-  for (std::size_t i = 0; i < words.size(); ++i) indices[words[i]] = static_cast<int>(i);
-  return CLI::CheckedTransformer(indices);
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  return text;
 }
 
-constexpr const char* kChoiceType = "ENUM";  // in messages
+// "; did you mean ..?", or nothing.
+std::string hint(const std::string& word, const std::vector<std::string>& known) {
+  const auto nearest = meant(word, {known.begin(), known.end()});
+  return nearest ? "; did you mean \"" + *nearest + "\"?" : "";
+}
+
+// Index of a word as text; nothing where it is none of them.
+std::optional<std::string> index_of(const std::string& word,
+                                    const std::vector<std::string>& words) {
+  const auto found = std::find(words.begin(), words.end(), word);
+  if (found == words.end()) return std::nullopt;
+  return std::to_string(found - words.begin());
+}
+
+std::string refused(const std::string& word, const std::vector<std::string>& words) {
+  return word + ": must be " + listed(words) + hint(word, words);
+}
+
+std::vector<std::string> names_of(const CLI::Option& option) {
+  if (option.get_positional()) return {option.get_name()};
+  std::vector<std::string> names;
+  for (const auto& name : option.get_snames()) names.push_back("-" + name);
+  for (const auto& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> commands_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+// What an argument that nobody expected was probably meant to be.
+std::string unexpected(const CLI::App& command, const std::string& argument) {
+  const bool program = command.get_parent() == nullptr;
+  const std::string has = program ? "there is " : command.get_name() + " has ";
+  if (argument.front() == '-') {
+    const std::string option = argument.substr(0, argument.find('='));
+    std::vector<std::string> known;
+    for (const CLI::Option* one : command.get_options())
+      for (const std::string& known_name : names_of(*one)) known.push_back(known_name);
+    return has + "no option " + option + hint(option, known);
+  }
+  const auto commands = commands_of(command);
+  if (commands.empty()) return command.get_name() + ": " + argument + " was not expected";
+  const std::string nearest = hint(argument, commands);
+  return has + "no command " + argument +
+         (nearest.empty() ? "; there are: " + listed(commands) : nearest);
+}
+
+// A refusal in words; what is misspelt goes before what is missing for that reason.
+std::string words_for(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  const std::string what = error.what();
+  const auto is = [&](auto kind) { return dynamic_cast<const decltype(kind)*>(&error) != nullptr; };
+  const bool missing = is(CLI::RequiredError(""));
+  if (missing || is(CLI::ExtrasError({}))) {
+    std::vector<std::string> arguments = program.remaining(true);
+    std::stable_partition(arguments.begin(), arguments.end(),
+                          [](const std::string& argument) { return argument.rfind("--", 0) == 0; });
+    if (!arguments.empty() && !arguments.front().empty())
+      return unexpected(*command, arguments.front());
+    if (const auto commands = commands_of(*command); !commands.empty())
+      return command->get_name() + " needs a command: " + listed(commands);
+  }
+  for (const CLI::Option* option : command->get_options()) {
+    const std::string name = option->get_name();
+    if (missing && option->get_positional() && what == name + " is required")
+      return command->get_name() + ": " + option->get_option_text() + " is missing";
+    if (is(CLI::ArgumentMismatch("")) && what.rfind(name + ": ", 0) == 0)
+      return option->count() > 1 ? name + " is given more than once"
+                                 : name + " needs a value: " + option->get_option_text();
+  }
+  return what;
+}
+
+constexpr const char* kChoiceType = "WORD";  // in messages
 
 }  // namespace
 
@@ -60,80 +143,134 @@ Option& Option::excludes(const Option& other) {
   return *this;
 }
 
-Option& Option::number_in(double low, double high) {
-  option_->check(number_that("in [" + number_text(low) + ", " + number_text(high) + "]",
-                             [=](double value) { return value >= low && value <= high; }));
+Option& Option::only(const std::string& range, const std::function<bool(double)>& allowed,
+                     bool integer) {
+  option_->get_validator(kAnyNumber)->active(false);
+  option_->check(number_that(range, allowed, integer));
   return *this;
 }
 
+Option& Option::number_in(double low, double high) {
+  return only("in [" + number_text(low) + ", " + number_text(high) + "]",
+              [=](double value) { return value >= low && value <= high; });
+}
+
 Option& Option::positive_number() {
-  option_->check(number_that("a finite number > 0", [](double value) { return value > 0; }));
-  return *this;
+  return only("a finite number > 0", [](double value) { return value > 0; });
 }
 
 Option& Option::accuracy() { return number_in(1e-12, 0.1); }
 
 Option& Option::integer_in(int low, int high) {
-  option_->check(CLI::Range(low, high));
-  return *this;
+  return only(
+      "an integer in [" + std::to_string(low) + ", " + std::to_string(high) + "]",
+      [=](double value) { return value >= low && value <= high && value == std::floor(value); },
+      true);
 }
 
 Option& Option::one_of(const std::vector<std::string>& words) {
-  option_->check(CLI::IsMember(words));
+  option_->check(CLI::Validator(
+      [words](const std::string& text) {
+        return index_of(text, words) ? std::string() : refused(text, words);
+      },
+      ""));
+  return completed_with(words);
+}
+
+Option& Option::choice(const std::vector<std::string>& words) {
+  option_->type_name(kChoiceType);
+  option_->transform(CLI::Validator(
+      [words](std::string& text) {
+        const auto index = index_of(text, words);
+        if (!index) return refused(text, words);
+        text = *index;
+        return std::string();
+      },
+      ""));
+  return completed_with(words);
+}
+
+Option& Option::completed_with(const std::vector<std::string>& words) {
+  (*words_)[option_] = words;
   return *this;
 }
 
 CommandParser CommandParser::subcommand(const std::string& name, const std::string& what) {
-  return CommandParser(app_->add_subcommand(name, what));
+  return {app_->add_subcommand(name, what), words_};
 }
 
 void CommandParser::require_subcommand() { app_->require_subcommand(1); }
 
+namespace {
+
+CLI::Option* number(CLI::Option* option) {
+  return option->check(number_that("a number", [](double) { return true; }).name(kAnyNumber));
+}
+
+}  // namespace
+
 Option CommandParser::option(const std::string& name, int& value, const std::string& what) {
-  return Option(app_->add_option(name, value, what));
+  return wrapped(number(app_->add_option(name, value, what)));
 }
 
 Option CommandParser::option(const std::string& name, double& value, const std::string& what) {
-  return Option(app_->add_option(name, value, what));
+  return wrapped(number(app_->add_option(name, value, what)));
 }
 
 Option CommandParser::option(const std::string& name, std::string& value, const std::string& what) {
-  return Option(app_->add_option(name, value, what));
+  return wrapped(app_->add_option(name, value, what));
 }
 
 Option CommandParser::option(const std::string& name, std::optional<double>& value,
                              const std::string& what) {
-  return Option(app_->add_option(name, value, what));
+  return wrapped(number(app_->add_option(name, value, what)));
 }
 
 Option CommandParser::option(const std::string& name, std::vector<double>& values,
                              const std::string& what) {
-  return Option(app_->add_option(name, values, what));
+  return wrapped(number(app_->add_option(name, values, what)));
 }
 
 Option CommandParser::option(const std::string& name, std::vector<std::string>& values,
                              const std::string& what) {
-  return Option(app_->add_option(name, values, what));
+  return wrapped(app_->add_option(name, values, what));
 }
 
 Option CommandParser::choice_of(const std::string& name, const std::function<void(int)>& set,
                                 const std::vector<std::string>& words, const std::string& what,
                                 const std::string& otherwise) {
-  return Option(app_->add_option_function<int>(
-                        name, [set](const int& index) { set(index); }, what)
-                    ->type_name(kChoiceType)
-                    ->transform(index_of(words))
-                    ->option_text(CLI::detail::join(words, "|") + " [" + otherwise + "]"));
+  return wrapped(app_->add_option_function<int>(
+                     name, [set](const int& index) { set(index); }, what))
+      .choice(words)
+      .text(CLI::detail::join(words, "|") + " [" + otherwise + "]");
 }
 
 Option CommandParser::choices_of(const std::string& name,
                                  const std::function<void(const std::vector<int>&)>& set,
                                  const std::vector<std::string>& words, const std::string& what) {
-  return Option(app_->add_option_function<std::vector<int>>(name, set, what)
-                    ->type_name(kChoiceType)
-                    ->delimiter(',')
-                    ->transform(index_of(words))
-                    ->option_text("NAME[,NAME..] [" + CLI::detail::join(words, ",") + "]"));
+  return wrapped(app_->add_option_function<std::vector<int>>(name, set, what))
+      .list()
+      .choice(words)
+      .text("NAME[,NAME..] [" + CLI::detail::join(words, ",") + "]");
+}
+
+CommandInfo CommandParser::info() const {
+  CommandInfo info{app_->get_name(), app_->get_description(), {}, {}};
+  for (const CLI::Option* option : app_->get_options()) {
+    OptionInfo one;
+    one.names = names_of(*option);
+    one.values = option->get_option_text();
+    one.what = option->get_description();
+    if (const auto words = words_->find(option); words != words_->end()) one.words = words->second;
+    one.is_argument = option->get_positional();
+    one.takes_value = option->get_items_expected_max() > 0;
+    one.takes_several = option->get_delimiter() == ',';
+    one.required = option->get_required();
+    info.options.push_back(std::move(one));
+  }
+  for (CLI::App* command : app_->get_subcommands([](CLI::App*) { return true; }))
+    info.commands.push_back(CommandParser(command, words_).info());
+  return info;
 }
 
 bool CommandParser::parsed() const { return app_->parsed(); }
@@ -141,6 +278,8 @@ bool CommandParser::parsed() const { return app_->parsed(); }
 bool CommandParser::given(const std::string& name) const {
   return app_->get_option(name)->count() > 0;
 }
+
+std::string CommandParser::footer() const { return app_->get_footer(); }
 
 ProgramParser::ProgramParser(const Texts& texts)
     : app_(std::make_unique<CLI::App>(texts.what, texts.name)) {
@@ -159,7 +298,7 @@ bool ProgramParser::parse(int argc, char** argv) {
     app_->exit(answered);
     return false;
   } catch (const CLI::ParseError& error) {
-    throw InputError(std::string(error.what()) + " (see bentaxis --help)");
+    throw InputError(words_for(*app_, error) + " (see bentaxis --help)");
   }
 }
 

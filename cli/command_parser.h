@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,10 +16,30 @@ class Option;
 
 namespace bentaxis::cli {
 
+/// What the parser knows of an option or argument: for the manual and for completion.
+struct OptionInfo {
+  std::vector<std::string> names;  ///< "--out"; "-h", "--help"; of an argument "case"
+  std::string values;              ///< as the help text has them: "DIR [out]"
+  std::string what;
+  std::vector<std::string> words;  ///< that can be its value, or stand in its list
+  bool is_argument = false, takes_value = false, takes_several = false, required = false;
+};
+
+/// What the parser knows of a command, or of the program.
+struct CommandInfo {
+  std::string name, what;
+  std::vector<OptionInfo> options;  ///< arguments too
+  std::vector<CommandInfo> commands;
+};
+
+/// Words that options are completed with.
+using OptionWords = std::map<const CLI::Option*, std::vector<std::string>>;
+
 /// An option or argument of a command. What is said about it can be chained.
 class Option {
  public:
-  explicit Option(CLI::Option* option) : option_(option) {}
+  Option(CLI::Option* option, std::shared_ptr<OptionWords> words)
+      : option_(option), words_(std::move(words)) {}
 
   Option& required();
   /// Its values in the help text, as in "NUMBER [36]".
@@ -33,16 +54,24 @@ class Option {
   Option& accuracy();                          ///< what Simbody's integrators accept
   Option& integer_in(int low, int high);       ///< in [low, high]
   Option& one_of(const std::vector<std::string>& words);
+  Option& completed_with(const std::vector<std::string>& words);  ///< others may be given too
 
  private:
+  friend class CommandParser;
+  Option& only(const std::string& range, const std::function<bool(double)>& allowed,
+               bool integer = false);
+  Option& choice(const std::vector<std::string>& words);
+
   CLI::Option* option_;
+  std::shared_ptr<OptionWords> words_;
 };
 
 /// A command and its options. Variables that options fill must live until the line is parsed; they
 /// stay as they are where the option is not given. A name without dashes is that of an argument.
 class CommandParser {
  public:
-  explicit CommandParser(CLI::App* app) : app_(app) {}
+  CommandParser(CLI::App* app, std::shared_ptr<OptionWords> words)
+      : app_(app), words_(std::move(words)) {}
 
   CommandParser subcommand(const std::string& name, const std::string& what);
   void require_subcommand();
@@ -76,6 +105,8 @@ class CommandParser {
 
   bool parsed() const;                        ///< was this command given?
   bool given(const std::string& name) const;  ///< was this option of it given?
+  CommandInfo info() const;                   ///< with all that has been added
+  std::string footer() const;                 ///< the text under the help text
 
  private:
   Option choice_of(const std::string& name, const std::function<void(int)>& set,
@@ -84,8 +115,10 @@ class CommandParser {
   Option choices_of(const std::string& name,
                     const std::function<void(const std::vector<int>&)>& set,
                     const std::vector<std::string>& words, const std::string& what);
+  Option wrapped(CLI::Option* option) const { return {option, words_}; }
 
   CLI::App* app_;
+  std::shared_ptr<OptionWords> words_;
 };
 
 /// The parser of the whole program, which owns those of its commands.
@@ -100,7 +133,7 @@ class ProgramParser {
   ProgramParser& operator=(const ProgramParser&) = delete;
 
   /// The program as the command that the commands are added to.
-  CommandParser root() { return CommandParser(app_.get()); }
+  CommandParser root() { return {app_.get(), words_}; }
 
   /// @return false where the line asked for --help or --version, which are then printed
   /// @throws InputError
@@ -108,6 +141,7 @@ class ProgramParser {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  std::shared_ptr<OptionWords> words_ = std::make_shared<OptionWords>();
 };
 
 }  // namespace bentaxis::cli

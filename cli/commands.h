@@ -19,9 +19,11 @@ struct Command {
 Command add_run_command(CommandParser program);
 Command add_blocktorque_command(CommandParser program);
 Command add_calibrate_command(CommandParser program);
+Command add_completion_command(CommandParser program);
 Command add_compare_command(CommandParser program);
 Command add_hardcases_command(CommandParser program);
 Command add_inertia_command(CommandParser program);
+Command add_manual_command(CommandParser program);
 Command add_pressure_command(CommandParser program);
 Command add_regress_command(CommandParser program);
 Command add_reference_command(CommandParser program);

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <functional>
 #include <iostream>
+#include <new>
 #include <vector>
 
 #include "bentaxis/pump/error.h"
@@ -25,6 +26,9 @@ int guarded(const std::function<int()>& job) {
   } catch (const Interrupted&) {
     std::fprintf(stderr, "bentaxis: interrupted; nothing was written\n");
     return kInterruptedStatus;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "bentaxis: not enough memory; fewer samples or revolutions take less\n");
+    return kComputationFailed;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bentaxis: %s\n", error.what());
     return kComputationFailed;
@@ -56,10 +60,13 @@ int run_program(int argc, char** argv) {
   ProgramParser parser(texts());
   const CommandParser program = parser.root();
   const std::vector<Command> commands = {
-      add_run_command(program),       add_compare_command(program),    add_regress_command(program),
-      add_reference_command(program), add_hardcases_command(program),  add_inertia_command(program),
-      add_pressure_command(program),  add_tradeoff_command(program),   add_schema_command(program),
-      add_calibrate_command(program), add_blocktorque_command(program)};
+      add_run_command(program),         add_compare_command(program),
+      add_regress_command(program),     add_reference_command(program),
+      add_hardcases_command(program),   add_inertia_command(program),
+      add_pressure_command(program),    add_tradeoff_command(program),
+      add_schema_command(program),      add_calibrate_command(program),
+      add_blocktorque_command(program), add_completion_command(program),
+      add_manual_command(program)};
   return guarded([&]() -> int {
     if (!parser.parse(argc, argv)) return kDone;
     watch_for_interruption();

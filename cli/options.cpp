@@ -4,8 +4,21 @@
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/registry.h"
 
 namespace bentaxis::cli {
+namespace {
+
+// "pump.tilt_deg=" of every key that a case may have.
+std::vector<std::string> changeable_keys() {
+  std::vector<std::string> keys;
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& parameter : table.parameters)
+      keys.push_back((table.name.empty() ? "" : table.name + ".") + parameter.key + "=");
+  return keys;
+}
+
+}  // namespace
 
 Case CaseOption::read() const { return read_case(file, changes); }
 
@@ -15,6 +28,7 @@ void add_case(CommandParser command, CaseOption& the_case) {
       .option("--set", the_case.changes,
               "change a key of the case, as if its file said so; can be given again")
       .repeatable()
+      .completed_with(changeable_keys())
       .text("TABLE.KEY=VALUE");
 }
 
@@ -43,6 +57,7 @@ void RunChoice::add_to(CommandParser command, bool several) {
               "only these: quantities (Rs) or columns (Rs_1_z2_N); without --scene the "
               "smallest scene that computes them is built")
       .list()
+      .completed_with(study::quantity_names())
       .text("NAME[,NAME..] [all]");
   command.choice("--integrator", integration.integrator, multibody::integrator_names(),
                  "time integrator of an integrated run");

@@ -10,6 +10,7 @@
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/words.h"
 
 namespace bentaxis {
 namespace {
@@ -24,6 +25,8 @@ class CaseReader {
   }
 
   Case read() {
+    for (const Table& table : registry_.tables)
+      top_.expect(table.name.substr(0, table.name.find('.')));
     for (const Table& table : registry_.tables) read_table(table);
     for (const auto& [name, parent] : parents_) parent.finish();
     top_.finish();
@@ -68,6 +71,7 @@ class CaseReader {
   }
 
   void read_keys(TableReader& in, const Table& table) {
+    for (const Parameter& parameter : table.parameters) in.expect(parameter.key);
     for (const Parameter& parameter : table.parameters) {
       if (parameter.part != nullptr && !parameter.part->exists(here()) &&
           (holds(parameter.part->needed) || is_complete(in, table, parameter.part)))

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -14,6 +15,7 @@
 #include <sstream>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 
 namespace bentaxis {
 namespace fs = std::filesystem;
@@ -45,6 +47,8 @@ class FolderLock {
 OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   if (folder_.empty()) fail("\"\"", "an output folder needs a name");
+  if (folder_ == "-")
+    fail(folder_, "is no folder, and results go to files; name one (./- where it is called so)");
   fs::path missing = fs::absolute(folder_, error).lexically_normal();
   if (missing.filename().empty()) missing = missing.parent_path();
   while (!missing.empty() && !fs::exists(missing, error)) {
@@ -79,6 +83,17 @@ void OutputFolder::Stream::finish() {
   if (std::fflush(file_.get()) != 0 || fsync(fileno(file_.get())) != 0)
     fail(shown_, std::strerror(errno));
   if (std::fclose(file_.release()) != 0) fail(shown_, std::strerror(errno));
+}
+
+void OutputFolder::Stream::expect(double bytes) const {
+  std::error_code error;
+  const auto space = fs::space(shown_.parent_path().empty() ? "." : shown_.parent_path(), error);
+  if (error || bytes <= static_cast<double>(space.available)) return;
+  const auto gigabytes = [](double size) {
+    return number_text(std::ceil(size / 1e8) / 10) + " GB";
+  };
+  fail(shown_, "takes about " + gigabytes(bytes) + " of disk, and " +
+                   gigabytes(static_cast<double>(space.available)) + " are free");
 }
 
 OutputFolder::Stream& OutputFolder::open(const std::string& name) {

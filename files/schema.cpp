@@ -9,6 +9,7 @@
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/words.h"
 
 namespace bentaxis {
 namespace {

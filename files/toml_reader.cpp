@@ -10,6 +10,7 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/words.h"
 
 namespace bentaxis {
 namespace {
@@ -35,23 +36,17 @@ toml::table* table_at(toml::table& root, const std::string& name) {
 
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
 
-// Number of single-character edits between two words: to suggest the key that was meant.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row.back();
+// What is wrong with a line that TOML refuses, where it is a decimal comma.
+std::string decimal_comma_in(const std::string& text, std::size_t line) {
+  std::istringstream lines(text);
+  std::string found;
+  for (std::size_t i = 0; i < line; ++i) std::getline(lines, found);
+  const std::size_t start = found.find_first_not_of(" \t", found.find('=') + 1);
+  if (found.find('=') == std::string::npos || start == std::string::npos) return "";
+  const std::string value = found.substr(start, found.find_first_of(" \t\r#", start) - start);
+  const std::string hint = decimal_point_hint(value);
+  return hint.empty() ? "" : one_line(found.substr(0, start) + value) + hint;
 }
-
-constexpr std::size_t kLikelyTypo = 3;  // edits
 
 }  // namespace
 
@@ -66,18 +61,6 @@ std::string one_line(const std::string& text) {
   const bool plain =
       std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   return plain ? text : toml_text(text);
-}
-
-std::string suggestion(const std::string& word, const std::set<std::string>& known) {
-  const auto nearest =
-      std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-        return edit_distance(word, a) < edit_distance(word, b);
-      });
-  if (nearest == known.end()) return "";
-  if (edit_distance(word, *nearest) <= kLikelyTypo) return "; did you mean \"" + *nearest + "\"?";
-  std::string allowed;
-  for (const auto& name : known) allowed += (allowed.empty() ? "" : ", ") + name;
-  return "; allowed: " + allowed;
 }
 
 // A parsed file, and what was changed in it: "pump.tilt_deg" -> the value as given.
@@ -258,13 +241,16 @@ void TableReader::fail(const std::string& key, const std::string& why) const {
 }
 
 std::string TableReader::misspelt(const std::string& key) const {
+  constexpr double kAlike = 0.7;  // the key that is there may also be one that is asked for later
   if (table_ == nullptr) return "";
-  for (const auto& [found, node] : *table_->table()) {
-    const std::string word(found.str());
-    if (known_.count(word) == 0 && edit_distance(word, key) <= kLikelyTypo)
-      return "; is \"" + word + "\" in line " + std::to_string(line_of(node)) + " meant?";
-  }
-  return "";
+  std::set<std::string> unknown;
+  for (const auto& [found, node] : *table_->table())
+    if (const std::string word(found.str()); known_.count(word) + expected_.count(word) == 0)
+      unknown.insert(word);
+  const auto word = meant(key, unknown, kAlike);
+  if (!word) return "";
+  return "; is \"" + *word + "\" in line " + std::to_string(line_of(*table_->table()->get(*word))) +
+         " meant?";
 }
 
 std::string TableReader::place(int line) const {
@@ -312,9 +298,11 @@ double TableReader::number_of(const Node& node, const std::string& key, NumberRa
   } else if (node.node->is_floating_point()) {
     value = node.node->as_floating_point()->get();
   } else {
-    fail_at(node, key, "must be a number, " + range.text());
+    const auto text = node.node->value<std::string>();
+    fail_at(node, key,
+            "must be " + range.text_of("a number") + (text ? decimal_point_hint(*text) : ""));
   }
-  if (!std::isfinite(value)) fail_at(node, key, "must be a finite number, " + range.text());
+  if (!std::isfinite(value)) fail_at(node, key, "must be " + range.text_of("a finite number"));
   if (!range.contains(value)) fail_at(node, key, "must be " + range.text());
   if (recorded) record(key, quoted(*node.node));
   return value;
@@ -337,7 +325,8 @@ TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(
     root_ =
         std::make_shared<const TableReader::Node>(TableReader::Node{document, &document->table});
   } catch (const toml::parse_error& error) {
-    std::string what(error.description());
+    std::string what = decimal_comma_in(text, error.source().begin.line);
+    if (what.empty()) what = error.description();
     std::replace(what.begin(), what.end(), '\n', ' ');
     throw InputError(file_.string() + ":" + std::to_string(error.source().begin.line) + ": " +
                      what);

@@ -23,7 +23,7 @@ Chamber::Chamber(const Geometry& g, double dead_volume)
   c2_ = along * along - across * across;
 
   // Extremes: the ends u = -1, 1 and where rise root = (c1 + 2 c2 u)/2, squared a quadratic.
-  std::vector<double> candidates = {-1, 1};
+  std::vector<double> candidates = {-1};  // 1 is where both begin
   const double r2 = rise_ * rise_;
   const double a = c2_ * (c2_ + r2);
   const double b = c1_ * (c2_ + r2);

@@ -55,4 +55,9 @@ std::string NumberRange::text() const {
          (high_open ? ")" : "]");
 }
 
+std::string NumberRange::text_of(const std::string& kind) const {
+  const std::string any = NumberRange{}.text();
+  return text() == any ? any : kind + ", " + text();
+}
+
 }  // namespace bentaxis

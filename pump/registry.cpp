@@ -69,9 +69,9 @@ std::string integer_range_text(NumberRange range) {
 void check(const Table& table, const Parameter& parameter, const ConstView& view) {
   const auto number = [&](const double* value) {
     if (value == nullptr || si_range(parameter, view).contains(*value)) return;
-    const std::string range = range_of(parameter, view).text();
+    const NumberRange range = range_of(parameter, view);
     refuse(table, parameter, view,
-           std::string(std::isfinite(*value) ? "must be " : "must be a finite number, ") + range);
+           "must be " + (std::isfinite(*value) ? range.text() : range.text_of("a finite number")));
   };
   if (const auto* field = std::get_if<NumberField>(&parameter.field)) {
     number(read(field->place, view));

@@ -117,10 +117,11 @@ std::vector<BlockTorque> block_torques(const Case& ideal, const Case& hydraulic,
 }
 
 std::string block_torque_text(const std::vector<BlockTorque>& rows) {
-  std::string text =
-      fmt::format("paper's model minus ADAMS: {:.2f} Nm\n\n{:<62}{:>10}{:>11}{:>9}{:>9}\n",
-                  kPaperBlockTorque - kAdamsBlockTorque, "pump and pressure", "analytic",
-                  "multibody", "change", "of gap");
+  std::string text = fmt::format(
+      "torque from shaft to block at theta = 0, Nm; paper's model minus ADAMS: "
+      "{:.2f}\n\n{:<62}{:>10}{:>11}{:>9}{:>9}\n",
+      kPaperBlockTorque - kAdamsBlockTorque, "pump and pressure", "analytic", "multibody", "change",
+      "of gap");
   int group = 0;
   for (const BlockTorque& row : rows) {
     if (row.group != group) text += "\n";

@@ -1,8 +1,10 @@
 #include "bentaxis/study/channel_choice.h"
 
 #include <algorithm>
+#include <set>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/words.h"
 
 namespace bentaxis::study {
 namespace {
@@ -17,15 +19,25 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string quantities(const ChannelLayout& layout) {
-  std::vector<std::string> known;
-  for (const Channel& channel : layout.channels())
-    if (std::find(known.begin(), known.end(), channel.quantity) == known.end())
-      known.push_back(channel.quantity);
-  return joined(known);
+std::string hint(const std::string& name, const ChannelLayout& layout) {
+  std::set<std::string> known;
+  for (const Channel& channel : layout.channels()) {
+    known.insert(channel.quantity);
+    known.insert(channel.name);
+  }
+  if (const auto nearest = meant(name, known)) return "; did you mean \"" + *nearest + "\"?";
+  return "; there are: " + joined(quantity_names()) + ", and the columns of a result";
 }
 
 }  // namespace
+
+std::vector<std::string> quantity_names() {
+  std::vector<std::string> known;
+  for (const Channel& channel : ChannelLayout(1).channels())
+    if (std::find(known.begin(), known.end(), channel.quantity) == known.end())
+      known.push_back(channel.quantity);
+  return known;
+}
 
 bool ChannelChoice::wants(const Channel& channel) const {
   return all() || std::any_of(names_.begin(), names_.end(),
@@ -39,8 +51,7 @@ std::vector<Channel> ChannelChoice::of(const ChannelLayout& layout) const {
   for (const auto& name : names_)
     if (std::none_of(channels.begin(), channels.end(),
                      [&](const Channel& c) { return is_called(c, name); }))
-      throw InputError("--channels: no channel is called " + name +
-                       "; there are: " + quantities(layout) + ", and the columns of a result");
+      throw InputError("--channels: no channel is called " + name + hint(name, layout));
   std::vector<Channel> wanted;
   std::copy_if(channels.begin(), channels.end(), std::back_inserter(wanted),
                [&](const Channel& c) { return wants(c); });

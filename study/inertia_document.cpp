@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "bentaxis/pump/number.h"
@@ -330,15 +331,35 @@ report::PublishedTable published_table(const InertiaStudy& s, const compare::Pub
       std::move(all)};
 }
 
+// Will two masses do? Which reactions they miss by more than the limit, and where; the rest.
 std::string headline(const InertiaStudy& s) {
-  const InertiaRun& fast = InertiaStudy::loaded(s.one_piston, s.fastest);
-  std::string text = fmt::format("At {} two masses are off by", rpm(s.fastest));
-  for (const auto& error : lumping_errors(fast, fast))
-    if (error.group == "Rs" || error.group == "Rc")
-      text += fmt::format("{} {:.3g} N of {} ({:.2g} % of its loaded peak)",
-                          error.group == "Rc" ? " and" : "", error.analytic, error.group,
-                          100 * error.fraction());
-  return text + fmt::format(". The models agree to {:.1e} of peak.", s.models_apart);
+  std::map<std::string, LumpingError> worst;  // by group, of all speeds, loaded
+  for (const InertiaRun& run : s.full)
+    if (run.loaded)
+      for (const auto& error : lumping_errors(run, run))
+        if (auto& known = worst[error.group];
+            known.group.empty() || error.fraction() > known.fraction())
+          known = error;
+  const auto of_peak = [](const LumpingError& error) {
+    return fmt::format("{:.2g} % of its loaded peak ({:.3g} {} at {})", 100 * error.fraction(),
+                       error.analytic, error.unit, rpm(error.speed_rpm));
+  };
+  std::string missed;
+  const LumpingError* largest = nullptr;  // of those within the limit
+  for (const auto& [group, error] : worst) {
+    if (error.fraction() > kTwoMassesDo)
+      missed += fmt::format("{}{}: off by {}", missed.empty() ? "" : "; ", group, of_peak(error));
+    else if (largest == nullptr || error.fraction() > largest->fraction())
+      largest = &error;
+  }
+  std::string text =
+      missed.empty() ? "Two masses will do" : fmt::format("Two masses will not do for {}", missed);
+  if (largest != nullptr)
+    text += fmt::format("{}: {} is off by {}, the others by less",
+                        missed.empty() ? "" : ". They do for the rest", largest->group,
+                        of_peak(*largest));
+  return text + fmt::format(". The limit is {:g} %. The models agree to {:.1e} of peak.",
+                            100 * kTwoMassesDo, s.models_apart);
 }
 
 }  // namespace

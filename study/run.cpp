@@ -1,5 +1,10 @@
 #include "bentaxis/study/run.h"
 
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "bentaxis/analytic/model.h"
@@ -25,11 +30,35 @@ void check(const RunOptions& options) {
         "pump, by its equations of motion");
 }
 
+// Tables of a run, and what a comparison makes of them, lie in memory.
+void check_fits_memory(const Case& the_case, Way way) {
+  constexpr double kCopies = 4;  // of the results, least: two models, sorted apart, as text
+  const auto& operation = the_case.operation;
+  const double rows = static_cast<double>(operation.samples_per_revolution) *
+                      (way == Way::integrated ? operation.revolutions : 1);
+  const double columns = static_cast<double>(ChannelLayout(the_case.pump.geometry.pistons).size());
+  const double needed = kCopies * rows * columns * sizeof(double);
+  rlimit limit{};
+  double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+    there = std::min(there, static_cast<double>(limit.rlim_cur));
+  if (needed <= there) return;
+  throw InputError(fmt::format(
+      "[operation] samples_per_revolution = {}{}: {:.6g} samples of {:.0f} columns take at least "
+      "{:.3g} GB of memory, and this machine lets a program have {:.3g} GB; run --model analytic "
+      "writes row by row",
+      operation.samples_per_revolution,
+      way == Way::integrated ? fmt::format(", revolutions = {}", operation.revolutions) : "", rows,
+      columns, needed / 1e9, there / 1e9));
+}
+
 }  // namespace
 
 std::string to_string(Model model) { return model == Model::analytic ? "analytic" : "multibody"; }
 
 Samples ReadyCase::samples(Way way) const {
+  check_fits_memory(the_case, way);
   if (way == Way::driven) return sample_case(the_case, pressure);
   return sample_case(the_case, pressure, the_case.operation.revolutions,
                      the_case.operation.speed_rpm < 0);
@@ -118,6 +147,9 @@ void stream_analytic(const ReadyCase& ready, const Assumptions& assumptions,
         line.clear();
         for (std::size_t i = 0; i < columns.size(); ++i) values[i] = row[columns[i]];
         append_csv_row(line, theta_deg, values.data(), values.size());
+        if (theta_deg == 0)
+          out.expect(static_cast<double>(line.size()) *
+                     ready.the_case.operation.samples_per_revolution);
         out.write(line);
       },
       progress_of("analytic"));

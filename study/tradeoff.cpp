@@ -280,6 +280,17 @@ Order order_of(const std::vector<TradeoffRun>& runs, const std::string& integrat
   return order;
 }
 
+std::string outside_theory(const Order& order, const std::pair<int, int>& theory) {
+  constexpr double kRoom = 0.5;  // nearer to that order than to the next
+  std::string text;
+  for (const auto& [name, value] :
+       {std::pair("last pair", order.last_pair), std::pair("least squares", order.least_squares)})
+    if (value && !(*value >= theory.first - kRoom && *value <= theory.second + kRoom))
+      text += (text.empty() ? "" : " and ") + std::string(name) +
+              (*value < theory.first ? " below" : " above");
+  return text;
+}
+
 const TradeoffRun* fastest_within(const std::vector<TradeoffRun>& runs, double error) {
   const TradeoffRun* fastest = nullptr;
   for (const TradeoffRun& run : runs)

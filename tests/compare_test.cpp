@@ -328,6 +328,7 @@ TEST(Split, AddsUpAndSharesInteractionsEvenly) {
   EXPECT_NEAR(x.contributions[0].mean, 1 + 3, 1e-13);
   EXPECT_NEAR(x.contributions[1].mean, 2 + 3, 1e-13);
   EXPECT_NEAR(x.rest, 1e-7, 1e-14);
+  EXPECT_NEAR(x.largest_difference, 1 + 2 + 3 * 2 + 1e-7, 1e-13);
   EXPECT_TRUE(split.explained());
   EXPECT_FALSE(split_difference(first, second, {"p", "q"}, variant, {}, 1e-9).explained());
 }

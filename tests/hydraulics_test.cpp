@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "bentaxis/analytic/derived.h"
@@ -192,6 +194,31 @@ TEST(PortOpening, NotchLeadsThePortAndGrowsByItsLaw) {
   }
 }
 
+// An integration restarts at each: a bend between two of them would go unseen. Between edges the
+// area is a quadratic, whose third difference vanishes.
+TEST(PortOpening, ItsEdgesAreWhereTheAreaBends) {
+  constexpr double kStep = 0.01;  // deg
+  HydraulicData data = *rated().hydraulics;
+  data.kidney_rounding_deg = 5;
+  for (const double notch : {0.0, 10.0}) {
+    data.delivery = {{200, 330}, {notch, 4e-6}};
+    const PortOpening port(data, data.delivery, 0.02);
+    const double slope = radians(1) * 0.02 * data.kidney_height;
+    const double least = 0.01 * slope / data.kidney_rounding_deg * kStep * kStep;
+    int bends = 0;
+    for (double theta = 0; theta < 360; theta += kStep) {
+      const double bend = port.area(theta + 2 * kStep) - 3 * port.area(theta + kStep) +
+                          3 * port.area(theta) - port.area(theta - kStep);
+      if (std::abs(bend) < least) continue;
+      ++bends;
+      EXPECT_TRUE(std::any_of(port.edges_deg().begin(), port.edges_deg().end(), [&](double edge) {
+        return std::abs(edge - theta) < 2.01 * kStep;
+      })) << theta;
+    }
+    EXPECT_GE(bends, 6);
+  }
+}
+
 TEST(Network, JacobianIsTheDerivativeOfTheRates) {
   test::RandomPump random(3);
   for (const double delivery_bar : {275.0, 0.0}) {
@@ -326,6 +353,24 @@ TEST(Limit, MeanTorqueIsTheWorkOfPressureOverATurn) {
       mean(column(multibody::run_driven(the_case, the_case.multibody, coarse), "Td_z1_Nm")) /
           mean(column(analytic::run(the_case, the_case.analytic, coarse), "Td_z1_Nm")),
       1, scaled(1e-10));
+}
+
+TEST(Report, LinesAreOneAnothersByTheirMeaning) {
+  const SteadyState state = steady_state(rated());
+  std::map<std::string, double> value;
+  for (const Line& line : lines(state)) value[line.name] = line.value;
+  EXPECT_DOUBLE_EQ(value.at("volumetric efficiency"),
+                   100 * value.at("mean flow, at suction pressure") / value.at("ideal flow"));
+  EXPECT_DOUBLE_EQ(value.at("mean torque of that work") * 2 * kPi,
+                   value.at("work of the pistons per turn"));
+  EXPECT_DOUBLE_EQ(value.at("load orifice"), state.summary.load_area * 1e6);
+  for (const char* angle : {"angle of the greatest", "angle of the least"}) {
+    EXPECT_GE(value.at(angle), 0);
+    EXPECT_LT(value.at(angle), 360);
+  }
+  for (const Channel& channel : state.table.channels)
+    EXPECT_EQ(channel.piston, channel.name.find("_1_") == std::string::npos ? 0 : 1)
+        << channel.name;
 }
 
 // ---- The periodic state

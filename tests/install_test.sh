@@ -11,6 +11,17 @@ cmake -S "$source_dir/tests/install" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$s
 cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
 "$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
 cd "$scratch"
+share=usr/share
+for file in doc/bentaxis/{LICENSE,README.md,CHANGELOG.md,docs/command_line.md} man/man1/bentaxis.1 \
+    bash-completion/completions/bentaxis zsh/site-functions/_bentaxis fish/vendor_completions.d/bentaxis.fish; do
+  test -s "$share/$file" || { echo "not installed: $file"; exit 1; }
+done
+usr/bin/bentaxis manual | cmp - $share/man/man1/bentaxis.1
+usr/bin/bentaxis completion bash | cmp - $share/bash-completion/completions/bentaxis
+# What README.md links to is there, but what is for those who build.
+grep -o '](docs/[a-z_]*\.md' $share/doc/bentaxis/README.md | cut -c3- | while read -r page; do
+  test -s "$share/doc/bentaxis/$page" || { echo "README.md: $page is not installed"; exit 1; }
+done
 usr/bin/bentaxis compare usr/share/bentaxis/cases/bap63_rated.toml --out out > /dev/null
 usr/bin/bentaxis hardcases --filter tilt_45 --out out > /dev/null
 ls out/report.html out/hardcases.html

@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/words.h"
 #include "closed_form/film.h"
 #include "loads/film.h"
 #include "support.h"
@@ -461,6 +462,26 @@ TEST(CaseWriter, NamesAreQuoted) {
   Case the_case = reference_case("zero_tilt");
   the_case.name = "a \"pump\" \\ of\ntwo lines\x01 \xc3\xbc";
   EXPECT_EQ(parse_case(case_text(the_case), "/written.toml").name, the_case.name);
+}
+
+TEST(Words, WhatIsAlikeWasMeant) {
+  const std::set<std::string> keys = {"joint_circle_radius_mm", "bore_circle_radius_mm",
+                                      "tilt_deg"};
+  EXPECT_EQ(meant("joint_radius_mm", keys), "joint_circle_radius_mm");
+  EXPECT_EQ(meant("tilt", keys), "tilt_deg");
+  EXPECT_EQ(meant("TILT_DEG", keys), "tilt_deg");
+  EXPECT_EQ(meant("frobnicate", keys), std::nullopt);
+  EXPECT_EQ(meant("tilt", {}), std::nullopt);
+  EXPECT_EQ(meant("tilt", keys, 0.9), std::nullopt);
+  EXPECT_EQ(suggestion("spring", {"block", "gear"}), "; allowed: block, gear");
+  EXPECT_EQ(suggestion("gaer", {"block", "gear"}), "; did you mean \"gear\"?");
+}
+
+TEST(Words, DecimalCommasAreToldFromLists) {
+  EXPECT_EQ(decimal_point_hint("40,0"), "; decimals follow a point: 40.0");
+  EXPECT_EQ(decimal_point_hint("-1,5e-3"), "; decimals follow a point: -1.5e-3");
+  for (const char* other : {"40", "40.0", "40,", ",5", "1,2,3", "1,5mm", "", "-", "a,b"})
+    EXPECT_EQ(decimal_point_hint(other), "") << other;
 }
 
 }  // namespace

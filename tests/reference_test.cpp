@@ -182,6 +182,17 @@ TEST_F(ReferenceFolder, OtherAnglesAreResampledBySplineOfFourthOrder) {
   EXPECT_NEAR(std::log2(errors[1] / errors[2]), 4, 0.3);
 }
 
+// Gaps of 30 deg are the largest allowed: a twelfth of a turn.
+TEST_F(ReferenceFolder, ResampledCurvesMayNotHaveLargerGapsThanSaid) {
+  const auto judged = [&](int rows) {
+    write_plain(rows);
+    const auto d = description(rows, "", "relative = 1");
+    return thrown([&] { judge(d, {curve(d)}, result(36), {}); });
+  };
+  EXPECT_EQ(judged(12), "nothing");
+  EXPECT_THAT(judged(11), HasSubstr("must cover the turn with gaps of at most 30 deg"));
+}
+
 TEST_F(ReferenceFolder, ToleranceIsAbsolutePlusRelativeToThePeakOfTheVector) {
   write_curve(36, [](double a) -> std::array<double, 4> {
     return {a, x_of(a), y_of(a) + 1, t_of(a)};
@@ -262,6 +273,8 @@ TEST_F(ReferenceFolder, HintsNameWhatHappened) {
   EXPECT_THAT(hint(j, "T_Nm"), HasSubstr("1000 times"));
   j = judged([](double a) -> Row { return {a, x_of(a + 0.5), y_of(a), t_of(a)}; });
   EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("shifted by about +0.50 deg"));
+  j = judged([](double a) -> Row { return {a, x_of(a + 0.37), y_of(a), t_of(a)}; });
+  EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("shifted by about +0.37 deg"));
   j = judged([](double a) -> Row { return {a, x_of(a) + wave(a, 7), y_of(a), t_of(a)}; });
   EXPECT_EQ(hint(j, "X_x_N"), "");
 }

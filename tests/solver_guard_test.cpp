@@ -66,6 +66,29 @@ TEST(SolverGuard, SoundPumpsPassAndAreEstimatedSo) {
   EXPECT_EQ(solved.refusal(), "");
 }
 
+// The guess that a placement starts from is right to round-off: here the solver has work to do.
+TEST(PistonSolver, FindsThePlacesAgainFromNearby) {
+  Solved solved(case_of("high_precision/bap63_rated"));
+  PistonSolver solver = solved.placement.piston_solver();
+  SimTK::State& state = solved.pump.dynamics();
+  std::vector<SimTK::Vec3> axes;
+  const auto axis_of = [&](const SimTK::MobilizedBody& piston) {
+    return SimTK::Vec3(piston.getBodyRotation(state).z());
+  };
+  for (const auto& piston : solved.pump.bodies().pistons) axes.push_back(axis_of(piston));
+  for (const auto& piston : solved.pump.bodies().pistons) {
+    const int q = piston.getFirstQIndex(state);
+    state.updQ()[q + 1] += 0.01;
+    state.updQ()[q + 2] -= 0.02;
+    SimTK::Vec4 quaternion(&state.updQ()[q]);
+    quaternion /= quaternion.norm();
+    for (int i = 0; i < 4; ++i) state.updQ()[q + i] = quaternion[i];
+  }
+  EXPECT_LE(solver.solve_positions(state), kAssemblyTolerance);
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    EXPECT_LT((axis_of(solved.pump.bodies().pistons[k]) - axes[k]).norm(), 1e-10) << k;
+}
+
 // A load that is no number makes every multiplier one: that scored 0.
 TEST(SolverGuard, MultipliersThatAreNoNumbersAreRefused) {
   const Solved solved(case_of("high_precision/bap63_rated"), SimTK::NaN);

@@ -16,6 +16,7 @@
 #include "bentaxis/study/inertia.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/rounding_spread.h"
+#include "bentaxis/study/tradeoff.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -480,6 +481,36 @@ TEST(BlockTorque, RowsAreThoseOfTheDocument) {
   EXPECT_EQ(rows.size(), 18U);
   EXPECT_NE(document.find(study::block_torque_text(rows)), std::string::npos)
       << study::block_torque_text(rows);
+}
+
+// Runs to three steps with an error of exactly the power p of the step.
+std::vector<study::TradeoffRun> runs_of_order(double p) {
+  std::vector<study::TradeoffRun> runs;
+  for (const int steps : {100, 200, 400}) {
+    study::TradeoffRun run;
+    run.method = "integrated";
+    run.variant = "any";
+    run.error.worst = std::pow(10.0 / steps, p) * 1e-2;
+    run.record.emplace().steps = steps;
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+TEST(Tradeoff, AnOrderOutsideThatOfItsMethodIsMarked) {
+  using multibody::Integrator;
+  EXPECT_EQ(multibody::method_orders(Integrator::runge_kutta_merson), std::pair(4, 4));
+  EXPECT_EQ(multibody::method_orders(Integrator::verlet), std::pair(2, 3));
+  EXPECT_EQ(multibody::method_orders(Integrator::cpodes), std::pair(1, 5));
+  const auto marked = [](double p, std::pair<int, int> theory) {
+    return study::outside_theory(study::order_of(runs_of_order(p), "any"), theory);
+  };
+  for (const double p : {3.6, 4.0, 4.4}) EXPECT_EQ(marked(p, {4, 4}), "") << p;
+  EXPECT_EQ(marked(3.4, {4, 4}), "last pair below and least squares below");
+  EXPECT_EQ(marked(5.6, {1, 5}), "last pair above and least squares above");
+  EXPECT_EQ(marked(2.2, {2, 3}), "");
+  EXPECT_EQ(study::outside_theory({"any", 1, {}, {}}, {4, 4}), "") << "nothing was found";
+  EXPECT_EQ(study::outside_theory({"any", 2, 7.0, 4.0}, {4, 4}), "last pair above");
 }
 
 }  // namespace

@@ -77,6 +77,12 @@ std::vector<double> edge_distances(const Case& the_case, const Assumptions& assu
 
 }  // namespace
 
+std::pair<int, int> method_orders(Integrator kind) {
+  const SimTK::MultibodySystem nothing;
+  const auto integrator = make_integrator(nothing, {kind});
+  return {integrator->getMethodMinOrder(), integrator->getMethodMaxOrder()};
+}
+
 TimeRun::TimeRun(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                  const PressureTrace& pressure, const IntegrationOptions& options, Drive drive)
     : samples_(samples),

@@ -33,6 +33,8 @@ class OutputFolder {
    public:
     /// @throws InputError where the piece cannot be written: at once or with a later piece
     void write(const std::string& piece);
+    /// Says how large it will be. @throws InputError where the disk has no room for that
+    void expect(double bytes) const;
 
    private:
     friend class OutputFolder;

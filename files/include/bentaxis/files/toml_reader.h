@@ -19,14 +19,14 @@ namespace bentaxis {
 std::string toml_text(const std::string& text);
 /// A text for a message: control characters are escaped.
 std::string one_line(const std::string& text);
-/// "; did you mean ...?" for a word that is close to one of those known, or else a list of them.
-std::string suggestion(const std::string& word, const std::set<std::string>& known);
 
 /// One table of a file. Remembers which keys were asked for, so that the rest are errors. All
 /// errors are InputError with one line: file, line, key, value, what is allowed.
 class TableReader {
  public:
   bool has(const std::string& key);
+  /// A key that will be asked for: it is none that was misspelt.
+  void expect(const std::string& key) { expected_.insert(key); }
   /// Line of the table's heading, or of a key of it; 0 where unknown.
   int line() const { return line_; }
 
@@ -84,7 +84,7 @@ class TableReader {
   std::shared_ptr<const Node> table_;  // null where the table is missing
   int line_ = 0;
   std::vector<InputEntry>* entries_ = nullptr;
-  std::set<std::string> known_;
+  std::set<std::string> known_, expected_;
 };
 
 /// A parsed TOML file.

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bentaxis/pump/case.h"
@@ -23,6 +24,9 @@ enum class Integrator {
 
 /// Names as on the command line, in the order of the enumeration.
 const std::vector<std::string>& integrator_names();
+/// Lowest and highest order of the method, as Simbody states it: its error goes with that power of
+/// the step.
+std::pair<int, int> method_orders(Integrator kind);
 
 struct IntegrationOptions {
   Integrator integrator = Integrator::runge_kutta_merson;

@@ -28,7 +28,9 @@ struct NumberRange {
   double slack = 0;  ///< of itself, by which a closed bound may be left
 
   bool contains(double value) const;
-  std::string text() const;
+  std::string text() const;  ///< "in [0, 90)"
+  /// "a number, in [0, 90)"; "a finite number" where any is allowed.
+  std::string text_of(const std::string& kind) const;
 };
 inline constexpr NumberRange kAny{};
 inline constexpr NumberRange kPositive{0, std::numeric_limits<double>::infinity(), true};

@@ -10,6 +10,9 @@
 
 namespace bentaxis::study {
 
+/// What a channel is of: "Rs", "Rc" ..; the same for every pump.
+std::vector<std::string> quantity_names();
+
 /// The channels asked for by quantity ("Rs") or by column ("Rs_1_z2_N"); none given = all.
 class ChannelChoice {
  public:

@@ -44,6 +44,10 @@ inline constexpr double kInertiaModelsAgree = 1e-10;
 /// The one-piston scene against the full pump, of peak.
 inline constexpr double kInertiaScenesAgree = 1e-11;
 
+/// Two masses do for a reaction where they miss at most this share of its loaded peak: less than
+/// what masses and radii of a drawing are known to.
+inline constexpr double kTwoMassesDo = 0.01;
+
 /// @param as_read  a chamber pressure of kind "hydraulic" is computed at each speed
 /// @throws InputError where the case has no data of the real piston or a speed is 0;
 ///         ComputationError

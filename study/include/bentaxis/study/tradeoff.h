@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bentaxis/multibody/integrated.h"
@@ -51,6 +52,9 @@ struct Order {
   int runs = 0;  ///< that count: an error below 1e-2 and above round-off, falling steps
   std::optional<double> last_pair, least_squares;
 };
+/// What is outside the orders [low, high] of the method by more than half an order, in words; ""
+/// where nothing is.
+std::string outside_theory(const Order& order, const std::pair<int, int>& theory);
 Order order_of(const std::vector<TradeoffRun>& runs, const std::string& integrator,
                double degrees_per_turn = 360);
 

@@ -1,0 +1,287 @@
+#!/usr/bin/env python3
+"""Words: what a misspelt or impossible command line is told, completion, the manual page.
+
+usage: words_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = REPO = None  # set in main
+DONE, BAD_INPUT = 0, 2
+SECONDS = 120
+
+
+class WordsTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bentaxis_test_")))
+        self.case = REPO / "cases" / "bap63_rated.toml"
+
+    def run_program(self, *arguments, status=DONE, program=None, **options):
+        result = subprocess.run([program or PROGRAM, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL,
+                                capture_output=True, text=True, timeout=SECONDS, **options)
+        self.assertEqual(result.returncode, status, f"{arguments}: {result.stdout[:500]}{result.stderr}")
+        return result
+
+    def refused(self, *arguments, **options):
+        """One line on standard error, no file made."""
+        before = sorted(self.folder.rglob("*"))
+        result = self.run_program(*arguments, status=BAD_INPUT, **options)
+        self.assertEqual((result.stdout, result.stderr.count("\n")), ("", 1), result.stderr)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+        return result.stderr.removeprefix("bentaxis: ").removesuffix("\n").removesuffix(" (see bentaxis --help)")
+
+    def changed_case(self, old, new):
+        text = self.case.read_text()
+        self.assertIn(old, text)
+        file = self.folder / "case.toml"
+        file.write_text(text.replace(old, new))
+        return file
+
+
+class MessagesTest(WordsTest):
+    def test_what_was_meant(self):
+        run = ["run", self.case, "--model", "analytic"]
+        for arguments, line in (
+            (["comparr", self.case], 'there is no command comparr; did you mean "compare"?'),
+            (["reference", "golde", self.case], 'reference has no command golde; did you mean "golden"?'),
+            (["compare", self.case, "--tolernace", "1e-9"], 'compare has no option --tolernace; did you mean "--tolerance"?'),
+            (["compare", self.case, "--tolernace=1e-9"], 'compare has no option --tolernace; did you mean "--tolerance"?'),
+            # The misspelt option and not the one that is missing for it.
+            (["run", self.case, "--modle", "analytic"], 'run has no option --modle; did you mean "--model"?'),
+            ([*run, "--gear", "mehs"], '--gear: mehs: must be mesh or imposed; did you mean "mesh"?'),
+            ([*run, "--channels", "Rss"], '--channels: no channel is called Rss; did you mean "Rs"?'),
+            ([*run, "--channels", "Rs_1_x2"], '--channels: no channel is called Rs_1_x2; did you mean "Rs_1_x2_N"?'),
+            ([*run, "--set", "pump.joint_radius_mm=25"], '--set pump.joint_radius_mm=25: unknown key "joint_radius_mm" in '
+             '[pump]; did you mean "joint_circle_radius_mm"?'),
+        ):
+            with self.subTest(arguments[-1]):
+                self.assertEqual(self.refused(*arguments), line)
+        file = self.changed_case("joint_circle_radius_mm", "joint_radius_mm")
+        line = next(i for i, text in enumerate(file.read_text().splitlines(), 1) if text.startswith("joint_radius_mm"))
+        self.assertTrue(self.refused("run", file, "--model", "analytic").endswith(
+            f'joint_circle_radius_mm is missing: must be > 0; is "joint_radius_mm" in line {line} meant?'))
+        # Nothing is like it: what there is.
+        self.assertIn("; there are: run, compare, regress,", self.refused("frobnicate"))
+
+    def test_enumerations_are_their_names(self):
+        for arguments, line in (
+            (["run", self.case, "--model", "magic"], "--model: magic: must be analytic or multibody"),
+            (["run", self.case, "--model", "0"], "--model: 0: must be analytic or multibody"),
+            (["tradeoff", self.case, "--integrators", "verlet,rk33"], "--integrators: rk33: must be rk-merson, rk-feldberg, "
+             'rk3, verlet, semi-explicit-euler or cpodes; did you mean "rk3"?'),
+        ):
+            with self.subTest(arguments[-1]):
+                self.assertEqual(self.refused(*arguments), line)
+
+    def test_numbers(self):
+        run = ["run", self.case, "--model", "analytic", "--set"]
+        for arguments, line in (
+            (["inertia", self.case, "--speeds", "1500,abc"], "--speeds: abc: must be a number"),
+            (["compare", self.case, "--tolerance", "40,0"],
+             "--tolerance: 40,0: must be a finite number > 0; decimals follow a point: 40.0"),
+            (["hardcases", "--turns", "1.5"], "--turns: 1.5: must be an integer in [0, 100000]"),
+            ([*run, "pump.tilt_deg=40,0"],
+             "--set pump.tilt_deg=40,0: must be a number, in [0, 90); decimals follow a point: 40.0"),
+            ([*run, "pump.axis_offset_mm=nan"], "--set pump.axis_offset_mm=nan: must be a finite number"),
+            ([*run, "pump.axis_offset_mm=wide"], "--set pump.axis_offset_mm=wide: must be a finite number"),
+        ):
+            with self.subTest(arguments[-1]):
+                self.assertEqual(self.refused(*arguments), line)
+        for value in ("40,0", "-4,05e1", "40,0 # as in the drawing"):
+            with self.subTest(value):
+                self.assertRegex(self.refused("run", self.changed_case("tilt_deg = 40.0", f"tilt_deg = {value}"),
+                                              "--model", "analytic"),
+                                 r"case.toml:\d+: tilt_deg = -?40?,\S+; decimals follow a point: -?40?\.05?\S*$")
+
+    def test_what_is_missing_or_too_much(self):
+        for arguments, line in (
+            (["run", "--model", "analytic"], "run: CASE is missing"),
+            (["reference"], "reference needs a command: new, golden or update"),
+            (["compare", self.case, "--out"], "--out needs a value: DIR [out]"),
+            (["compare", self.case, "--out", "a", "--out", "b"], "--out is given more than once"),
+            (["run", self.case, "more", "--model", "analytic"], "run: more was not expected"),
+        ):
+            with self.subTest(arguments[-1]):
+                self.assertEqual(self.refused(*arguments), line)
+
+    def test_a_dash_is_no_folder(self):
+        for command in (["run", self.case, "--model", "analytic"], ["compare", self.case]):
+            self.assertIn("-: cannot be written: is no folder", self.refused(*command, "--out", "-"))
+
+    def test_more_samples_than_a_machine_holds(self):
+        many = ["--set", "operation.samples_per_revolution=2000000000"]
+        for command in (["compare", self.case], ["run", self.case, "--model", "multibody"]):
+            line = self.refused(*command, *many)
+            self.assertRegex(line, r"\[operation\] samples_per_revolution = 2000000000: 2e\+09 samples .* GB of memory, and "
+                             r"this machine lets a program have [0-9.]+ GB")
+        line = self.refused("run", self.case, "--model", "multibody", "--way", "integrated", *many[:1],
+                            "operation.revolutions=100000000")
+        self.assertIn("revolutions = 100000000", line)
+        self.assertIn("GB of disk", self.refused("run", self.case, "--model", "analytic", *many))
+
+
+class InertiaWordsTest(WordsTest):
+    def headline(self, *changes):
+        result = self.run_program("inertia", self.case, "--map-size", 2, "--out", "out", *changes)
+        report = json.loads((self.folder / "out" / "inertia.json").read_text())
+        self.assertEqual(result.stdout.splitlines()[1], report["verdict"]["headline"])
+        return report["verdict"]["headline"], report
+
+    def test_headline_says_whether_two_masses_do(self):
+        headline, report = self.headline("--speeds", "1500,2350")
+        self.assertRegex(headline, r"^Two masses will not do for Rc: off by 1\.7 % of its loaded peak \(12\.8 N at 2350 rpm\)"
+                         r"\. They do for the rest: \w+ is off by 0\.\d+ % .*, the others by less\. The limit is 1 %\.")
+        self.assertTrue(report["published"]["rows"])
+        headline, _ = self.headline("--speeds", "1500")
+        self.assertRegex(headline, r"^Two masses will do: Rc is off by 0\.72 % of its loaded peak \(5\.26 N at 1500 rpm\)")
+
+    def test_another_pump_is_not_held_to_the_papers_numbers(self):
+        for change in ("pump.pistons=7", "pump.bore_diameter_mm=20", "gear.pitch_diameter_mm=90"):
+            with self.subTest(change):
+                _, report = self.headline("--speeds", "1500", "--set", change)
+                self.assertNotIn("published", {key for key, value in report.items() if value})
+
+
+class PageTest(WordsTest):
+    def test_each_value_has_a_heading(self):
+        browser = shutil.which("chromium")
+        if browser is None:
+            self.skipTest("no browser")
+        self.run_program("compare", REPO / "cases" / "bap63_rated_hydraulic.toml", "--out", "out")
+        page = self.run_program("--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", "--dump-dom",
+                                f"file://{self.folder}/out/report.html", program=browser).stdout
+        tables = re.findall(r'<table class="readout">(.*?)</table>', page, re.S)
+        self.assertGreater(len(tables), 10)
+        def columns(row):
+            return sum(int((re.search(r'colspan="(\d+)"', cell) or [0, 1])[1]) for cell in re.findall("<t[hd][^>]*>", row))
+        for table in tables:
+            head, *rows = re.findall(r"<tr.*?</tr>", table, re.S)
+            self.assertEqual({columns(row) for row in rows}, {columns(head)}, head)
+
+
+class CompletionTest(WordsTest):
+    def words(self, *typed):
+        kind, *lines = self.run_program("completion", "words", "--", *typed).stdout.splitlines()
+        return kind, [line.split("\t")[0] for line in lines]
+
+    def test_follows_the_parser(self):
+        # Whatever --help names is completed: no list is kept beside the parser.
+        def names(text, heading):
+            lines = text.split(f"\n{heading}:\n")[1].split("\n\n")[0].splitlines() if f"\n{heading}:\n" in text else []
+            words = [line.split()[0] for line in lines if line.startswith("  ") and line[2:3].strip()]
+            return [word.split(",")[-1] for word in words]
+        commands = [[name] for name in names(self.run_program("--help").stdout, "Subcommands")]
+        self.assertGreater(len(commands), 12)
+        self.assertEqual(self.words(""), ("words", [name for [name] in commands]))
+        commands += [["reference", name] for name in self.words("reference", "")[1]]
+        for command in commands:
+            with self.subTest(command):
+                options = names(self.run_program(*command, "--help").stdout, "Options")
+                self.assertEqual(self.words(*command, "-"), ("words", options))
+                self.assertIn("--help", options)
+
+    def test_values(self):
+        for typed, kind, words in (
+            (["comp"], "words", ["compare", "completion"]),
+            (["run", ""], "files", []),
+            (["run", "case.toml", ""], "nothing", []),
+            (["run", "case.toml", "--model", ""], "words", ["analytic", "multibody"]),
+            (["run", "case.toml", "--model", "m"], "words", ["multibody"]),
+            (["run", "case.toml", "--model=m"], "words", ["--model=multibody"]),
+            (["run", "--model", "multibody", "--out", ""], "folders", []),
+            (["compare", "case.toml", "--multibody-case", ""], "files", []),
+            (["compare", "case.toml", "--tolerance", ""], "nothing", []),
+            (["tradeoff", "case.toml", "--integrators", "verlet,rk"], "words",
+             ["verlet,rk-merson", "verlet,rk-feldberg", "verlet,rk3"]),
+            (["run", "--set", "pump.tilt"], "words", ["pump.tilt_deg="]),
+            (["compare", "--channels", "Rb"], "words", ["Rb1", "Rb2"]),
+            (["reference", "g"], "words", ["golden"]),
+            (["regress", "--junit", ""], "files", []),
+            (["nonsense", "--out=x"], "nothing", []),
+        ):
+            with self.subTest(typed):
+                self.assertEqual(self.words(*typed), (kind, words))
+
+    def script(self, shell):
+        file = self.folder / f"completion.{shell}"
+        file.write_text(self.run_program("completion", shell).stdout)
+        return file
+
+    def shell(self, *command):
+        if shutil.which(command[0]) is None:
+            self.skipTest(f"no {command[0]}")
+        path = f"{PROGRAM.parent}:{os.environ['PATH']}"
+        return self.run_program(*command[1:], program=command[0],
+                                env={**os.environ, "PATH": path, "HOME": str(self.folder)}).stdout
+
+    def test_bash(self):
+        script = self.script("bash")
+        (self.folder / "pump.toml").touch()
+        (self.folder / "place").mkdir()
+        def completed(line):
+            return self.shell("bash", "-c", f"""source {script}
+                compopt() {{ :; }}  # is for a completion at a prompt
+                COMP_LINE={line!r}; COMP_POINT=${{#COMP_LINE}}; _bentaxis; printf '%s\\n' "${{COMPREPLY[@]}}" """).split()
+        self.assertEqual(completed("bentaxis tra"), ["tradeoff"])
+        self.assertEqual(completed("bentaxis run pump.toml --model "), ["analytic", "multibody"])
+        self.assertEqual(completed("bentaxis run pump.toml --model=an"), ["analytic"])  # bash replaces what follows =
+        self.assertEqual(completed("bentaxis run pu"), ["pump.toml"])
+        self.assertEqual(completed("bentaxis run pump.toml --out p"), ["place"])
+        self.assertEqual(completed("bentaxis run --set pump.tilt"), ["pump.tilt_deg="])
+
+    def test_fish(self):
+        script = self.script("fish")
+        def completed(line):
+            lines = self.shell("fish", "--no-config", "-c", f"source {script}; complete -C {line!r}").splitlines()
+            return [text.split("\t")[0] for text in lines]
+        (self.folder / "pump.toml").touch()
+        self.assertEqual(completed("bentaxis tra"), ["tradeoff"])
+        self.assertEqual(completed("bentaxis run pump.toml --model "), ["analytic", "multibody"])
+        self.assertEqual(completed("bentaxis run pu"), ["pump.toml"])
+
+    def test_zsh(self):
+        script = self.script("zsh")
+        def completed(*words):
+            quoted = " ".join(f'"{word}"' for word in words)
+            return self.shell("zsh", "-f", "-c", f"""compdef() {{ :; }}; compadd() {{ print -l -- $found; }}
+                _files() {{ print files $@; }}; source {script}
+                words=({quoted}); CURRENT=$#words; _bentaxis""").split()
+        self.assertEqual(completed("bentaxis", "tra"), ["tradeoff"])
+        self.assertEqual(completed("bentaxis", "run", "pump.toml", "--model", ""), ["analytic", "multibody"])
+        self.assertEqual(completed("bentaxis", "run", ""), ["files"])
+        self.assertEqual(completed("bentaxis", "run", "c", "--out", ""), ["files", "-/"])
+
+
+class ManualTest(WordsTest):
+    def test_has_every_command_and_option(self):
+        manual = self.run_program("manual").stdout.replace("\\-", "-").replace("\\fR", "").replace("\\fB", "")
+        for command in CompletionTest.words(self, "")[1]:
+            self.assertIn(f".SS bentaxis {command}", manual)
+            for option in CompletionTest.words(self, command, "-")[1]:
+                if option != "--help":
+                    self.assertIn(f"\n{option}", manual, command)
+        self.assertIn(".SS bentaxis reference golden", manual)
+
+    def test_is_good_roff(self):
+        if shutil.which("groff") is None:
+            self.skipTest("no groff")
+        (self.folder / "bentaxis.1").write_text(self.run_program("manual").stdout)
+        page = self.run_program("-man", "-ww", "-Tutf8", "-P-c", "bentaxis.1", program="groff")
+        self.assertEqual(page.stderr, "")
+        text = re.sub(".\b", "", page.stdout)  # bold is printed twice
+        for word in ("NAME", "SYNOPSIS", "COMMANDS", "EXIT STATUS", "bentaxis compare CASE [OPTIONS]"):
+            self.assertIn(word, text)
+
+
+if __name__ == "__main__":
+    PROGRAM, REPO = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    del sys.argv[1:3]
+    unittest.main()
