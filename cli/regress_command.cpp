@@ -79,7 +79,8 @@ int regress(const Options& options) {
   if (!options.html.empty()) write(options.html, report::render_page(document));
   if (!options.figures.empty()) {
     OutputFolder folder(options.figures);
-    write_figures(folder, document);
+    add_figure_files(folder, document);
+    commit_figures(folder);
   }
   return status;
 }

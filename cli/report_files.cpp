@@ -51,13 +51,14 @@ std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
   report_.add(name + ".html", report::render_page(document, curves));
   for (const auto& [file, content] : further) report_.add(file, content);
   report_.add(name + ".json", report::json_text(document));  // last: it is the record of the set
+  if (figures_) add_figure_files(*figures_, document, curves);
   auto paths = report_.commit(name + ".json", report::files_of);
-  if (figures_) paths.push_back(write_figures(*figures_, document, curves));
+  if (figures_) paths.push_back(commit_figures(*figures_));
   return paths;
 }
 
-std::filesystem::path write_figures(OutputFolder& folder, const report::Document& document,
-                                    const report::Curves& curves) {
+void add_figure_files(OutputFolder& folder, const report::Document& document,
+                      const report::Curves& curves) {
   std::string list = kFigureListHead;
   for (const report::Figure& figure : document.figures.value_or(std::vector<report::Figure>())) {
     const std::string svg = report::svg_of(figure, curves);
@@ -70,6 +71,9 @@ std::filesystem::path write_figures(OutputFolder& folder, const report::Document
     list += figure.id + ",\"" + title + "\"\n";
   }
   folder.add(kFigureList, list);
+}
+
+std::filesystem::path commit_figures(OutputFolder& folder) {
   return folder.commit(kFigureList, files_of_list).back();
 }
 

@@ -46,10 +46,11 @@ class ReportFolders {
   std::optional<OutputFolder> figures_;
 };
 
-/// Each figure as SVG, PNG and CSV, and figures.csv that lists them, as one set.
-/// @return the path of the list
-/// @throws InputError
-std::filesystem::path write_figures(OutputFolder& folder, const report::Document& document,
-                                    const report::Curves& curves = {});
+/// Each figure as SVG, PNG and CSV, and figures.csv that lists them.
+/// @throws InputError, std::runtime_error where there is no librsvg
+void add_figure_files(OutputFolder& folder, const report::Document& document,
+                      const report::Curves& curves = {});
+/// Puts them in place as one set. @return the path of the list
+std::filesystem::path commit_figures(OutputFolder& folder);
 
 }  // namespace bentaxis::cli

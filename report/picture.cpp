@@ -76,10 +76,17 @@ std::string scientific(double value, int digits) {
   return fmt::format("{}e{}", mantissa, std::stoi(text.substr(e + 1)));
 }
 
+// Three digits, as far as they say something.
 std::string short_number(double value) {
   const double size = std::abs(value);
-  return value != 0 && (size < 1e-3 || size >= 1e6) ? scientific(value, 3)
-                                                    : fmt::format("{:.3g}", value);
+  if (value != 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, 3);
+  const int digit = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
+  std::string text = fmt::format("{:.{}f}", value, std::max(0, 2 - digit));
+  if (text.find('.') != std::string::npos) {
+    text.resize(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text;
 }
 
 std::string with_unit(const std::string& text, const std::string& unit) {
@@ -302,14 +309,15 @@ std::string drawn(const Figure& figure, const Picture& picture) {
   if (title.size() > most) {
     const std::size_t at = title.rfind(' ', most);
     const std::size_t cut = at == std::string::npos ? title.size() : at;
-    add_text(root, 14, y, title.substr(0, cut), {{"font-weight", "bold"}, {"font-size", "13"}});
+    add_text(root, 14, y, title.substr(0, cut),
+             {{"class", "title"}, {"font-weight", "bold"}, {"font-size", "13"}});
     title = cut < title.size() ? title.substr(cut + 1) : "";
     y += 17;
   }
-  add_text(root, 14, y, title, {{"font-weight", "bold"}, {"font-size", "13"}});
+  add_text(root, 14, y, title, {{"class", "title"}, {"font-weight", "bold"}, {"font-size", "13"}});
   if (!figure.paper.empty()) {
     y += 17;
-    add_text(root, 14, y, "paper: " + figure.paper, {{"class", "soft"}, {"fill", "#4d5a67"}});
+    add_text(root, 14, y, "paper: " + figure.paper, {{"class", "soft title"}, {"fill", "#4d5a67"}});
   }
   y = draw_legend(root, picture.legend, y + 20);
   y -= 8;
@@ -362,6 +370,7 @@ struct Curve {
   std::string colour;
   double width = 1.9, opacity = 1;
   std::string dash = "none";
+  bool sparse = false;  ///< has fewer points than the angles: they are joined
 };
 
 struct Band {
@@ -375,7 +384,7 @@ void draw_curve(pugi::xml_node root, const Scale& x, const Scale& y, const Curve
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     if (x.shows(curve.x[i]) && y.shows(curve.y[i]))
       pieces.back().push_back({x.place(curve.x[i]), y.place(curve.y[i])});
-    else if (!pieces.back().empty())
+    else if (!curve.sparse && !pieces.back().empty())
       pieces.emplace_back();
   }
   std::string path;
@@ -418,7 +427,7 @@ void draw_band(pugi::xml_node root, const Scale& x, const Scale& y, const Band& 
 // Symbols, as in the legend.
 void draw_mark(pugi::xml_node root, std::size_t which, double x, double y,
                const std::string& colour, const std::string& note) {
-  const Attributes looks = {{"fill", colour}, {"stroke", "#fff"}};
+  const Attributes looks = {{"fill", colour}, {"stroke", "#fff"}, {"class", "mark"}};
   pugi::xml_node node;
   if (which % 5 == 0) {
     node = add(root, "circle", {{"cx", px(x)}, {"cy", px(y)}, {"r", "4"}});
@@ -514,13 +523,13 @@ Picture picture_of(const ChannelFigure& figure, const Curves& page) {
       for (const Curves::Held& held : curves.reference->held) {
         if (held.channel != channel) continue;
         shown = true;
-        lines.push_back({theta, held.values, colour, 2.2, 1, pick(kDashes, 2)});
+        lines.push_back({theta, held.values, colour, 2.2, 1, pick(kDashes, 2), true});
         bands.push_back(band_of(theta, held, false, colour));
         zero_bands.push_back(band_of(theta, held, true, colour));
         for (std::size_t t = 0; t < held.differences.size(); ++t) {
           const bool pale = t == 0 && held.differences.size() > 1;
           from_reference.push_back({theta, held.differences[t].second, colour, pale ? 4.5 : 1.6,
-                                    pale ? 0.4 : 1, pick(kDashes, t)});
+                                    pale ? 0.4 : 1, pick(kDashes, t), true});
         }
       }
     if (shown) channels.push_back(line_key(channel, colour, 4));
@@ -542,19 +551,19 @@ Picture picture_of(const ChannelFigure& figure, const Curves& page) {
   if (lines.empty()) return picture;
   picture.legend = {channels, tables};
   const bool three = !from_reference.empty();
-  picture.panels.push_back(curve_panel(kAngle, {"value", figure.unit}, three ? 170 : 185,
+  picture.panels.push_back(curve_panel(kAngle, {"value", figure.unit}, three ? 135 : 185,
                                        std::move(lines), std::move(bands)));
   const bool exact = std::all_of(differences.begin(), differences.end(), [](const Curve& curve) {
     return std::all_of(curve.y.begin(), curve.y.end(), [](double v) { return !(v < 0 || v > 0); });
   });
   if (!exact) {
     picture.panels.push_back(
-        curve_panel(kAngle, {"difference", figure.unit}, three ? 70 : 95, std::move(differences)));
+        curve_panel(kAngle, {"difference", figure.unit}, three ? 50 : 95, std::move(differences)));
     picture.panels.back().title =
         fmt::format("Difference: {} minus {}", curves.tables[1].name, curves.tables[0].name);
   }
   if (three) {
-    picture.panels.push_back(curve_panel(kAngle, {"difference", figure.unit}, 95,
+    picture.panels.push_back(curve_panel(kAngle, {"difference", figure.unit}, 78,
                                          std::move(from_reference), std::move(zero_bands)));
     picture.panels.back().title =
         fmt::format("Difference: each model minus {}", curves.reference->name);
@@ -602,7 +611,7 @@ Picture picture_of(const PistonBars& figure, const Curves& page) {
     std::size_t row = 0;
     for (std::size_t i = 0; i < page.theta_deg.size(); ++i)
       if (std::abs(page.theta_deg[i] - angle) < std::abs(page.theta_deg[row] - angle)) row = i;
-    Panel panel{{"piston"}, {"share", figure.unit}, 150, {0, n}, all};
+    Panel panel{{"piston"}, {"share", figure.unit}, 125, {0, n}, all};
     panel.title = fmt::format("At {:g} deg", page.theta_deg[row]);
     const std::size_t every = 1 + figure.channels.size() / 25;
     for (std::size_t i = 0; i < figure.channels.size(); i += every)

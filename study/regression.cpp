@@ -36,6 +36,38 @@ std::vector<GroupLine> group_lines(const compare::Judgement& judgement) {
   return lines;
 }
 
+// A reference at fewer angles than the results is judged at its own, as `regress` does: every
+// stride-th row is one of them.
+std::size_t stride_of(const compare::ReferenceDescription& description, const Case& the_case) {
+  const int all = the_case.operation.samples_per_revolution;
+  const int theirs = description.samples_per_revolution.value_or(all);
+  return all % theirs == 0 ? static_cast<std::size_t>(all / theirs) : 1;
+}
+
+ResultTable every(std::size_t stride, const ResultTable& table) {
+  ResultTable some = table;
+  some.theta_deg.clear();
+  some.values.clear();
+  for (std::size_t row = 0; row < table.rows(); row += stride) {
+    some.theta_deg.push_back(table.theta_deg[row]);
+    for (std::size_t c = 0; c < table.columns(); ++c) some.values.push_back(table.at(row, c));
+  }
+  return some;
+}
+
+// The reverse: not computed between the rows.
+ResultTable spread(std::size_t stride, const ResultTable& some,
+                   const std::vector<double>& theta_deg) {
+  if (some.rows() == 0) return some;
+  ResultTable table = some;
+  table.theta_deg = theta_deg;
+  table.values.assign(theta_deg.size() * some.columns(), not_computed());
+  for (std::size_t row = 0; row < some.rows(); ++row)
+    for (std::size_t c = 0; c < some.columns(); ++c)
+      table.values[row * stride * some.columns() + c] = some.at(row, c);
+  return table;
+}
+
 // Holds the results to the curves; nothing is run here but by `result_of`.
 void hold_to_curves(const compare::ReferenceDescription& description, const CaseOf& case_of,
                     const ResultOf& result_of, Outcome& outcome) {
@@ -59,8 +91,10 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
       if (holds(curve))
         curves.push_back(compare::read_reference_curve(description, curve, layout.channels(),
                                                        6 * the_case.operation.speed_rpm));
-    ReferenceRun run = result_of(which);
-    compare::Judgement judgement = compare::judge(description, curves, run.table, run.zero_scales);
+    const ReferenceRun run = result_of(which);
+    const std::size_t stride = stride_of(description, the_case);
+    const compare::Judgement judgement =
+        compare::judge(description, curves, every(stride, run.table), run.zero_scales);
     if (judgement.resampled)
       outcome.notes.push_back(fmt::format(
           "{}: the reference has other angles than the case and was resampled, which adds an error "
@@ -77,8 +111,10 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
       if (line.failed > 0) outcome.state = Outcome::State::differs;
       outcome.lines.push_back(std::move(line));
     }
-    outcome.held[model] = {std::move(run.table), std::move(judgement.reference),
-                           std::move(judgement.low), std::move(judgement.high)};
+    const std::vector<double>& theta = run.table.theta_deg;
+    outcome.held[model] = {run.table, spread(stride, judgement.reference, theta),
+                           spread(stride, judgement.low, theta),
+                           spread(stride, judgement.high, theta)};
   }
   if (!any) {
     outcome.state = std::max(outcome.state, Outcome::State::differs);
@@ -259,7 +295,7 @@ std::string held_text(const Outcome& outcome) {
   }
   const std::string count =
       differing.empty()
-          ? fmt::format("All {} reactions that it has agree", groups.size())
+          ? fmt::format("{0} of {0} reactions compared agree", groups.size())
           : fmt::format("{} of {} reactions compared differ", differing.size(), groups.size());
   return fmt::format("{}. Worst: {}.", count, line_text(*worst));
 }
@@ -282,8 +318,11 @@ std::optional<report::Curves::Reference> reference_curves(
         }
       }
       report::Values difference;
-      for (std::size_t row = 0; row < held.result.rows(); ++row)
-        difference.push_back(held.result.at(row, ours) - held.reference.at(row, theirs));
+      for (std::size_t row = 0; row < held.result.rows(); ++row) {
+        const double theirs_now = held.reference.at(row, theirs);
+        difference.push_back(is_computed(theirs_now) ? held.result.at(row, ours) - theirs_now
+                                                     : not_computed());
+      }
       one.differences.emplace_back(model, std::move(difference));
     }
     if (!one.values.empty()) reference.held.push_back(std::move(one));

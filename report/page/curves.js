@@ -41,7 +41,8 @@ function plot(box, data, lines, bands, yLabel) {
   const series = {};
   lines.forEach((l, i) => {
     series[i] = { color: l.colour, strokeWidth: l.width, strokePattern: l.dash || null, pointSize: 2.5,
-                  drawPoints: rows.length < 20 && !l.silent, highlightCircleSize: l.silent ? 0 : 4 };
+                  drawPoints: rows.length < 20 && !l.silent, highlightCircleSize: l.silent ? 0 : 4,
+                  connectSeparatedPoints: !!l.sparse };  // of a reference at fewer angles
   });
   // Without the touch handlers a finger on a plot still scrolls the page.
   const { touchstart, touchmove, touchend, ...mouse } = Dygraph.defaultInteractionModel;
@@ -112,7 +113,7 @@ function allowedBand(held, colour, aroundZero) {
   return { low: shifted(held.low || held.values, -held.allowed), high: shifted(held.high || held.values, held.allowed), colour };
 }
 const edgesOf = bands => bands.flatMap(b => [b.low, b.high].map(values => (
-  { values, colour: b.colour + "66", width: 0.7, dash: null, silent: true })));
+  { values, colour: b.colour + "66", width: 0.7, dash: null, silent: true, sparse: true })));
 
 function curvesFigure(figure, page) {
   const data = withOwnAxis(figure, page);
@@ -130,10 +131,10 @@ function curvesFigure(figure, page) {
     if (difference) differences.push({ values: difference, colour, width: 1.5 });
     if (reference) columns.push(held && held.values);
     if (held) {
-      lines.push({ ...lineOf(held.values, colour, 2), width: 2.4 });
+      lines.push({ ...lineOf(held.values, colour, 2), width: 2.4, sparse: true });
       bands.push(allowedBand(held, colour, false));
       zeroBands.push(allowedBand(held, colour, true));
-      Object.values(held.difference).forEach((values, t, all) => fromReference.push(lineOf(values, colour, t, all.length < 2)));
+      Object.values(held.difference).forEach((values, t, all) => fromReference.push({ ...lineOf(values, colour, t, all.length < 2), sparse: true }));
     }
     if (columns.some(Boolean)) drawn.push({ name, colour, columns, difference, held });
   });

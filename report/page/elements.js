@@ -85,8 +85,9 @@ const tableCell = (tag, head, ...content) =>
   el(tag, { role: "cell", "data-head": head }, el("div", {}, ...content));
 
 // columns: {head, cell: row -> text or node, num: right-aligned, main: names the row}. Every cell carries
-// its heading, because on a narrow page the style sheet shows each row as a block of "heading: value"
-// (then the roles keep it a table for a screen reader).
+// its heading, because on a narrow page the style sheet shows each row of a table that folds, one of texts, as a block
+// of "heading: value" (then the roles keep it a table for a screen reader). One of numbers keeps its columns and scrolls
+// below its first one.
 function table(columns, rows, { rowClass, fold = true, style = "" } = {}) {
   const head = el("tr", { role: "row" }, columns.map(c =>
     el(c.num ? "th.num" : "th", { scope: "col", role: "columnheader" }, c.head)));
@@ -95,6 +96,6 @@ function table(columns, rows, { rowClass, fold = true, style = "" } = {}) {
     return c.main ? el("th" + style, { scope: "row", role: "rowheader" }, c.cell(row))
                   : tableCell("td" + style, c.head, c.cell(row));
   })));
-  return el("div.scroll", {}, el("table" + style + (fold ? ".fold" : ""), { role: "table" },
+  return el("div.scroll", {}, el("table" + style + (fold ? ".fold" : ".wide"), { role: "table" },
     el("thead", { role: "rowgroup" }, head), el("tbody", { role: "rowgroup" }, body)));
 }

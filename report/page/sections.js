@@ -100,7 +100,7 @@ const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(ru
   el("h3", {}, run.title), run.text ? el("p", {}, run.text) : null, facts(run.facts),
   !run.table || !list(run.table.rows).length ? null : table(run.table.columns.map((head, i) => ({
     head, main: i === 0, num: run.table.rows.every(r => r[i] == null || typeof r[i] === "number"),
-    cell: r => small(r[i]) })), run.table.rows, { fold: run.table.columns.length > 3, style: ".narrow" }))));
+    cell: r => small(r[i]) })), run.table.rows, { fold: false, style: ".narrow" }))));
 
 function published({ published }, data) {
   if (!published || !list(published.rows).length) return null;
@@ -118,7 +118,7 @@ function published({ published }, data) {
         { head: "Verdict", cell: r => chip(r.verdict) },
         { head: "Status", cell: r => r.status || DASH },
         { head: "Where", cell: r => r.where || DASH },
-      ], published.rows)));
+      ], published.rows, { fold: false })));
 }
 
 const checks = ({ checks }) => !list(checks).length ? null : table([
@@ -130,7 +130,7 @@ const checks = ({ checks }) => !list(checks).length ? null : table([
   { head: "Relative", num: true, cell: r => small(r.relative) },
   { head: "Tolerance", num: true, cell: r => small(r.tolerance) },
   { head: "at", num: true, cell: r => degrees(r.theta_deg) },
-], checks, { rowClass: r => (r.verdict === "violated" ? "flag" : "") });
+], checks, { fold: false, rowClass: r => (r.verdict === "violated" ? "flag" : "") });
 
 function caseTable(report) {
   const entries = list(report.case && report.case.entries);
@@ -148,7 +148,7 @@ const derived = ({ derived }) => !list(derived).length ? null : table([
   { head: "Symbol", cell: r => r.symbol || DASH },
   { head: "Value", num: true, cell: r => unit(number(r.value), r.unit) },
   { head: "From", cell: r => r.source || DASH },
-], derived);
+], derived, { fold: false });
 
 function models({ models }) {
   const time = m => (m.seconds == null ? [] : [["time", unit(number(m.seconds, 3), "s")]]);
