@@ -78,6 +78,7 @@ std::string scientific(double value, int digits) {
 
 // Three digits, as far as they say something.
 std::string short_number(double value) {
+  if (!std::isfinite(value)) return "not finite";
   const double size = std::abs(value);
   if (value != 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, 3);
   const int digit = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
@@ -99,7 +100,7 @@ std::string name_of(const Axis& axis) {
 struct Range {
   double low = INFINITY, high = -INFINITY;
   void include(double value) {
-    if (!is_computed(value)) return;
+    if (!std::isfinite(value)) return;
     low = std::min(low, value);
     high = std::max(high, value);
   }
@@ -143,6 +144,7 @@ std::vector<Tick> angle_ticks(double low, double high) {
   double step = 15;
   for (const double next : {30., 45., 60., 90., 180., 360., 720., 1440., 3600., 7200., 36000.})
     if ((high - low) / step > 12) step = next;
+  while ((high - low) / step > 12) step *= 10;
   std::vector<Tick> ticks;
   for (double k = std::ceil(low / step); k * step <= high; ++k)
     ticks.push_back({k * step, fmt::format("{:g}", k * step)});
@@ -175,24 +177,30 @@ struct Scale {
   bool log = false;
   std::vector<Tick> ticks;
 
-  bool shows(double value) const { return is_computed(value) && (!log || value > 0); }
+  bool shows(double value) const { return std::isfinite(value) && (!log || value > 0); }
   double place(double value) const {
     const auto f = [&](double v) { return log ? std::log10(v) : v; };
     return first + (last - first) * (f(value) - f(low)) / (f(high) - f(low));
   }
 };
 
+// What differs by less over its size is drawn as one value: no ticks lie between.
+constexpr double kSmallestSpan = 1e-12;
+
 enum class Margin { none, some, decades };
 
 Scale scale_of(const Axis& axis, Range range, double first, double last, Margin margin,
                bool angle = false) {
-  if (axis.log && !range.empty() && range.low <= 0) range.low = range.high / 1e6;
+  if (axis.log && !range.empty())
+    range = {std::max(range.low, 1e-290), std::max(range.high, 1e-290)};
   if (range.empty()) range = axis.log ? Range{0.1, 1} : Range{0, 1};
   if (axis.from) range.low = *axis.from;
   if (margin == Margin::decades && axis.log) {
     range = {std::pow(10, std::floor(std::log10(range.low) - 0.05)),
              std::pow(10, std::ceil(std::log10(range.high) + 0.05))};
-  } else if (!(range.high > range.low)) {
+  } else if (!(range.high - range.low >
+                   kSmallestSpan * std::max(std::abs(range.low), std::abs(range.high)) &&
+               range.high - range.low > 1e-290)) {
     range = axis.log ? Range{range.low / 2, range.low * 2}
                      : Range{range.low - std::max(1e-12, std::abs(range.low) / 2),
                              range.low + std::max(1e-12, std::abs(range.low) / 2)};
@@ -330,8 +338,7 @@ std::string drawn(const Figure& figure, const Picture& picture) {
     draw_panel(root, panel, y);
     y += panel.height + (panel.x.label.empty() ? 24 : 44);
   }
-  if (picture.panels.empty())
-    add_text(root, 14, y + 14, "There is nothing to draw: no model computed this.");
+  if (picture.panels.empty()) add_text(root, 14, y + 14, "There is nothing to draw.");
   const double height = picture.panels.empty() ? y + 30 : y - 4;
   root.prepend_attribute("viewBox") = fmt::format("0 0 {} {}", px(kWidth), px(height)).c_str();
   root.append_attribute("width") = px(kWidth).c_str();
@@ -409,7 +416,7 @@ void draw_curve(pugi::xml_node root, const Scale& x, const Scale& y, const Curve
 void draw_band(pugi::xml_node root, const Scale& x, const Scale& y, const Band& band) {
   std::vector<Point> low, high;
   for (std::size_t i = 0; i < band.x.size(); ++i)
-    if (is_computed(band.low[i]) && is_computed(band.high[i])) {
+    if (std::isfinite(band.low[i]) && std::isfinite(band.high[i])) {
       low.push_back({x.place(band.x[i]), y.place(band.low[i])});
       high.push_back({x.place(band.x[i]), y.place(band.high[i])});
     }
@@ -448,7 +455,7 @@ Panel curve_panel(const Axis& x, const Axis& y, double height, std::vector<Curve
   Panel panel{x, y, height, {}, {}};
   for (const Curve& curve : curves) {
     for (std::size_t i = 0; i < curve.x.size(); ++i)
-      if (is_computed(curve.x[i]) && is_computed(curve.y[i]) && (!x.log || curve.x[i] > 0) &&
+      if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]) && (!x.log || curve.x[i] > 0) &&
           (!y.log || curve.y[i] > 0)) {
         panel.xs.include(curve.x[i]);
         panel.ys.include(curve.y[i]);
@@ -548,7 +555,7 @@ Picture picture_of(const ChannelFigure& figure, const Curves& page) {
     lines.push_back({theta, figure.extra[i].values, colour, 1.6, 1, "10 4 2 4"});
     tables.push_back(line_key(figure.extra[i].label, colour, 1.6, "10 4 2 4"));
   }
-  if (lines.empty()) return picture;
+  if (lines.empty() || theta.size() < 2) return picture;  // one angle makes no curve
   picture.legend = {channels, tables};
   const bool three = !from_reference.empty();
   picture.panels.push_back(curve_panel(kAngle, {"value", figure.unit}, three ? 135 : 185,
@@ -691,7 +698,7 @@ Picture picture_of(const ScatterFigure& figure, const Curves&) {
     std::string colour;
   };
   const auto usable = [](const Axis& axis, double v) {
-    return is_computed(v) && (!axis.log || v > 0);
+    return std::isfinite(v) && (!axis.log || v > 0);
   };
   std::vector<Shown> all;
   Panel panel{figure.x, figure.y, 330, {}, {}};
@@ -799,7 +806,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
   Range range, xs, ys;
   for (Values& row : z)
     for (double& v : row) {
-      v = is_computed(v) && v > 0 ? std::log10(v) : not_computed();
+      v = std::isfinite(v) && v > 0 ? std::log10(v) : not_computed();
       range.include(v);
     }
   if (range.empty()) return picture;
