@@ -4,7 +4,6 @@
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
-#include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
@@ -20,8 +19,9 @@ namespace {
 
 struct Options {
   CaseOption the_case;
-  std::string out = "out";
+  ReportPlace place;
   std::string multibody_case;  // another case for the multibody model; empty = the same
+  std::string with;            // a reference folder
   std::optional<double> tolerance;
   RunChoice choice;
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
@@ -39,7 +39,7 @@ int compare(const Options& options) {
   for (const auto& text : options.multibody)
     study::apply_assumption(text, of_multibody.pump, of_multibody.multibody);
   if (second) study::check_same_run(first, *second);
-  OutputFolder folder(options.out);
+  ReportFolders folders(options.place);
 
   study::ComparisonOptions how;
   how.way = options.choice.way;
@@ -49,6 +49,7 @@ int compare(const Options& options) {
   how.integration = options.choice.integration;
   if (!options.choice.accuracies.empty()) how.accuracies = options.choice.accuracies;
   how.target = options.choice.target();
+  how.with = options.with;
   if (const auto data = shipped_reference_data()) how.published = *data / "published";
   const study::ComparisonResult result =
       study::compare_models(std::move(first), std::move(second), how, progress_of);
@@ -59,12 +60,14 @@ int compare(const Options& options) {
       {"multibody.csv", to_csv(select_channels(result.multibody, wanted))}};
   if (result.first.hydraulics)
     curves.emplace_back("pressure.csv", to_csv(result.first.hydraulics->table));
-  const auto paths = write_report(folder, "report", study::comparison_document(result, versions()),
-                                  report::curves_of(result.analytic, result.multibody), curves);
+  const report::Document document = study::comparison_document(result, versions());
+  const auto paths =
+      folders.write("report", document, study::comparison_curves(result, document), curves);
 
   std::printf("%s\n", study::comparison_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
-  return result.agrees() ? kDone : kOutOfTolerance;
+  const bool held = !result.with || result.with->state == study::Outcome::State::agrees;
+  return result.agrees() && held ? kDone : kOutOfTolerance;
 }
 
 }  // namespace
@@ -74,7 +77,7 @@ Command add_compare_command(CommandParser program) {
   CommandParser command =
       program.subcommand("compare", "Run both models and report where and by how much they differ");
   add_case(command, options->the_case);
-  add_out(command, options->out, "report.html, report.json and the curves");
+  add_report(command, options->place, "report.html, report.json and the curves");
   command
       .option("--tolerance", options->tolerance,
               "largest difference over peak that counts as agreement")
@@ -94,6 +97,11 @@ Command add_compare_command(CommandParser program) {
               "give the multibody model another case, changed by --set alike: what would a "
               "wrong input do?")
       .text("CASE");
+  command
+      .option("--with", options->with,
+              "a reference folder: its curves beside both models', held to its tolerance; exit "
+              "status 1 where one differs")
+      .text("FOLDER");
   return {command, [options] { return compare(*options); }};
 }
 

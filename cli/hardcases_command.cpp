@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/hard_cases_document.h"
 #include "commands.h"
@@ -28,7 +27,7 @@ int run(const Options& options) {
   const std::filesystem::path folder =
       options.catalogue.empty() ? *shipped / "hard" : std::filesystem::path(options.catalogue);
   const auto cases = study::read_catalogue(folder, options.filter);
-  OutputFolder out(options.out);
+  ReportFolders folders({options.out, ""});
   study::HardCaseStudy result;
   std::printf("%s", study::hard_cases_heading().c_str());
   for (const study::HardCase& hard : cases) {
@@ -40,10 +39,9 @@ int run(const Options& options) {
   }
   if (options.turns > 0 && options.filter.empty())
     result.long_run = study::run_long(folder, options.turns, kLongRunAccuracy, progress_of);
-  const auto paths =
-      write_report(out, "hardcases", study::hard_cases_document(result, versions()), {},
-                   {{"hardcases.csv", study::hard_cases_csv(result)},
-                    {"hardcases.md", study::hard_cases_markdown(result)}});
+  const auto paths = folders.write("hardcases", study::hard_cases_document(result, versions()), {},
+                                   {{"hardcases.csv", study::hard_cases_csv(result)},
+                                    {"hardcases.md", study::hard_cases_markdown(result)}});
   std::printf("%s", study::hard_cases_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return result.good() ? kDone : kOutOfTolerance;

@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/inertia_document.h"
 #include "bentaxis/study/published_section.h"
@@ -18,7 +17,7 @@ namespace {
 
 struct Options {
   CaseOption the_case;
-  std::string out = "out";
+  ReportPlace place;
   std::vector<double> map_speeds, map_factors = {0.25, 8};  // from, to
   study::InertiaOptions study;
 };
@@ -31,7 +30,7 @@ std::pair<double, double> range_of(const std::vector<double>& range, const std::
 
 int run(const Options& options) {
   const Case as_read = options.the_case.read();
-  OutputFolder folder(options.out);
+  ReportFolders folders(options.place);
   const study::InertiaStudy result = study::run_inertia_study(as_read, options.study, progress_of);
   const auto data = shipped_reference_data();
   const auto published =
@@ -39,10 +38,10 @@ int run(const Options& options) {
                                 {study::facts_of(result.the_case, result.the_case.analytic)});
   const study::InertiaReport report =
       study::inertia_report(result, published ? &published->numbers : nullptr, versions());
-  const auto paths = write_report(folder, "inertia", report.document, report.curves,
-                                  {{"inertia.csv", study::inertia_curves_csv(result)},
-                                   {"inertia_errors.csv", study::inertia_errors_csv(result)},
-                                   {"inertia_map.csv", study::inertia_map_csv(result.map)}});
+  const auto paths = folders.write("inertia", report.document, report.curves,
+                                   {{"inertia.csv", study::inertia_curves_csv(result)},
+                                    {"inertia_errors.csv", study::inertia_errors_csv(result)},
+                                    {"inertia_map.csv", study::inertia_map_csv(result.map)}});
   std::printf("%s\n", study::inertia_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return result.agrees() ? kDone : kOutOfTolerance;
@@ -55,7 +54,7 @@ Command add_inertia_command(CommandParser program) {
   CommandParser command = program.subcommand(
       "inertia", "What treating the pistons as two point masses does to the reactions");
   add_case(command, options->the_case);
-  add_out(command, options->out, "inertia.html, inertia.json and the curves");
+  add_report(command, options->place, "inertia.html, inertia.json and the curves");
   command.option("--speeds", options->study.speeds, "speeds to study, rpm")
       .list()
       .text("NUMBER[,NUMBER..] [1500,2350]");

@@ -6,7 +6,6 @@
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
-#include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/pressure_document.h"
@@ -23,7 +22,8 @@ constexpr int kMostPoints = 1000;  // of a torque curve
 
 struct Options {
   CaseOption the_case;
-  std::string out = "out", overlay, published, delivery;
+  ReportPlace place;
+  std::string overlay, published, delivery;
   int transient = 0;
 };
 
@@ -65,7 +65,7 @@ int pressure(const Options& options) {
   if (!options.published.empty()) published = compare::read_published(options.published);
   std::vector<double> pressures;
   if (!options.delivery.empty()) pressures = delivery_pressures(options.delivery);
-  OutputFolder folder(options.out);
+  ReportFolders folders(options.place);
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
   report::Document document = study::pressure_document(point, versions());
@@ -86,8 +86,8 @@ int pressure(const Options& options) {
     study::add_transient(document, transient);
     curves.emplace_back("transient.csv", to_csv(transient));
   }
-  const auto paths = write_report(folder, "pressure", document,
-                                  report::curves_of(point.analytic, point.multibody), curves);
+  const auto paths = folders.write("pressure", document,
+                                   report::curves_of(point.analytic, point.multibody), curves);
 
   std::printf("%s", study::pressure_text(point).c_str());
   if (published) std::printf("\n%s", study::text_of(document.published->section).c_str());
@@ -104,7 +104,7 @@ Command add_pressure_command(CommandParser program) {
   CommandParser command = program.subcommand(
       "pressure", "Compute chamber and delivery pressures, flows and the torque they need");
   add_case(command, options->the_case);
-  add_out(command, options->out, "pressure.html, pressure.json and the curves");
+  add_report(command, options->place, "pressure.html, pressure.json and the curves");
   command
       .option("--delivery-bar", options->delivery,
               "also mean torque and flow at these delivery pressures; 0 is an open line")

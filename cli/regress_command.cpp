@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
+#include "report_files.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string folder, junit, html, filter;
+  std::string folder, junit, html, figures, filter;
 };
 
 ExitStatus status_of(study::Outcome::State state) {
@@ -72,10 +73,14 @@ int regress(const Options& options) {
     for (const auto& outcome : outcomes) suites.push_back(study::suite_of(outcome));
     write(options.junit, report::junit_xml("bentaxis regress", suites));
   }
-  if (!options.html.empty()) {
-    const std::string name = fs::absolute(root / ".").parent_path().filename();
-    write(options.html,
-          report::render_page(study::regression_document(outcomes, name, versions())));
+  if (options.html.empty() && options.figures.empty()) return status;
+  const std::string name = fs::absolute(root / ".").parent_path().filename();
+  const report::Document document = study::regression_document(outcomes, name, versions());
+  if (!options.html.empty()) write(options.html, report::render_page(document));
+  if (!options.figures.empty()) {
+    OutputFolder folder(options.figures);
+    add_figure_files(folder, document);
+    commit_figures(folder);
   }
   return status;
 }
@@ -89,7 +94,11 @@ Command add_regress_command(CommandParser program) {
   command.option("dir", options->folder, "folder with references (default: the shipped set)")
       .text("[DIR]");
   command.option("--junit", options->junit, "write the results as JUnit XML").text("FILE");
-  command.option("--html", options->html, "write a page with the curves that fail").text("FILE");
+  command
+      .option("--html", options->html,
+              "write a page with the curves that fail and every external curve, over both models")
+      .text("FILE");
+  add_figures(command, options->figures);
   command.option("--filter", options->filter, "only cases whose name contains this text")
       .text("TEXT");
   return {command, [options] { return regress(*options); }};

@@ -1,20 +1,80 @@
 #include "report_files.h"
 
 #include "bentaxis/report/page.h"
+#include "bentaxis/report/picture.h"
+#include "options.h"
 
 namespace bentaxis::cli {
+namespace {
 
-std::vector<std::filesystem::path> write_report(OutputFolder& folder, const std::string& name,
-                                                report::Document document,
-                                                const report::Curves& curves,
-                                                const std::vector<TextFile>& further) {
+constexpr const char* kFigureList = "figures.csv";
+constexpr const char* kFigureListHead = "figure,title\n";
+
+// The files that a list of figures names.
+std::vector<std::string> files_of_list(const std::string& list) {
+  std::vector<std::string> names;
+  if (!list.starts_with(kFigureListHead)) return names;
+  for (std::size_t at = list.find('\n') + 1; at < list.size(); at = list.find('\n', at) + 1) {
+    const std::string id = list.substr(at, list.find(',', at) - at);
+    for (const char* type : {".svg", ".png", ".csv"}) names.push_back(id + type);
+    if (list.find('\n', at) == std::string::npos) break;
+  }
+  return names;
+}
+
+}  // namespace
+
+void add_report(CommandParser command, ReportPlace& place, const std::string& what) {
+  add_out(command, place.out, what);
+  add_figures(command, place.figures);
+}
+
+void add_figures(CommandParser command, std::string& folder) {
+  command
+      .option("--figures", folder,
+              "also write every figure of the report as SVG, PNG and CSV into this folder, made "
+              "where missing")
+      .text("DIR");
+}
+
+ReportFolders::ReportFolders(const ReportPlace& place) : report_(place.out) {
+  if (!place.figures.empty()) figures_.emplace(place.figures);
+}
+
+std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
+                                                        report::Document document,
+                                                        const report::Curves& curves,
+                                                        const std::vector<TextFile>& further) {
   document.files = {name + ".html"};
   for (const auto& [file, content] : further) document.files.push_back(file);
   document.files.push_back(name + ".json");
-  folder.add(name + ".html", report::render_page(document, curves));
-  for (const auto& [file, content] : further) folder.add(file, content);
-  folder.add(name + ".json", report::json_text(document));  // last: it is the record of the set
-  return folder.commit(name + ".json", report::files_of);
+  report_.add(name + ".html", report::render_page(document, curves));
+  for (const auto& [file, content] : further) report_.add(file, content);
+  report_.add(name + ".json", report::json_text(document));  // last: it is the record of the set
+  if (figures_) add_figure_files(*figures_, document, curves);
+  auto paths = report_.commit(name + ".json", report::files_of);
+  if (figures_) paths.push_back(commit_figures(*figures_));
+  return paths;
+}
+
+void add_figure_files(OutputFolder& folder, const report::Document& document,
+                      const report::Curves& curves) {
+  std::string list = kFigureListHead;
+  for (const report::Figure& figure : document.figures.value_or(std::vector<report::Figure>())) {
+    const std::string svg = report::svg_of(figure, curves);
+    folder.add(figure.id + ".svg", svg);
+    folder.add(figure.id + ".png", report::png_of(svg));
+    folder.add(figure.id + ".csv", report::csv_of(figure, curves));
+    std::string title = figure.title;
+    for (std::size_t at = 0; (at = title.find('"', at)) != std::string::npos; at += 2)
+      title.insert(at, "\"");
+    list += figure.id + ",\"" + title + "\"\n";
+  }
+  folder.add(kFigureList, list);
+}
+
+std::filesystem::path commit_figures(OutputFolder& folder) {
+  return folder.commit(kFigureList, files_of_list).back();
 }
 
 }  // namespace bentaxis::cli

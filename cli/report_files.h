@@ -2,26 +2,55 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/report/document.h"
+#include "command_parser.h"
 
 namespace bentaxis::cli {
 
 /// Name and content.
 using TextFile = std::pair<std::string, std::string>;
 
-/// Puts NAME.html, NAME.json and further files in place together. What an earlier run of the
-/// command left there and this one has not is removed: it belongs to a report that is no longer
-/// there.
-/// @return their paths
-/// @throws InputError
-std::vector<std::filesystem::path> write_report(OutputFolder& folder, const std::string& name,
-                                                report::Document document,
-                                                const report::Curves& curves,
-                                                const std::vector<TextFile>& further);
+/// Where a report goes.
+struct ReportPlace {
+  std::string out = "out";
+  std::string figures;  ///< folder for a file of each figure; empty: none
+};
+/// --out and --figures.
+void add_report(CommandParser command, ReportPlace& place, const std::string& what);
+/// --figures alone.
+void add_figures(CommandParser command, std::string& folder);
+
+/// The folders of a report, made and tried before anything is computed.
+class ReportFolders {
+ public:
+  /// @throws InputError
+  explicit ReportFolders(const ReportPlace& place);
+
+  /// Puts NAME.html, NAME.json and further files in place together, then the figures. What an
+  /// earlier run of the command left there and this one has not is removed: it belongs to a report
+  /// that is no longer there.
+  /// @return their paths; of the figures that of their list
+  /// @throws InputError
+  std::vector<std::filesystem::path> write(const std::string& name, report::Document document,
+                                           const report::Curves& curves,
+                                           const std::vector<TextFile>& further);
+
+ private:
+  OutputFolder report_;
+  std::optional<OutputFolder> figures_;
+};
+
+/// Each figure as SVG, PNG and CSV, and figures.csv that lists them.
+/// @throws InputError, std::runtime_error where there is no librsvg
+void add_figure_files(OutputFolder& folder, const report::Document& document,
+                      const report::Curves& curves = {});
+/// Puts them in place as one set. @return the path of the list
+std::filesystem::path commit_figures(OutputFolder& folder);
 
 }  // namespace bentaxis::cli

@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/run.h"
 #include "bentaxis/study/tradeoff_study.h"
 #include "commands.h"
@@ -16,17 +15,17 @@ namespace {
 
 struct Options {
   CaseOption the_case;
-  std::string out = "out";
+  ReportPlace place;
   study::TradeoffOptions tradeoff;
 };
 
 int tradeoff(const Options& options) {
   const Case the_case = study::prepare(options.the_case.read(), progress_of).the_case;
-  OutputFolder folder(options.out);
+  ReportFolders folders(options.place);
   const study::TradeoffStudy result =
       study::run_tradeoff_study(the_case, options.tradeoff, progress_of("tradeoff"));
-  const auto paths = write_report(folder, "tradeoff", study::tradeoff_document(result, versions()),
-                                  {}, {{"tradeoff.csv", study::tradeoff_csv(result)}});
+  const auto paths = folders.write("tradeoff", study::tradeoff_document(result, versions()), {},
+                                   {{"tradeoff.csv", study::tradeoff_csv(result)}});
   std::printf("%s\n", study::tradeoff_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return kDone;
@@ -39,7 +38,7 @@ Command add_tradeoff_command(CommandParser program) {
   CommandParser command = program.subcommand(
       "tradeoff", "Time every model, scene, integrator and accuracy on a case against its error");
   add_case(command, options->the_case);
-  add_out(command, options->out, "tradeoff.html, tradeoff.json and tradeoff.csv");
+  add_report(command, options->place, "tradeoff.html, tradeoff.json and tradeoff.csv");
   study::TradeoffOptions& tradeoff_options = options->tradeoff;
   add_integrators(command, tradeoff_options.integrators);
   command.option("--accuracies", tradeoff_options.accuracies, "accuracies of integrated runs")

@@ -700,6 +700,10 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
     judgement.channels.push_back(std::move(entry));
   }
   judgement.reference = std::move(reference.middle);
+  if (description.tube_deg > 0) {
+    judgement.low = std::move(reference.low);
+    judgement.high = std::move(reference.high);
+  }
   return judgement;
 }
 

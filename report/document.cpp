@@ -246,6 +246,10 @@ Json json_of(const Verdict& verdict) {
                      {"theta_deg", verdict.worst->theta_deg}};
   if (verdict.rest_over_peak) json["rest_over_peak"] = *verdict.rest_over_peak;
   if (verdict.rest_tolerance) json["rest_tolerance"] = *verdict.rest_tolerance;
+  if (verdict.reference)
+    json["reference"] = {{"name", verdict.reference->name},
+                         {"agrees", verdict.reference->agrees},
+                         {"headline", verdict.reference->headline}};
   return json;
 }
 
@@ -484,7 +488,7 @@ Json to_json(const Curves& curves) {
     for (const auto& [name, values] : named) json[name] = rounded(values, digits);
     return json;
   };
-  return {
+  Json json = {
       {"theta_deg", exact(curves.theta_deg)},
       {"tables",
        list_of(
@@ -493,6 +497,18 @@ Json to_json(const Curves& curves) {
              return Json{{"name", table.name}, {"columns", columns(table.columns, kPlotDigits)}};
            })},
       {"difference", columns(curves.difference, kDifferenceDigits)}};
+  if (!curves.reference) return json;
+  Json held = Json::object();
+  for (const Curves::Held& one : curves.reference->held) {
+    Json& entry = held[one.channel] = {{"values", rounded(one.values)},
+                                       {"allowed", one.allowed},
+                                       {"difference", columns(one.differences, kDifferenceDigits)}};
+    if (one.low.empty()) continue;
+    entry["low"] = rounded(one.low);
+    entry["high"] = rounded(one.high);
+  }
+  json["reference"] = {{"name", curves.reference->name}, {"held", held}};
+  return json;
 }
 
 std::string dumped(const Json& json, int indent) {
@@ -525,8 +541,15 @@ Values values_of(const ResultTable& table, const std::string& channel_name) {
   return values;
 }
 
+const Values* find(const std::vector<std::pair<std::string, Values>>& columns,
+                   const std::string& name) {
+  for (const auto& [key, values] : columns)
+    if (key == name) return &values;
+  return nullptr;
+}
+
 Curves curves_of(const ResultTable& first, const ResultTable& second) {
-  Curves curves{first.theta_deg, {}, {}};
+  Curves curves{first.theta_deg, {}, {}, {}};
   for (const ResultTable* table : {&first, &second}) {
     Curves::Table columns{table->name, {}};
     for (const Channel& channel : table->channels)

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/report/picture.h"
+
 namespace bentaxis::report {
 namespace {
 
@@ -47,9 +49,19 @@ std::string script() {
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
   for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "curves.js",
-                             "bars.js", "plane.js", "page.js"})
+                             "bars.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
+}
+
+// The figures as the program draws them: for paper, for files, and where there is no script.
+std::string pictures(const Document& document, const Curves& curves) {
+  std::string text;
+  if (!document.figures) return text;
+  for (const Figure& figure : *document.figures)
+    text += "<div data-figure=\"" + escape_html(figure.id) + "\">" + svg_of(figure, curves) +
+            "</div>\n";
+  return text;
 }
 
 }  // namespace
@@ -64,6 +76,7 @@ std::string render_page(const Document& document, const Curves& curves) {
            {"@DYGRAPHS_CSS@", parts.at("dygraph.min.css")},
            {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},
            {"@REPORT_JS@", script()},
+           {"@PICTURES@", pictures(document, curves)},
            {"@CURVES_JSON@", script_safe(compact_json(curves))},
            {"@REPORT_JSON@", script_safe(compact_json(document))}})
     replace_once(page, marker, value);

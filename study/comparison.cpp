@@ -51,6 +51,7 @@ class Maker {
     r.limits =
         analytic::check_validity(r.first.the_case, r.first.the_case.analytic, samples_, r.analytic);
     warn();
+    if (!r.options.with.empty()) hold_to_reference();
     return std::move(result_);
   }
 
@@ -75,6 +76,7 @@ class Maker {
   void compare_tables();
   void split_assumptions();
   void run_without_viscous();
+  void hold_to_reference();
   void warn();
 
   ComparisonResult result_;
@@ -234,6 +236,34 @@ void Maker::run_without_viscous() {
           .table);
 }
 
+// Both models held to a reference: what was asked for and computed.
+void Maker::hold_to_reference() {
+  ComparisonResult& r = result_;
+  const auto computed = [](const ResultTable& table, const Channel& channel) {
+    const std::size_t column = table.find(channel.name);
+    for (std::size_t row = 0; row < table.rows(); ++row)
+      if (is_computed(table.at(row, column))) return true;
+    return false;
+  };
+  r.with = hold_results(
+      r.options.with,
+      [&](Model model) -> const Case& {
+        return model == Model::analytic ? r.first.the_case : r.second.the_case;
+      },
+      [&](Model model) {
+        const ResultTable& table = model == Model::analytic ? r.analytic : r.multibody;
+        return ReferenceRun{select_channels(table,
+                                            [&](const Channel& channel) {
+                                              return r.options.channels.wants(channel) &&
+                                                     computed(table, channel);
+                                            }),
+                            zero_scales_};
+      });
+  if (!r.with->other_case.empty())
+    r.warnings.push_back(
+        {"the curves are of another case", r.with->name + ": " + r.with->other_case});
+}
+
 void Maker::warn() {
   ComparisonResult& r = result_;
   for (const auto& limit : r.limits)
@@ -302,6 +332,7 @@ void check_same_run(const Case& first, const Case& second) {
 
 ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibody_case,
                                 const ComparisonOptions& options, const PartProgress& progress_of) {
+  if (!options.with.empty()) reference_in(options.with);  // refused before anything is computed
   if (multibody_case) check_same_run(analytic_case, *multibody_case);
   ReadyCase first = prepare(std::move(analytic_case), progress_of);
   // The same case is solved once: both models get the very same curve.

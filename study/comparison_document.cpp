@@ -9,6 +9,7 @@
 #include "bentaxis/report/text.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/regression_document.h"
 #include "comparison_figures.h"
 #include "hydraulic_sections.h"
 
@@ -137,6 +138,31 @@ std::vector<report::ValidityRow> validity_of(const std::vector<analytic::Validit
   return rows;
 }
 
+// The verdict on a reference, its source, and what it says of each figure's reactions.
+void add_reference(report::Document& document, const Outcome& outcome) {
+  document.verdict->reference = {outcome.name, held_text(outcome),
+                                 outcome.state == Outcome::State::agrees};
+  report::Section section = source_section(outcome);
+  section.table = lines_table({outcome});
+  document.runs->insert(document.runs->begin(), std::move(section));
+  for (report::Figure& figure : *document.figures) {
+    const auto* content = std::get_if<report::ChannelFigure>(&figure.content);
+    if (content == nullptr) continue;
+    for (const GroupLine& line : outcome.lines) {
+      const bool shown =
+          &line == outcome.worst_line(line.group) &&
+          std::any_of(line.channels.begin(), line.channels.end(), [&](const auto& channel) {
+            const std::string& name = channel.comparison.channel.name;
+            return std::find(content->channels.begin(), content->channels.end(), name) !=
+                   content->channels.end();
+          });
+      if (shown)
+        figure.note +=
+            fmt::format("{}{}: {}.", figure.note.empty() ? "" : " ", outcome.name, line_text(line));
+    }
+  }
+}
+
 }  // namespace
 
 report::Document comparison_document(const ComparisonResult& r, const report::Lines& program) {
@@ -174,7 +200,20 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
       document.figures->push_back(std::move(figure));
   }
   document.runs->push_back(rounding_section(r.rounding));
+  if (r.with) add_reference(document, *r.with);
   return document;
+}
+
+report::Curves comparison_curves(const ComparisonResult& r, const report::Document& document) {
+  report::Curves curves = report::curves_of(r.analytic, r.multibody);
+  if (!r.with) return curves;
+  std::vector<std::string> shown;
+  for (const report::Figure& figure : *document.figures)
+    if (const auto* content = std::get_if<report::ChannelFigure>(&figure.content))
+      for (const std::string& channel : content->channels)
+        if (std::find(shown.begin(), shown.end(), channel) == shown.end()) shown.push_back(channel);
+  curves.reference = reference_curves(*r.with, shown);
+  return curves;
 }
 
 std::string comparison_text(const ComparisonResult& r) {
@@ -188,6 +227,10 @@ std::string comparison_text(const ComparisonResult& r) {
     text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
   if (r.published)
     text += fmt::format("published numbers: {}\n", r.published->section.summary.text());
+  if (r.with)
+    text += fmt::format("\n{}{} {}: {}\n", regression_text({*r.with}), r.with->name,
+                        r.with->state == Outcome::State::agrees ? "agrees" : "differs",
+                        held_text(*r.with));
   return text;
 }
 

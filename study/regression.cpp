@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bentaxis/compare/published.h"
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/results/stopwatch.h"
 
@@ -35,13 +36,41 @@ std::vector<GroupLine> group_lines(const compare::Judgement& judgement) {
   return lines;
 }
 
-void hold_to_curves(const compare::ReferenceDescription& description,
-                    const PartProgress& progress_of, Outcome& outcome) {
-  const ReferenceCases cases(description, progress_of);
-  std::vector<std::filesystem::path> used;
-  for (const Model model : kModels)
-    for (const auto& file : files_of(cases.of(model).the_case)) used.push_back(file);
-  compare::check_files(description, used);
+// A reference at fewer angles than the results is judged at its own, as `regress` does: every
+// stride-th row is one of them.
+std::size_t stride_of(const compare::ReferenceDescription& description, const Case& the_case) {
+  const int all = the_case.operation.samples_per_revolution;
+  const int theirs = description.samples_per_revolution.value_or(all);
+  return all % theirs == 0 ? static_cast<std::size_t>(all / theirs) : 1;
+}
+
+ResultTable every(std::size_t stride, const ResultTable& table) {
+  ResultTable some = table;
+  some.theta_deg.clear();
+  some.values.clear();
+  for (std::size_t row = 0; row < table.rows(); row += stride) {
+    some.theta_deg.push_back(table.theta_deg[row]);
+    for (std::size_t c = 0; c < table.columns(); ++c) some.values.push_back(table.at(row, c));
+  }
+  return some;
+}
+
+// The reverse: not computed between the rows.
+ResultTable spread(std::size_t stride, const ResultTable& some,
+                   const std::vector<double>& theta_deg) {
+  if (some.rows() == 0) return some;
+  ResultTable table = some;
+  table.theta_deg = theta_deg;
+  table.values.assign(theta_deg.size() * some.columns(), not_computed());
+  for (std::size_t row = 0; row < some.rows(); ++row)
+    for (std::size_t c = 0; c < some.columns(); ++c)
+      table.values[row * stride * some.columns() + c] = some.at(row, c);
+  return table;
+}
+
+// Holds the results to the curves; nothing is run here but by `result_of`.
+void hold_to_curves(const compare::ReferenceDescription& description, const CaseOf& case_of,
+                    const ResultOf& result_of, Outcome& outcome) {
   outcome.properties = {{"source", description.source},
                         {"how_made", description.how_made},
                         {"digits", std::to_string(description.digits)},
@@ -55,15 +84,17 @@ void hold_to_curves(const compare::ReferenceDescription& description,
       return std::find(curve.models.begin(), curve.models.end(), model) != curve.models.end();
     };
     if (std::none_of(description.curves.begin(), description.curves.end(), holds)) continue;
-    const Case& the_case = cases.of(which).the_case;
+    const Case& the_case = case_of(which);
     const ChannelLayout layout(the_case.pump.geometry.pistons);
     std::vector<compare::ReferenceCurve> curves;
     for (const auto& curve : description.curves)
       if (holds(curve))
         curves.push_back(compare::read_reference_curve(description, curve, layout.channels(),
                                                        6 * the_case.operation.speed_rpm));
-    ReferenceRun run = run_for_reference(cases.of(which), which, progress_of);
-    compare::Judgement judgement = compare::judge(description, curves, run.table, run.zero_scales);
+    const ReferenceRun run = result_of(which);
+    const std::size_t stride = stride_of(description, the_case);
+    const compare::Judgement judgement =
+        compare::judge(description, curves, every(stride, run.table), run.zero_scales);
     if (judgement.resampled)
       outcome.notes.push_back(fmt::format(
           "{}: the reference has other angles than the case and was resampled, which adds an error "
@@ -80,7 +111,10 @@ void hold_to_curves(const compare::ReferenceDescription& description,
       if (line.failed > 0) outcome.state = Outcome::State::differs;
       outcome.lines.push_back(std::move(line));
     }
-    outcome.tables[model] = {std::move(judgement.reference), std::move(run.table)};
+    const std::vector<double>& theta = run.table.theta_deg;
+    outcome.held[model] = {run.table, spread(stride, judgement.reference, theta),
+                           spread(stride, judgement.low, theta),
+                           spread(stride, judgement.high, theta)};
   }
   if (!any) {
     outcome.state = std::max(outcome.state, Outcome::State::differs);
@@ -159,7 +193,15 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
           "{} printed numbers and windows read; they are judged in the report of compare",
           published.numbers.size()));
     } else {
-      hold_to_curves(description, progress_of, outcome);
+      const ReferenceCases cases(description, progress_of);
+      std::vector<std::filesystem::path> used;
+      for (const Model model : kModels)
+        for (const auto& file : files_of(cases.of(model).the_case)) used.push_back(file);
+      compare::check_files(description, used);
+      hold_to_curves(
+          description, [&](Model model) -> const Case& { return cases.of(model).the_case; },
+          [&](Model model) { return run_for_reference(cases.of(model), model, progress_of); },
+          outcome);
     }
   } catch (const InputError& error) {
     outcome.state = Outcome::State::unusable;
@@ -170,6 +212,123 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
   }
   outcome.seconds = stopwatch.seconds();
   return outcome;
+}
+
+compare::ReferenceDescription reference_in(const std::filesystem::path& folder) {
+  const auto places = references_below(folder);
+  if (places.size() != 1)
+    throw InputError(fmt::format("{}: holds {} references; name the folder of one", folder.string(),
+                                 places.size()));
+  auto description = compare::read_description(places[0].folder, places[0].name);
+  if (description.kind == compare::ReferenceKind::published)
+    throw InputError(folder.string() + ": holds printed numbers and no curves");
+  return description;
+}
+
+Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
+                     const ResultOf& result_of) {
+  const Stopwatch stopwatch;
+  const auto description = reference_in(folder);
+  const Case theirs = read_case(description.case_file);
+  std::vector<std::filesystem::path> used = files_of(theirs);
+  if (description.multibody_case_file != description.case_file)
+    for (const auto& file : files_of(read_case(description.multibody_case_file)))
+      used.push_back(file);
+  compare::check_files(description, used);
+  Outcome outcome;
+  outcome.name = description.name;
+  outcome.kind = compare::to_string(description.kind);
+  hold_to_curves(description, case_of, result_of, outcome);
+  for (const InputEntry& ours : case_of(Model::analytic).entries)
+    for (const InputEntry& entry : theirs.entries)
+      if (entry.table == ours.table && entry.key == ours.key && entry.value != ours.value &&
+          !entry.table.empty() && entry.key != "file" && entry.key != "samples_per_revolution" &&
+          entry.key != "revolutions")
+        outcome.other_case +=
+            fmt::format("{}{}.{} = {} (here {})", outcome.other_case.empty() ? "" : ", ",
+                        entry.table, entry.key, entry.value, ours.value);
+  if (!outcome.other_case.empty())
+    outcome.notes.push_back("was made for another case: " + outcome.other_case);
+  outcome.seconds = stopwatch.seconds();
+  return outcome;
+}
+
+const ReferenceChannel* Outcome::find(const std::string& model, const std::string& channel) const {
+  for (const GroupLine& line : lines)
+    for (const ReferenceChannel& entry : line.channels)
+      if (line.model == model && entry.comparison.channel.name == channel && severity(entry) >= 0)
+        return &entry;
+  return nullptr;
+}
+
+const GroupLine* Outcome::worst_line(const std::string& group) const {
+  const GroupLine* worst = nullptr;
+  for (const GroupLine& line : lines)
+    if (line.group == group && line.worst() != nullptr &&
+        (worst == nullptr || severity(*line.worst()) > severity(*worst->worst())))
+      worst = &line;
+  return worst;
+}
+
+std::string line_text(const GroupLine& line) {
+  const auto& c = line.worst()->comparison;
+  if (line.worst()->finding == Finding::incomplete)
+    return fmt::format("{} {} ({}): {}", line.group, line.verdict(), line.model, line.text());
+  return fmt::format("{} {}: {:.2g} % of peak ({:.3g} {}), {:.2g} % allowed; {} ({})", line.group,
+                     line.verdict(), 100 * c.largest_over_peak(), c.largest, c.channel.unit,
+                     100 * (c.peak > 0 ? c.allowed / c.peak : 0), line.text(), line.model);
+}
+
+std::string held_text(const Outcome& outcome) {
+  if (!outcome.error.empty()) return outcome.error;
+  std::vector<std::string> groups, differing;
+  const GroupLine* worst = nullptr;
+  for (const GroupLine& line : outcome.lines) {
+    if (line.is_missing()) continue;
+    const auto note = [&](std::vector<std::string>& names) {
+      if (std::find(names.begin(), names.end(), line.group) == names.end())
+        names.push_back(line.group);
+    };
+    note(groups);
+    if (line.failed > 0) note(differing);
+    if (worst == nullptr || severity(*line.worst()) > severity(*worst->worst())) worst = &line;
+  }
+  const std::string count =
+      differing.empty()
+          ? fmt::format("{0} of {0} reactions compared agree", groups.size())
+          : fmt::format("{} of {} reactions compared differ", differing.size(), groups.size());
+  return fmt::format("{}. Worst: {}.", count, line_text(*worst));
+}
+
+std::optional<report::Curves::Reference> reference_curves(
+    const Outcome& outcome, const std::vector<std::string>& channels) {
+  report::Curves::Reference reference{outcome.name, {}};
+  for (const std::string& channel : channels) {
+    report::Curves::Held one{channel, {}, 0, {}, {}};
+    for (const auto& [model, held] : outcome.held) {
+      const ReferenceChannel* found = outcome.find(model, channel);
+      const std::size_t theirs = held.reference.find(channel), ours = held.result.find(channel);
+      if (found == nullptr || theirs == held.reference.columns()) continue;
+      if (one.values.empty()) {
+        one.values = report::values_of(held.reference, channel);
+        one.allowed = found->comparison.allowed;
+        if (held.low.rows() > 0) {
+          one.low = report::values_of(held.low, channel);
+          one.high = report::values_of(held.high, channel);
+        }
+      }
+      report::Values difference;
+      for (std::size_t row = 0; row < held.result.rows(); ++row) {
+        const double theirs_now = held.reference.at(row, theirs);
+        difference.push_back(is_computed(theirs_now) ? held.result.at(row, ours) - theirs_now
+                                                     : not_computed());
+      }
+      one.differences.emplace_back(model, std::move(difference));
+    }
+    if (!one.values.empty()) reference.held.push_back(std::move(one));
+  }
+  if (reference.held.empty()) return std::nullopt;
+  return reference;
 }
 
 std::vector<const GroupLine*> sorted_lines(const std::vector<Outcome>& outcomes) {

@@ -16,64 +16,76 @@ namespace {
 constexpr std::size_t kMostFigures = 40;
 constexpr std::size_t kMostCurves = 6;  // in one figure
 
-// A table with some of its columns.
-ResultTable columns_of(const ResultTable& table, const std::vector<std::string>& names) {
-  ResultTable out;
-  out.name = table.name;
-  out.theta_deg = table.theta_deg;
-  for (const auto& name : names) out.channels.push_back(table.channels[table.find(name)]);
-  for (std::size_t row = 0; row < table.rows(); ++row)
-    for (const auto& name : names) out.values.push_back(table.at(row, table.find(name)));
-  return out;
+const std::string& property(const Outcome& outcome, const std::string& name) {
+  static const std::string none = "not said";
+  for (const auto& [key, value] : outcome.properties)
+    if (key == name) return value;
+  return none;
 }
 
-std::vector<report::Figure> failing_figures(const std::vector<Outcome>& outcomes) {
+// Failing channels, worst first; where all agree, those of the worst one's piston.
+std::vector<std::string> shown_channels(const GroupLine& line) {
+  std::vector<const ReferenceChannel*> chosen;
+  for (const auto& channel : line.channels)
+    if (line.failed > 0
+            ? channel.finding == Finding::differs
+            : channel.finding == Finding::agrees &&
+                  channel.comparison.channel.piston == line.worst()->comparison.channel.piston)
+      chosen.push_back(&channel);
+  if (line.failed > 0)
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [](const auto* a, const auto* b) { return severity(*a) > severity(*b); });
+  std::vector<std::string> names;
+  for (const auto* channel : chosen)
+    if (names.size() < kMostCurves) names.push_back(channel->comparison.channel.name);
+  return names;
+}
+
+// The reference over what was held to it: both models, or the one, with their difference.
+report::Curves curves_of(const Outcome& outcome, const std::string& model,
+                         const std::vector<std::string>& channels) {
+  std::vector<ResultTable> results;
+  const std::vector<double>& theta = outcome.held.at(model).result.theta_deg;
+  for (const auto& [name, held] : outcome.held)
+    if (held.result.theta_deg == theta)
+      results.push_back(select_channels(held.result, [&](const Channel& channel) {
+        return std::find(channels.begin(), channels.end(), channel.name) != channels.end();
+      }));
+  report::Curves curves = report::curves_of(results.front(), results.back());
+  if (results.size() == 1) {
+    curves.tables.resize(1);
+    curves.difference.clear();
+  }
+  curves.reference = reference_curves(outcome, channels);
+  if (curves.reference)  // of models at other angles
+    for (auto& held : curves.reference->held)
+      std::erase_if(held.differences,
+                    [&](const auto& column) { return column.second.size() != theta.size(); });
+  return curves;
+}
+
+// What fails, and every external curve, whatever it came to: worst first.
+std::vector<report::Figure> held_figures(const std::vector<Outcome>& outcomes) {
   std::vector<report::Figure> figures;
   for (const auto* line : sorted_lines(outcomes)) {
-    if (line->failed == 0 || figures.size() >= kMostFigures) continue;
-    const auto outcome = std::find_if(outcomes.begin(), outcomes.end(),
-                                      [&](const Outcome& o) { return o.name == line->reference; });
-    const auto& [reference, result] = outcome->tables.at(line->model);
-    std::vector<const ReferenceChannel*> worst;
-    for (const auto& channel : line->channels)
-      if (channel.finding == Finding::differs) worst.push_back(&channel);
-    std::stable_sort(worst.begin(), worst.end(),
-                     [](const auto* a, const auto* b) { return severity(*a) > severity(*b); });
-    std::vector<std::string> channels;
-    for (const auto* channel : worst)
-      if (channels.size() < kMostCurves) channels.push_back(channel->comparison.channel.name);
+    const Outcome& outcome = *std::find_if(outcomes.begin(), outcomes.end(), [&](const Outcome& o) {
+      return o.name == line->reference;
+    });
+    const bool wanted = line->failed > 0 || line->kind == "external";
+    if (!wanted || line != outcome.worst_line(line->group) || figures.size() >= kMostFigures)
+      continue;
+    const std::vector<std::string> channels = shown_channels(*line);
     if (channels.empty()) continue;
-    figures.push_back({fmt::format("fail-{}", figures.size() + 1),
-                       fmt::format("{}, {}: {}", line->reference, line->group, line->model), "",
+    figures.push_back({fmt::format("{}-{}", line->failed > 0 ? "fail" : "held", figures.size() + 1),
+                       fmt::format("{}: {}", line->reference, line->group), "",
                        report::ChannelFigure{line->worst()->comparison.channel.unit,
                                              channels,
                                              {},
-                                             report::curves_of(columns_of(reference, channels),
-                                                               columns_of(result, channels))},
-                       line->text()});
+                                             curves_of(outcome, line->model, channels)},
+                       fmt::format("{}. Source: {}. How made: {}.", line_text(*line),
+                                   property(outcome, "source"), property(outcome, "how_made"))});
   }
   return figures;
-}
-
-report::Section lines_section(const std::vector<Outcome>& outcomes) {
-  report::Section section;
-  section.title = "Every case and group of channels, worst first";
-  section.text = "Of peak: largest difference over the reaction's peak in the reference.";
-  section.table.columns = {"case",    "kind",    "model",  "group",    "verdict", "peak",
-                           "of peak", "allowed", "digits", "compared", "missing", "worst channel"};
-  for (const auto* line : sorted_lines(outcomes)) {
-    const auto& c = line->worst()->comparison;
-    const bool number = line->worst()->finding != Finding::incomplete;
-    const auto if_known = [](bool known, double value) {
-      return known ? report::Cell(value) : report::Cell();
-    };
-    section.table.rows.push_back(
-        {line->reference, line->kind, line->model, line->group, line->verdict(),
-         fmt::format("{:.5g} {}", c.peak, c.channel.unit), if_known(number, c.largest_over_peak()),
-         if_known(c.peak > 0, c.allowed / c.peak), if_known(number, std::round(10 * c.digits) / 10),
-         static_cast<long>(line->compared), static_cast<long>(line->missing), line->text()});
-  }
-  return section;
 }
 
 report::Section notes_section(const std::vector<Outcome>& outcomes) {
@@ -88,6 +100,37 @@ report::Section notes_section(const std::vector<Outcome>& outcomes) {
 }
 
 }  // namespace
+
+report::Section source_section(const Outcome& outcome) {
+  report::Section section;
+  section.title = fmt::format("{} ({})", outcome.name, outcome.kind);
+  section.text = held_text(outcome);
+  for (auto [name, value] : outcome.properties) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    section.facts.emplace_back(name, value);
+  }
+  for (const auto& note : outcome.notes) section.facts.emplace_back("note", note);
+  return section;
+}
+
+report::Table lines_table(const std::vector<Outcome>& outcomes) {
+  report::Table table;
+  table.columns = {"case",    "kind",    "model",  "group",    "verdict", "peak",
+                   "of peak", "allowed", "digits", "compared", "missing", "worst channel"};
+  for (const auto* line : sorted_lines(outcomes)) {
+    const auto& c = line->worst()->comparison;
+    const bool number = line->worst()->finding != Finding::incomplete;
+    const auto if_known = [](bool known, double value) {
+      return known ? report::Cell(value) : report::Cell();
+    };
+    table.rows.push_back(
+        {line->reference, line->kind, line->model, line->group, line->verdict(),
+         fmt::format("{:.5g} {}", c.peak, c.channel.unit), if_known(number, c.largest_over_peak()),
+         if_known(c.peak > 0, c.allowed / c.peak), if_known(number, std::round(10 * c.digits) / 10),
+         static_cast<long>(line->compared), static_cast<long>(line->missing), line->text()});
+  }
+  return table;
+}
 
 report::TestSuite suite_of(const Outcome& outcome) {
   report::TestSuite suite;
@@ -155,10 +198,16 @@ report::Document regression_document(const std::vector<Outcome>& outcomes, const
   document.warnings.emplace();
   for (const auto& outcome : outcomes)
     if (!outcome.error.empty()) document.warnings->push_back({outcome.name, outcome.error});
-  document.runs = {lines_section(outcomes)};
+  document.runs = {{"Every case and group of channels, worst first",
+                    "Of peak: largest difference over the reaction's peak in the reference.",
+                    {},
+                    lines_table(outcomes)}};
   if (auto notes = notes_section(outcomes); !notes.table.rows.empty())
     document.runs->push_back(std::move(notes));
-  document.figures = failing_figures(outcomes);
+  for (const auto& outcome : outcomes)
+    if (outcome.kind == "external" && !outcome.held.empty())
+      document.runs->push_back(source_section(outcome));
+  document.figures = held_figures(outcomes);
   return document;
 }
 

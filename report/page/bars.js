@@ -47,16 +47,15 @@ function barsFigure(figure, data) {
   }
   slider.addEventListener("input", update);
   data.mounts.push(() => { update(); new ResizeObserver(update).observe(chart); });
-  data.redraws.push(update);
   return [el("div.slide", {}, el("label", {}, "Shaft angle ", reading), slider, buttons.map(b => b.button)), total,
-    el("div.split", {}, el("div", {}, key, chart), numbers), figure.note ? el("p.note", {}, figure.note) : null];
+    el("div.split", {}, el("div", {}, key, chart), numbers)];
 }
 
 // Bars with one scale for the whole turn.
 function barChart(width, groups, [low, high], figure) {
   const area = [74, width - 10, 12, 236], [left, right, top, bottom] = area;
   const margin = 0.06 * (high - low || 1);
-  const y = plotAxis({ label: "share", unit: figure.unit, from: low < 0 ? low - margin : 0, to: high + margin }, [], [bottom, top]);
+  const y = plotAxis({ name: `share (${figure.unit})`, from: low < 0 ? low - margin : 0, to: high + margin }, [bottom, top]);
   const root = svg("svg", { width, height: 280, role: "img",
                             "aria-label": figure.title + ", bars; the values are in the table" });
   drawAxes(root, { name: "piston", ticks: [] }, y, area, t => (t.label === "0" ? "zero" : "grid"));

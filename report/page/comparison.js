@@ -103,7 +103,7 @@ function comparisonTable(channels, data, title) {
     cell.append(button);
     return cell;
   });
-  const grid = el("table.comparison.fold", { role: "table" },
+  const grid = el("table.comparison.wide", { role: "table" },
     el("thead", { role: "rowgroup" }, el("tr", { role: "row" }, cells)));
   function arrange() {
     headings.forEach((h, i) => h.key && h.key === order.key

@@ -30,7 +30,7 @@ function valueAxisTicks(low, high, pixels, options, graph) {
   return valueTicks(low, high, pixels, options, graph).filter(t => t.v >= low && t.v <= high);
 }
 
-// One dygraph. lines: {values, colour, width, dash, silent}; bands are filled behind the curves.
+// One dygraph. lines: {values, colour, width, dash, silent}; bands {low, high, colour} are filled behind the curves.
 function plot(box, data, lines, bands, yLabel) {
   const names = lines.map((_, i) => String(i));
   const rows = data.order.map(i => [data.theta[i], ...lines.map(l => l.values[i] ?? null)]);
@@ -41,7 +41,8 @@ function plot(box, data, lines, bands, yLabel) {
   const series = {};
   lines.forEach((l, i) => {
     series[i] = { color: l.colour, strokeWidth: l.width, strokePattern: l.dash || null, pointSize: 2.5,
-                  drawPoints: rows.length < 20 && !l.silent, highlightCircleSize: l.silent ? 0 : 4 };
+                  drawPoints: rows.length < 20 && !l.silent, highlightCircleSize: l.silent ? 0 : 4,
+                  connectSeparatedPoints: !!l.sparse };  // of a reference at fewer angles
   });
   // Without the touch handlers a finger on a plot still scrolls the page.
   const { touchstart, touchmove, touchend, ...mouse } = Dygraph.defaultInteractionModel;
@@ -51,14 +52,22 @@ function plot(box, data, lines, bands, yLabel) {
     axes: { x: { ticker: data.axis.angle ? angleTicks : valueAxisTicks, axisLabelWidth: 44 },
             y: { ticker: valueTicks, axisLabelWidth: 74, pixelsPerLabel: 26 } },
     axisLabelFontSize: 13, xLabelHeight: 20, yLabelWidth: 22, rightGap: 22, yRangePad: 8,
-    gridLineColor: "#e1e6ec", gridLineWidth: 1, axisLineColor: "#67727e",
+    gridLineColor: variable("--grid"), gridLineWidth: 1, axisLineColor: variable("--axis"),
     underlayCallback(canvas, area, graph) {
+      canvas.save();
+      canvas.beginPath();
+      canvas.rect(area.x, area.y, area.w, area.h);
+      canvas.clip();
       for (const band of bands) {
-        const [top, bottom] = [graph.toDomYCoord(band.high), graph.toDomYCoord(band.low)];
-        canvas.fillStyle = "rgba(110, 125, 140, 0.13)";
-        canvas.fillRect(area.x, top, area.w, bottom - top);
+        const edge = values => data.order.filter(i => values[i] != null)
+          .map(i => [graph.toDomXCoord(data.theta[i]), graph.toDomYCoord(values[i])]);
+        canvas.beginPath();
+        for (const [x, y] of [...edge(band.low), ...edge(band.high).reverse()]) canvas.lineTo(x, y);
+        canvas.fillStyle = band.colour + "2e";
+        canvas.fill();
       }
-      canvas.fillStyle = "#9aa5b1";
+      canvas.restore();
+      canvas.fillStyle = variable("--axis");
       canvas.fillRect(area.x, Math.round(graph.toDomYCoord(0)), area.w, 1);
     },
   });
@@ -95,82 +104,95 @@ function lineOf(values, colour, t, alone) {
 // A figure may bring its own axis and curves: {x: {label, angle, values}, series: [{label, values}]}. It is
 // then drawn from these alone; `angle` says that the axis is one of shaft angles.
 const withOwnAxis = (figure, data) => (!figure.x ? data : {
-  ...data, tables: [], difference: {}, axis: { label: figure.x.label, angle: !!figure.x.angle },
+  ...data, tables: [], difference: {}, reference: null, axis: { label: figure.x.label, angle: !!figure.x.angle },
   ...orderOf(list(figure.x.values), !!figure.x.angle) });
+
+// What a curve may be that is held to another: around that curve, or around zero for the difference from it.
+function allowedBand(held, colour, aroundZero) {
+  const shifted = (values, by) => values.map((v, i) => (v == null ? null : v + by - (aroundZero ? held.values[i] : 0)));
+  return { low: shifted(held.low || held.values, -held.allowed), high: shifted(held.high || held.values, held.allowed), colour };
+}
+const edgesOf = bands => bands.flatMap(b => [b.low, b.high].map(values => (
+  { values, colour: b.colour + "66", width: 0.7, dash: null, silent: true, sparse: true })));
 
 function curvesFigure(figure, page) {
   const data = withOwnAxis(figure, page);
-  const drawn = [], missing = [], lines = [], differences = [];
+  const heldOf = name => (data.reference && data.reference.held[name]) || null;
+  const reference = list(figure.channels).some(heldOf) ? data.reference.name : null;
+  const tables = data.tables.map(t => t.name).concat(reference || []);
+  const drawn = [], missing = [], lines = [], differences = [], fromReference = [], bands = [], zeroBands = [];
   list(figure.channels).forEach((name, i) => {
-    const colour = COLOURS[i % COLOURS.length];
+    const colour = onGround(COLOURS[i % COLOURS.length]), held = heldOf(name);
     const columns = data.tables.map(t => (hasNumbers(t.columns[name]) ? t.columns[name] : null));
     columns.forEach((c, t) => c || missing.push(`${name} (${data.tables[t].name})`));
     const alone = columns.filter(Boolean).length < 2;
     columns.forEach((values, t) => values && lines.push(lineOf(values, colour, t, alone)));
     const difference = hasNumbers(data.difference[name]) ? data.difference[name] : null;
     if (difference) differences.push({ values: difference, colour, width: 1.5 });
-    if (columns.some(Boolean)) drawn.push({ name, colour, columns, difference });
+    if (reference) columns.push(held && held.values);
+    if (held) {
+      lines.push({ ...lineOf(held.values, colour, 2), width: 2.4, sparse: true });
+      bands.push(allowedBand(held, colour, false));
+      zeroBands.push(allowedBand(held, colour, true));
+      Object.values(held.difference).forEach((values, t, all) => fromReference.push({ ...lineOf(values, colour, t, all.length < 2), sparse: true }));
+    }
+    if (columns.some(Boolean)) drawn.push({ name, colour, columns, difference, held });
   });
   const extras = list(figure.extra).filter(e => hasNumbers(e.values)).map((e, i) => ({
-    ...e, colour: EXTRA_COLOURS[i % EXTRA_COLOURS.length], width: 1.6, dash: [10, 4, 2, 4] }));
+    ...e, colour: onGround(EXTRA_COLOURS[i % EXTRA_COLOURS.length]), width: 1.6, dash: [10, 4, 2, 4] }));
   list(figure.series).filter(e => hasNumbers(e.values)).forEach((e, i) => extras.push({
-    ...e, colour: COLOURS[i % COLOURS.length], width: 1.9, dash: null }));
-  const notes = [figure.note, missing.length ? "Not computed: " + missing.join(", ") + "." : null];
-  const footer = () => notes.filter(Boolean).map(n => el("p.note", {}, n));
+    ...e, colour: onGround(COLOURS[i % COLOURS.length]), width: 1.9, dash: null }));
+  const notes = missing.length ? ["Not computed: " + missing.join(", ") + "."] : [];
+  const footer = () => notes.map(n => el("p.note", {}, n));
   if (!drawn.length && !extras.length)
     return [el("p.empty", {}, "There is nothing to draw: no model computed these channels."), ...footer()];
 
-  const bands = list(figure.bands);
-  const edges = bands.flatMap(b => [b.low, b.high]).map(v => (
-    { values: data.theta.map(() => v), colour: "#6b7682", width: 1, dash: [3, 3], silent: true }));
-  const readings = readOutTable(figure, drawn, extras, bands, data);
+  const readings = readOutTable(figure, drawn, extras, tables, reference, data);
   const label = figure.unit ? ` (${figure.unit})` : "";
-  const upper = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves over ${data.axis.label}` });
+  const box = (style, what) => el("div.plot" + style, { role: "img", "aria-label": `${figure.title}: ${what}` });
   const exact = differences.length > 0 && differences.every(d => d.values.every(v => !v));
-  const lower = differences.length && !exact
-    ? el("div.plot.low", { role: "img", "aria-label": `${figure.title}: difference over the shaft angle` }) : null;
+  const plots = [{ node: box("", `curves over ${data.axis.label}`), lines: [...edgesOf(bands), ...lines, ...extras], bands, label: "value" }];
+  if (differences.length && !exact)
+    plots.push({ node: box(".low", "difference over the shaft angle"), lines: differences, bands: [], label: "difference",
+                 title: `Difference: ${data.pair[1]} minus ${data.pair[0]}` });
   if (exact) notes.push("The difference is exactly zero wherever both were computed.");
+  if (fromReference.length)
+    plots.push({ node: box(".low", `difference from ${reference}`), lines: [...edgesOf(zeroBands), ...fromReference], bands: zeroBands,
+                 label: "difference", title: `Difference: each model minus ${reference}; the band is what is allowed` });
   if (data.order.length < 2) return [readings.node, ...footer()];  // one angle makes no curve
   data.mounts.push(() => {
-    const graphs = [plot(upper, data, [...edges, ...lines, ...extras], bands, "value" + label)];
-    if (lower) graphs.push(plot(lower, data, differences, [], "difference" + label));
+    const graphs = plots.map(p => plot(p.node, data, p.lines, p.bands, p.label + label));
     synchronise(graphs, data.low < data.theta[data.order[0]] ? 1 : 0, readings.show);
-    graphs.forEach(g => data.redraws.push(() => g.resize()));
   });
-  return [readings.node, upper,
-    lower ? el("p.subplot", {}, `Difference: ${data.pair[1]} minus ${data.pair[0]}`) : null, lower, ...footer()];
+  return [readings.node, ...plots.flatMap(p => [p.title ? el("p.subplot", {}, p.title) : null, p.node]), ...footer()];
 }
 
 // Legend and hover values in one table above the plots, so that it never covers a curve. While nothing is
-// pointed at it shows the angle of the largest difference.
-function readOutTable(figure, drawn, extras, bands, data) {
-  const compared = drawn.filter(d => d.difference);
+// pointed at it shows the angle of the largest difference: from the reference where there is one.
+function readOutTable(figure, drawn, extras, tables, reference, data) {
+  const gapAt = (d, i) => !reference ? d.difference && d.difference[i]
+    : d.held && Object.values(d.held.difference).map(v => v[i]).reduce((a, b) => (Math.abs(b ?? 0) > Math.abs(a ?? 0) ? b : a), null);
+  const compared = drawn.filter(d => (reference ? d.held : d.difference));
   let home = 0, largest = 0;
   data.order.forEach((i, row) => compared.forEach(d => {
-    if (Math.abs(d.difference[i] ?? 0) > largest) { largest = Math.abs(d.difference[i] ?? 0); home = row; }
+    if (Math.abs(gapAt(d, i) ?? 0) > largest) { largest = Math.abs(gapAt(d, i) ?? 0); home = row; }
   }));
   const angle = el("span.angle");
   const heading = (...content) => el("th.num", { scope: "col" }, ...content);
   const name = (...content) => el("th", { scope: "row" }, ...content);
-  const wide = () => el("td.num", { colspan: Math.max(1, data.tables.length + (compared.length ? 1 : 0)) });
+  const wide = () => el("td.num", { colspan: Math.max(1, tables.length + (compared.length ? 1 : 0)) });
   const rows = drawn.map(d => ({ ...d, cells: d.columns.map(() => el("td.num")),
                                  gap: compared.length ? el("td.num") : null }));
   const more = extras.map(e => ({ ...e, cell: wide() }));
-  const bandRows = bands.map(b => {
-    const cell = wide();
-    cell.textContent = `${number(b.low)} to ${unit(number(b.high), figure.unit)}`;
-    return el("tr", {}, name(el("span.band"), b.label), cell);
-  });
   const node = el("div.scroll", {}, el("table.readout", {},
     el("thead", {}, el("tr", {}, el("th", { scope: "col" }, angle),
-      data.tables.map((t, i) => heading(t.name, swatch("#444c55", i ? 1.8 : 2.6, DASHES[i % DASHES.length]))),
-      compared.length ? heading("difference") : null,
-      data.tables.length ? null : heading("value"))),
+      tables.map((t, i) => heading(t, swatch(onGround("#444c55"), i ? 1.8 : 2.6, DASHES[i % DASHES.length]))),
+      compared.length ? heading(reference ? `furthest from ${reference}` : "difference") : null,
+      tables.length ? null : heading("value"))),
     el("tbody", {},
       rows.map(r => el("tr", {}, name(swatch(r.colour, 4), el("code", { title: data.meaning(r.name) }, r.name)),
         r.cells, r.gap)),
-      more.map(e => el("tr", {}, name(swatch(e.colour, e.width, e.dash), e.label), e.cell)),
-      bandRows)));
+      more.map(e => el("tr", {}, name(swatch(e.colour, e.width, e.dash), e.label), e.cell)))));
   function show(row) {
     const at = row == null ? home : Math.min(Math.max(row, 0), data.order.length - 1);
     const i = data.order[at];
@@ -180,7 +202,7 @@ function readOutTable(figure, drawn, extras, bands, data) {
     const value = v => unit(number(v, 6), figure.unit);
     for (const r of rows) {
       r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
-      if (r.gap) r.gap.textContent = unit(small(r.difference && r.difference[i]), figure.unit);
+      if (r.gap) r.gap.textContent = unit(small(gapAt(r, i)), figure.unit);
     }
     for (const e of more) e.cell.textContent = value(e.values[i]);
   }

@@ -1,9 +1,15 @@
 // Elements, numbers as text, tables: what the sections and figures are made of.
 
-// Okabe-Ito without its yellow (too pale on white), then four dark colours for pumps with many pistons.
+const DARK = matchMedia("screen and (prefers-color-scheme: dark)");
+// Okabe-Ito without its yellow (too pale on white), then four dark colours for pumps with many pistons; the same
+// in report/picture.cpp. On a dark ground the dark ones are lighter.
 const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000",
                  "#7f3b08", "#542788", "#5f6b75"];
 const EXTRA_COLOURS = ["#444c55", "#8a5a00", "#7a3b8f"];
+const LIGHTER = { "#0072b2": "#3d9fdc", "#d55e00": "#f5822a", "#009e73": "#1fc498", "#000000": "#f2f4f6", "#7f3b08": "#c98a5c",
+                  "#542788": "#a98be0", "#5f6b75": "#98a4af", "#444c55": "#b4bec8", "#8a5a00": "#d0a04a", "#7a3b8f": "#c58ad8" };
+const onGround = colour => (DARK.matches && LIGHTER[colour]) || colour;
+const variable = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const DASHES = [null, [8, 5], [2, 4]];  // by table; the first is solid
 const DASH = "\u2013";                  // stands for "not computed", never for zero
 const GOOD = ["agrees", "holds", "explained", "inside"];
@@ -79,8 +85,9 @@ const tableCell = (tag, head, ...content) =>
   el(tag, { role: "cell", "data-head": head }, el("div", {}, ...content));
 
 // columns: {head, cell: row -> text or node, num: right-aligned, main: names the row}. Every cell carries
-// its heading, because on a narrow page the style sheet shows each row as a block of "heading: value"
-// (then the roles keep it a table for a screen reader).
+// its heading, because on a narrow page the style sheet shows each row of a table that folds, one of texts, as a block
+// of "heading: value" (then the roles keep it a table for a screen reader). One of numbers keeps its columns and scrolls
+// below its first one.
 function table(columns, rows, { rowClass, fold = true, style = "" } = {}) {
   const head = el("tr", { role: "row" }, columns.map(c =>
     el(c.num ? "th.num" : "th", { scope: "col", role: "columnheader" }, c.head)));
@@ -89,6 +96,6 @@ function table(columns, rows, { rowClass, fold = true, style = "" } = {}) {
     return c.main ? el("th" + style, { scope: "row", role: "rowheader" }, c.cell(row))
                   : tableCell("td" + style, c.head, c.cell(row));
   })));
-  return el("div.scroll", {}, el("table" + style + (fold ? ".fold" : ""), { role: "table" },
+  return el("div.scroll", {}, el("table" + style + (fold ? ".fold" : ".wide"), { role: "table" },
     el("thead", { role: "rowgroup" }, head), el("tbody", { role: "rowgroup" }, body)));
 }

@@ -1,22 +1,27 @@
 // The page: which figures and sections there are, in their order.
 
-// Every other kind is made of curves: "curves" (of the page) and "own_axis".
-const DRAWN = { piston_bars: barsFigure, xy: xyFigure, map: mapFigure, scatter: scatterFigure };
+// Drawn by the program; every other kind is drawn here too, to be zoomed and read out.
+const STILL = ["xy", "map", "scatter"];
 
 // A figure may bring curves of its own, at angles of its own.
 const dataOf = (figure, report, data) => !figure.curves ? data
-  : { ...prepare(report, figure.curves), mounts: data.mounts, redraws: data.redraws };
+  : { ...prepare(report, figure.curves), mounts: data.mounts };
 
 function figures(report, data) {
-  const figures = list(report.figures).filter(f => f.curves || f.kind === "xy" || f.kind === "map"
-    || f.kind === "scatter" || data.order.length);
+  const figures = list(report.figures).filter(f => f.curves || STILL.includes(f.kind) || data.order.length);
   if (!figures.length) return null;
   return el("div", {},
-    figures.some(f => !DRAWN[f.kind]) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
+    figures.some(f => !STILL.includes(f.kind)) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
       + "double-click to see all again. Point at a curve to read the values in the table above it.") : null,
-    figures.map(f => el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
-      f.paper ? el("span.paper", {}, "paper: " + f.paper) : null),
-      (DRAWN[f.kind] || curvesFigure)(f, dataOf(f, report, data)))));
+    figures.map(f => {
+      const own = dataOf(f, report, data), still = STILL.includes(f.kind);
+      const picture = el("div.picture" + (still ? ".still" : ""));
+      picture.append(document.querySelector(`#pictures [data-figure="${f.id}"] svg`).cloneNode(true));
+      return el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
+        f.paper ? el("span.paper", {}, "paper: " + f.paper) : null, handOut(f, own, picture)),
+        still ? null : el("div.screen", {}, (f.kind === "piston_bars" ? barsFigure : curvesFigure)(f, own)),
+        picture, f.note ? el("p.note", {}, f.note) : null);
+    }));
 }
 
 // What the sections need of the curves. A run backwards has falling angles: `order` lists the samples by
@@ -38,7 +43,7 @@ function prepare(report, curves) {
   const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
   return {
     ...orderOf(list(curves.theta_deg), true), axis: { label: "shaft angle (deg)", angle: true }, tables, pair,
-    difference: curves.difference || {}, mounts: [], redraws: [],
+    difference: curves.difference || {}, reference: curves.reference || null, mounts: [],
     ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
     meaning: name => phrases(about(name).meaning, about(name).on_body && "on " + about(name).on_body),
     pistonOf: name => String(about(name).piston || name),
@@ -85,21 +90,12 @@ function contents(sections, report) {
   return folding;
 }
 
-// Canvases do not follow the width of the paper by themselves.
-function fitToPaper(redraws) {
-  const fit = printing => {
-    document.documentElement.classList.toggle("printing", printing);
-    redraws.forEach(redraw => redraw());
-  };
-  addEventListener("beforeprint", () => fit(true));
-  addEventListener("afterprint", () => fit(false));
-}
-
 function render() {
   const read = id => JSON.parse(document.getElementById(id).textContent);
   const report = read("report"), data = prepare(report, read("curves") || {});
-  document.getElementById("head").append(...header(report, data));
+  document.getElementById("head").replaceChildren(...header(report, data));
   const main = document.getElementById("main");
+  main.replaceChildren();
   const shown = [];
   for (const [id, title, build] of SECTIONS) {
     const body = build(report, data);
@@ -109,12 +105,12 @@ function render() {
     shown.push({ id, title });
   }
   data.mounts.forEach(mount => mount());  // a plot needs its box in the page, to know its width
-  document.getElementById("contents").append(contents(shown, report));
-  fitToPaper(data.redraws);
+  document.getElementById("contents").replaceChildren(contents(shown, report));
 }
 
 try {
   render();
+  DARK.addEventListener("change", render);  // curves take their colours when they are drawn
   document.documentElement.dataset.ready = "true";
 } catch (error) {
   document.body.prepend(el("p.error-box", { role: "alert" }, "This report could not be drawn: " + error.message

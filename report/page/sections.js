@@ -17,12 +17,16 @@ function verdictBanner({ verdict, meaning }, data) {
       if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
     }
   }
+  const reference = verdict && verdict.reference;
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
   return el("div", {},
     el("div.banner." + tone, { role: "status" },
       el("p.word", {}, verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
       el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
       facts(tiles, ".tiles")),
+    reference ? el("div.banner." + (reference.agrees ? "good" : "bad"), {},
+      el("p.word", {}, `${reference.name}: ${reference.agrees ? "agrees" : "differs"}`),
+      el("p.headline", {}, reference.headline)) : null,
     meaning ? el("p.meaning", {}, meaning) : null);
 }
 
@@ -96,19 +100,26 @@ const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(ru
   el("h3", {}, run.title), run.text ? el("p", {}, run.text) : null, facts(run.facts),
   !run.table || !list(run.table.rows).length ? null : table(run.table.columns.map((head, i) => ({
     head, main: i === 0, num: run.table.rows.every(r => r[i] == null || typeof r[i] === "number"),
-    cell: r => small(r[i]) })), run.table.rows, { fold: run.table.columns.length > 3, style: ".narrow" }))));
+    cell: r => small(r[i]) })), run.table.rows, { fold: false, style: ".narrow" }))));
 
-const published = ({ published }, data) => !published || !list(published.rows).length ? null : el("div", {},
-  published.text ? el("p", {}, published.text) : null,
-  table([
-    { head: "Quantity", main: true, cell: r => r.quantity },
-    ...(published.rows.some(r => r.at) ? [{ head: "At", cell: r => r.at || DASH }] : []),
-    { head: "Paper", cell: r => number(r.paper) },
-    ...data.pair.map((name, i) => ({ head: name, num: true, cell: r => unit(number(data.ofTable(r, i)), r.unit) })),
-    { head: "Verdict", cell: r => chip(r.verdict) },
-    { head: "Status", cell: r => r.status || DASH },
-    { head: "Where", cell: r => r.where || DASH },
-  ], published.rows));
+function published({ published }, data) {
+  if (!published || !list(published.rows).length) return null;
+  const counts = new Map();
+  for (const { verdict } of published.rows) counts.set(verdict, (counts.get(verdict) || 0) + 1);
+  return el("div", {},
+    published.text ? el("p", {}, published.text) : null,
+    el("details.others", {},
+      el("summary", {}, `All ${published.rows.length} rows: ` + [...counts].map(([word, n]) => `${n} ${word}`).join(", ")),
+      table([
+        { head: "Quantity", main: true, cell: r => r.quantity },
+        ...(published.rows.some(r => r.at) ? [{ head: "At", cell: r => r.at || DASH }] : []),
+        { head: "Paper", cell: r => number(r.paper) },
+        ...data.pair.map((name, i) => ({ head: name, num: true, cell: r => unit(number(data.ofTable(r, i)), r.unit) })),
+        { head: "Verdict", cell: r => chip(r.verdict) },
+        { head: "Status", cell: r => r.status || DASH },
+        { head: "Where", cell: r => r.where || DASH },
+      ], published.rows, { fold: false })));
+}
 
 const checks = ({ checks }) => !list(checks).length ? null : table([
   { head: "Check", main: true, cell: r => r.name },
@@ -119,7 +130,7 @@ const checks = ({ checks }) => !list(checks).length ? null : table([
   { head: "Relative", num: true, cell: r => small(r.relative) },
   { head: "Tolerance", num: true, cell: r => small(r.tolerance) },
   { head: "at", num: true, cell: r => degrees(r.theta_deg) },
-], checks, { rowClass: r => (r.verdict === "violated" ? "flag" : "") });
+], checks, { fold: false, rowClass: r => (r.verdict === "violated" ? "flag" : "") });
 
 function caseTable(report) {
   const entries = list(report.case && report.case.entries);
@@ -137,7 +148,7 @@ const derived = ({ derived }) => !list(derived).length ? null : table([
   { head: "Symbol", cell: r => r.symbol || DASH },
   { head: "Value", num: true, cell: r => unit(number(r.value), r.unit) },
   { head: "From", cell: r => r.source || DASH },
-], derived);
+], derived, { fold: false });
 
 function models({ models }) {
   const time = m => (m.seconds == null ? [] : [["time", unit(number(m.seconds, 3), "s")]]);

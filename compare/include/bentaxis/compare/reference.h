@@ -127,6 +127,7 @@ struct Judgement {
   bool resampled = false;                  ///< the reference had other angles
   double resampling_error = 0;             ///< estimate, largest over peak
   ResultTable reference;                   ///< at the angles of the result
+  ResultTable low, high;                   ///< with a tube: what it spans there; else empty
 
   bool agrees() const;  ///< something was compared and nothing failed
 };

@@ -50,6 +50,21 @@ struct Curves {
   Values theta_deg;
   std::vector<Table> tables;
   std::vector<std::pair<std::string, Values>> difference;  ///< second minus first table
+
+  /// A curve from elsewhere, at the same angles, and what is allowed beside it.
+  struct Held {
+    std::string channel;
+    Values values;
+    double allowed = 0;  ///< on either side of the curve, or of the span of its values nearby:
+    Values low, high;    ///< that span; empty where it is the curve itself
+    std::vector<std::pair<std::string, Values>> differences = {};  ///< by table: table minus curve
+  };
+  /// The curves that the tables are held to.
+  struct Reference {
+    std::string name;
+    std::vector<Held> held;
+  };
+  std::optional<Reference> reference = std::nullopt;
 };
 
 /// A curve that a figure brings itself.
@@ -169,6 +184,12 @@ struct Verdict {
   std::optional<WorstChannel> worst = std::nullopt;
   std::optional<double> rest_over_peak = std::nullopt;  ///< under unequal assumptions
   std::optional<double> rest_tolerance = std::nullopt;
+  struct Further {
+    std::string name, headline;
+    bool agrees;
+  };
+  std::optional<Further> reference =
+      std::nullopt;  ///< of both models against curves from elsewhere
 };
 
 struct Warning {
@@ -289,6 +310,10 @@ std::vector<std::string> files_of(const std::string& json_text);
 // differences to 4.
 std::string compact_json(const Document& document);
 std::string compact_json(const Curves& curves);
+
+/// A column by its name; nullptr where there is none.
+const Values* find(const std::vector<std::pair<std::string, Values>>& columns,
+                   const std::string& name);
 
 /// Curves of both tables, but for their checks, and the difference of what was computed.
 /// Differences are taken before rounding.

@@ -13,6 +13,7 @@
 #include "bentaxis/report/document.h"
 #include "bentaxis/study/channel_choice.h"
 #include "bentaxis/study/lost_digits.h"
+#include "bentaxis/study/regression.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -33,6 +34,7 @@ struct ComparisonOptions {
   std::optional<ErrorTarget> target;  ///< integrated: chooses integrator and accuracy instead
   /// Printed numbers to hold the results to (reference_data/published); empty: none.
   std::filesystem::path published;
+  std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
 };
 
 /// Assumptions in words: name and value.
@@ -63,10 +65,12 @@ struct ComparisonResult {
   std::vector<RoundingLine> rounding;
   std::vector<report::Warning> warnings;
   std::optional<report::PublishedTable> published;
+  std::optional<Outcome> with;  ///< both models held to a reference
 
   bool checks_hold() const;
   /// The verdict: every check holds, no channel lacks a value it should have, and each difference
   /// is within tolerance, or where the models assume different things, what no assumption explains.
+  /// What a reference says is a verdict of its own (`with`).
   bool agrees() const;
   /// The verdict in a sentence, with the tolerance that counted.
   std::string headline() const;

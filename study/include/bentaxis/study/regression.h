@@ -1,12 +1,16 @@
 // Both models held to stored curves: every reference of a folder, and what each came to.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bentaxis/compare/reference.h"
+#include "bentaxis/report/document.h"
 #include "bentaxis/study/reference_set.h"
 
 namespace bentaxis::study {
@@ -35,9 +39,18 @@ struct Outcome {
   double seconds = 0;
   std::vector<GroupLine> lines;
   std::vector<std::string> notes;
+  std::string other_case;  ///< in what its case differs from the one whose results were held, or ""
   std::vector<std::pair<std::string, std::string>> properties;
-  /// By model: the reference at the result's angles, and the result.
-  std::map<std::string, std::pair<ResultTable, ResultTable>> tables;
+  struct Held {
+    ResultTable result;
+    ResultTable reference, low, high;  ///< at its angles; with a tube what the reference spans
+  };
+  std::map<std::string, Held> held;  ///< by model
+
+  /// What was found of a channel of a model; nullptr where it was not compared.
+  const compare::ReferenceChannel* find(const std::string& model, const std::string& channel) const;
+  /// The line of a group nearest to failing or furthest beyond; nullptr where nothing was compared.
+  const GroupLine* worst_line(const std::string& group) const;
 };
 
 /// Difference of a channel over what is allowed; -1 where nothing was compared.
@@ -45,6 +58,27 @@ double severity(const compare::ReferenceChannel& channel);
 
 /// Holds both models to one reference. Interrupted alone gets out; other errors are the outcome.
 Outcome hold(const ReferencePlace& place, const PartProgress& progress_of = silent());
+
+/// Results that are there already.
+using ResultOf = std::function<ReferenceRun(Model)>;
+using CaseOf = std::function<const Case&(Model)>;
+
+/// Holds results to the one reference of a folder: a third curve beside those of both models. Its
+/// own case is not run; what differs in it is said (`other_case`).
+/// @throws InputError where the folder cannot be used
+Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
+                     const ResultOf& result_of);
+/// The one reference that `hold_results` would take. @throws InputError
+compare::ReferenceDescription reference_in(const std::filesystem::path& folder);
+
+/// A line as words: what was found, of how much allowed, where.
+std::string line_text(const GroupLine& line);
+/// What a single reference came to, in a sentence.
+std::string held_text(const Outcome& outcome);
+
+/// The reference's curves at the result's angles, with what is allowed and each model's difference.
+std::optional<report::Curves::Reference> reference_curves(const Outcome& outcome,
+                                                          const std::vector<std::string>& channels);
 
 /// Lines that compare something, worst first.
 std::vector<const GroupLine*> sorted_lines(const std::vector<Outcome>& outcomes);

@@ -13,7 +13,13 @@ namespace bentaxis::study {
 /// One outcome as JUnit knows it: a test per model and group of channels.
 report::TestSuite suite_of(const Outcome& outcome);
 
-/// All outcomes as the document of a page, with the curves that fail.
+/// What was compared, a row per case, model and group of channels, worst first.
+report::Table lines_table(const std::vector<Outcome>& outcomes);
+
+/// A reference: its source, how it was made, its tolerance, and what was found.
+report::Section source_section(const Outcome& outcome);
+
+/// All outcomes as the document of a page, with the curves that fail and every external one.
 /// @param what     what was held: the name of the folder
 /// @param program  names and versions
 report::Document regression_document(const std::vector<Outcome>& outcomes, const std::string& what,

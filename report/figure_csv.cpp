@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/report/picture.h"
+
+namespace bentaxis::report {
+namespace {
+
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+std::string field(double value) { return number_text(value); }
+
+template <class... Fields>
+void line(std::string& csv, const Fields&... fields) {
+  std::string text;
+  ((text += "," + field(fields)), ...);
+  csv += text.substr(1) + "\n";
+}
+
+std::string heading_of(const Axis& axis) {
+  return axis.unit.empty() ? axis.label : fmt::format("{} ({})", axis.label, axis.unit);
+}
+
+// Columns of equal length beside each other.
+std::string beside(const std::vector<std::pair<std::string, const Values*>>& columns) {
+  std::string csv;
+  for (const auto& [name, values] : columns) csv += (csv.empty() ? "" : ",") + field(name);
+  csv += "\n";
+  for (std::size_t row = 0; row < columns.front().second->size(); ++row) {
+    std::string text;
+    for (const auto& [name, values] : columns) text += "," + field((*values)[row]);
+    csv += text.substr(1) + "\n";
+  }
+  return csv;
+}
+
+std::string channels_csv(const std::vector<std::string>& channels, const Curves& curves,
+                         const std::vector<Series>& extra) {
+  std::vector<std::pair<std::string, const Values*>> columns = {{"theta_deg", &curves.theta_deg}};
+  for (const std::string& channel : channels) {
+    for (const auto& table : curves.tables)
+      if (const Values* values = find(table.columns, channel))
+        columns.emplace_back(channel + " " + table.name, values);
+    if (const Values* values = find(curves.difference, channel))
+      columns.emplace_back(
+          fmt::format("{} {} minus {}", channel, curves.tables[1].name, curves.tables[0].name),
+          values);
+    if (!curves.reference) continue;
+    for (const Curves::Held& held : curves.reference->held) {
+      if (held.channel != channel) continue;
+      const std::string& name = curves.reference->name;
+      columns.emplace_back(channel + " " + name, &held.values);
+      for (const auto& [table, values] : held.differences)
+        columns.emplace_back(fmt::format("{} {} minus {}", channel, table, name), &values);
+    }
+  }
+  for (const Series& series : extra) columns.emplace_back(series.label, &series.values);
+  return beside(columns);
+}
+
+std::string numbers(const ChannelFigure& figure, const Curves& page) {
+  return channels_csv(figure.channels, figure.curves ? *figure.curves : page, figure.extra);
+}
+
+std::string numbers(const PistonBars& figure, const Curves& page) {
+  return channels_csv(figure.channels, page, {});
+}
+
+std::string numbers(const OwnFigure& figure, const Curves&) {
+  std::vector<std::pair<std::string, const Values*>> columns = {{figure.axis, &figure.x}};
+  for (const Series& series : figure.series) columns.emplace_back(series.label, &series.values);
+  return beside(columns);
+}
+
+std::string numbers(const XyFigure& figure, const Curves&) {
+  std::string csv;
+  line(csv, std::string("series"), heading_of(figure.x), heading_of(figure.y));
+  for (const XySeries& series : figure.series)
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      line(csv, series.label, series.x[i], series.y[i]);
+  return csv;
+}
+
+std::string numbers(const MapFigure& figure, const Curves&) {
+  std::string csv;
+  line(csv, heading_of(figure.x), heading_of(figure.y), heading_of(figure.z));
+  for (std::size_t i = 0; i < figure.values.size(); ++i)
+    for (std::size_t j = 0; j < figure.values[i].size(); ++j)
+      line(csv, figure.x_values[j], figure.y_values[i], figure.values[i][j]);
+  return csv;
+}
+
+std::string numbers(const ScatterFigure& figure, const Curves&) {
+  std::string csv;
+  line(csv, std::string("series"), heading_of(figure.x), heading_of(figure.y), std::string("note"));
+  for (const ScatterSeries& series : figure.series)
+    for (const ScatterPoint& point : series.points)
+      line(csv, series.name, point.x, point.y, point.note);
+  return csv;
+}
+
+}  // namespace
+
+std::string csv_of(const Figure& figure, const Curves& curves) {
+  return std::visit([&](const auto& content) { return numbers(content, curves); }, figure.content);
+}
+
+}  // namespace bentaxis::report

@@ -1,0 +1,75 @@
+// A figure as a file: the picture that the program drew, its pixels, its numbers.
+
+const csvField = v => (v == null ? "" : typeof v === "string" && /[",\n]/.test(v) ? `"${v.replace(/"/g, '""')}"` : String(v));
+const axisName = axis => axis.label + (axis.unit ? ` (${axis.unit})` : "");
+
+// Columns of equal length: [name, values].
+function columnsOf(figure, data) {
+  if (figure.kind === "own_axis")
+    return [[figure.x.label, figure.x.values], ...figure.series.map(s => [s.label, s.values])];
+  const columns = [["theta_deg", data.theta]];
+  for (const name of figure.channels) {
+    for (const t of data.tables) if (t.columns[name]) columns.push([`${name} ${t.name}`, t.columns[name]]);
+    if (data.difference[name]) columns.push([`${name} ${data.pair[1]} minus ${data.pair[0]}`, data.difference[name]]);
+    const held = data.reference && data.reference.held[name];
+    if (!held) continue;
+    columns.push([`${name} ${data.reference.name}`, held.values]);
+    for (const [t, values] of Object.entries(held.difference)) columns.push([`${name} ${t} minus ${data.reference.name}`, values]);
+  }
+  return [...columns, ...list(figure.extra).map(e => [e.label, e.values])];
+}
+
+// A row per point.
+const POINTS = {
+  xy: f => [["series", axisName(f.x), axisName(f.y)], ...f.series.flatMap(s => s.x.map((x, i) => [s.label, x, s.y[i]]))],
+  scatter: f => [["series", axisName(f.x), axisName(f.y), "note"],
+    ...f.series.flatMap(s => s.points.map(p => [s.name, p.x, p.y, p.note]))],
+  map: f => [[axisName(f.x), axisName(f.y), axisName(f.z)],
+    ...f.values.flatMap((row, i) => row.map((v, j) => [f.x.values[j], f.y.values[i], v]))],
+};
+
+function csvOf(figure, data) {
+  let rows;
+  if (POINTS[figure.kind]) {
+    rows = POINTS[figure.kind](figure);
+  } else {
+    const columns = columnsOf(figure, data);
+    rows = [columns.map(c => c[0]), ...columns[0][1].map((_, i) => columns.map(c => c[1][i]))];
+  }
+  return rows.map(row => row.map(csvField).join(",") + "\n").join("");
+}
+
+function save(name, blob) {
+  const link = el("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+function pixelsOf(text) {
+  return new Promise((done, fail) => {
+    const image = new Image();
+    image.onerror = () => fail(new Error("the picture cannot be drawn as PNG"));
+    image.onload = () => {
+      const canvas = el("canvas", { width: 2 * image.width, height: 2 * image.height });
+      canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+      canvas.toBlob(done, "image/png");
+    };
+    image.src = "data:image/svg+xml," + encodeURIComponent(text);
+  });
+}
+
+// The buttons of a figure. `picture` holds the program's SVG.
+function handOut(figure, data, picture) {
+  const svgText = () => new XMLSerializer().serializeToString(picture.querySelector("svg"));
+  const files = {
+    SVG: () => new Blob([svgText()], { type: "image/svg+xml" }),
+    PNG: () => pixelsOf(svgText()),
+    CSV: () => new Blob([csvOf(figure, data)], { type: "text/csv" }),
+  };
+  return el("span.hand-out", {}, Object.entries(files).map(([type, make]) => {
+    const button = el("button.small", { type: "button", title: `Save this figure as ${type}`,
+                                        "aria-label": `Save "${figure.title}" as ${type}` }, type);
+    button.addEventListener("click", async () => save(`${figure.id}.${type.toLowerCase()}`, await make()));
+    return button;
+  }));
+}

@@ -1,0 +1,900 @@
+#include "bentaxis/report/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::report {
+namespace {
+
+// ---- Looks; the curves' colours and dashes are those of page/elements.js.
+
+constexpr double kWidth = 720, kLeft = 82, kRight = 704;  // px
+constexpr double kLetter = 6.6;                           // px, of the legend, on average
+constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9",
+                                 "#e69f00", "#000000", "#7f3b08", "#542788", "#5f6b75"};
+constexpr std::array kExtraColours = {"#444c55", "#8a5a00", "#7a3b8f"};
+constexpr std::array kDashes = {"none", "8 5", "2 4"};  // by table
+constexpr double kSimplified = 0.06;                    // px, by which a drawn curve may be off
+
+template <class Choices>
+const char* pick(const Choices& choices, std::size_t i) {
+  return choices[i % choices.size()];
+}
+
+// ---- Elements
+
+std::string px(double value) {
+  std::string text = fmt::format("{:.1f}", value);
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text == "-0" ? "0" : text;
+}
+
+using Attributes = std::vector<std::pair<const char*, std::string>>;
+
+pugi::xml_node add(pugi::xml_node parent, const char* name, const Attributes& attributes) {
+  pugi::xml_node node = parent.append_child(name);
+  for (const auto& [key, value] : attributes) node.append_attribute(key) = value.c_str();
+  return node;
+}
+
+pugi::xml_node add_text(pugi::xml_node parent, double x, double y, const std::string& text,
+                        Attributes attributes = {}) {
+  attributes.insert(attributes.begin(), {{"x", px(x)}, {"y", px(y)}});
+  pugi::xml_node node = add(parent, "text", attributes);
+  node.text() = text.c_str();
+  return node;
+}
+
+const Attributes kMiddle = {{"text-anchor", "middle"}};
+
+void add_line(pugi::xml_node parent, double x1, double y1, double x2, double y2,
+              const Attributes& attributes) {
+  Attributes all = {{"x1", px(x1)}, {"y1", px(y1)}, {"x2", px(x2)}, {"y2", px(y2)}};
+  all.insert(all.end(), attributes.begin(), attributes.end());
+  add(parent, "line", all);
+}
+
+// ---- Axes
+
+std::string scientific(double value, int digits) {
+  std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  const auto e = text.find('e');
+  std::string mantissa = text.substr(0, e);
+  if (mantissa.find('.') != std::string::npos) {
+    mantissa.resize(mantissa.find_last_not_of('0') + 1);
+    if (mantissa.back() == '.') mantissa.pop_back();
+  }
+  return fmt::format("{}e{}", mantissa, std::stoi(text.substr(e + 1)));
+}
+
+// Three digits, as far as they say something.
+std::string short_number(double value) {
+  if (!std::isfinite(value)) return "not finite";
+  const double size = std::abs(value);
+  if (value != 0 && (size < 1e-3 || size >= 1e6)) return scientific(value, 3);
+  const int digit = value == 0 ? 0 : static_cast<int>(std::floor(std::log10(size)));
+  std::string text = fmt::format("{:.{}f}", value, std::max(0, 2 - digit));
+  if (text.find('.') != std::string::npos) {
+    text.resize(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return text;
+}
+
+std::string with_unit(const std::string& text, const std::string& unit) {
+  return unit.empty() ? text : text + " " + unit;
+}
+std::string name_of(const Axis& axis) {
+  return axis.unit.empty() ? axis.label : fmt::format("{} ({})", axis.label, axis.unit);
+}
+
+struct Range {
+  double low = INFINITY, high = -INFINITY;
+  void include(double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void include(const Values& values) {
+    for (const double value : values) include(value);
+  }
+  bool empty() const { return !(low <= high); }
+};
+
+struct Tick {
+  double value;
+  std::string label;
+};
+
+// Multiples of 1, 2 or 5 times a power of ten, three at least. No two read alike, none shows
+// round-off.
+std::vector<Tick> round_ticks(double low, double high, double most) {
+  double step = 0;
+  for (bool enough = false; !enough; most *= 1.5) {
+    const double power = std::pow(10, std::floor(std::log10((high - low) / most)));
+    step = 10 * power;
+    for (const double m : {5, 2, 1})
+      if (m * power * most >= high - low) step = m * power;
+    enough = std::floor(high / step) - std::ceil(low / step) >= 2;
+  }
+  const double largest = std::max(std::abs(low), std::abs(high));
+  const auto digit = [](double v) { return static_cast<int>(std::floor(std::log10(v) + 1e-9)); };
+  const auto text = [&](double v) {
+    if (largest >= 1e-2 && largest < 1e6)
+      return fmt::format("{:.{}f}", v, std::max(0, -digit(step)));
+    return scientific(v, 1 + std::max(0, digit(std::abs(v)) - digit(step)));
+  };
+  std::vector<Tick> ticks;
+  for (double k = std::ceil(low / step); k * step <= high * (1 + 1e-12); ++k)
+    ticks.push_back({k * step, k == 0 ? "0" : text(k * step)});
+  return ticks;
+}
+
+// Fractions of a turn.
+std::vector<Tick> angle_ticks(double low, double high) {
+  double step = 15;
+  for (const double next : {30., 45., 60., 90., 180., 360., 720., 1440., 3600., 7200., 36000.})
+    if ((high - low) / step > 12) step = next;
+  while ((high - low) / step > 12) step *= 10;
+  std::vector<Tick> ticks;
+  for (double k = std::ceil(low / step); k * step <= high; ++k)
+    ticks.push_back({k * step, fmt::format("{:g}", k * step)});
+  return ticks;
+}
+
+std::vector<Tick> log_ticks(double low, double high, double most) {
+  const double decades = std::log10(high / low);
+  const std::vector<double> digits = decades > 2   ? std::vector<double>{1}
+                                     : decades > 1 ? std::vector<double>{1, 2, 5}
+                                                   : std::vector<double>{1, 1.5, 2, 3, 4, 5, 6, 8};
+  const int every = std::max(1, static_cast<int>(std::ceil(decades / most)));
+  std::vector<Tick> ticks;
+  for (int power = static_cast<int>(std::floor(std::log10(low))); power <= std::log10(high) + 1;
+       ++power) {
+    if (power % every != 0) continue;
+    for (const double digit : digits) {
+      const double v = digit * std::pow(10, power);
+      if (v >= low * (1 - 1e-9) && v <= high * (1 + 1e-9))
+        ticks.push_back({v, decades > 2 ? fmt::format("1e{}", power) : short_number(v)});
+    }
+  }
+  return ticks;
+}
+
+// An axis between two pixels.
+struct Scale {
+  std::string name;
+  double low, high, first, last;
+  bool log = false;
+  std::vector<Tick> ticks;
+
+  bool shows(double value) const { return std::isfinite(value) && (!log || value > 0); }
+  double place(double value) const {
+    const auto f = [&](double v) { return log ? std::log10(v) : v; };
+    return first + (last - first) * (f(value) - f(low)) / (f(high) - f(low));
+  }
+};
+
+// What differs by less over its size is drawn as one value: no ticks lie between.
+constexpr double kSmallestSpan = 1e-12;
+
+enum class Margin { none, some, decades };
+
+Scale scale_of(const Axis& axis, Range range, double first, double last, Margin margin,
+               bool angle = false) {
+  if (axis.log && !range.empty())
+    range = {std::max(range.low, 1e-290), std::max(range.high, 1e-290)};
+  if (range.empty()) range = axis.log ? Range{0.1, 1} : Range{0, 1};
+  if (axis.from) range.low = *axis.from;
+  if (margin == Margin::decades && axis.log) {
+    range = {std::pow(10, std::floor(std::log10(range.low) - 0.05)),
+             std::pow(10, std::ceil(std::log10(range.high) + 0.05))};
+  } else if (!(range.high - range.low >
+                   kSmallestSpan * std::max(std::abs(range.low), std::abs(range.high)) &&
+               range.high - range.low > 1e-290)) {
+    range = axis.log ? Range{range.low / 2, range.low * 2}
+                     : Range{range.low - std::max(1e-12, std::abs(range.low) / 2),
+                             range.low + std::max(1e-12, std::abs(range.low) / 2)};
+  } else if (margin != Margin::none && !axis.log) {
+    const double more = 0.06 * (range.high - range.low);
+    range = {axis.from ? range.low : range.low - more, range.high + more};
+  }
+  const double most = std::max(3.0, std::abs(last - first) / (first < last ? 80 : 32));
+  return {name_of(axis),
+          range.low,
+          range.high,
+          first,
+          last,
+          axis.log,
+          angle      ? angle_ticks(range.low, range.high)
+          : axis.log ? log_ticks(range.low, range.high, most)
+                     : round_ticks(range.low, range.high, most)};
+}
+
+// ---- A picture: title, legend, panels below each other
+
+struct Panel {
+  Axis x, y;
+  double height;
+  Range xs = {}, ys = {};
+  bool angle = false;
+  Margin x_margin = Margin::none, y_margin = Margin::some;
+  std::function<void(pugi::xml_node, const Scale&, const Scale&)> draw = {};
+  std::string title = {};
+  std::vector<Tick> x_ticks = {};  ///< instead of numbers
+};
+
+// A piece of line, a filled box or a mark, with a text.
+struct Key {
+  std::string label;
+  std::function<void(pugi::xml_node, double x, double y)> draw;  ///< 30 px to the right of x
+};
+using Keys = std::vector<Key>;
+
+Key line_key(const std::string& label, const std::string& colour, double width,
+             const std::string& dash = "none", double opacity = 1) {
+  return {label, [=](pugi::xml_node root, double x, double y) {
+            add_line(root, x, y, x + 30, y,
+                     {{"stroke", colour},
+                      {"stroke-width", px(width)},
+                      {"stroke-dasharray", dash},
+                      {"opacity", fmt::format("{:g}", opacity)}});
+          }};
+}
+
+struct Picture {
+  std::vector<Keys> legend;  ///< rows, broken where they are too long
+  std::vector<Panel> panels;
+};
+
+double draw_legend(pugi::xml_node root, const std::vector<Keys>& rows, double y) {
+  for (const Keys& keys : rows) {
+    if (keys.empty()) continue;
+    double x = 14;
+    for (const Key& key : keys) {
+      const double width = 38 + kLetter * static_cast<double>(key.label.size()) + 18;
+      if (x > 14 && x + width > kWidth) {
+        x = 14;
+        y += 18;
+      }
+      key.draw(root, x, y - 4);
+      add_text(root, x + 36, y, key.label);
+      x += width;
+    }
+    y += 20;
+  }
+  return y;
+}
+
+void draw_panel(pugi::xml_node root, const Panel& panel, double top) {
+  const double bottom = top + panel.height;
+  Scale x = scale_of(panel.x, panel.xs, kLeft, kRight, panel.x_margin, panel.angle);
+  if (!panel.x_ticks.empty()) x.ticks = panel.x_ticks;
+  const Scale y = scale_of(panel.y, panel.ys, bottom, top, panel.y_margin);
+  const Attributes grid = {{"stroke", "#e1e6ec"}, {"class", "grid"}};
+  if (panel.x_ticks.empty())
+    for (const Tick& tick : x.ticks)
+      add_line(root, x.place(tick.value), top, x.place(tick.value), bottom, grid);
+  for (const Tick& tick : y.ticks)
+    add_line(root, kLeft, y.place(tick.value), kRight, y.place(tick.value),
+             tick.value == 0 ? Attributes{{"stroke", "#67727e"}, {"class", "zero"}} : grid);
+  panel.draw(root, x, y);
+  for (const Tick& tick : x.ticks)
+    add_text(root, x.place(tick.value), bottom + 16, tick.label, kMiddle);
+  for (const Tick& tick : y.ticks)
+    add_text(root, kLeft - 7, y.place(tick.value) + 4, tick.label, {{"text-anchor", "end"}});
+  add_text(root, (kLeft + kRight) / 2, bottom + 33, x.name, kMiddle);
+  const double middle = (top + bottom) / 2;
+  add_text(
+      root, 13, middle, y.name,
+      {{"text-anchor", "middle"}, {"transform", fmt::format("rotate(-90 13 {})", px(middle))}});
+}
+
+std::string drawn(const Figure& figure, const Picture& picture) {
+  pugi::xml_document document;
+  pugi::xml_node root = add(document, "svg",
+                            {{"xmlns", "http://www.w3.org/2000/svg"},
+                             {"font-family", "DejaVu Sans, Arial, sans-serif"},
+                             {"font-size", "12"},
+                             {"fill", "#1c2733"},
+                             {"role", "img"}});
+  root.append_child("title").text() = figure.title.c_str();
+  if (!figure.note.empty()) root.append_child("desc").text() = figure.note.c_str();
+  add(root, "rect", {{"class", "ground"}, {"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
+  // A title too long for one line is broken once.
+  const std::size_t most = 84;
+  double y = 20;
+  std::string title = figure.title;
+  if (title.size() > most) {
+    const std::size_t at = title.rfind(' ', most);
+    const std::size_t cut = at == std::string::npos ? title.size() : at;
+    add_text(root, 14, y, title.substr(0, cut),
+             {{"class", "title"}, {"font-weight", "bold"}, {"font-size", "13"}});
+    title = cut < title.size() ? title.substr(cut + 1) : "";
+    y += 17;
+  }
+  add_text(root, 14, y, title, {{"class", "title"}, {"font-weight", "bold"}, {"font-size", "13"}});
+  if (!figure.paper.empty()) {
+    y += 17;
+    add_text(root, 14, y, "paper: " + figure.paper, {{"class", "soft title"}, {"fill", "#4d5a67"}});
+  }
+  y = draw_legend(root, picture.legend, y + 20);
+  y -= 8;
+  for (const Panel& panel : picture.panels) {
+    if (!panel.title.empty()) {
+      y += 14;
+      add_text(root, kLeft, y, panel.title, {{"class", "soft"}, {"fill", "#4d5a67"}});
+      y += 6;
+    }
+    draw_panel(root, panel, y);
+    y += panel.height + (panel.x.label.empty() ? 24 : 44);
+  }
+  if (picture.panels.empty()) add_text(root, 14, y + 14, "There is nothing to draw.");
+  const double height = picture.panels.empty() ? y + 30 : y - 4;
+  root.prepend_attribute("viewBox") = fmt::format("0 0 {} {}", px(kWidth), px(height)).c_str();
+  root.append_attribute("width") = px(kWidth).c_str();
+  root.append_attribute("height") = px(height).c_str();
+  std::ostringstream text;
+  document.save(text, "", pugi::format_raw | pugi::format_no_declaration, pugi::encoding_utf8);
+  return text.str() + "\n";
+}
+
+// ---- Curves
+
+using Point = std::array<double, 2>;
+
+// Leaves out points that the line through their neighbours meets closely enough.
+std::vector<Point> simplified(const std::vector<Point>& points) {
+  if (points.size() < 3) return points;
+  std::vector<Point> kept = {points.front()};
+  std::size_t from = 0;
+  for (std::size_t to = 2; to < points.size(); ++to) {
+    const auto& [x0, y0] = points[from];
+    const auto& [x1, y1] = points[to];
+    bool close = x1 != x0 && to - from < 200;
+    for (std::size_t i = from + 1; close && i < to; ++i)
+      close =
+          std::abs(y0 + (y1 - y0) * (points[i][0] - x0) / (x1 - x0) - points[i][1]) < kSimplified;
+    if (close) continue;
+    from = to - 1;
+    kept.push_back(points[from]);
+  }
+  kept.push_back(points.back());
+  return kept;
+}
+
+struct Curve {
+  Values x, y;
+  std::string colour;
+  double width = 1.9, opacity = 1;
+  std::string dash = "none";
+  bool sparse = false;  ///< has fewer points than the angles: they are joined
+};
+
+struct Band {
+  Values x, low, high;
+  std::string colour;
+};
+
+// Between two neighbours of a curve over angles nothing is drawn where one was not computed.
+void draw_curve(pugi::xml_node root, const Scale& x, const Scale& y, const Curve& curve) {
+  std::vector<std::vector<Point>> pieces(1);
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (x.shows(curve.x[i]) && y.shows(curve.y[i]))
+      pieces.back().push_back({x.place(curve.x[i]), y.place(curve.y[i])});
+    else if (!curve.sparse && !pieces.back().empty())
+      pieces.emplace_back();
+  }
+  std::string path;
+  for (const auto& piece : pieces) {
+    char command = 'M';
+    for (const auto& [px_x, px_y] : simplified(piece)) {
+      path += command + fmt::format("{:.1f} {:.2f}", px_x, px_y);
+      command = 'L';
+    }
+  }
+  if (path.empty()) return;
+  add(root, "path",
+      {{"d", path},
+       {"fill", "none"},
+       {"stroke", curve.colour},
+       {"stroke-width", px(curve.width)},
+       {"stroke-dasharray", curve.dash},
+       {"stroke-linejoin", "round"},
+       {"opacity", fmt::format("{:g}", curve.opacity)}});
+}
+
+void draw_band(pugi::xml_node root, const Scale& x, const Scale& y, const Band& band) {
+  std::vector<Point> low, high;
+  for (std::size_t i = 0; i < band.x.size(); ++i)
+    if (std::isfinite(band.low[i]) && std::isfinite(band.high[i])) {
+      low.push_back({x.place(band.x[i]), y.place(band.low[i])});
+      high.push_back({x.place(band.x[i]), y.place(band.high[i])});
+    }
+  if (low.empty()) return;
+  std::string points;
+  for (const auto& [a, b] : simplified(low)) points += fmt::format("{:.1f},{:.2f} ", a, b);
+  const auto upper = simplified(high);
+  for (auto it = upper.rbegin(); it != upper.rend(); ++it)
+    points += fmt::format("{:.1f},{:.2f} ", (*it)[0], (*it)[1]);
+  points.pop_back();
+  add(root, "polygon",
+      {{"points", points}, {"fill", band.colour}, {"opacity", "0.18"}, {"class", "band"}});
+}
+
+// Symbols, as in the legend.
+void draw_mark(pugi::xml_node root, std::size_t which, double x, double y,
+               const std::string& colour, const std::string& note) {
+  const Attributes looks = {{"fill", colour}, {"stroke", "#fff"}, {"class", "mark"}};
+  pugi::xml_node node;
+  if (which % 5 == 0) {
+    node = add(root, "circle", {{"cx", px(x)}, {"cy", px(y)}, {"r", "4"}});
+  } else {
+    const std::string at = fmt::format("M{} {}", px(x), px(y));
+    const std::array<std::string, 4> paths = {at + "m-4 -4h8v8h-8z", at + "m0 -5l4.8 8.2h-9.6z",
+                                              at + "m0 -5.5l5.5 5.5l-5.5 5.5l-5.5 -5.5z",
+                                              at + "m0 5l4.8 -8.2h-9.6z"};
+    node = add(root, "path", {{"d", paths[which % 5 - 1]}});
+  }
+  for (const auto& [key, value] : looks) node.append_attribute(key) = value.c_str();
+  if (!note.empty()) node.append_child("title").text() = note.c_str();
+}
+
+// The panel of curves over one axis, as large as they.
+Panel curve_panel(const Axis& x, const Axis& y, double height, std::vector<Curve> curves,
+                  std::vector<Band> bands = {}) {
+  Panel panel{x, y, height, {}, {}};
+  for (const Curve& curve : curves) {
+    for (std::size_t i = 0; i < curve.x.size(); ++i)
+      if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i]) && (!x.log || curve.x[i] > 0) &&
+          (!y.log || curve.y[i] > 0)) {
+        panel.xs.include(curve.x[i]);
+        panel.ys.include(curve.y[i]);
+      }
+  }
+  for (const Band& band : bands) {
+    panel.ys.include(band.low);
+    panel.ys.include(band.high);
+  }
+  panel.draw = [curves = std::move(curves), bands = std::move(bands)](
+                   pugi::xml_node root, const Scale& sx, const Scale& sy) {
+    for (const Band& band : bands) draw_band(root, sx, sy, band);
+    for (const Curve& curve : curves) draw_curve(root, sx, sy, curve);
+  };
+  return panel;
+}
+
+// A turn is drawn whole, though its last step is missing.
+void whole_turns(Panel& panel, const Values& theta) {
+  panel.angle = true;
+  if (theta.size() < 2 || panel.xs.empty()) return;
+  const double step = 1.01 * (panel.xs.high - panel.xs.low) / static_cast<double>(theta.size() - 1);
+  const double low = 360 * std::floor(panel.xs.low / 360),
+               high = 360 * std::ceil(panel.xs.high / 360);
+  if (panel.xs.low - low <= step) panel.xs.low = low;
+  if (high - panel.xs.high <= step) panel.xs.high = high;
+}
+
+bool any(const Values* values) {
+  return values != nullptr && std::any_of(values->begin(), values->end(), is_computed);
+}
+
+const Axis kAngle{"shaft angle", "deg"};
+
+// What a curve may be, widened by what is allowed; around the curve or its zero line.
+Band band_of(const Values& theta, const Curves::Held& held, bool around_zero,
+             const std::string& colour) {
+  Band band{theta, held.low.empty() ? held.values : held.low,
+            held.high.empty() ? held.values : held.high, colour};
+  for (std::size_t i = 0; i < held.values.size(); ++i) {
+    const double base = around_zero ? held.values[i] : 0;
+    band.low[i] -= base + held.allowed;
+    band.high[i] += held.allowed - base;
+  }
+  return band;
+}
+
+Picture picture_of(const ChannelFigure& figure, const Curves& page) {
+  const Curves& curves = figure.curves ? *figure.curves : page;
+  const Values& theta = curves.theta_deg;
+  Picture picture;
+  Keys channels, tables;
+  std::vector<Curve> lines, differences, from_reference;
+  std::vector<Band> bands, zero_bands;
+  for (std::size_t c = 0; c < figure.channels.size(); ++c) {
+    const std::string& channel = figure.channels[c];
+    const std::string colour = pick(kColours, c);
+    std::vector<const Values*> columns;
+    for (const auto& table : curves.tables) columns.push_back(find(table.columns, channel));
+    const bool alone = std::count_if(columns.begin(), columns.end(), any) < 2;
+    bool shown = false;
+    for (std::size_t t = 0; t < columns.size(); ++t) {
+      if (!any(columns[t])) continue;
+      shown = true;
+      const bool pale = t == 0 && !alone;
+      lines.push_back(
+          {theta, *columns[t], colour, pale ? 4.5 : 1.9, pale ? 0.4 : 1, pick(kDashes, t)});
+    }
+    if (const Values* difference = find(curves.difference, channel); any(difference))
+      differences.push_back({theta, *difference, colour, 1.4});
+    if (curves.reference)
+      for (const Curves::Held& held : curves.reference->held) {
+        if (held.channel != channel) continue;
+        shown = true;
+        lines.push_back({theta, held.values, colour, 2.2, 1, pick(kDashes, 2), true});
+        bands.push_back(band_of(theta, held, false, colour));
+        zero_bands.push_back(band_of(theta, held, true, colour));
+        for (std::size_t t = 0; t < held.differences.size(); ++t) {
+          const bool pale = t == 0 && held.differences.size() > 1;
+          from_reference.push_back({theta, held.differences[t].second, colour, pale ? 4.5 : 1.6,
+                                    pale ? 0.4 : 1, pick(kDashes, t), true});
+        }
+      }
+    if (shown) channels.push_back(line_key(channel, colour, 4));
+  }
+  for (std::size_t t = 0; t < curves.tables.size(); ++t)
+    tables.push_back(line_key(curves.tables[t].name, "#444c55",
+                              t == 0 && curves.tables.size() > 1 ? 4.5 : 1.9, pick(kDashes, t),
+                              t == 0 && curves.tables.size() > 1 ? 0.4 : 1));
+  if (!bands.empty()) {
+    tables.push_back(line_key(curves.reference->name, "#444c55", 2.2, pick(kDashes, 2)));
+    tables.push_back(line_key("allowed", "#444c55", 10, "none", 0.18));
+  }
+  for (std::size_t i = 0; i < figure.extra.size(); ++i) {
+    if (!any(&figure.extra[i].values)) continue;
+    const std::string colour = pick(kExtraColours, i);
+    lines.push_back({theta, figure.extra[i].values, colour, 1.6, 1, "10 4 2 4"});
+    tables.push_back(line_key(figure.extra[i].label, colour, 1.6, "10 4 2 4"));
+  }
+  if (lines.empty() || theta.size() < 2) return picture;  // one angle makes no curve
+  picture.legend = {channels, tables};
+  const bool three = !from_reference.empty();
+  picture.panels.push_back(curve_panel(kAngle, {"value", figure.unit}, three ? 135 : 185,
+                                       std::move(lines), std::move(bands)));
+  const bool exact = std::all_of(differences.begin(), differences.end(), [](const Curve& curve) {
+    return std::all_of(curve.y.begin(), curve.y.end(), [](double v) { return !(v < 0 || v > 0); });
+  });
+  if (!exact) {
+    picture.panels.push_back(
+        curve_panel(kAngle, {"difference", figure.unit}, three ? 50 : 95, std::move(differences)));
+    picture.panels.back().title =
+        fmt::format("Difference: {} minus {}", curves.tables[1].name, curves.tables[0].name);
+  }
+  if (three) {
+    picture.panels.push_back(curve_panel(kAngle, {"difference", figure.unit}, 78,
+                                         std::move(from_reference), std::move(zero_bands)));
+    picture.panels.back().title =
+        fmt::format("Difference: each model minus {}", curves.reference->name);
+  }
+  for (Panel& panel : picture.panels) {
+    panel.xs.include(theta);
+    whole_turns(panel, theta);
+  }
+  for (std::size_t i = 0; i + 1 < picture.panels.size(); ++i) picture.panels[i].x = {};
+  return picture;
+}
+
+Picture picture_of(const PistonBars& figure, const Curves& page) {
+  Picture picture;
+  Range all;
+  all.include(0);
+  std::vector<const Curves::Table*> tables;
+  for (const auto& table : page.tables) {
+    bool computed = false;
+    for (const std::string& channel : figure.channels)
+      if (const Values* values = find(table.columns, channel); any(values)) {
+        all.include(*values);
+        computed = true;
+      }
+    if (computed) tables.push_back(&table);
+  }
+  if (tables.empty() || page.theta_deg.empty()) return picture;
+  const auto look = [](std::size_t table) {
+    return Attributes{{"fill", table == 0 ? "#0072b2" : "#fff"},
+                      {"stroke", "#0072b2"},
+                      {"stroke-width", "1.4"},
+                      {"stroke-dasharray", table == 0 ? "none" : "5 3"}};
+  };
+  picture.legend.emplace_back();
+  for (std::size_t t = 0; t < tables.size(); ++t)
+    picture.legend[0].push_back(
+        {tables[t]->name, [=](pugi::xml_node root, double x, double y) {
+           Attributes box = look(t);
+           box.insert(box.end(),
+                      {{"x", px(x)}, {"y", px(y - 5)}, {"width", "28"}, {"height", "10"}});
+           add(root, "rect", box);
+         }});
+  const double n = static_cast<double>(figure.channels.size());
+  for (const double angle : figure.angles) {
+    std::size_t row = 0;
+    for (std::size_t i = 0; i < page.theta_deg.size(); ++i)
+      if (std::abs(page.theta_deg[i] - angle) < std::abs(page.theta_deg[row] - angle)) row = i;
+    Panel panel{{"piston"}, {"share", figure.unit}, 125, {0, n}, all};
+    panel.title = fmt::format("At {:g} deg", page.theta_deg[row]);
+    const std::size_t every = 1 + figure.channels.size() / 25;
+    for (std::size_t i = 0; i < figure.channels.size(); i += every)
+      panel.x_ticks.push_back({static_cast<double>(i) + 0.5, fmt::format("{}", i + 1)});
+    panel.draw = [=, channels = figure.channels](pugi::xml_node root, const Scale& x,
+                                                 const Scale& y) {
+      const double slot = (x.place(1) - x.place(0)),
+                   bar = 0.72 * slot / static_cast<double>(tables.size());
+      for (std::size_t i = 0; i < channels.size(); ++i)
+        for (std::size_t t = 0; t < tables.size(); ++t) {
+          const Values* values = find(tables[t]->columns, channels[i]);
+          if (values == nullptr || !is_computed((*values)[row])) continue;
+          Attributes box = look(t);
+          const double v = (*values)[row];
+          box.insert(box.end(), {{"x", px(x.place(static_cast<double>(i)) + 0.14 * slot +
+                                          static_cast<double>(t) * bar + 1)},
+                                 {"y", px(y.place(std::max(v, 0.0)))},
+                                 {"width", px(std::max(1.0, bar - 2))},
+                                 {"height", px(std::abs(y.place(v) - y.place(0)))}});
+          add(root, "rect", box);
+        }
+    };
+    picture.panels.push_back(std::move(panel));
+  }
+  return picture;
+}
+
+Picture picture_of(const OwnFigure& figure, const Curves&) {
+  Picture picture;
+  std::vector<Curve> lines;
+  Keys keys;
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    if (!any(&figure.series[i].values)) continue;
+    lines.push_back({figure.x, figure.series[i].values, pick(kColours, i)});
+    keys.push_back(line_key(figure.series[i].label, pick(kColours, i), 4));
+  }
+  if (lines.empty()) return picture;
+  picture.legend = {keys};
+  picture.panels.push_back(
+      curve_panel({figure.axis}, {"value", figure.unit}, 230, std::move(lines)));
+  if (figure.angle) whole_turns(picture.panels[0], figure.x);
+  return picture;
+}
+
+Picture picture_of(const XyFigure& figure, const Curves&) {
+  Picture picture;
+  std::vector<Curve> lines;
+  Keys keys;
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    const XySeries& series = figure.series[i];
+    lines.push_back(
+        {series.x, series.y, pick(kColours, i), 1.9, 1, pick(kDashes, i / kColours.size())});
+    keys.push_back(line_key(series.label, pick(kColours, i), 3, lines.back().dash));
+  }
+  picture.legend = {keys};
+  picture.panels.push_back(curve_panel(figure.x, figure.y, 250, lines));
+  Panel& panel = picture.panels.back();
+  panel.draw = [=, names = figure.series, curves = panel.draw](pugi::xml_node root, const Scale& x,
+                                                               const Scale& y) {
+    curves(root, x, y);
+    for (std::size_t s = 0; s < lines.size(); ++s) {
+      const Curve& line = lines[s];
+      for (std::size_t i = 0; line.x.size() <= 60 && i < line.x.size(); ++i)
+        if (x.shows(line.x[i]) && y.shows(line.y[i]))
+          draw_mark(root, 0, x.place(line.x[i]), y.place(line.y[i]), line.colour,
+                    fmt::format("{}: {} at {}", names[s].label, short_number(line.y[i]),
+                                short_number(line.x[i])));
+    }
+  };
+  return picture;
+}
+
+Picture picture_of(const ScatterFigure& figure, const Curves&) {
+  struct Shown {
+    ScatterSeries series;
+    std::size_t style;
+    std::string colour;
+  };
+  const auto usable = [](const Axis& axis, double v) {
+    return std::isfinite(v) && (!axis.log || v > 0);
+  };
+  std::vector<Shown> all;
+  Panel panel{figure.x, figure.y, 330, {}, {}};
+  panel.x_margin = panel.y_margin = Margin::decades;
+  std::size_t next = 0;
+  for (ScatterSeries series : figure.series) {
+    std::erase_if(series.points, [&](const ScatterPoint& p) {
+      return !usable(figure.x, p.x) || !usable(figure.y, p.y);
+    });
+    if (series.points.empty()) continue;
+    for (const ScatterPoint& p : series.points) {
+      panel.xs.include(p.x);
+      panel.ys.include(p.y);
+    }
+    const std::size_t style = series.emphasis ? 0
+                              : series.style  ? static_cast<std::size_t>(*series.style)
+                                              : next++;
+    all.push_back({series, style, series.emphasis ? "#67727e" : pick(kColours, style)});
+  }
+  Picture picture;
+  if (all.empty()) return picture;
+  picture.legend.emplace_back();
+  for (const Shown& shown : all)
+    picture.legend[0].push_back({shown.series.name, [=](pugi::xml_node root, double x, double y) {
+                                   if (shown.series.line)
+                                     line_key("", shown.colour, shown.series.emphasis ? 6 : 1.5,
+                                              "none", shown.series.emphasis ? 0.35 : 1)
+                                         .draw(root, x, y);
+                                   if (!shown.series.emphasis)
+                                     draw_mark(root, shown.style, x + 15, y, shown.colour, "");
+                                 }});
+  // What is emphasised lies broad and pale under the rest.
+  std::stable_sort(all.begin(), all.end(), [](const Shown& a, const Shown& b) {
+    return a.series.emphasis > b.series.emphasis;
+  });
+  panel.draw = [all, x_name = figure.x.label, y_name = figure.y.label](
+                   pugi::xml_node root, const Scale& x, const Scale& y) {
+    for (const Shown& shown : all) {
+      Curve line{{},
+                 {},
+                 shown.colour,
+                 shown.series.emphasis ? 8.0 : 1.3,
+                 shown.series.emphasis ? 0.35 : 1};
+      for (const ScatterPoint& p : shown.series.points) {
+        line.x.push_back(p.x);
+        line.y.push_back(p.y);
+      }
+      if (shown.series.line && line.x.size() > 1) draw_curve(root, x, y, line);
+      if (shown.series.emphasis) continue;
+      for (const ScatterPoint& p : shown.series.points)
+        draw_mark(root, shown.style, x.place(p.x), y.place(p.y), shown.colour,
+                  fmt::format("{}{}{} {}, {} {}", p.note, p.note.empty() ? "" : ", ", x_name,
+                              short_number(p.x), y_name, short_number(p.y)));
+    }
+  };
+  picture.panels.push_back(std::move(panel));
+  return picture;
+}
+
+// ---- Maps
+
+// Light to dark by t in [0, 1]: the order of the values survives a print without colour.
+std::string shade(double t) {
+  constexpr std::array<std::array<double, 3>, 5> shades = {
+      {{247, 250, 252}, {190, 214, 235}, {107, 164, 207}, {33, 103, 166}, {8, 40, 88}}};
+  const double at = std::clamp(t, 0.0, 1.0) * (shades.size() - 1);
+  const std::size_t k = std::min(static_cast<std::size_t>(at), shades.size() - 2);
+  std::array<int, 3> rgb{};
+  for (std::size_t i = 0; i < 3; ++i)
+    rgb[i] = static_cast<int>(std::lround(shades[k][i] + (at - static_cast<double>(k)) *
+                                                             (shades[k + 1][i] - shades[k][i])));
+  return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+}
+
+// Pieces of the line z = level over a grid, by marching squares, in pixels. Where a corner has no
+// value there is no line.
+std::vector<std::array<Point, 2>> contour(const Values& xs, const Values& ys,
+                                          const std::vector<Values>& z, double level) {
+  std::vector<std::array<Point, 2>> pieces;
+  for (std::size_t i = 0; i + 1 < ys.size(); ++i)
+    for (std::size_t j = 0; j + 1 < xs.size(); ++j) {
+      const std::array<std::array<std::size_t, 2>, 4> corners = {
+          {{j, i}, {j + 1, i}, {j + 1, i + 1}, {j, i + 1}}};
+      if (std::any_of(corners.begin(), corners.end(),
+                      [&](const auto& c) { return !is_computed(z[c[1]][c[0]]); }))
+        continue;
+      std::vector<Point> cuts;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const auto& [a, b] = corners[k];
+        const auto& [c, d] = corners[(k + 1) % 4];
+        const double from = z[b][a], to = z[d][c];
+        if ((from < level) == (to < level)) continue;
+        const double t = (level - from) / (to - from);
+        cuts.push_back({xs[a] + t * (xs[c] - xs[a]), ys[b] + t * (ys[d] - ys[b])});
+      }
+      for (std::size_t k = 0; k + 1 < cuts.size(); k += 2) pieces.push_back({cuts[k], cuts[k + 1]});
+    }
+  return pieces;
+}
+
+// Shades and contours go by the logarithm of z.
+Picture picture_of(const MapFigure& figure, const Curves&) {
+  Picture picture;
+  std::vector<Values> z = figure.values;
+  Range range, xs, ys;
+  for (Values& row : z)
+    for (double& v : row) {
+      v = std::isfinite(v) && v > 0 ? std::log10(v) : not_computed();
+      range.include(v);
+    }
+  if (range.empty()) return picture;
+  xs.include(figure.x_values);
+  ys.include(figure.y_values);
+  const auto text = [unit = figure.z.unit](double v) { return with_unit(short_number(v), unit); };
+  picture.legend.emplace_back();
+  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
+    picture.legend[0].push_back({text(std::pow(10, range.low + t * (range.high - range.low))),
+                                 [=](pugi::xml_node root, double x, double y) {
+                                   add(root, "rect",
+                                       {{"x", px(x)},
+                                        {"y", px(y - 6)},
+                                        {"width", "30"},
+                                        {"height", "12"},
+                                        {"fill", shade(t)}});
+                                 }});
+  picture.legend[0][0].label = figure.z.label + ": " + picture.legend[0][0].label;
+  Panel panel{figure.x, figure.y, 330, xs, ys};
+  panel.y_margin = Margin::none;
+  panel.draw = [=](pugi::xml_node root, const Scale& x, const Scale& y) {
+    Values px_x, px_y;
+    for (const double v : figure.x_values) px_x.push_back(x.place(v));
+    for (const double v : figure.y_values) px_y.push_back(y.place(v));
+    const auto edge = [](const Values& p, std::size_t k) {  // before the k-th
+      return k == 0 ? p.front() : k == p.size() ? p.back() : (p[k - 1] + p[k]) / 2;
+    };
+    for (std::size_t i = 0; i < z.size(); ++i)
+      for (std::size_t j = 0; j < z[i].size(); ++j) {
+        const double x1 = edge(px_x, j), x2 = edge(px_x, j + 1), y1 = edge(px_y, i + 1),
+                     y2 = edge(px_y, i);
+        pugi::xml_node cell = add(
+            root, "rect",
+            {{"x", px(x1)},
+             {"y", px(y1)},
+             {"width", px(x2 - x1 + 0.6)},
+             {"height", px(y2 - y1 + 0.6)},
+             {"fill", is_computed(z[i][j])
+                          ? shade((z[i][j] - range.low) / std::max(1e-12, range.high - range.low))
+                          : "#fff"}});
+        cell.append_child("title").text() =
+            fmt::format(
+                "{} {}, {} {}: {}", figure.x.label,
+                with_unit(short_number(figure.x_values[j]), figure.x.unit), figure.y.label,
+                with_unit(short_number(figure.y_values[i]), figure.y.unit),
+                is_computed(figure.values[i][j]) ? text(figure.values[i][j]) : "not computed")
+                .c_str();
+      }
+    const Attributes label = {{"text-anchor", "middle"}, {"font-weight", "bold"},
+                              {"fill", "#7a0c0c"},       {"stroke", "#fff"},
+                              {"stroke-width", "4"},     {"paint-order", "stroke"},
+                              {"class", "label"}};
+    for (const double level : figure.contours) {
+      const auto pieces = contour(px_x, px_y, z, std::log10(level));
+      if (pieces.empty()) continue;
+      std::string path;
+      for (const auto& [a, b] : pieces)
+        path += fmt::format("M{} {}L{} {}", px(a[0]), px(a[1]), px(b[0]), px(b[1]));
+      add(root, "path",
+          {{"d", path}, {"stroke", "#fff"}, {"stroke-width", "4"}, {"stroke-linecap", "round"}});
+      add(root, "path",
+          {{"d", path},
+           {"stroke", "#a11212"},
+           {"stroke-width", "1.8"},
+           {"stroke-linecap", "round"}});
+      const Point& at = pieces[pieces.size() / 2][0];
+      add_text(root, std::clamp(at[0], kLeft + 24, kRight - 24), at[1] - 6, text(level), label);
+    }
+    for (const MapFigure::Point& p : figure.points) {
+      if (p.x < xs.low || p.x > xs.high || p.y < ys.low || p.y > ys.high) continue;
+      add(root, "circle",
+          {{"cx", px(x.place(p.x))},
+           {"cy", px(y.place(p.y))},
+           {"r", "4.5"},
+           {"fill", "#e69f00"},
+           {"stroke", "#000"}});
+      add_text(root, x.place(p.x), y.place(p.y) - 9, p.label, label);
+    }
+  };
+  picture.panels.push_back(std::move(panel));
+  return picture;
+}
+
+}  // namespace
+
+std::string svg_of(const Figure& figure, const Curves& curves) {
+  return drawn(figure, std::visit([&](const auto& content) { return picture_of(content, curves); },
+                                  figure.content));
+}
+
+}  // namespace bentaxis::report

@@ -1,0 +1,210 @@
+// Figures as SVG, CSV and PNG: what is drawn is where it belongs, and nothing breaks a picture.
+#include "bentaxis/report/picture.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <pugixml.hpp>
+#include <random>
+#include <sstream>
+
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+pugi::xml_document read(const std::string& svg) {
+  pugi::xml_document document;
+  EXPECT_TRUE(document.load_string(svg.c_str())) << svg.substr(0, 200);
+  return document;
+}
+
+// Values of the middle of a table, over a turn in steps of `step` deg.
+Curves curves_of(const std::vector<std::pair<std::string, Values>>& columns, double step) {
+  Curves curves;
+  for (std::size_t i = 0; i < columns[0].second.size(); ++i)
+    curves.theta_deg.push_back(step * static_cast<double>(i));
+  curves.tables = {{"analytic", columns}};
+  return curves;
+}
+
+// Points of the curves drawn, in pixels.
+std::vector<std::vector<std::array<double, 2>>> drawn(const std::string& svg) {
+  std::vector<std::vector<std::array<double, 2>>> curves;
+  const auto document = read(svg);
+  for (const auto& found : document.select_nodes("//path[@fill='none']")) {
+    std::string text = found.node().attribute("d").value();
+    for (char& c : text)
+      if (c == 'M' || c == 'L') c = ' ';
+    std::istringstream in(text);
+    curves.emplace_back();
+    for (double x = 0, y = 0; in >> x >> y;) curves.back().push_back({x, y});
+  }
+  return curves;
+}
+
+TEST(Picture, CurveLiesWhereItsValuesAre) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> noise(-1, 1);
+  Values smooth, rough, line;
+  for (int i = 0; i < 720; ++i) {
+    smooth.push_back(1000 * std::sin(i * 0.0349));
+    rough.push_back(noise(random));
+    line.push_back(3.0 * i);
+  }
+  for (const auto& [curve, tolerance] :
+       {std::pair{smooth, 0.6}, std::pair{rough, 25.0}, std::pair{line, 0.2}}) {
+    const Values& values = curve;
+    const auto curves =
+        drawn(svg_of({"id", "t", "", ChannelFigure{"N", {"R"}}}, curves_of({{"R", values}}, 0.5)));
+    ASSERT_EQ(curves.size(), 1U);
+    const auto& points = curves[0];
+    // Both axes are linear: fixed by two points of the curve, the ends and the extremes.
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    double top = 1e9, bottom = -1e9;
+    for (const auto& p : points) {
+      top = std::min(top, p[1]);
+      bottom = std::max(bottom, p[1]);
+    }
+    const auto x_of = [&](double i) {
+      return points.front()[0] + (points.back()[0] - points.front()[0]) * i / 719;
+    };
+    const auto y_of = [&](double v) {
+      return bottom + (top - bottom) * (v - *low) / (*high - *low);
+    };
+    std::size_t k = 0;
+    double worst = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double x = x_of(static_cast<double>(i));
+      while (k + 2 < points.size() && points[k + 1][0] < x - 0.05) ++k;
+      const double share = (x - points[k][0]) / (points[k + 1][0] - points[k][0]);
+      worst = std::max(worst, std::abs(points[k][1] + share * (points[k + 1][1] - points[k][1]) -
+                                       y_of(values[i])));
+    }
+    // What is left out, and x rounded to a tenth of a pixel on a steep curve.
+    EXPECT_LT(worst, tolerance);
+    EXPECT_LE(points.size(), 720U);
+  }
+  EXPECT_EQ(
+      drawn(svg_of({"id", "t", "", ChannelFigure{"N", {"R"}}}, curves_of({{"R", line}}, 0.5)))[0]
+          .size(),
+      5U);  // straight: a point each 200
+}
+
+TEST(Picture, GapsStayGapsButOfASparseReference) {
+  Curves curves = curves_of({{"R", {1, 2, not_computed(), 4, 5}}}, 90);
+  const Figure figure{"id", "t", "", ChannelFigure{"N", {"R"}}};
+  const auto moves = [&] {
+    const std::string svg = svg_of(figure, curves);
+    std::vector<long> counts;
+    const auto document = read(svg);
+    for (const auto& found : document.select_nodes("//path[@fill='none']")) {
+      const std::string d = found.node().attribute("d").value();
+      counts.push_back(std::count(d.begin(), d.end(), 'M'));
+    }
+    return counts;
+  };
+  EXPECT_THAT(moves(), testing::ElementsAre(2));
+  const double gap = not_computed();
+  curves.reference = {
+      "rig", {{"R", {1, gap, 3, gap, 5}, 0.5, {}, {}, {{"analytic", {0, gap, 1, gap, 0}}}}}};
+  EXPECT_THAT(moves(), testing::ElementsAre(2, 1, 1));
+}
+
+TEST(Picture, TheBandIsWhatIsAllowed) {
+  Curves curves = curves_of({{"R", {0, 10, 0, 10}}}, 90);
+  curves.reference = {"rig", {{"R", {0, 10, 0, 10}, 2, {}, {}, {{"analytic", {0, 0, 0, 0}}}}}};
+  const auto document = read(svg_of({"id", "t", "", ChannelFigure{"N", {"R"}}}, curves));
+  const auto bands = document.select_nodes("//polygon[@class='band']");
+  ASSERT_EQ(bands.size(), 2U);  // around the curve, around zero
+  std::string text = bands[1].node().attribute("points").value();
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream in(text);
+  double low = 1e9, high = -1e9;
+  for (double x = 0, y = 0; in >> x >> y;) {
+    low = std::min(low, y);
+    high = std::max(high, y);
+  }
+  // The axis shows -2 to 2 and 6 % more at either end, over 78 px.
+  EXPECT_NEAR(high - low, 78 / 1.12, 0.1);
+}
+
+// Everything that a document can hold without being refused.
+std::vector<Figure> odd_figures() {
+  const double gap = not_computed(), inf = std::numeric_limits<double>::infinity();
+  const Axis log{"x", "s", true}, linear{"y"};
+  std::vector<Figure> figures;
+  const auto add = [&](auto content) {
+    figures.push_back(
+        {"id", "a <b> & \"c\" </script>", "Fig. 1", std::move(content), "<i>note</i>"});
+  };
+  for (const Values& values :
+       {Values{}, Values{1}, Values{0, 0, 0}, Values{gap, gap, gap}, Values{inf, 1, -inf},
+        Values{1, 1 + 1e-16, 1}, Values{1e-320, 0, 2e-320}, Values{1e300, -1e300, 0},
+        Values{1e5, 1e5 + 1e-9, 1e5}, Values{-1, -2, -3}}) {
+    Values x;
+    for (std::size_t i = 0; i < values.size(); ++i) x.push_back(static_cast<double>(i));
+    add(OwnFigure{"N", "x", false, x, {{"s", values}}});
+    add(OwnFigure{"N", "x", true, values, {{"s", x}}});
+    for (const auto& [a, b] :
+         {std::pair{log, linear}, {linear, log}, {Axis{"z", "", false, 0}, linear}}) {
+      add(XyFigure{a, b, {{"s", values, x}, {"r", x, values}}});
+      ScatterSeries series{"s", std::nullopt, true, false, {}};
+      for (std::size_t i = 0; i < values.size(); ++i)
+        series.points.push_back({x[i], values[i], "n"});
+      add(ScatterFigure{a, b, {series}});
+      add(MapFigure{a,
+                    b,
+                    {"z", "%"},
+                    {1, 2, 3},
+                    {1},
+                    {values.size() == 3 ? values : Values{1, 2, gap}},
+                    {1},
+                    {{"p", 2, 1}}});
+    }
+    Curves own = curves_of({{"R", values}}, 1e5);
+    add(ChannelFigure{"N", {"R", "missing"}, {}, own});
+  }
+  add(PistonBars{"Nm", {"R", "missing"}, {0, 38}});
+  return figures;
+}
+
+TEST(Picture, NothingBreaksAPicture) {
+  for (const Figure& figure : odd_figures()) {
+    const std::string svg = svg_of(figure, curves_of({{"R", {1, -2, not_computed()}}}, 120));
+    EXPECT_THAT(svg, Not(HasSubstr("nan")));
+    EXPECT_THAT(svg, Not(HasSubstr("inf")));
+    EXPECT_LT(svg.size(), 30000U);
+    const auto document = read(svg);
+    EXPECT_STREQ(document.first_child().child("title").text().get(), figure.title.c_str());
+    EXPECT_FALSE(csv_of(figure, curves_of({{"R", {1, -2, not_computed()}}}, 120)).empty());
+  }
+}
+
+TEST(Picture, CsvQuotesAndLeavesOut) {
+  EXPECT_EQ(csv_of({"id", "t", "",
+                    OwnFigure{"N", "x, mm", false, {1, 2}, {{"a \"b\"", {0.1, not_computed()}}}}}),
+            "\"x, mm\",\"a \"\"b\"\"\"\n1,0.1\n2,\n");
+  EXPECT_EQ(csv_of({"id", "t", "",
+                    MapFigure{{"n", "rpm"}, {"m"}, {"e", "%"}, {1, 2}, {3}, {{5, 6}}, {}, {}}}),
+            "n (rpm),m,e (%)\n1,3,5\n2,3,6\n");
+}
+
+TEST(Picture, PngHasTwiceTheSize) {
+  const std::string png = png_of(
+      "<svg xmlns='http://www.w3.org/2000/svg' width='30' height='20'><rect width='9' "
+      "height='9'/></svg>");
+  ASSERT_GT(png.size(), 24U);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(png[19], 60);
+  EXPECT_EQ(png[23], 40);
+  EXPECT_THROW(png_of("no picture"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace bentaxis::report
