@@ -59,8 +59,12 @@ int compare(const Options& options) {
       {"multibody.csv", to_csv(select_channels(result.multibody, wanted))}};
   if (result.first.hydraulics)
     curves.emplace_back("pressure.csv", to_csv(result.first.hydraulics->table));
+  if (result.budget) {
+    curves.emplace_back("budget_analytic.csv", to_csv(result.budget->analytic));
+    curves.emplace_back("budget_multibody.csv", to_csv(result.budget->multibody));
+  }
   const auto paths = write_report(folder, "report", study::comparison_document(result, versions()),
-                                  report::curves_of(result.analytic, result.multibody), curves);
+                                  study::page_curves(result), curves);
 
   std::printf("%s\n", study::comparison_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());

@@ -73,6 +73,9 @@ Json json_of(const ModelSection&);
 Json json_of(const compare::Harmonic&);
 Json json_of(const compare::ChannelComparison&);
 Json json_of(const compare::Check&);
+Json json_of(const Budget::Torque&);
+Json json_of(const Budget::Quantity&);
+Json json_of(const Budget&);
 Json json_of(const AssumptionSplit&);
 Json json_of(const PublishedTable&);
 Json json_of(const HardCaseRow::Model&);
@@ -340,6 +343,34 @@ Json json_of(const compare::Check& check) {
           {"verdict", check.holds() ? "holds" : "violated"}};
 }
 
+Json json_of(const Budget::Torque& line) {
+  return {{"cause", line.cause},
+          {"column", line.column},
+          {"mean", exact(line.mean)},
+          {"least", exact(line.least)},
+          {"greatest", exact(line.greatest)},
+          {"carrying", exact(line.carrying)},
+          {"max_abs", line.largest_difference},
+          {"verdict", line.verdict}};
+}
+
+Json json_of(const Budget::Quantity& quantity) {
+  return {{"name", quantity.name},
+          {"kind", quantity.kind},
+          {"unit", quantity.unit},
+          {"values", exact(quantity.values)},
+          {"note", quantity.note}};
+}
+
+Json json_of(const Budget& budget) {
+  return {{"text", budget.text},
+          {"models", budget.models},
+          {"torque", list_of(budget.torque)},
+          {"power", list_of(budget.power)},
+          {"efficiency", list_of(budget.efficiency)},
+          {"block", list_of(budget.block)}};
+}
+
 Json json_of(const compare::Split& split, const compare::ChannelSplit& channel) {
   const auto over_peak = [&](double value) { return channel.peak > 0 ? value / channel.peak : 0; };
   Json parts = Json::array();
@@ -468,6 +499,7 @@ Json to_json(const Document& document) {
     json["published"] = nullptr;
   }
   add(json, "checks", document.checks);
+  add(json, "budget", document.budget);
   add(json, "assumptions", document.assumptions);
   add(json, "published", document.published);
   add(json, "runs", document.runs);

@@ -50,6 +50,27 @@ const validity = ({ validity }) => !list(validity).length ? null : table([
   { head: "Consequence", cell: r => r.consequence || DASH },
 ], validity, { rowClass: r => (r.violated ? "flag" : "") });
 
+// What the drive torque and power go into. Values are one per model.
+function budget({ budget }) {
+  if (!budget) return null;
+  const quantities = (title, rows) => !list(rows).length ? null : el("div.block", {}, el("h3", {}, title), table([
+    { head: "Quantity", main: true, cell: r => r.name },
+    ...(rows.some(r => r.kind) ? [{ head: "Kind", cell: r => r.kind || DASH }] : []),
+    ...budget.models.map((name, i) => ({ head: name, num: true, cell: r => unit(number(r.values[i]), r.unit) })),
+    { head: "Meaning", cell: r => r.note || DASH }], rows));
+  return el("div", {}, budget.text ? el("p", {}, budget.text) : null,
+    table([
+      { head: "Torque for", main: true, cell: r => r.cause },
+      ...budget.models.map((name, i) => ({ head: name + ", mean", num: true, cell: r => unit(number(r.mean[i], 6), "Nm") })),
+      { head: "Over the turn", num: true, cell: r => number(r.least[0]) + " to " + unit(number(r.greatest[0]), "Nm") },
+      { head: "of it carrying, mean", num: true, cell: r => unit(number(r.carrying[0]), "Nm") },
+      { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), "Nm") },
+      { head: "Verdict", cell: r => chip(r.verdict) },
+    ], budget.torque),
+    quantities("Power, mean over the turn", budget.power), quantities("Efficiency", budget.efficiency),
+    quantities("Balance of the block on its plate", budget.block));
+}
+
 function assumptionSplit({ assumptions }, data) {
   if (!assumptions || !list(assumptions.rows).length && !list(assumptions.channels).length) return null;
   const share = (c, channel) => el("li", {}, el("b", {}, c.assumption), ": " + unit(small(c.max_abs), channel.unit)

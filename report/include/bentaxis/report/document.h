@@ -212,6 +212,26 @@ struct PublishedTable {
   compare::PublishedSection section;
 };
 
+/// Torque and power by cause, efficiencies and the block's balance. Values are one per model.
+struct Budget {
+  struct Torque {
+    std::string cause, column;  ///< column of the budgets' CSV files
+    Values mean, least, greatest;
+    Values carrying;  ///< mean of its part in the torque that carries the block round
+    double largest_difference = 0;
+    std::string verdict;
+  };
+  struct Quantity {
+    std::string name, kind, unit;
+    Values values;
+    std::string note;
+  };
+  std::string text;
+  std::vector<std::string> models;
+  std::vector<Torque> torque;  ///< Nm; the last is the whole
+  std::vector<Quantity> power, efficiency, block;
+};
+
 /// What is to be said in words.
 struct Summary {
   struct Group {
@@ -269,6 +289,7 @@ struct Document {
   std::optional<std::vector<ModelSection>> models = std::nullopt;
   std::optional<compare::Comparison> comparison = std::nullopt;  ///< "channels"
   std::optional<std::vector<compare::Check>> checks = std::nullopt;
+  std::optional<Budget> budget = std::nullopt;
   std::optional<AssumptionSplit> assumptions = std::nullopt;
   std::optional<PublishedTable> published = std::nullopt;
   std::optional<std::vector<Section>> runs = std::nullopt;

@@ -11,6 +11,9 @@ namespace bentaxis::study {
 /// @param program  what computed it: names and versions
 report::Document comparison_document(const ComparisonResult& result, const report::Lines& program);
 
+/// The curves of its figures.
+report::Curves page_curves(const ComparisonResult& result);
+
 /// The result in words for a terminal: verdict, worst channels, checks, warnings.
 std::string comparison_text(const ComparisonResult& result);
 
