@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
+#include "provenance.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -74,8 +75,9 @@ int regress(const Options& options) {
   }
   if (!options.html.empty()) {
     const std::string name = fs::absolute(root / ".").parent_path().filename();
-    write(options.html,
-          report::render_page(study::regression_document(outcomes, name, versions())));
+    report::Document document = study::regression_document(outcomes, name, versions());
+    add_provenance(document);
+    write(options.html, report::render_page(document));
   }
   return status;
 }

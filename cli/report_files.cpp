@@ -1,6 +1,7 @@
 #include "report_files.h"
 
 #include "bentaxis/report/page.h"
+#include "provenance.h"
 
 namespace bentaxis::cli {
 
@@ -8,6 +9,7 @@ std::vector<std::filesystem::path> write_report(OutputFolder& folder, const std:
                                                 report::Document document,
                                                 const report::Curves& curves,
                                                 const std::vector<TextFile>& further) {
+  add_provenance(document);
   document.files = {name + ".html"};
   for (const auto& [file, content] : further) document.files.push_back(file);
   document.files.push_back(name + ".json");

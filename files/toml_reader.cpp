@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 
@@ -398,6 +399,7 @@ TomlFile TomlFile::read(const std::filesystem::path& file, const std::string& wh
   if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
   std::ostringstream text;
   text << in.rdbuf();
+  InputLog::note(file);
   return {text.str(), file};
 }
 

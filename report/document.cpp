@@ -62,6 +62,7 @@ Json exact(const Values& values) {
 Json json_of(const Section&);
 Json json_of(const Record&);
 Json json_of(const Figure&);
+Json json_of(const Provenance&);
 Json json_of(const CaseSection&);
 Json json_of(const DerivedQuantity&);
 Json json_of(const Verdict&);
@@ -215,6 +216,17 @@ Json json_of(const Figure& figure) {
 
 // ---- Sections
 
+Json json_of(const Provenance& from) {
+  return {{"command", from.command},
+          {"date", from.date},
+          {"version", from.version},
+          {"inputs", list_of(from.inputs,
+                             [](const Provenance::Input& input) {
+                               return Json{{"file", input.file}, {"sha256", input.sha256}};
+                             })},
+          {"machine", from.machine}};
+}
+
 Json json_of(const CaseSection& section) {
   return {{"file", section.file}, {"entries", list_of(section.entries, [](const InputEntry& entry) {
                                      return Json{{"table", entry.table},
@@ -281,7 +293,7 @@ Json json_of(const ModelSection& model) {
   return {{"name", model.name},
           {"assumptions", model.assumptions},
           {"facts", model.facts},
-          {"seconds", model.seconds},
+          {"seconds", number_or_null(model.seconds)},
           {"angles", model.angles}};
 }
 
@@ -483,6 +495,7 @@ void add(Json& json, const char* key, const std::optional<std::vector<Item>>& it
 Json to_json(const Document& document) {
   Json json = {{"schema", 1}, {"title", document.title}, {"program", document.program}};
   if (!document.files.empty()) json["files"] = document.files;
+  add(json, "provenance", document.provenance);
   add(json, "case", document.the_case);
   add(json, "derived", document.derived);
   add(json, "verdict", document.verdict);

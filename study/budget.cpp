@@ -136,6 +136,12 @@ std::vector<report::Budget::Quantity> power_lines(const std::vector<Turn>& turns
       },
       "drive less all lines above");
   if (!turns.front().ready.hydraulics) return lines;
+  add(
+      "pistons on the oil, by the hydraulic model", "check",
+      [](const Turn& turn) {
+        return turn.ready.hydraulics->summary.work * turn.omega() / (2 * kPi);
+      },
+      "work of -p dV per turn from the balance of mass: beside the power of the pressure");
   const auto useful = [](const Turn& turn) {
     return turn.ready.hydraulics->summary.flow_at_inlet * turn.pressure_difference();
   };
@@ -286,8 +292,8 @@ report::Budget budget_section(const BudgetComparison& budgets, const ReadyCase& 
   section.text =
       "Each line from its own load alone: analytic by the closed form under that load, multibody "
       "by the load's virtual power along Simbody's velocities. Spring, film, weights of shaft and "
-      "block turn nothing. \"Carrying\" is the part that carries the block round: it goes through "
-      "the gear, or comes from the block's imposed speed and is then no part of Td.";
+      "block turn nothing. What carries the block round goes through the gear; where the block's "
+      "speed is imposed it comes from there and is no part of Td.";
   section.models = {analytic.name, multibody.name};
   section.torque = torque_lines(budgets, turns);
   section.power = power_lines(turns);

@@ -52,7 +52,7 @@ const SECTIONS = [
   ["runs", "Runs", runs], ["published", "Against the published numbers", published],
   ["checks", "Checks of each model", checks],
   ["figures", "Figures", figures], ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
-  ["models", "How each model was obtained", models], ["versions", "Versions", versions],
+  ["models", "How each model was obtained", models], ["versions", "Origin and versions", versions],
 ];
 
 function header(report, data) {

@@ -50,25 +50,29 @@ const validity = ({ validity }) => !list(validity).length ? null : table([
   { head: "Consequence", cell: r => r.consequence || DASH },
 ], validity, { rowClass: r => (r.violated ? "flag" : "") });
 
-// What the drive torque and power go into. Values are one per model.
+// What the drive torque and power go into. Values are one per model; round-off of the largest is shown as 0.
 function budget({ budget }) {
   if (!budget) return null;
-  const quantities = (title, rows) => !list(rows).length ? null : el("div.block", {}, el("h3", {}, title), table([
+  const value = (v, name, whole) => unit(number(Math.abs(v) < 1e-12 * whole && v != null ? 0 : v), name);
+  const perModel = (text, cell) => budget.models.map((name, i) => ({ head: name + text, num: true, cell: r => cell(r, i) }));
+  const largest = rows => Math.max(0, ...rows.flatMap(r => r.values.map(Math.abs)));
+  const quantities = (title, rows, whole) => !list(rows).length ? null : el("div.block", {}, el("h3", {}, title), table([
     { head: "Quantity", main: true, cell: r => r.name },
     ...(rows.some(r => r.kind) ? [{ head: "Kind", cell: r => r.kind || DASH }] : []),
-    ...budget.models.map((name, i) => ({ head: name, num: true, cell: r => unit(number(r.values[i]), r.unit) })),
+    ...perModel("", (r, i) => value(r.values[i], r.unit, whole)),
     { head: "Meaning", cell: r => r.note || DASH }], rows));
+  const peak = Math.max(0, ...budget.torque.flatMap(r => [...r.least, ...r.greatest].map(Math.abs)));
   return el("div", {}, budget.text ? el("p", {}, budget.text) : null,
     table([
       { head: "Torque for", main: true, cell: r => r.cause },
-      ...budget.models.map((name, i) => ({ head: name + ", mean", num: true, cell: r => unit(number(r.mean[i], 6), "Nm") })),
-      { head: "Over the turn", num: true, cell: r => number(r.least[0]) + " to " + unit(number(r.greatest[0]), "Nm") },
-      { head: "of it carrying, mean", num: true, cell: r => unit(number(r.carrying[0]), "Nm") },
+      ...perModel(", mean", (r, i) => value(r.mean[i], "Nm", peak)),
+      { head: "over the turn", num: true, cell: r => value(r.least[0], "", peak) + " to " + value(r.greatest[0], "Nm", peak) },
+      { head: "of the mean, to carry the block", num: true, cell: r => value(r.carrying[0], "Nm", peak) },
       { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), "Nm") },
       { head: "Verdict", cell: r => chip(r.verdict) },
     ], budget.torque),
-    quantities("Power, mean over the turn", budget.power), quantities("Efficiency", budget.efficiency),
-    quantities("Balance of the block on its plate", budget.block));
+    quantities("Power, mean over the turn", budget.power, largest(budget.power)),
+    quantities("Efficiency", budget.efficiency, 0), quantities("Balance of the block on its plate", budget.block, 0));
 }
 
 function assumptionSplit({ assumptions }, data) {
@@ -167,4 +171,11 @@ function models({ models }) {
     list(m.assumptions).length ? [el("h4", {}, "Assumptions"), facts(m.assumptions, ".pairs")] : null)));
 }
 
-const versions = ({ program }) => facts(program, ".pairs");
+// Where the report comes from, at its end.
+const versions = ({ program, provenance: from }) => el("div", {},
+  !from ? null : el("div.block", {}, facts([["command", el("code", {}, from.command)], ["date", from.date],
+    ...from.inputs.slice(0, 3).map(i => [i.file, el("span", {}, "SHA-256 ", el("code", {}, i.sha256))]),
+    ...from.machine.filter(([name]) => name === "system")], ".pairs"),
+    from.inputs.length <= 3 ? null : el("details", {}, el("summary", {}, `All files read (${from.inputs.length})`),
+      facts(from.inputs.map(i => [i.file, el("code", {}, i.sha256)]), ".pairs"))),
+  facts(program, ".pairs"));

@@ -140,6 +140,19 @@ struct Figure {
 
 // ---- Sections
 
+/// Where a report comes from.
+struct Provenance {
+  struct Input {
+    std::string file;    ///< name, with that of its folder
+    std::string sha256;  ///< of what was read
+  };
+  std::string command;  ///< line, as a shell takes it
+  std::string date;     ///< ISO 8601, UTC
+  std::string version;  ///< of bentaxis
+  std::vector<Input> inputs;
+  Lines machine;  ///< processor, system, compiler
+};
+
 struct CaseSection {
   std::string file;
   std::vector<InputEntry> entries;
@@ -276,6 +289,7 @@ struct LongRunSection {
 struct Document {
   std::string title;
   Lines program;  ///< versions
+  std::optional<Provenance> provenance = std::nullopt;
   std::vector<std::string> files =
       {};  ///< written together with the report, it too; none: it stands alone
   std::optional<CaseSection> the_case = std::nullopt;
