@@ -327,7 +327,7 @@ std::string TableReader::written(const Node& node, const std::string& key) const
   if (!node.node->is_number()) return quoted(*node.node);
   const double value = *node.node->value<double>();
   const std::string* const change = change_of(key);
-  const std::string word =
+  std::string word =
       change != nullptr
           ? literal(*change, 0, value)
           : literal(node.file->text, offset_of(node.file->text, node.node->source().begin), value);
