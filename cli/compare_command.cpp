@@ -60,6 +60,10 @@ int compare(const Options& options) {
       {"multibody.csv", to_csv(select_channels(result.multibody, wanted))}};
   if (result.first.hydraulics)
     curves.emplace_back("pressure.csv", to_csv(result.first.hydraulics->table));
+  if (result.budget) {
+    curves.emplace_back("budget_analytic.csv", to_csv(result.budget->analytic));
+    curves.emplace_back("budget_multibody.csv", to_csv(result.budget->multibody));
+  }
   const report::Document document = study::comparison_document(result, versions());
   const auto paths =
       folders.write("report", document, study::comparison_curves(result, document), curves);

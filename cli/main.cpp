@@ -6,9 +6,11 @@
 #include <new>
 #include <vector>
 
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "commands.h"
 #include "console.h"
+#include "provenance.h"
 
 namespace {
 
@@ -78,4 +80,8 @@ int run_program(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return checked_output(run_program(argc, argv)); }
+int main(int argc, char** argv) {
+  const InputLog inputs;
+  remember_command(argc, argv);
+  return checked_output(run_program(argc, argv));
+}

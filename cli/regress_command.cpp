@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
+#include "provenance.h"
 #include "report_files.h"
 #include "versions.h"
 
@@ -75,7 +76,8 @@ int regress(const Options& options) {
   }
   if (options.html.empty() && options.figures.empty()) return status;
   const std::string name = fs::absolute(root / ".").parent_path().filename();
-  const report::Document document = study::regression_document(outcomes, name, versions());
+  report::Document document = study::regression_document(outcomes, name, versions());
+  add_provenance(document);
   if (!options.html.empty()) write(options.html, report::render_page(document));
   if (!options.figures.empty()) {
     OutputFolder folder(options.figures);

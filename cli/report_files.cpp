@@ -3,6 +3,7 @@
 #include "bentaxis/report/page.h"
 #include "bentaxis/report/picture.h"
 #include "options.h"
+#include "provenance.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -45,6 +46,7 @@ std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
                                                         report::Document document,
                                                         const report::Curves& curves,
                                                         const std::vector<TextFile>& further) {
+  add_provenance(document);
   document.files = {name + ".html"};
   for (const auto& [file, content] : further) document.files.push_back(file);
   document.files.push_back(name + ".json");

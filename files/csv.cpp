@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -37,6 +38,7 @@ std::vector<std::string_view> split(std::string_view line) {
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty) {
   if (std::filesystem::is_directory(file))
     throw InputError(file.string() + ": is a folder, not a CSV file");
+  InputLog::note(file);
   NumericTable table;
   try {
     io::LineReader reader(file.string());

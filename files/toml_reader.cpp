@@ -4,16 +4,46 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <sstream>
 
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis {
 namespace {
+
+// A number at the start of a text as it is written there; empty where it is another one.
+std::string literal(const std::string& text, std::size_t at, double value) {
+  const auto ends = text.find_first_not_of("0123456789abcdefinxoABCDEFX+-._", at);
+  std::string word = at < text.size() ? text.substr(at, ends - at) : "";
+  std::string digits = word;
+  std::erase(digits, '_');
+  char* end = nullptr;
+  const bool same = !digits.empty() && std::strtod(digits.c_str(), &end) == value && *end == 0;
+  return same ? word : "";
+}
+
+// Place of a position in a text; columns count characters, which are one byte or more.
+std::size_t offset_of(const std::string& text, const toml::source_position& position) {
+  std::size_t at = 0;
+  for (toml::source_index line = 1; line < position.line; ++line) {
+    at = text.find('\n', at);
+    if (at == std::string::npos) return text.size();
+    ++at;
+  }
+  const auto starts_character = [&](std::size_t i) {
+    return (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+  };
+  for (toml::source_index column = 1; column < position.column && at < text.size(); ++column) do
+      ++at;
+    while (at < text.size() && !starts_character(at));
+  return at;
+}
 
 std::string quoted(const toml::node& node) {
   std::ostringstream out;
@@ -65,6 +95,7 @@ std::string one_line(const std::string& text) {
 
 // A parsed file, and what was changed in it: "pump.tilt_deg" -> the value as given.
 struct Document {
+  std::string text;
   toml::table table;
   std::map<std::string, std::string> changes;
 };
@@ -105,7 +136,7 @@ int TableReader::integer(const std::string& key, int low, int high, std::optiona
   if (!node->node->is_integer()) fail_at(*node, key, "must be " + wanted);
   const auto value = node->node->as_integer()->get();
   if (value < low || value > high) fail_at(*node, key, "must be " + wanted);
-  record(key, quoted(*node->node));
+  record(key, written(*node, key));
   return static_cast<int>(value);
 }
 
@@ -121,9 +152,7 @@ std::string TableReader::text(const std::string& key, std::optional<std::string>
 }
 
 std::string TableReader::any(const std::string& key) {
-  const auto node = find(key, "a value", false);
-  const auto* number = node->node->as_floating_point();
-  return number != nullptr ? number_text(number->get()) : quoted(*node->node);
+  return written(*find(key, "a value", false), key);
 }
 
 bool TableReader::flag(const std::string& key, bool fallback) {
@@ -163,7 +192,7 @@ std::pair<double, double> TableReader::pair(const std::string& key, NumberRange 
     fail_at(*node, key, "must be a pair of numbers [a, b]");
   const std::pair values{number_of({node->file, &(*array)[0]}, key, range, false),
                          number_of({node->file, &(*array)[1]}, key, range, false)};
-  record(key, quoted(*node->node));
+  record(key, written(*node, key));
   return values;
 }
 
@@ -263,7 +292,7 @@ std::string TableReader::label(const std::string& key) const {
 
 void TableReader::fail_at(const Node& node, const std::string& key, const std::string& why) const {
   if (change_of(key) != nullptr) throw InputError(place_of(node, key) + why);
-  throw InputError(place_of(node, key) + label(key) + " = " + quoted(*node.node) + ": " + why);
+  throw InputError(place_of(node, key) + label(key) + " = " + written(node, key) + ": " + why);
 }
 
 const std::string* TableReader::change_of(const std::string& key) const {
@@ -271,6 +300,25 @@ const std::string* TableReader::change_of(const std::string& key) const {
   const auto& changes = table_->file->changes;
   const auto found = changes.find(name_.empty() ? key : name_ + "." + key);
   return found == changes.end() ? nullptr : &found->second;
+}
+
+// A value as whoever wrote it wrote it: toml++ prints 24.92 with its 17 digits.
+std::string TableReader::written(const Node& node, const std::string& key) const {
+  if (const toml::array* array = node.node->as_array(); array != nullptr) {
+    std::string list;
+    for (const toml::node& item : *array)
+      list += (list.empty() ? "" : ", ") + written({node.file, &item}, key);
+    return "[" + list + "]";
+  }
+  if (!node.node->is_number()) return quoted(*node.node);
+  const double value = *node.node->value<double>();
+  const std::string* const change = change_of(key);
+  std::string word =
+      change != nullptr
+          ? literal(*change, 0, value)
+          : literal(node.file->text, offset_of(node.file->text, node.node->source().begin), value);
+  if (!word.empty()) return word;
+  return node.node->is_integer() || !std::isfinite(value) ? quoted(*node.node) : number_text(value);
 }
 
 // Where a value comes from: file and line, or the change with the value as given.
@@ -304,7 +352,7 @@ double TableReader::number_of(const Node& node, const std::string& key, NumberRa
   }
   if (!std::isfinite(value)) fail_at(node, key, "must be " + range.text_of("a finite number"));
   if (!range.contains(value)) fail_at(node, key, "must be " + range.text());
-  if (recorded) record(key, quoted(*node.node));
+  if (recorded) record(key, written(node, key));
   return value;
 }
 
@@ -321,7 +369,7 @@ void TableReader::record(const std::string& key, std::string value, bool by_defa
 TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(std::move(file)) {
   try {
     const auto document =
-        std::make_shared<Document>(Document{toml::parse(text, file_.string()), {}});
+        std::make_shared<Document>(Document{text, toml::parse(text, file_.string()), {}});
     root_ =
         std::make_shared<const TableReader::Node>(TableReader::Node{document, &document->table});
   } catch (const toml::parse_error& error) {
@@ -340,6 +388,7 @@ TomlFile TomlFile::read(const std::filesystem::path& file, const std::string& wh
   if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
   std::ostringstream text;
   text << in.rdbuf();
+  InputLog::note(file);
   return {text.str(), file};
 }
 

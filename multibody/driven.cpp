@@ -48,7 +48,7 @@ bool one_stands_for_all(const Samples& samples) {
 }  // namespace
 
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
-                       const Progress& progress, Scene scene, Method method) {
+                       const Progress& progress, Scene scene, Method method, ResultTable* budget) {
   validate(the_case);
   if (samples.pistons != the_case.pump.geometry.pistons)
     throw InputError("driven run: samples of " + std::to_string(samples.pistons) +
@@ -66,10 +66,12 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
     }
   }
   std::size_t next = 0;
+  if (budget != nullptr) *budget = budget_table("multibody");
   const ChannelLayout& at = model.layout();
   const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {
     if (!shared) {
       model.evaluate(instant, row);
+      if (budget != nullptr) append_budget(*budget, samples.theta_deg[next++], model.budget());
       return;
     }
     for (int k = 0; k < at.pistons(); ++k) {

@@ -11,6 +11,7 @@
 #include "bentaxis/results/worst.h"
 #include "loads/friction.h"
 #include "placement/placement.h"
+#include "reactions/budget.h"
 #include "reactions/channels.h"
 #include "reactions/inverse_dynamics.h"
 #include "reactions/reactions.h"
@@ -169,6 +170,15 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
     read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
                          self.layout, values);
   });
+}
+
+Budget Model::budget() {
+  Implementation& self = *implementation_;
+  if (self.scene != Scene::full) throw std::logic_error("budget() is of the full pump");
+  Budget budget;
+  translate_simbody_errors(
+      [&] { budget = budget_of(self.system, self.placement, self.reactions); });
+  return budget;
 }
 
 Provenance Model::provenance() const {

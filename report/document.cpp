@@ -62,6 +62,7 @@ Json exact(const Values& values) {
 Json json_of(const Section&);
 Json json_of(const Record&);
 Json json_of(const Figure&);
+Json json_of(const Provenance&);
 Json json_of(const CaseSection&);
 Json json_of(const DerivedQuantity&);
 Json json_of(const Verdict&);
@@ -73,6 +74,9 @@ Json json_of(const ModelSection&);
 Json json_of(const compare::Harmonic&);
 Json json_of(const compare::ChannelComparison&);
 Json json_of(const compare::Check&);
+Json json_of(const Budget::Torque&);
+Json json_of(const Budget::Quantity&);
+Json json_of(const Budget&);
 Json json_of(const AssumptionSplit&);
 Json json_of(const PublishedTable&);
 Json json_of(const HardCaseRow::Model&);
@@ -212,6 +216,17 @@ Json json_of(const Figure& figure) {
 
 // ---- Sections
 
+Json json_of(const Provenance& from) {
+  return {{"command", from.command},
+          {"date", from.date},
+          {"version", from.version},
+          {"inputs", list_of(from.inputs,
+                             [](const Provenance::Input& input) {
+                               return Json{{"file", input.file}, {"sha256", input.sha256}};
+                             })},
+          {"machine", from.machine}};
+}
+
 Json json_of(const CaseSection& section) {
   return {{"file", section.file}, {"entries", list_of(section.entries, [](const InputEntry& entry) {
                                      return Json{{"table", entry.table},
@@ -282,7 +297,7 @@ Json json_of(const ModelSection& model) {
   return {{"name", model.name},
           {"assumptions", model.assumptions},
           {"facts", model.facts},
-          {"seconds", model.seconds},
+          {"seconds", number_or_null(model.seconds)},
           {"angles", model.angles}};
 }
 
@@ -342,6 +357,34 @@ Json json_of(const compare::Check& check) {
           {"tolerance", check.tolerance},
           {"theta_deg", check.theta_deg},
           {"verdict", check.holds() ? "holds" : "violated"}};
+}
+
+Json json_of(const Budget::Torque& line) {
+  return {{"cause", line.cause},
+          {"column", line.column},
+          {"mean", exact(line.mean)},
+          {"least", exact(line.least)},
+          {"greatest", exact(line.greatest)},
+          {"carrying", exact(line.carrying)},
+          {"max_abs", line.largest_difference},
+          {"verdict", line.verdict}};
+}
+
+Json json_of(const Budget::Quantity& quantity) {
+  return {{"name", quantity.name},
+          {"kind", quantity.kind},
+          {"unit", quantity.unit},
+          {"values", exact(quantity.values)},
+          {"note", quantity.note}};
+}
+
+Json json_of(const Budget& budget) {
+  return {{"text", budget.text},
+          {"models", budget.models},
+          {"torque", list_of(budget.torque)},
+          {"power", list_of(budget.power)},
+          {"efficiency", list_of(budget.efficiency)},
+          {"block", list_of(budget.block)}};
 }
 
 Json json_of(const compare::Split& split, const compare::ChannelSplit& channel) {
@@ -456,6 +499,7 @@ void add(Json& json, const char* key, const std::optional<std::vector<Item>>& it
 Json to_json(const Document& document) {
   Json json = {{"schema", 1}, {"title", document.title}, {"program", document.program}};
   if (!document.files.empty()) json["files"] = document.files;
+  add(json, "provenance", document.provenance);
   add(json, "case", document.the_case);
   add(json, "derived", document.derived);
   add(json, "verdict", document.verdict);
@@ -472,6 +516,7 @@ Json to_json(const Document& document) {
     json["published"] = nullptr;
   }
   add(json, "checks", document.checks);
+  add(json, "budget", document.budget);
   add(json, "assumptions", document.assumptions);
   add(json, "published", document.published);
   add(json, "runs", document.runs);

@@ -57,6 +57,11 @@ class Maker {
 
  private:
   bool integrated() const { return result_.options.way == Way::integrated; }
+  bool has_budget() const {
+    const ChannelLayout layout(result_.first.the_case.pump.geometry.pistons);
+    return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
+           result_.options.channels.wants(layout.channels()[layout.Td()]);
+  }
 
   RunOptions multibody_run(double accuracy) const {
     RunOptions options;
@@ -83,6 +88,7 @@ class Maker {
   const PartProgress& progress_of_;
   Samples samples_, multibody_samples_;
   compare::ZeroScales zero_scales_;
+  std::optional<ResultTable> analytic_budget_, multibody_budget_;
 };
 
 void Maker::run_models() {
@@ -102,11 +108,20 @@ void Maker::run_models() {
                 : o.target     ? o.target->error
                 : integrated() ? kIntegratedFactor * o.accuracies.back()
                                : kDrivenTolerance;
-  r.analytic = study::run(r.first, samples_, {}, progress_of_).table;
-  if (integrated())
+  RunOptions analytic_run;
+  analytic_run.budget = has_budget();
+  ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
+  r.analytic = std::move(analytic.table);
+  analytic_budget_ = std::move(analytic.budget);
+  if (integrated()) {
     integrate_all();
-  else
-    r.multibody = study::run(r.second, multibody_samples_, multibody_run(0), progress_of_).table;
+    return;
+  }
+  RunOptions driven = multibody_run(0);
+  driven.budget = has_budget();
+  ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
+  r.multibody = std::move(multibody.table);
+  multibody_budget_ = std::move(multibody.budget);
 }
 
 // Integrated runs at every accuracy asked for. The last one's table is the one compared.
@@ -180,6 +195,10 @@ void Maker::compare_tables() {
   for (const ResultTable* table : {&r.analytic, &r.multibody})
     for (auto& check : compare::judge_checks(*table, zero_scales_, r.tolerance))
       r.checks.push_back(std::move(check));
+  if (!analytic_budget_) return;
+  r.budget = compare_budgets(std::move(*analytic_budget_), std::move(*multibody_budget_),
+                             r.tolerance, zero_scales_);
+  r.checks.insert(r.checks.end(), r.budget->checks.begin(), r.budget->checks.end());
 }
 
 // Takes the difference apart where the models' assumptions differ.
@@ -203,18 +222,26 @@ void Maker::split_assumptions() {
     changes.push_back(all_changes[i]);
   }
   if (names.empty()) return;
-  const auto variant = [&](unsigned mask) {
+  const auto run_of = [&](unsigned mask, bool budget) {
     RunOptions options;
+    options.budget = budget;
     options.assumptions = from;
     for (std::size_t i = 0; i < changes.size(); ++i)
       if ((mask & (1U << i)) != 0) changes[i](*options.assumptions, to);
-    return study::run(r.first, samples_, options).table;
+    return study::run(r.first, samples_, options);
   };
+  const auto variant = [&](unsigned mask) { return run_of(mask, false).table; };
   // A tolerance that the user names counts as it is.
   const double tolerance = r.options.tolerance || integrated() ? r.tolerance : kDrivenRestTolerance;
   r.split =
       compare::split_difference(r.analytic, r.multibody, names, variant, zero_scales_, tolerance);
   compare::mark_explained(r.comparison, *r.split);
+  if (!r.budget) return;
+  explain(*r.budget,
+          compare::split_difference(
+              r.budget->analytic, r.budget->multibody, names,
+              [&](unsigned mask) { return *run_of(mask, true).budget; }, zero_scales_, tolerance),
+          zero_scales_);
 }
 
 // Fig. 32 with and without the block's viscous torque.
@@ -295,6 +322,7 @@ bool ComparisonResult::checks_hold() const {
 
 bool ComparisonResult::agrees() const {
   if (!checks_hold() || comparison.incomplete() != nullptr) return false;
+  if (budget && !budget->comparison.agrees()) return false;
   return split ? split->explained() : comparison.agrees();
 }
 
@@ -302,6 +330,17 @@ std::string ComparisonResult::headline() const {
   if (const auto* gap = comparison.incomplete())
     return fmt::format("The two models cannot be said to agree: {} of {}.", gap->gap,
                        gap->channel.name);
+  const bool channels_agree = split ? split->explained() : comparison.agrees();
+  if (budget && channels_agree && !budget->comparison.agrees()) {
+    const auto* apart = &budget->comparison.channels.front();
+    for (const auto& line : budget->comparison.channels)
+      if (line.verdict == compare::Verdict::differs) apart = &line;
+    return fmt::format(
+        "The torque budgets of the two models differ: {} at {:g} deg by {:.1e} {} (tolerance {:g} "
+        "of its peak).",
+        apart->channel.name, apart->theta_of_largest_deg, apart->largest, apart->channel.unit,
+        split ? split->tolerance : budget->comparison.tolerance);
+  }
   const auto* worst = comparison.worst();
   const std::string where =
       worst == nullptr ? ""

@@ -184,6 +184,8 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
                      report::model_of(r.multibody, in_words(r.second.the_case.multibody))};
   document.comparison = r.comparison;
   document.checks = r.checks;
+  if (r.budget)
+    document.budget = budget_section(*r.budget, r.first, r.second, r.analytic, r.multibody);
   if (r.split)
     document.assumptions = {
         "The models were asked to assume different things. Each assumption's contribution is its "
@@ -204,8 +206,27 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   return document;
 }
 
+namespace {
+
+void add_budget(report::Curves& curves, const BudgetComparison& budget) {
+  const report::Curves more = report::curves_of(budget.analytic, budget.multibody);
+  // What a page has of the channels already is not added twice.
+  const auto add = [&](auto& columns, const auto& of_budget) {
+    for (const auto& column : of_budget)
+      if (std::none_of(columns.begin(), columns.end(),
+                       [&](const auto& c) { return c.first == column.first; }))
+        columns.push_back(column);
+  };
+  for (std::size_t t = 0; t < curves.tables.size(); ++t)
+    add(curves.tables[t].columns, more.tables[t].columns);
+  add(curves.difference, more.difference);
+}
+
+}  // namespace
+
 report::Curves comparison_curves(const ComparisonResult& r, const report::Document& document) {
   report::Curves curves = report::curves_of(r.analytic, r.multibody);
+  if (r.budget) add_budget(curves, *r.budget);
   if (!r.with) return curves;
   std::vector<std::string> shown;
   for (const report::Figure& figure : *document.figures)
@@ -220,6 +241,7 @@ std::string comparison_text(const ComparisonResult& r) {
   std::string text = fmt::format("{}\n{}\n\n{}", r.first.the_case.name, r.headline(),
                                  report::text_table(r.comparison));
   if (!r.choice.empty()) text += fmt::format("chosen {}\n", r.choice);
+  if (r.budget) text += budget_text(*r.budget) + "\n";
   for (const auto& check : r.checks)
     text += fmt::format("{}: {}: {:.1e} of scale, {}\n", check.table, check.name, check.relative(),
                         check.holds() ? "holds" : "violated");

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/budget.h"
 
 namespace bentaxis::study {
 namespace {
@@ -76,6 +77,20 @@ std::vector<report::Figure> catalogue(const ResultTable& analytic, const ResultT
   return figures;
 }
 
+// What the drive torque is needed for over the turn: the causes that there are.
+report::Figure budget_figure(const BudgetComparison& budgets) {
+  report::ChannelFigure content{"Nm", {"Td_z1_Nm"}};
+  for (std::size_t c = 0; c < kCauses; ++c) {
+    const std::string column = drive_column(static_cast<Cause>(c));
+    if (budgets.analytic.peak(column) > 0 || budgets.multibody.peak(column) > 0)
+      content.channels.push_back(column);
+  }
+  return {
+      "torque_budget", "Drive torque by cause", "", std::move(content),
+      "The parts add up to Td at every angle; budget_analytic.csv and budget_multibody.csv hold "
+      "them."};
+}
+
 // Whether a figure of channels shows one of these.
 bool shows(const report::Figure& figure, const std::vector<Channel>& channels) {
   const auto* curves = std::get_if<report::ChannelFigure>(&figure.content);
@@ -93,6 +108,7 @@ std::vector<report::Figure> comparison_figures(const ComparisonResult& r) {
   const auto wanted = r.options.channels.of(layout);
   auto figures = catalogue(r.analytic, r.multibody, r.without_viscous);
   std::erase_if(figures, [&](const auto& figure) { return !shows(figure, wanted); });
+  if (r.budget) figures.push_back(budget_figure(*r.budget));
   return figures;
 }
 

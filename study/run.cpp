@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/model.h"
@@ -28,6 +29,8 @@ void check(const RunOptions& options) {
     throw InputError(
         "scenes and ways to find reactions are for driven runs: an integrated run is of the full "
         "pump, by its equations of motion");
+  if (options.budget && (integrated || options.scene.scene != multibody::Scene::full))
+    throw InputError("a torque budget is of a driven run of the full pump");
 }
 
 // Tables of a run, and what a comparison makes of them, lie in memory.
@@ -92,9 +95,12 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
   ModelRun result;
   if (options.model == Model::analytic) {
     result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"));
+    if (options.budget) result.budget = analytic::run_budget(the_case, assumptions, samples);
   } else if (options.way == Way::driven) {
+    if (options.budget) result.budget.emplace();
     result.table = multibody::run_driven(the_case, assumptions, samples, progress_of("multibody"),
-                                         options.scene.scene, options.scene.method);
+                                         options.scene.scene, options.scene.method,
+                                         options.budget ? &*result.budget : nullptr);
   } else if (options.target) {
     const auto& among = options.target->integrators;
     VerifiedRun verified =

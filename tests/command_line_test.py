@@ -5,6 +5,8 @@ usage: command_line_test.py BENTAXIS REPO_ROOT [options of unittest]
 """
 
 import csv
+import datetime
+import hashlib
 import json
 import os
 import pathlib
@@ -21,7 +23,8 @@ import unittest
 import jsonschema
 
 DONE, OUT_OF_TOLERANCE, BAD_INPUT, COMPUTATION_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
-REPORT_FILES = {"report.html", "report.json", "analytic.csv", "multibody.csv"}
+REPORT_FILES = {"report.html", "report.json", "analytic.csv", "multibody.csv", "budget_analytic.csv",
+                "budget_multibody.csv"}
 SECONDS = 120  # no single command may take longer
 
 PROGRAM = REPO = None  # set in main
@@ -447,8 +450,91 @@ class RunTest(ProgramTest):
             self.assertEqual(*[(self.folder / out / f"{model}.csv").read_bytes() for out in ("one", "two")])
 
 
+class ProvenanceTest(ProgramTest):
+    def report(self, *arguments, file="report.json", environment=None, status=0):
+        process = self.start(*arguments, "--out", "out", env={**os.environ, **(environment or {})})
+        self.finish(process, status)
+        return json.loads((self.folder / "out" / file).read_text()), (self.folder / "out").iterdir()
+
+    def test_report_says_where_it_comes_from(self):
+        case = self.case()
+        before = datetime.datetime.now(datetime.timezone.utc).replace(microsecond=0)
+        report, _ = self.report("compare", case.name, "--set", "name=it's a pump")
+        origin = report["provenance"]
+        self.assertEqual(origin["command"], r"bentaxis compare case.toml --set 'name=it'\''s a pump' --out out")
+        date = datetime.datetime.strptime(origin["date"], "%Y-%m-%dT%H:%M:%SZ").replace(tzinfo=datetime.timezone.utc)
+        self.assertLessEqual(before, date)
+        self.assertLess(date, before + datetime.timedelta(minutes=5))
+        self.assertEqual(origin["version"], self.run_program("--version").out.split()[1])
+        self.assertEqual(origin["inputs"][0],
+                         {"file": "case.toml", "sha256": hashlib.sha256(case.read_bytes()).hexdigest()})
+        self.assertEqual([name for name, _ in origin["machine"]], ["compiler", "processor", "system"])
+        self.assertTrue(all(value for _, value in origin["machine"]))
+        self.assertNotIn(str(self.folder), json.dumps(report))  # no path that was not typed
+
+    def test_curve_is_an_input(self):
+        (self.folder / "curve.csv").write_text(CURVE)
+        case = self.case(**{"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'})
+        report, _ = self.report("compare", case)
+        self.assertIn({"file": f"{self.folder.name}/curve.csv", "sha256": hashlib.sha256(CURVE.encode()).hexdigest()},
+                      report["provenance"]["inputs"])
+
+    def test_the_same_date_gives_the_same_bytes(self):
+        case = self.case()
+        written = []
+        for _ in range(2):
+            report, files = self.report("compare", case, environment={"SOURCE_DATE_EPOCH": "1700000000"})
+            written.append({file.name: file.read_bytes() for file in files})
+        self.assertEqual(report["provenance"]["date"], "2023-11-14T22:13:20Z")
+        self.assertEqual(set(written[0]), REPORT_FILES)
+        self.assertEqual(*written)
+        self.assertIsNone(report["models"][0]["seconds"])
+
+    def test_a_date_that_is_none_is_refused(self):
+        for text in ("", "yesterday", "-1", "1.5", "99999999999999"):
+            process = self.start("compare", self.case(), "--out", "out", env={**os.environ, "SOURCE_DATE_EPOCH": text})
+            result = self.finish(process, BAD_INPUT)
+            self.assert_mentions(result.err, f"SOURCE_DATE_EPOCH={text}:", "seconds since 1970")
+            self.assertEqual(list(self.folder.glob("out/*")), [])
+
+
+class BudgetTest(ProgramTest):
+    def test_csv_adds_up(self):
+        self.run_program("compare", self.case(), "--out", "out")
+        torque = [float(v) for v in self.column("out/analytic.csv", "Td_z1_Nm")]
+        peak = max(map(abs, torque))
+        for model in RunTest.MODELS:
+            heading, rows = self.read_csv(f"out/budget_{model}.csv")
+            self.assertEqual(heading[:9], ["theta_deg", "Td_pressure_Nm", "Td_piston_friction_Nm", "Td_weight_Nm",
+                                           "Td_inertia_Nm", "Td_block_friction_Nm", "Td_shaft_friction_Nm",
+                                           "Td_torque_factor_Nm", "Td_z1_Nm"])
+            self.assertEqual(len(rows), len(torque))
+            for row, whole in zip(rows, torque):
+                parts = [float(v) for v in row[1:9]]
+                self.assertAlmostEqual(sum(parts[:7]), parts[7], delta=1e-12 * peak)
+                self.assertAlmostEqual(parts[7], whole, delta=1e-12 * peak)
+
+    def test_report_has_means_and_a_figure(self):
+        result = self.run_program("compare", self.case(), "--out", "out")
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        lines = {line["cause"]: line for line in report["budget"]["torque"]}
+        for model in (0, 1):
+            whole = lines.pop("drive torque Td") if model == 0 else whole
+            self.assertAlmostEqual(sum(line["mean"][model] for line in lines.values()), whole["mean"][model], 9)
+        self.assertTrue(all(line["verdict"] == "agrees" for line in lines.values()))
+        self.assertIn("torque_budget", [figure["id"] for figure in report["figures"]])
+        self.assertRegex(result.out, r"mean drive torque \d+\.\d+ Nm: pressure \d")
+
+    def test_no_budget_of_what_has_none(self):
+        for arguments in (("--way", "integrated", "--accuracy", "1e-3"), ("--channels", "Rs")):
+            self.run_program("compare", self.case(), *arguments, "--out", "out")
+            report = json.loads((self.folder / "out" / "report.json").read_text())
+            self.assertNotIn("budget", report)
+            self.assertEqual(list(self.folder.glob("out/budget*")), [])
+
+
 class CompareTest(ProgramTest):
-    def test_writes_four_files(self):
+    def test_writes_its_files(self):
         result = self.run_program("compare", self.case(), "--out", "out")
         self.assertEqual({p.name for p in (self.folder / "out").iterdir()}, REPORT_FILES)
         self.assertEqual(result.err, "")

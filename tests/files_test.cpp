@@ -13,7 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/files/output_folder.h"
+#include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 
 namespace bentaxis {
@@ -148,6 +150,37 @@ TEST_F(OutputFolderTest, WhatIsNotOfTheEarlierSetStays) {
   write_with("report.txt");
   EXPECT_THAT(contents(),
               UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.txt"));
+}
+
+// FIPS 180-4's examples, and lengths about those of its blocks, by sha256sum.
+TEST(Sha256, OfKnownTexts) {
+  EXPECT_EQ(sha256_of(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_of("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256_of(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_F(OutputFolderTest, FilesReadAreLoggedWhileALogIsKept) {
+  file("a.toml", "abc = 1");
+  file("b.toml", "abc = 2");
+  TomlFile::read(folder_ / "a.toml", "file");
+  EXPECT_TRUE(InputLog::files().empty());
+  {
+    const InputLog log;
+    TomlFile::read(folder_ / "b.toml", "file");
+    TomlFile::read(folder_ / "a.toml", "file");
+    TomlFile::read(folder_ / "a.toml", "file");
+    ASSERT_EQ(InputLog::files().size(), 2);
+    EXPECT_EQ(InputLog::files()[0].file, folder_ / "b.toml");
+    EXPECT_EQ(InputLog::files()[0].sha256, sha256_of("abc = 2"));
+    file("a.toml", "abc = 3");  // another file of the same name
+    TomlFile::read(folder_ / "a.toml", "file");
+    ASSERT_EQ(InputLog::files().size(), 3);
+    EXPECT_EQ(InputLog::files()[2].sha256, sha256_of("abc = 3"));
+  }
+  EXPECT_TRUE(InputLog::files().empty());
 }
 
 }  // namespace

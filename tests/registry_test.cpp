@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
+#include <sstream>
 
 #include "bentaxis/analytic/batch.h"
 #include "bentaxis/analytic/model.h"
@@ -16,6 +20,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/schema.h"
+#include "bentaxis/files/toml_reader.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
@@ -527,6 +532,98 @@ TEST(Border, RoundingIsEstimatedOnTheBoundsToo) {
   pump.gear.pressure_angle = radians(60);
   pump.piston.real->axial_inertia = 2 * pump.piston.real->transverse_inertia;
   EXPECT_EQ(refusal([&] { analytic::RoundingEstimate(pump, the_case.analytic); }), "accepted");
+}
+
+// Numbers and pairs of a case file, by "table.key", as they stand in its text.
+std::map<std::string, std::string> numbers_written(const std::string& text) {
+  static const std::regex kHeading(R"(\[([a-z_.]+)\].*)");
+  static const std::regex kEntry(R"(([A-Za-z0-9_]+) *= *([-+0-9\[][^#"]*[0-9\]]) *(#.*)?)");
+  std::map<std::string, std::string> numbers;
+  std::istringstream in(text);
+  std::string table;
+  std::smatch match;
+  for (std::string line; std::getline(in, line);) {
+    if (std::regex_match(line, match, kHeading)) table = match[1];
+    if (std::regex_match(line, match, kEntry)) numbers[table + "." + match[1].str()] = match[2];
+  }
+  return numbers;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::filesystem::path> case_files() {
+  const std::filesystem::path source(BENTAXIS_SOURCE_DIR);
+  std::vector<std::filesystem::path> files;
+  for (const char* folder : {"cases", "reference_data"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / folder))
+      if (entry.path().filename() == "case.toml" ||
+          entry.path().parent_path().filename() == "cases")
+        files.push_back(entry.path());
+  return files;
+}
+
+// 24.92 was reported as 24.920000000000002: toml++ prints 17 digits.
+TEST(Numbers, AreReportedAsTheFileHasThem) {
+  std::size_t compared = 0;
+  for (const auto& file : case_files()) {
+    SCOPED_TRACE(file);
+    const auto numbers = numbers_written(text_of(file));
+    for (const InputEntry& entry : read_case(file).entries) {
+      const auto found = numbers.find(entry.table + "." + entry.key);
+      if (entry.defaulted || found == numbers.end()) continue;
+      EXPECT_EQ(entry.value, found->second) << entry.table << "." << entry.key;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 2000);
+}
+
+// The way to SI and back: what is written is the number that was read.
+TEST(Numbers, AreWrittenAsTheFileHadThem) {
+  std::size_t compared = 0;
+  for (const auto& file : case_files()) {
+    SCOPED_TRACE(file);
+    const auto read = numbers_written(text_of(file));
+    for (const auto& [key, text] : numbers_written(case_text(read_case(file)))) {
+      const auto found = read.find(key);
+      if (found == read.end() || text[0] == '[') continue;
+      const std::string shortest = number_text(std::stod(found->second));
+      EXPECT_TRUE(text == shortest || text == shortest + ".0") << key << ": " << text;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 2000);
+}
+
+TEST(Numbers, OddSpellingsStayAndSoDoChanges) {
+  const auto value_in = [](const std::string& text, const std::string& key) {
+    TomlFile file(text, "odd.toml");
+    std::vector<InputEntry> entries;
+    TableReader root = file.root(&entries);
+    root.number(key, kAny);
+    return entries.at(0).value;
+  };
+  EXPECT_EQ(value_in("a = 24.920", "a"), "24.920");
+  EXPECT_EQ(value_in("a = 1_000.5 # b", "a"), "1_000.5");
+  EXPECT_EQ(value_in("a = +2.5e-3", "a"), "+2.5e-3");
+  EXPECT_EQ(value_in("a = 0x10", "a"), "0x10");
+  EXPECT_EQ(value_in("\"\u00e9\u4e2d\" = 24.92", "\u00e9\u4e2d"), "24.92");
+  EXPECT_EQ(value_in("b = {a = 1}\r\n\r\na = 24.92\r\n", "a"), "24.92");
+
+  for (const InputEntry& entry : changed({"pump.joint_circle_radius_mm=24.920"}).entries) {
+    if (entry.key == "joint_circle_radius_mm") {
+      EXPECT_EQ(entry.value, "24.920");
+    }
+  }
+  try {
+    changed({"pump.joint_circle_radius_mm=-24.92"});
+    FAIL() << "was taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("joint_circle_radius_mm=-24.92:"));
+  }
 }
 
 }  // namespace

@@ -53,26 +53,31 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
       const SpatialVec& rate = piston.getBodyVelocity(state);
       const Vec3 ring = pump_.geometry.piston_length * Vec3(place.z());  // B from A
       const double velocity = SimTK::dot(z2, rate[1] + rate[0] % ring);
-      const AxialLoad load =
-          axial_load(pump_, assumptions_, pressure_[k], velocity, inputs_.rest_speed);
+      AxialLoad load = axial_load(pump_, assumptions_, pressure_[k], velocity, inputs_.rest_speed);
+      double bottom = pump_.block.bottom_area * pressure_[k];
+      if (!acts(LoadSource::pressure)) load.pressure = bottom = 0;
+      if (!acts(LoadSource::piston_friction)) load.friction = 0;
       add_at(ring, (load.pressure + load.friction) * z2, forces[piston.getMobilizedBodyIndex()]);
       if (loaded_ == LoadedBodies::all)
-        add_at(place.p() + ring - block_origin,
-               (pump_.block.bottom_area * pressure_[k] - load.friction) * z2, on_block);
+        add_at(place.p() + ring - block_origin, (bottom - load.friction) * z2, on_block);
     }
     if (loaded_ == LoadedBodies::pistons) return;
 
-    const Vec3 spring = pump_.block.spring_force * z2;
-    add_at(bodies_.block_origin - block_origin, spring, on_block);
-    add_at(bodies_.block_origin - shaft_origin, -spring, on_shaft);
-    if (pump_.port_plate) {
+    if (acts(LoadSource::spring)) {
+      const Vec3 spring = pump_.block.spring_force * z2;
+      add_at(bodies_.block_origin - block_origin, spring, on_block);
+      add_at(bodies_.block_origin - shaft_origin, -spring, on_shaft);
+    }
+    if (pump_.port_plate && acts(LoadSource::film)) {
       const FilmLoad film = film_load_now();
       add_at(bodies_.block_origin - block_origin, film.force_z * z2, on_block);
       on_block[0] += bodies_.block_frame * Vec3(film.moment_x, film.moment_y, 0);
     }
     const double block_speed = SimTK::dot(z2, block.getBodyAngularVelocity(state));
     const double shaft_speed = SimTK::dot(z1, shaft.getBodyAngularVelocity(state));
-    on_block[0] += block_friction(pump_.friction, block_speed) * z2;
+    if (acts(LoadSource::block_friction))
+      on_block[0] += block_friction(pump_.friction, block_speed) * z2;
+    if (!acts(LoadSource::shaft_friction)) return;
     double shaft_torque = shaft_friction(pump_.friction, shaft_speed);
     if (inputs_.shaft_torque) shaft_torque += inputs_.shaft_torque(theta);
     on_shaft[0] += shaft_torque * z1;
@@ -81,6 +86,8 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
   SimTK::Real calcPotentialEnergy(const State&) const override { return 0; }
 
  private:
+  bool acts(LoadSource source) const { return !inputs_.only || *inputs_.only == source; }
+
   // A force whose point is given from the body's origin, in Ground.
   static void add_at(const Vec3& lever, const Vec3& force, SpatialVec& on_body) {
     on_body += SpatialVec(lever % force, force);

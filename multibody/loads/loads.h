@@ -4,12 +4,16 @@
 #include <SimTKsimbody.h>
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/pump/pressure.h"
 
 namespace bentaxis::multibody {
+
+/// Where an applied load comes from. Weight is Simbody's own element.
+enum class LoadSource { pressure, piston_friction, block_friction, shaft_friction, spring, film };
 
 /// What the loads depend on besides the state. Changed by whoever runs the pump, between
 /// realizations; the pump's force element reads it.
@@ -21,6 +25,8 @@ struct LoadInputs {
   std::function<double(double theta)> shaft_torque;
   double rest_speed =
       0;  ///< m/s, below which a piston counts as at rest in the sign law of friction
+  /// The one source that acts; empty: all of them.
+  std::optional<LoadSource> only;
 };
 
 /// The bodies the loads act on; A and B of each piston at z = 0 and z = length of its frame.

@@ -122,25 +122,30 @@ double PistonSolver::solve_positions(State& state) {
   return worst;
 }
 
-double PistonSolver::solve_speeds(State& state) {
-  if (turned_ > kSameMatrix) find_matrices(state);
+void PistonSolver::allowed_speeds(const State& state, const Vec3& shaft_rate,
+                                  const Vec3& block_rate, double spin, Vector& u) const {
   const Rotation& block = block_.getBodyRotation(state);
   const Vec3& block_origin = block_.getBodyOriginLocation(state);
-  Vector& u = state.updU();
-  const int first = shaft_.getFirstUIndex(state);
-  const Vec3 shaft_rate(u[first], u[first + 1], u[first + 2]);
-  const Vec3 block_rate = u[block_.getFirstUIndex(state)] * Vec3(block.z());
   for (const Piston& piston : pistons_) {
     // B as if it stood still in the shaft, against the material of the block that it passes.
     const SimTK::Transform& place = piston.body.getBodyTransform(state);
     const Vec3 ring = place.p() + length_ * Vec3(place.z());
     const Vec3 passing = shaft_rate % ring - block_rate % (ring - block_origin);
     // Absolute speed about the axis: the shaft's share and the joint's make up the spin.
-    const double own = piston.nu == 3 ? spin_ - dot(Vec3(place.z()), shaft_rate) : 0;
+    const double own = piston.nu == 3 ? spin - dot(Vec3(place.z()), shaft_rate) : 0;
     const Vec3 speed = piston.inverse * Vec3(-dot(block * piston.bore.axis_x(), passing),
                                              -dot(block * piston.bore.axis_y(), passing), own);
     for (int j = 0; j < piston.nu; ++j) u[piston.u + j] = speed[j];
   }
+}
+
+double PistonSolver::solve_speeds(State& state) {
+  if (turned_ > kSameMatrix) find_matrices(state);
+  Vector& u = state.updU();
+  const int first = shaft_.getFirstUIndex(state);
+  const Vec3 shaft_rate(u[first], u[first + 1], u[first + 2]);
+  const Vec3 block_rate = u[block_.getFirstUIndex(state)] * Vec3(block_.getBodyRotation(state).z());
+  allowed_speeds(state, shaft_rate, block_rate, spin_, u);
   system_.realize(state, Stage::Velocity);
   const Vector& error = state.getUErr();
   double worst = 0;

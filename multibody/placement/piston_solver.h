@@ -36,6 +36,14 @@ class PistonSolver {
   /// @return largest error of the rate of an equation that is left, m/s
   double solve_speeds(SimTK::State& state);
 
+  /// The pistons' speeds for any turning of shaft and block at the positions of the last
+  /// solve_speeds(): speeds that the constraints allow.
+  /// @param shaft_rate, block_rate  angular velocities, rad/s in Ground
+  /// @param spin  absolute speed of each piston about its own axis where the joint leaves it free
+  /// @param u     of all mobilities; the pistons' are set
+  void allowed_speeds(const SimTK::State& state, const SimTK::Vec3& shaft_rate,
+                      const SimTK::Vec3& block_rate, double spin, SimTK::Vector& u) const;
+
   /// Accelerations that keep the equations (and the spin), where those of all other mobilities are
   /// given in `udot`. State realized to Velocity by solve_speeds().
   void solve_accelerations(const SimTK::State& state, SimTK::Vector& udot);

@@ -29,11 +29,11 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
     std::fill(p.begin(), p.end(), 0.0);
   };
   add_shaft_and_block(omega);
-  SimTK::Force::UniformGravity(forces_, matter_, Vec3(0, -pump_.gravity, 0));
+  weight_.emplace(forces_, matter_, Vec3(0, -pump_.gravity, 0));
   pistons_ = add_pistons(pump_.geometry, piston_, shaft_, block_);
   bodies_.pistons = pistons_.bodies;
-  PumpLoads(forces_, pump_, assumptions_, bodies_, inputs_,
-            is_prescribed() ? LoadedBodies::pistons : LoadedBodies::all);
+  loads_.emplace(forces_, pump_, assumptions_, bodies_, inputs_,
+                 is_prescribed() ? LoadedBodies::pistons : LoadedBodies::all);
   if (drive_ == Drive::constant_speed || drive_ == Drive::torque)
     work_.emplace(system_, matter_, forces_,
                   [this](const State& state) { return power_of_drives(state); });

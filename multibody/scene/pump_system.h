@@ -52,6 +52,9 @@ class PumpSystem {
   SimTK::State& dynamics() { return dynamics_; }
   const SimTK::State& dynamics() const { return dynamics_; }
   LoadInputs& inputs() { return inputs_; }
+  const SimTK::Force& weight() const { return *weight_; }
+  /// All other applied loads.
+  const SimTK::Force& loads() const { return *loads_; }
   const LoadInputs& inputs() const { return inputs_; }
   /// How shaft and block turn where they are prescribed.
   Turning& turning() { return turning_; }
@@ -98,6 +101,8 @@ class PumpSystem {
   std::optional<ShaftDrive> shaft_drive_;
   std::unique_ptr<GearMesh> gear_;
   Pistons pistons_;
+  std::optional<SimTK::Force::UniformGravity> weight_;
+  std::optional<PumpLoads> loads_;
   std::optional<WorkMeter> work_;
   SimTK::State assembly_, dynamics_;
 };

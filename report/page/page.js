@@ -53,11 +53,11 @@ function prepare(report, curves) {
 const SECTIONS = [
   ["verdict", "Verdict", verdictBanner], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
   ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
-  ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
+  ["comparison", "Comparison", comparison], ["budget", "Torque, power and efficiency", budget], ["assumptions", "Assumptions", assumptionSplit],
   ["runs", "Runs", runs], ["published", "Against the published numbers", published],
   ["checks", "Checks of each model", checks],
   ["figures", "Figures", figures], ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
-  ["models", "How each model was obtained", models], ["versions", "Versions", versions],
+  ["models", "How each model was obtained", models], ["versions", "Origin and versions", versions],
 ];
 
 function header(report, data) {

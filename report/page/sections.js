@@ -54,6 +54,31 @@ const validity = ({ validity }) => !list(validity).length ? null : table([
   { head: "Consequence", cell: r => r.consequence || DASH },
 ], validity, { rowClass: r => (r.violated ? "flag" : "") });
 
+// What the drive torque and power go into. Values are one per model; round-off of the largest is shown as 0.
+function budget({ budget }) {
+  if (!budget) return null;
+  const value = (v, name, whole) => unit(number(Math.abs(v) < 1e-12 * whole && v != null ? 0 : v), name);
+  const perModel = (text, cell) => budget.models.map((name, i) => ({ head: name + text, num: true, cell: r => cell(r, i) }));
+  const largest = rows => Math.max(0, ...rows.flatMap(r => r.values.map(Math.abs)));
+  const quantities = (title, rows, whole) => !list(rows).length ? null : el("div.block", {}, el("h3", {}, title), table([
+    { head: "Quantity", main: true, cell: r => r.name },
+    ...(rows.some(r => r.kind) ? [{ head: "Kind", cell: r => r.kind || DASH }] : []),
+    ...perModel("", (r, i) => value(r.values[i], r.unit, whole)),
+    { head: "Meaning", cell: r => r.note || DASH }], rows));
+  const peak = Math.max(0, ...budget.torque.flatMap(r => [...r.least, ...r.greatest].map(Math.abs)));
+  return el("div", {}, budget.text ? el("p", {}, budget.text) : null,
+    table([
+      { head: "Torque for", main: true, cell: r => r.cause },
+      ...perModel(", mean", (r, i) => value(r.mean[i], "Nm", peak)),
+      { head: "over the turn", num: true, cell: r => value(r.least[0], "", peak) + " to " + value(r.greatest[0], "Nm", peak) },
+      { head: "of the mean, to carry the block", num: true, cell: r => value(r.carrying[0], "Nm", peak) },
+      { head: "Largest difference", num: true, cell: r => unit(small(r.max_abs), "Nm") },
+      { head: "Verdict", cell: r => chip(r.verdict) },
+    ], budget.torque),
+    quantities("Power, mean over the turn", budget.power, largest(budget.power)),
+    quantities("Efficiency", budget.efficiency, 0), quantities("Balance of the block on its plate", budget.block, 0));
+}
+
 function assumptionSplit({ assumptions }, data) {
   if (!assumptions || !list(assumptions.rows).length && !list(assumptions.channels).length) return null;
   const share = (c, channel) => el("li", {}, el("b", {}, c.assumption), ": " + unit(small(c.max_abs), channel.unit)
@@ -157,4 +182,11 @@ function models({ models }) {
     list(m.assumptions).length ? [el("h4", {}, "Assumptions"), facts(m.assumptions, ".pairs")] : null)));
 }
 
-const versions = ({ program }) => facts(program, ".pairs");
+// Where the report comes from, at its end.
+const versions = ({ program, provenance: from }) => el("div", {},
+  !from ? null : el("div.block", {}, facts([["command", el("code", {}, from.command)], ["date", from.date],
+    ...from.inputs.slice(0, 3).map(i => [i.file, el("span", {}, "SHA-256 ", el("code", {}, i.sha256))]),
+    ...from.machine.filter(([name]) => name === "system")], ".pairs"),
+    from.inputs.length <= 3 ? null : el("details", {}, el("summary", {}, `All files read (${from.inputs.length})`),
+      facts(from.inputs.map(i => [i.file, el("code", {}, i.sha256)]), ".pairs"))),
+  facts(program, ".pairs"));

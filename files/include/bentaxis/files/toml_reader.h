@@ -72,6 +72,7 @@ class TableReader {
   std::string place_of(const Node& node, const std::string& key) const;
   const std::string* change_of(const std::string& key) const;
   std::string label(const std::string& key) const;
+  std::string written(const Node& node, const std::string& key) const;
   [[noreturn]] void fail_at(const Node& node, const std::string& key, const std::string& why) const;
   std::optional<Node> find(const std::string& key, const std::string& wanted, bool optional);
   double number_of(const Node& node, const std::string& key, NumberRange range,

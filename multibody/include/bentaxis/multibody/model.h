@@ -9,6 +9,7 @@
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/parameters.h"
+#include "bentaxis/results/budget.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
 #include "bentaxis/results/result_table.h"
@@ -37,6 +38,10 @@ class Model {
   /// left as they are. In the one-piston scene the pistons take their turns: N evaluations.
   /// @throws ComputationError where the pump cannot be assembled or constraints are redundant.
   void evaluate(const Instant& instant, std::vector<double>& values);
+
+  /// Drive torque by cause, and the block's balance, at the instant of the last evaluate(); of the
+  /// full pump.
+  Budget budget();
 
   /// The channels of piston 1 alone; only in the one-piston scene.
   void evaluate_one(const Instant& instant, std::vector<double>& values);
@@ -69,8 +74,9 @@ SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions,
 /// One turn of a case under the given assumptions, as a table. In the one-piston scene piston 1
 /// stands for all where the samples allow it (they divide by N, and every piston sees at its angle
 /// the pressure that piston 1 sees there); elsewhere the pistons are evaluated one by one.
+/// @param budget  if not null, becomes the budget_table() of the run; of the full pump
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress = {}, Scene scene = Scene::full,
-                       Method method = Method::multipliers);
+                       Method method = Method::multipliers, ResultTable* budget = nullptr);
 
 }  // namespace bentaxis::multibody

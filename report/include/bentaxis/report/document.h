@@ -155,6 +155,19 @@ struct Figure {
 
 // ---- Sections
 
+/// Where a report comes from.
+struct Provenance {
+  struct Input {
+    std::string file;    ///< name, with that of its folder
+    std::string sha256;  ///< of what was read
+  };
+  std::string command;  ///< line, as a shell takes it
+  std::string date;     ///< ISO 8601, UTC
+  std::string version;  ///< of bentaxis
+  std::vector<Input> inputs;
+  Lines machine;  ///< processor, system, compiler
+};
+
 struct CaseSection {
   std::string file;
   std::vector<InputEntry> entries;
@@ -233,6 +246,26 @@ struct PublishedTable {
   compare::PublishedSection section;
 };
 
+/// Torque and power by cause, efficiencies and the block's balance. Values are one per model.
+struct Budget {
+  struct Torque {
+    std::string cause, column;  ///< column of the budgets' CSV files
+    Values mean, least, greatest;
+    Values carrying;  ///< mean of its part in the torque that carries the block round
+    double largest_difference = 0;
+    std::string verdict;
+  };
+  struct Quantity {
+    std::string name, kind, unit;
+    Values values;
+    std::string note;
+  };
+  std::string text;
+  std::vector<std::string> models;
+  std::vector<Torque> torque;  ///< Nm; the last is the whole
+  std::vector<Quantity> power, efficiency, block;
+};
+
 /// What is to be said in words.
 struct Summary {
   struct Group {
@@ -277,6 +310,7 @@ struct LongRunSection {
 struct Document {
   std::string title;
   Lines program;  ///< versions
+  std::optional<Provenance> provenance = std::nullopt;
   std::vector<std::string> files =
       {};  ///< written together with the report, it too; none: it stands alone
   std::optional<CaseSection> the_case = std::nullopt;
@@ -290,6 +324,7 @@ struct Document {
   std::optional<std::vector<ModelSection>> models = std::nullopt;
   std::optional<compare::Comparison> comparison = std::nullopt;  ///< "channels"
   std::optional<std::vector<compare::Check>> checks = std::nullopt;
+  std::optional<Budget> budget = std::nullopt;
   std::optional<AssumptionSplit> assumptions = std::nullopt;
   std::optional<PublishedTable> published = std::nullopt;
   std::optional<std::vector<Section>> runs = std::nullopt;

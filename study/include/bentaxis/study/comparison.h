@@ -11,6 +11,7 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/compare/split.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/budget.h"
 #include "bentaxis/study/channel_choice.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/regression.h"
@@ -56,6 +57,7 @@ struct ComparisonResult {
   ResultTable analytic, multibody;  ///< all channels
   compare::Comparison comparison;   ///< of the channels asked for
   std::vector<compare::Check> checks;
+  std::optional<BudgetComparison> budget;      ///< of a driven run of full pumps whose Td is wanted
   std::vector<report::AssumptionRow> changes;  ///< where the models assume different things
   std::optional<compare::Split> split;         ///< then: the difference taken apart
   std::vector<IntegrationRow> integrations;  ///< integrated: one per accuracy, the last is compared
@@ -68,8 +70,9 @@ struct ComparisonResult {
   std::optional<Outcome> with;  ///< both models held to a reference
 
   bool checks_hold() const;
-  /// The verdict: every check holds, no channel lacks a value it should have, and each difference
-  /// is within tolerance, or where the models assume different things, what no assumption explains.
+  /// The verdict: every check holds, no channel lacks a value it should have, and each difference,
+  /// of the torque budgets too, is within tolerance, or where the models assume different things,
+  /// what no assumption explains.
   /// What a reference says is a verdict of its own (`with`).
   bool agrees() const;
   /// The verdict in a sentence, with the tolerance that counted.

@@ -1,0 +1,112 @@
+#include "reactions/budget.h"
+
+#include <utility>
+
+namespace bentaxis::multibody {
+
+using SimTK::dot;
+using SimTK::SpatialVec;
+using SimTK::State;
+using SimTK::Vec3;
+using SimTK::Vector;
+
+namespace {
+
+using OnBodies = SimTK::Vector_<SpatialVec>;  // forces or velocities, one per body
+
+// A motion that the pistons' bores allow.
+struct Motion {
+  Vector speeds;        // of the mobilities
+  OnBodies velocities;  // of the bodies
+
+  double power(const OnBodies& forces) const {
+    double power = 0;
+    for (int b = 1; b < forces.size(); ++b)  // without Ground
+      power += dot(forces[b][0], velocities[b][0]) + dot(forces[b][1], velocities[b][1]);
+    return power;
+  }
+};
+
+Motion turning(const PumpSystem& pump, const PistonSolver& pistons, double shaft, double block) {
+  const State& state = pump.dynamics();
+  const PumpBodies& bodies = pump.bodies();
+  Motion motion;
+  motion.speeds.resize(state.getNU());
+  motion.speeds = 0;
+  motion.speeds[bodies.shaft.getFirstUIndex(state) + 2] = shaft;
+  motion.speeds[bodies.block.getFirstUIndex(state)] = block;
+  pistons.allowed_speeds(state, shaft * Vec3(0, 0, 1), block * Vec3(bodies.block_frame.z()), 0,
+                         motion.speeds);
+  pump.matter().multiplyBySystemJacobian(state, motion.speeds, motion.velocities);
+  return motion;
+}
+
+}  // namespace
+
+Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reactions) {
+  const State& state = pump.dynamics();
+  const PumpBodies& bodies = pump.bodies();
+  const Vec3 z2(bodies.block_frame.z());
+  const Motion shaft_turns = turning(pump, placement.piston_solver(), 1, 0);
+  const Motion block_turns = turning(pump, placement.piston_solver(), 0, 1);
+
+  Budget budget;
+  OnBodies forces;
+  SimTK::Vector_<Vec3> particles;
+  Vector mobilities;
+  const auto put = [&](Cause cause, double on_shaft, double on_block) {
+    budget.carrying_of(cause) = on_block;
+    // The gear passes on to the shaft what the block needs; an imposed motion supplies it.
+    budget.drive_of(cause) = pump.has_gear() ? on_shaft + on_block : on_shaft;
+  };
+  const auto along_axis = [&] { return dot(z2, forces[bodies.block.getMobilizedBodyIndex()][1]); };
+  const auto put_forces = [&](Cause cause) {
+    put(cause, -shaft_turns.power(forces), -block_turns.power(forces));
+    budget.pressing += along_axis();
+  };
+  const auto find_only = [&](LoadSource source) {
+    pump.inputs().only = source;
+    pump.loads().calcForceContribution(state, forces, particles, mobilities);
+    pump.inputs().only.reset();
+  };
+
+  const std::pair<Cause, LoadSource> loads[] = {
+      {Cause::pressure, LoadSource::pressure},
+      {Cause::piston_friction, LoadSource::piston_friction},
+      {Cause::block_friction, LoadSource::block_friction},
+      {Cause::shaft_friction, LoadSource::shaft_friction}};
+  for (const auto& [cause, source] : loads) {
+    find_only(source);
+    put_forces(cause);
+  }
+  pump.weight().calcForceContribution(state, forces, particles, mobilities);
+  put_forces(Cause::weight);
+
+  Vector accelerations;
+  Vector residual;
+  placement.constrained_accelerations(accelerations);
+  pump.matter().calcResidualForceIgnoringConstraints(state, Vector(), OnBodies(), accelerations,
+                                                     residual);
+  put(Cause::inertia, ~residual * shaft_turns.speeds, ~residual * block_turns.speeds);
+
+  budget.drive_torque = reactions.drive / pump.pump().friction.shaft_torque_factor;
+  budget.drive_of(Cause::torque_factor) =
+      (1 - pump.pump().friction.shaft_torque_factor) * budget.drive_torque;
+
+  find_only(LoadSource::spring);
+  budget.pressing += along_axis();
+  if (pump.has_gear()) {
+    const GearMesh& gear = pump.gear();
+    budget.carrying_torque =
+        reactions.tooth * dot(z2, (gear.point() - bodies.block_origin) % gear.line());
+    budget.pressing += reactions.tooth * dot(z2, gear.line());
+  } else {
+    budget.carrying_torque = reactions.imposed;
+  }
+  find_only(LoadSource::film);
+  budget.separating = along_axis();
+  budget.film = dot(z2, reactions.block_hold[1]);
+  return budget;
+}
+
+}  // namespace bentaxis::multibody
