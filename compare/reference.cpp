@@ -329,26 +329,65 @@ class Hints {
   mutable std::map<std::size_t, PeriodicSpline> splines_;
 };
 
-// How well a spline through every other point meets the points between; the spline through all of
-// them is better by the factor of a curve with a kinked slope, 4. Over the peak.
-double resampling_error(const ReferenceCurve& curve, std::size_t column, double peak) {
-  std::vector<double> x, y;
-  for (std::size_t row = 0; row < curve.table.rows(); row += 2) {
-    x.push_back(curve.table.theta_deg[row]);
-    y.push_back(curve.table.at(row, column));
+// How far a spline through some of the points of a curve misses those between, per point: through
+// every `stride`-th point, at the points half way.
+std::vector<double> misses(const std::vector<double>& theta, const std::vector<double>& values,
+                           std::size_t stride) {
+  std::vector<double> miss(theta.size(), 0);
+  for (std::size_t start = 0; start < stride; ++start) {
+    std::vector<double> x, y;
+    for (std::size_t i = start; i < theta.size(); i += stride) {
+      x.push_back(theta[i]);
+      y.push_back(values[i]);
+    }
+    if (x.size() < 3) continue;
+    const PeriodicSpline spline(x, y);
+    const std::size_t middle = (start + stride / 2) % stride;
+    for (std::size_t i = middle; i < theta.size(); i += stride)
+      miss[i] = std::abs(spline(theta[i]) - values[i]);
   }
-  if (x.size() < 3 || peak == 0) return 0;
-  const PeriodicSpline half(x, y);
-  double worst = 0;
-  for (std::size_t row = 1; row < curve.table.rows(); row += 2)
-    worst =
-        std::max(worst, std::abs(half(curve.table.theta_deg[row]) - curve.table.at(row, column)));
-  return worst / 4 / peak;
+  return miss;
+}
+
+// The largest of some rows on either side of each interval, which begins at point i.
+std::vector<double> largest_nearby(const std::vector<double>& values) {
+  constexpr std::size_t kReach = 4;
+  const std::size_t n = values.size();
+  std::vector<double> out(n, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k <= 2 * kReach + 1 && k < n; ++k)
+      out[i] = std::max(out[i], values[(i + n * kReach - kReach + k) % n]);
+  return out;
+}
+
+// Estimated error of the spline through all points, per interval between two of them. Splines
+// through every other and through every fourth point say by how much halving the step makes the
+// error smaller just there: 16 times where the curve is smooth, 4 times at a kink, not at all at a
+// jump (the reversal of a friction force), where the spline may miss by the whole jump: twice what
+// it misses half way.
+std::vector<double> resampling_errors(const std::vector<double>& theta,
+                                      const std::vector<double>& values) {
+  constexpr double kSmooth = 16, kSafety = 2;
+  std::vector<double> errors(theta.size(), 0);
+  if (theta.size() < 6) return errors;
+  const auto half = largest_nearby(misses(theta, values, 2));
+  const auto quarter = largest_nearby(misses(theta, values, 4));
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    if (half[i] > 0) errors[i] = kSafety * half[i] / std::clamp(quarter[i] / half[i], 1.0, kSmooth);
+  return errors;
+}
+
+// The interval of rising angles that an angle of the turn lies in: its first point.
+std::size_t interval_of(const std::vector<double>& theta, double angle) {
+  const auto above = std::upper_bound(theta.begin(), theta.end(), angle);
+  return above == theta.begin() ? theta.size() - 1
+                                : static_cast<std::size_t>(above - theta.begin()) - 1;
 }
 
 // The reference at the angles of the result, with the band of the tube.
 struct Resampled {
   ResultTable middle, low, high;
+  ResultTable uncertainty;  // of the middle
   bool exact = true;
   double error = 0;
 };
@@ -380,7 +419,7 @@ Resampled resample(const ReferenceDescription& description, const ReferenceCurve
   if (tube)
     for (const double angle : theta_deg)
       near.push_back(points_near(theta, reduced(angle), description.tube_deg));
-  out.low = out.high = table;
+  out.low = out.high = out.uncertainty = table;
   for (std::size_t column = 0; column < table.columns(); ++column) {
     const std::vector<double> values = column_of(curve.table, column);
     const auto known = std::count_if(values.begin(), values.end(), is_computed);
@@ -390,15 +429,19 @@ Resampled resample(const ReferenceDescription& description, const ReferenceCurve
       throw InputError(curve.file.string() + ": column of " + table.channels[column].name +
                        " has empty fields and cannot be resampled");
     std::optional<PeriodicSpline> spline;
+    std::vector<double> errors;
     if (!out.exact) {
       spline.emplace(theta, values);
-      out.error =
-          std::max(out.error,
-                   resampling_error(curve, column, curve.table.peak(table.channels[column].group)));
+      errors = resampling_errors(theta, values);
     }
+    const double peak = curve.table.peak(table.channels[column].group);
     for (std::size_t row = 0; row < table.rows(); ++row) {
       const std::size_t index = row * table.columns() + column;
-      table.values[index] = at[row] < theta.size() ? values[at[row]] : (*spline)(theta_deg[row]);
+      const bool there = at[row] < theta.size();
+      table.values[index] = there ? values[at[row]] : (*spline)(theta_deg[row]);
+      double& uncertainty = out.uncertainty.values[index] = 0;
+      if (!there) uncertainty = errors[interval_of(theta, reduced(theta_deg[row]))];
+      if (peak > 0) out.error = std::max(out.error, uncertainty / peak);
       if (!tube) continue;
       double low = table.values[index], high = low;
       for (const auto& point : near[row]) {
@@ -651,6 +694,7 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
     append_columns(reference.middle, one.middle);
     append_columns(reference.low, one.low);
     append_columns(reference.high, one.high);
+    append_columns(reference.uncertainty, one.uncertainty);
     reference.exact = reference.exact && one.exact;
     reference.error = std::max(reference.error, one.error);
   }
@@ -661,6 +705,7 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
   options.zero_scales = zero_scales;
   options.most_digits = std::min(options.most_digits, static_cast<double>(description.digits));
   if (description.tube_deg > 0) options.band = Band{&reference.low, &reference.high};
+  options.uncertainty = &reference.uncertainty;
   const Comparison comparison = compare_tables(reference.middle, result, options);
   const Hints hints(reference.middle, result);
 

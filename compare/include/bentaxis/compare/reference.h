@@ -125,7 +125,7 @@ struct ReferenceChannel {
 struct Judgement {
   std::vector<ReferenceChannel> channels;  ///< reactions and what follows from them
   bool resampled = false;                  ///< the reference had other angles
-  double resampling_error = 0;             ///< estimate, largest over peak
+  double resampling_error = 0;             ///< estimate where it is largest, over peak
   ResultTable reference;                   ///< at the angles of the result
 
   bool agrees() const;  ///< something was compared and nothing failed
@@ -133,7 +133,8 @@ struct Judgement {
 
 /// Compares: |difference| <= absolute + relative x peak at every angle of the result, peak =
 /// largest magnitude of the reaction in the reference (or the load scale where that is zero). At
-/// angles that the reference lacks it is resampled by a periodic cubic spline. With a tube, the
+/// angles that the reference lacks it is resampled by a periodic cubic spline, and the error of
+/// that, estimated around each angle, is allowed on top. With a tube, the
 /// value must lie within the band the reference spans over +- tube_deg, widened by the tolerance.
 /// @throws InputError where a curve with gaps would have to be resampled.
 /// @param curves  all that hold this model; no channel may be in two of them
