@@ -910,13 +910,18 @@ class Guesser {
 
   template <class Votes>
   std::function<int(int)> best_numbering(const Votes& votes) const {
+    // Numbered against the rotation: only where enough pistons show it, for of two or three it could
+    // be that two were mixed up.
+    constexpr std::size_t kShowReversal = 4;
+    std::set<int> different;
+    for (const auto& vote : votes) different.insert(vote.said);
     int most = -1, first = 0, direction = 1;
     for (const int d : {1, -1})
       for (int m = 0; m < pistons_; ++m) {
         int count = 0;
         for (const auto& vote : votes)
           count += (d * (vote.said - 1) + m + pistons_) % pistons_ + 1 == vote.found;
-        if (count > most) {
+        if (count > most && (d > 0 || different.size() >= kShowReversal)) {
           most = count;
           first = m;
           direction = d;
@@ -1049,12 +1054,12 @@ struct Pairing {
 
 // The roundest of the angles near `best` that cost as little.
 double roundest(const std::function<double(double)>& cost, double best) {
-  constexpr double kAsGood = 1.1;
+  constexpr double kAsGood = 0.2;  // of the logarithm of the mean square difference
   const double least = cost(best);
   for (const double step : {90.0, 45.0, 30.0, 10.0, 5.0, 1.0, 0.5, 0.25, 0.1, 0.05, 0.01, 0.005,
                             1e-3, 1e-4, 1e-5}) {
     const double round = std::round(best / step) * step;
-    if (std::abs(round - best) < 2 && cost(round) <= kAsGood * kAsGood * least + 1e-20) return round;
+    if (std::abs(round - best) < 2 && cost(round) <= least + kAsGood) return round;
   }
   return best;
 }
@@ -1185,7 +1190,8 @@ MappingGuess Guesser::finish(const Found& found) {
     throw InputError(table_.file.string() +
                      ": no column follows any of the model's curves; is it of this case?");
 
-  // The phase: the best one, then the roundest that is as good.
+  // The phase: the best one, then the roundest that is as good. By logarithms, so that the curves
+  // which fit decide and not the one that does not.
   const auto cost = [&](double at) {
     double sum = 0;
     for (const Pairing& pairing : pairings) {
@@ -1197,9 +1203,10 @@ MappingGuess Guesser::finish(const Found& found) {
           square += theirs[row] * theirs[row];
         }
       }
-      if (square > 0) sum += std::min(1.0, difference / square);
+      constexpr double kRoundOff = 1e-24;
+      if (square > 0) sum += std::log(kRoundOff + difference / square);
     }
-    return sum;
+    return sum / static_cast<double>(pairings.size());
   };
   phase = roundest(cost, least_of(cost, phase - 0.5, phase + 0.5));
   for (const Pairing& pairing : pairings) {

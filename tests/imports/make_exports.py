@@ -50,7 +50,7 @@ def own(c, name):
     found = {}
     for column, values in c.items():
         parts = column.split("_")
-        if column.startswith(name + "_") and len(parts) == len(name.split("_")) + 2:
+        if column.startswith(name + "_") and len(parts) == len(name.split("_")) + 2 and parts[-2][1] in "12":
             found[parts[-2][0]] = values
     return numpy.array([found.get(axis, 0 * c["theta_deg"]) for axis in "xyz"])
 
