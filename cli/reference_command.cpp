@@ -62,8 +62,7 @@ int make_new(const Options& options) {
       return kDone;
     }
   }
-  for (const auto& path :
-       study::make_reference(the_case, changed, options.from, description, out))
+  for (const auto& path : study::make_reference(the_case, changed, options.from, description, out))
     std::printf("%s\n", path.c_str());
   std::printf("now: bentaxis regress %s\n", out.c_str());
   return kDone;
@@ -107,9 +106,10 @@ Command add_reference_command(CommandParser program) {
       .text("FILE");
   make.option("--sheet", options->sheet, "sheet of a workbook, variable of a MATLAB file")
       .text("NAME [the first with a table]");
-  auto mapping = make.option("--mapping", options->mapping,
-                             "what the columns are: a proposal of this command, confirmed or edited")
-                     .text("FILE.toml");
+  auto mapping =
+      make.option("--mapping", options->mapping,
+                  "what the columns are: a proposal of this command, confirmed or edited")
+          .text("FILE.toml");
   make.flag("--accept", options->accept, "take the guess as it is");
   make.option("--source", options->source, "which tool or rig, which version, who, when")
       .text("TEXT")

@@ -122,14 +122,17 @@ PressureColumn find_column(const ForeignTable& table, const std::map<std::string
 
 PressureCurve read_pressure_curve(const std::filesystem::path& file) {
   const ForeignTable table = read_table(file);
-  const auto angle = find_column(
-      table, {{"deg", 1}, {"rad", 1 / kRadPerDegree}, {"turn", 360}, {"gon", 0.9}},
-      {"theta", "angle", "phi", "winkel"}, "angle");
-  const auto pressure =
-      find_column(table,
-                  {{"bar", pascals(1)}, {"mbar", 1e2}, {"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6},
-                   {"psi", 6894.757293168361}},
-                  {"press", "druck"}, "pressure");
+  const auto angle =
+      find_column(table, {{"deg", 1}, {"rad", 1 / kRadPerDegree}, {"turn", 360}, {"gon", 0.9}},
+                  {"theta", "angle", "phi", "winkel"}, "angle");
+  const auto pressure = find_column(table,
+                                    {{"bar", pascals(1)},
+                                     {"mbar", 1e2},
+                                     {"Pa", 1},
+                                     {"kPa", 1e3},
+                                     {"MPa", 1e6},
+                                     {"psi", 6894.757293168361}},
+                                    {"press", "druck"}, "pressure");
   PressureCurve curve;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const double theta = table.rows[i][angle.index] * angle.unit;

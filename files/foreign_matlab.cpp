@@ -90,10 +90,10 @@ void collect(const matvar_t* variable, const std::string& name, int depth, Found
     char* const* names = Mat_VarGetStructFieldnames(mutable_variable);
     for (std::size_t element = 0; element < count; ++element)
       for (unsigned field = 0; field < fields; ++field)
-        collect(Mat_VarGetStructFieldByIndex(mutable_variable, field, element),
-                name + (count > 1 ? "(" + std::to_string(element + 1) + ")" : "") + "." +
-                    names[field],
-                depth + 1, found);
+        collect(
+            Mat_VarGetStructFieldByIndex(mutable_variable, field, element),
+            name + (count > 1 ? "(" + std::to_string(element + 1) + ")" : "") + "." + names[field],
+            depth + 1, found);
     return;
   }
   if (variable->rank != 2) return;
@@ -169,8 +169,7 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& w
   for (auto& [length, list] : found.by_length)
     if (length >= 3 && list.size() >= 2 && (columns == nullptr || list.size() >= columns->size()))
       columns = &list;
-  if (columns == nullptr)
-    fail("has no two vectors of the same length; its variables: " + names);
+  if (columns == nullptr) fail("has no two vectors of the same length; its variables: " + names);
   ForeignTable table;
   table.file = file;
   table.sheet = wanted;
@@ -179,10 +178,9 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& w
   std::vector<std::string> given, units;
   for (const auto& [name, texts] : found.texts) {
     if (texts.size() != columns->size()) continue;
-    const bool all_units =
-        std::all_of(texts.begin(), texts.end(), [](const std::string& text) {
-          return text.empty() || text == "-" || text == "1" || !known_unit(text).empty();
-        });
+    const bool all_units = std::all_of(texts.begin(), texts.end(), [](const std::string& text) {
+      return text.empty() || text == "-" || text == "1" || !known_unit(text).empty();
+    });
     (all_units ? units : given) = texts;
   }
   for (std::size_t c = 0; c < columns->size(); ++c) {

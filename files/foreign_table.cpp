@@ -97,7 +97,9 @@ std::vector<std::string> texts_of(const Grid& grid, const Row& row, std::size_t 
 }
 
 std::string without_brackets(const std::string& text) {
-  const auto closing = [](char c) { return c == '[' ? ']' : c == '(' ? ')' : c == '<' ? '>' : ' '; };
+  const auto closing = [](char c) {
+    return c == '[' ? ']' : c == '(' ? ')' : c == '<' ? '>' : ' ';
+  };
   if (text.size() > 2 && closing(text.front()) == text.back() && text.back() != ' ')
     return std::string(trimmed(std::string_view(text).substr(1, text.size() - 2)));
   return text;
@@ -134,8 +136,8 @@ Heading heading_above(const Grid& grid, std::size_t begin, std::size_t top, std:
     above.push_back(texts_of(grid, grid.rows[i], width));
   }
   const auto filled = [](const std::vector<std::string>& texts) {
-    return static_cast<std::size_t>(std::count_if(texts.begin(), texts.end(),
-                                                  [](const auto& t) { return !t.empty(); }));
+    return static_cast<std::size_t>(
+        std::count_if(texts.begin(), texts.end(), [](const auto& t) { return !t.empty(); }));
   };
   std::size_t next = 0;
   if (next < above.size() && are_units(above[next])) {
@@ -189,12 +191,12 @@ void read_run(const Grid& grid, const Run& run, std::size_t top, const std::stri
   const bool first = table.rows.empty();
   for (const std::size_t c : columns) {
     if (!first && c == columns.front()) continue;  // the same in every table
-    std::string name = heading.names[c].empty() ? "column " + std::to_string(c + 1)
-                                                : heading.names[c];
+    std::string name =
+        heading.names[c].empty() ? "column " + std::to_string(c + 1) : heading.names[c];
     if (!title.empty() && c != columns.front()) name.insert(0, title + ".");
     const std::string stem = name;
-    for (int again = 2; std::find(table.header.begin(), table.header.end(), name) !=
-                        table.header.end(); ++again)
+    for (int again = 2;
+         std::find(table.header.begin(), table.header.end(), name) != table.header.end(); ++again)
       name = stem + " (" + std::to_string(again) + ")";
     table.header.push_back(name);
     table.units.push_back(heading.units[c].empty() ? unit_in_name(name) : heading.units[c]);
@@ -297,8 +299,8 @@ bool parse_number(std::string_view text, char decimal, double& value, int& digit
 
 void fill(const Grid& grid, ForeignTable& table) {
   std::vector<Run> runs = runs_of(grid);
-  const auto longest = std::max_element(
-      runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.rows < b.rows; });
+  const auto longest = std::max_element(runs.begin(), runs.end(),
+                                        [](const Run& a, const Run& b) { return a.rows < b.rows; });
   if (longest == runs.end() || longest->rows < 2)
     throw InputError(table.file.string() + (table.sheet.empty() ? "" : ", sheet " + table.sheet) +
                      ": holds no table of numbers");
@@ -344,31 +346,60 @@ std::string ForeignTable::place(std::size_t row) const {
 
 std::string known_unit(const std::string& text) {
   static const std::map<std::string, std::string> exact = {
-      {"N", "N"},       {"kN", "kN"},     {"KN", "kN"},     {"MN", "MN"},         {"daN", "daN"},
-      {"kgf", "kgf"},   {"lbf", "lbf"},   {"Nm", "Nm"},     {"kNm", "kNm"},       {"Nmm", "Nmm"},
-      {"mNm", "Nmm"},   {"lbfin", "lbf in"}, {"inlbf", "lbf in"}, {"lbfft", "lbf ft"},
-      {"ftlbf", "lbf ft"}, {"m", "m"},    {"mm", "mm"},     {"cm", "cm"},         {"um", "um"},
-      {"µm", "um"},     {"in", "in"},     {"Pa", "Pa"},     {"kPa", "kPa"},       {"MPa", "MPa"},
-      {"bar", "bar"},   {"mbar", "mbar"}, {"psi", "psi"},   {"deg", "deg"},       {"°", "deg"},
-      {"\xB0", "deg"},  {"rad", "rad"},   {"mrad", "mrad"}, {"turn", "turn"},     {"rev", "turn"},
-      {"gon", "gon"},   {"grad", "gon"},  {"s", "s"},       {"ms", "ms"},         {"us", "us"},
-      {"µs", "us"},     {"min", "min"},   {"N/mm2", "MPa"}, {"N/mm^2", "MPa"},    {"N/mm²", "MPa"}};
-  static const std::map<std::string, std::string> words = {
-      {"newton", "N"},           {"newtons", "N"},        {"kilonewton", "kN"},
-      {"knewton", "kN"},         {"newtonmm", "Nmm"},     {"newtonmeter", "Nm"},
-      {"newtonmetre", "Nm"},     {"newtonm", "Nm"},       {"newtonmillimeter", "Nmm"},
-      {"kilonewtonmeter", "kNm"},{"kilonewtonm", "kNm"},  {"poundforce", "lbf"},
-      {"poundforceinch", "lbf in"}, {"meter", "m"},       {"metre", "m"},
-      {"millimeter", "mm"},      {"millimetre", "mm"},    {"inch", "in"},
-      {"pascal", "Pa"},          {"megapascal", "MPa"},   {"degree", "deg"},
-      {"degrees", "deg"},        {"grad°", "deg"},        {"radian", "rad"},
-      {"radians", "rad"},        {"revolution", "turn"},  {"revolutions", "turn"},
-      {"turns", "turn"},         {"umdr", "turn"},        {"sec", "s"},
-      {"second", "s"},           {"seconds", "s"},        {"sek", "s"},
-      {"millisecond", "ms"},     {"milliseconds", "ms"},  {"msec", "ms"},
-      {"kilogramforce", "kgf"},  {"minutes", "min"},      {"mpa", "MPa"},
-      {"nm", "Nm"},              {"nmm", "Nmm"},          {"deg", "deg"},
-      {"n", "N"}};
+      {"N", "N"},          {"kN", "kN"},        {"KN", "kN"},        {"MN", "MN"},
+      {"daN", "daN"},      {"kgf", "kgf"},      {"lbf", "lbf"},      {"Nm", "Nm"},
+      {"kNm", "kNm"},      {"Nmm", "Nmm"},      {"mNm", "Nmm"},      {"lbfin", "lbf in"},
+      {"inlbf", "lbf in"}, {"lbfft", "lbf ft"}, {"ftlbf", "lbf ft"}, {"m", "m"},
+      {"mm", "mm"},        {"cm", "cm"},        {"um", "um"},        {"µm", "um"},
+      {"in", "in"},        {"Pa", "Pa"},        {"kPa", "kPa"},      {"MPa", "MPa"},
+      {"bar", "bar"},      {"mbar", "mbar"},    {"psi", "psi"},      {"deg", "deg"},
+      {"°", "deg"},        {"\xB0", "deg"},     {"rad", "rad"},      {"mrad", "mrad"},
+      {"turn", "turn"},    {"rev", "turn"},     {"gon", "gon"},      {"grad", "gon"},
+      {"s", "s"},          {"ms", "ms"},        {"us", "us"},        {"µs", "us"},
+      {"min", "min"},      {"N/mm2", "MPa"},    {"N/mm^2", "MPa"},   {"N/mm²", "MPa"}};
+  static const std::map<std::string, std::string> words = {{"newton", "N"},
+                                                           {"newtons", "N"},
+                                                           {"kilonewton", "kN"},
+                                                           {"knewton", "kN"},
+                                                           {"newtonmm", "Nmm"},
+                                                           {"newtonmeter", "Nm"},
+                                                           {"newtonmetre", "Nm"},
+                                                           {"newtonm", "Nm"},
+                                                           {"newtonmillimeter", "Nmm"},
+                                                           {"kilonewtonmeter", "kNm"},
+                                                           {"kilonewtonm", "kNm"},
+                                                           {"poundforce", "lbf"},
+                                                           {"poundforceinch", "lbf in"},
+                                                           {"meter", "m"},
+                                                           {"metre", "m"},
+                                                           {"millimeter", "mm"},
+                                                           {"millimetre", "mm"},
+                                                           {"inch", "in"},
+                                                           {"pascal", "Pa"},
+                                                           {"megapascal", "MPa"},
+                                                           {"degree", "deg"},
+                                                           {"degrees", "deg"},
+                                                           {"grad°", "deg"},
+                                                           {"radian", "rad"},
+                                                           {"radians", "rad"},
+                                                           {"revolution", "turn"},
+                                                           {"revolutions", "turn"},
+                                                           {"turns", "turn"},
+                                                           {"umdr", "turn"},
+                                                           {"sec", "s"},
+                                                           {"second", "s"},
+                                                           {"seconds", "s"},
+                                                           {"sek", "s"},
+                                                           {"millisecond", "ms"},
+                                                           {"milliseconds", "ms"},
+                                                           {"msec", "ms"},
+                                                           {"kilogramforce", "kgf"},
+                                                           {"minutes", "min"},
+                                                           {"mpa", "MPa"},
+                                                           {"nm", "Nm"},
+                                                           {"nmm", "Nmm"},
+                                                           {"deg", "deg"},
+                                                           {"n", "N"}};
   std::string bare;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text.compare(i, 2, "·") == 0) {  // in two bytes

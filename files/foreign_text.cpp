@@ -56,7 +56,8 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
     if (blanks && at >= line.size()) return;
     if (at < line.size() && line[at] == '"') {
       std::size_t end = at + 1;
-      while (end < line.size() && (line[end] != '"' || (end + 1 < line.size() && line[end + 1] == '"')))
+      while (end < line.size() &&
+             (line[end] != '"' || (end + 1 < line.size() && line[end + 1] == '"')))
         end += line[end] == '"' ? 2 : 1;
       fields.push_back(trimmed(line.substr(at + 1, std::min(end, line.size()) - at - 1)));
       at = std::min(end + 1, line.size());
@@ -139,8 +140,8 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
     } else {
       if (blocks.empty()) continue;
       if (width == 0) width = fields.size();
-      if (fields.size() != width || fields.front().find_first_not_of("0123456789") !=
-                                        std::string_view::npos)
+      if (fields.size() != width ||
+          fields.front().find_first_not_of("0123456789") != std::string_view::npos)
         return false;
       blocks.back().lines.push_back(line);
     }
@@ -154,7 +155,7 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
                        std::to_string(block.lines.size()) + " requests, others have " +
                        std::to_string(blocks.front().lines.size()));
   // The eight values of a request of forces, displacements or functions.
-  constexpr std::array<const char*, 8> kComponents = {"MAG", "X",  "Y",  "Z",
+  constexpr std::array<const char*, 8> kComponents = {"MAG",  "X",  "Y",  "Z",
                                                       "RMAG", "RX", "RY", "RZ"};
   const auto text = [&](std::string words) {
     grid.storage.push_back(std::move(words));
@@ -196,7 +197,8 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   if (starts("\xFF\xFE") || starts("\xFE\xFF")) content = as_utf8(content, starts("\xFE\xFF"));
   if (starts("\xEF\xBB\xBF")) content.erase(0, 3);
   if (content.find('\0') != std::string::npos)
-    throw InputError(file.string() + ": is neither text nor a format that can be read (.xlsx, .mat)");
+    throw InputError(file.string() +
+                     ": is neither text nor a format that can be read (.xlsx, .mat)");
   const std::vector<Line> lines = lines_of(content);
   if (std::all_of(lines.begin(), lines.end(),
                   [](const Line& line) { return trimmed(line.text).empty(); }))

@@ -33,8 +33,8 @@ class Archive {
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> in(
         zip_fopen(archive_.get(), name.c_str(), 0), zip_fclose);
     std::string text(facts.size, '\0');
-    if (!in || zip_fread(in.get(), text.data(), text.size()) !=
-                   static_cast<zip_int64_t>(text.size()))
+    if (!in ||
+        zip_fread(in.get(), text.data(), text.size()) != static_cast<zip_int64_t>(text.size()))
       fail(name + " cannot be unpacked: the file is damaged");
     return text;
   }
@@ -42,7 +42,8 @@ class Archive {
     const auto text = part(name);
     if (!text) return std::nullopt;
     pugi::xml_document document;
-    if (!document.load_buffer(text->data(), text->size(), pugi::parse_default | pugi::parse_ws_pcdata))
+    if (!document.load_buffer(text->data(), text->size(),
+                              pugi::parse_default | pugi::parse_ws_pcdata))
       fail(name + " is no XML: the file is damaged");
     return document;
   }
@@ -148,8 +149,8 @@ Grid grid_of(const Archive& archive, const std::filesystem::path& file, const Sh
       next = column + 1;
       if (column > 20000) archive.fail("sheet " + sheet.name + ": more than 20000 columns");
       const std::string_view type = cell.attribute("t").value();
-      std::string text = type == "inlineStr" ? text_of(child(cell, "is"))
-                                             : child(cell, "v").child_value();
+      std::string text =
+          type == "inlineStr" ? text_of(child(cell, "is")) : child(cell, "v").child_value();
       if (type == "s") {
         const std::size_t index = static_cast<std::size_t>(std::strtoul(text.c_str(), nullptr, 10));
         if (index >= shared.size())

@@ -37,8 +37,8 @@ constexpr int kEulerStep = 5;  // deg
 constexpr double kWrongUnit = 1.5;
 // Units that are tried where none is said: far enough apart that no error of a model leads from one
 // to the next.
-constexpr std::array<const char*, 14> kGuessedUnits = {"N",  "kN", "MN", "lbf", "Nm", "kNm", "Nmm",
-                                                       "lbf in", "m", "mm", "um", "bar", "MPa", "Pa"};
+constexpr std::array<const char*, 14> kGuessedUnits = {
+    "N", "kN", "MN", "lbf", "Nm", "kNm", "Nmm", "lbf in", "m", "mm", "um", "bar", "MPa", "Pa"};
 
 double dot(const Series& a, const Series& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
@@ -76,9 +76,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-bool is_word_letter(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '?';
-}
+bool is_word_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '?'; }
 
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words;
@@ -189,7 +187,8 @@ struct Match {
   std::size_t index = std::numeric_limits<std::size_t>::max();
   int sign = 1;
   std::string unit;
-  double cost = 2;  // rms of the difference over rms of theirs
+  double cost = 2;            // rms of the difference over rms of theirs
+  bool signs_differ = false;  // it would fit with other signs of single components
   bool found() const { return index != std::numeric_limits<std::size_t>::max(); }
 };
 
@@ -243,15 +242,24 @@ class Guesser {
       pistons_ = std::max(pistons_, channel.piston);
       ModelChannel one{channel, model.peak(channel.group), {}};
       for (std::size_t row = 0; row < n_; ++row) one.values.push_back(model.at(row, c));
-      if (!std::all_of(one.values.begin(), one.values.end(), is_computed) || one.peak == 0) continue;
+      if (!std::all_of(one.values.begin(), one.values.end(), is_computed) || one.peak == 0)
+        continue;
       channels_.push_back(one);
       if (channel.axis.empty() || (channel.frame != "S1" && channel.frame != "S2")) continue;
       const std::string name =
           channel.quantity + (channel.piston > 0 ? "_" + std::to_string(channel.piston) : "");
       const auto [it, added] = by_name.emplace(name, vectors_.size());
       if (added) {
-        vectors_.push_back({name, channel.quantity, channel.frame, channel.unit, channel.piston,
-                            channel.unit_in_si, one.peak, {}, {}, {}});
+        vectors_.push_back({name,
+                            channel.quantity,
+                            channel.frame,
+                            channel.unit,
+                            channel.piston,
+                            channel.unit_in_si,
+                            one.peak,
+                            {},
+                            {},
+                            {}});
         for (auto& part : vectors_.back().parts) part.assign(n_, 0);
       }
       const auto axis = static_cast<std::size_t>(channel.axis.front() - 'x');
@@ -284,7 +292,8 @@ class Guesser {
         map.column = table_.header[c];
         map.unit = name;
         map.is_time = compare::seconds_per(name) > 0;
-        map.degrees_per_unit = map.is_time ? compare::seconds_per(name) : compare::degrees_per(name);
+        map.degrees_per_unit =
+            map.is_time ? compare::seconds_per(name) : compare::degrees_per(name);
         if (is_record(map, c)) by_rank[rank].push_back(map);
       };
       const bool angle_unit = compare::degrees_per(unit) > 0;
@@ -334,7 +343,8 @@ class Guesser {
       double uneven = 0;
       const double step = (angles.back() - angles.front()) / static_cast<double>(angles.size() - 1);
       for (std::size_t i = 0; i < angles.size(); ++i)
-        uneven = std::max(uneven, std::abs(angles[i] - angles.front() - step * static_cast<double>(i)));
+        uneven =
+            std::max(uneven, std::abs(angles[i] - angles.front() - step * static_cast<double>(i)));
       map.rounding_deg =
           std::min(uneven, std::abs(scale) / 2 *
                                std::pow(10.0, std::floor(std::log10(largest)) - digits + 1));
@@ -388,8 +398,8 @@ class Guesser {
   }
 
   std::size_t column_of(const std::string& name) const {
-    return static_cast<std::size_t>(
-        std::find(table_.header.begin(), table_.header.end(), name) - table_.header.begin());
+    return static_cast<std::size_t>(std::find(table_.header.begin(), table_.header.end(), name) -
+                                    table_.header.begin());
   }
 
   void find_groups() {
@@ -501,8 +511,8 @@ class Guesser {
     };
     for (const Group& group : groups_) {
       if (group.count() == 3) {
-        features.push_back({{*group.columns[0], *group.columns[1], *group.columns[2]},
-                            family(group.unit)});
+        features.push_back(
+            {{*group.columns[0], *group.columns[1], *group.columns[2]}, family(group.unit)});
       } else {
         for (const auto& column : group.columns)
           if (column && !constant_[*column]) features.push_back({{*column}, family(group.unit)});
@@ -665,8 +675,28 @@ class Guesser {
     m.unit = unit_for(product / own, vector.unit, vector.unit_in_si, group.unit);
     if (m.unit.empty()) return m;
     const double factor = m.sign * vector.unit_in_si / compare::find_unit(m.unit)->si;
-    m.cost = std::sqrt(std::max(0.0, square - 2 * factor * product + factor * factor * own) / square);
+    m.cost =
+        std::sqrt(std::max(0.0, square - 2 * factor * product + factor * factor * own) / square);
     return m;
+  }
+
+  // The same with the better sign of each component: what is found so has a wrong sign somewhere,
+  // and must be compared, not left out.
+  double cost_without_signs(const Products& p, const Axes& axes, double factor,
+                            const std::array<Series, 3>& theirs) const {
+    double difference = 0, square = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (theirs[j].empty()) continue;
+      double product = 0, own = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        product += axes[j][i] * p.theirs_ours[j][i];
+        for (std::size_t k = 0; k < 3; ++k) own += axes[j][i] * axes[j][k] * p.ours_ours[i][k];
+      }
+      const double theirs_square = dot(theirs[j], theirs[j]);
+      difference += theirs_square - 2 * factor * std::abs(product) + factor * factor * own;
+      square += theirs_square;
+    }
+    return std::sqrt(std::max(0.0, difference) / square);
   }
 
   Axes to_own(const FrameChoice& frame, const ModelVector& vector) const {
@@ -689,8 +719,7 @@ class Guesser {
       do {
         for (int signs = 0; signs < 8; ++signs) {
           Axes axes{};
-          for (std::size_t j = 0; j < 3; ++j)
-            axes[j][order[j]] = (signs >> j & 1) != 0 ? -1 : 1;
+          for (std::size_t j = 0; j < 3; ++j) axes[j][order[j]] = (signs >> j & 1) != 0 ? -1 : 1;
           const double determinant =
               axes[0][0] * (axes[1][1] * axes[2][2] - axes[1][2] * axes[2][1]) -
               axes[0][1] * (axes[1][0] * axes[2][2] - axes[1][2] * axes[2][0]) +
@@ -790,21 +819,50 @@ class Guesser {
       const bool whole = std::any_of(groups_.begin(), groups_.end(),
                                      [](const Group& g) { return g.count() == 3; });
       if (whole && best.cost > kPoorFrame * static_cast<double>(groups_.size()))
-        turn_by_euler_angles(squares, products, allowed, theirs, try_frame);
+        turn_by_euler_angles(products, allowed, theirs, try_frame);
+    }
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (best.groups[g].cost < kNoChannel) continue;
+      constexpr double kSameButSigns = 0.3;
+      double least = kSameButSigns;
+      const int piston = best.groups[g].found() && piston_in(groups_[g].key, pistons_) > 0
+                             ? vectors_[best.groups[g].index].piston
+                             : 0;  // set by the numbering
+      for (const std::size_t v : allowed[g]) {
+        if (piston > 0 && vectors_[v].piston != piston) continue;
+        const Axes axes = to_own(best.frame, vectors_[v]);
+        double own = 0;
+        for (std::size_t i = 0; i < 3; ++i) own += products[g][v].ours_ours[i][i];
+        Match m;
+        m.index = v;
+        m.unit = own > 0 ? unit_for(std::sqrt(squares[g] / own), vectors_[v].unit,
+                                    vectors_[v].unit_in_si, groups_[g].unit)
+                         : "";
+        if (m.unit.empty()) continue;
+        const double factor = vectors_[v].unit_in_si / compare::find_unit(m.unit)->si;
+        const double cost = cost_without_signs(products[g][v], axes, factor, theirs[g]);
+        if (cost >= least) continue;
+        least = cost;
+        m.cost = 1;
+        m.signs_differ = true;
+        for (std::size_t other = 0; other < groups_.size(); ++other)
+          if (other != g && best.groups[other].found() && !best.groups[other].signs_differ &&
+              vectors_[best.groups[other].index].quantity == vectors_[v].quantity)
+            m.sign = best.groups[other].sign;
+        best.groups[g] = m;
+      }
     }
     assign_columns(best, sign, phase);
     return best;
   }
 
-  // Frames at whole multiples of 5 deg: the best of them for the vectors whose length says which they
-  // are.
+  // Frames at whole multiples of 5 deg: the best of them for the vectors whose length says which
+  // they are.
   template <class Try>
-  void turn_by_euler_angles(const std::vector<double>& squares,
-                            const std::vector<std::vector<Products>>& products,
+  void turn_by_euler_angles(const std::vector<std::vector<Products>>& products,
                             const std::vector<std::vector<std::size_t>>& allowed,
                             const std::vector<std::array<Series, 3>>& theirs,
                             const Try& try_frame) const {
-    (void)squares;
     std::vector<std::pair<std::size_t, std::size_t>> pairs;  // group, vector
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (groups_[g].count() != 3) continue;
@@ -813,7 +871,8 @@ class Guesser {
       std::size_t which = 0;
       for (const std::size_t v : allowed[g]) {
         const Series ours = length_of(vectors_[v].parts);
-        const double r = dot(length, ours) / std::sqrt(dot(length, length) * dot(ours, ours) + 1e-300);
+        const double r =
+            dot(length, ours) / std::sqrt(dot(length, length) * dot(ours, ours) + 1e-300);
         if (r > best) {
           best = r;
           which = v;
@@ -822,10 +881,12 @@ class Guesser {
       if (best > 0) pairs.emplace_back(g, which);
     }
     for (const char* base : {"", "S1", "S2"}) {
-      // Sum over vectors of <theirs_j, ours_i> in the axes of the base, each over its own size: the
-      // frame that makes its trace with the axes largest is the best one, up to one sign.
-      Axes sum{};
+      // Per quantity, the sum over vectors of <theirs_j, ours_i> in the axes of the base, each over
+      // its own size: the frame whose traces with them are largest, whatever their signs, is the
+      // best.
+      std::map<std::string, Axes> sums;
       for (const auto& [g, v] : pairs) {
+        Axes& sum = sums[vectors_[v].quantity];
         const Axes plain = to_own({base, compare::kNoTurn, "", {}}, vectors_[v]);
         double size = 0;
         for (std::size_t i = 0; i < 3; ++i) size += products[g][v].ours_ours[i][i];
@@ -838,23 +899,25 @@ class Guesser {
               sum[j][k] += products[g][v].theirs_ours[j][i] * plain[k][i] / size;
       }
       for (const char* sequence : {"ZXZ", "XYZ"}) {
-        FrameChoice best[2];
-        double most[2] = {-1e300, -1e300};
+        FrameChoice best;
+        double most = -1;
         for (int a = 0; a < 360; a += kEulerStep)
           for (int b = 0; b <= 180; b += kEulerStep)
             for (int c = 0; c < 360; c += kEulerStep) {
-              const std::array<double, 3> angles = {double(a), double(b), double(c)};
               const Axes axes = turned(sequence, a, b, c);
-              double trace = 0;
-              for (std::size_t j = 0; j < 3; ++j)
-                for (std::size_t k = 0; k < 3; ++k) trace += axes[j][k] * sum[j][k];
-              for (const int s : {0, 1})
-                if ((s == 0 ? trace : -trace) > most[s] + 1e-12) {
-                  most[s] = s == 0 ? trace : -trace;
-                  best[s] = {base, axes, sequence, angles};
-                }
+              double total = 0;
+              for (const auto& [quantity, sum] : sums) {
+                double trace = 0;
+                for (std::size_t j = 0; j < 3; ++j)
+                  for (std::size_t k = 0; k < 3; ++k) trace += axes[j][k] * sum[j][k];
+                total += std::abs(trace);
+              }
+              if (total > most + 1e-12) {
+                most = total;
+                best = {base, axes, sequence, {double(a), double(b), double(c)}};
+              }
             }
-        for (const FrameChoice& frame : best) try_frame(frame);
+        try_frame(best);
       }
     }
   }
@@ -863,7 +926,8 @@ class Guesser {
   static Axes turned(const char* sequence, int a, int b, int c) {
     static const auto table = [] {
       std::array<std::pair<double, double>, 360> t;
-      for (int i = 0; i < 360; ++i) t[static_cast<std::size_t>(i)] = {std::cos(radians(i)), std::sin(radians(i))};
+      for (int i = 0; i < 360; ++i)
+        t[static_cast<std::size_t>(i)] = {std::cos(radians(i)), std::sin(radians(i))};
       return t;
     }();
     Axes axes = compare::kNoTurn;
@@ -910,8 +974,8 @@ class Guesser {
 
   template <class Votes>
   std::function<int(int)> best_numbering(const Votes& votes) const {
-    // Numbered against the rotation: only where enough pistons show it, for of two or three it could
-    // be that two were mixed up.
+    // Numbered against the rotation: only where enough pistons show it, for of two or three it
+    // could be that two were mixed up.
     constexpr std::size_t kShowReversal = 4;
     std::set<int> different;
     for (const auto& vote : votes) different.insert(vote.said);
@@ -927,9 +991,8 @@ class Guesser {
           direction = d;
         }
       }
-    return [=, this](int said) {
-      return (direction * (said - 1) + first + pistons_) % pistons_ + 1;
-    };
+    return
+        [=, this](int said) { return (direction * (said - 1) + first + pistons_) % pistons_ + 1; };
   }
 
   // Columns that belong to no vector: each one channel.
@@ -956,7 +1019,8 @@ class Guesser {
                         known_unit(table_.units[column]));
       if (m.unit.empty()) return m;
       const double factor = m.sign * ours.channel.unit_in_si / compare::find_unit(m.unit)->si;
-      m.cost = std::sqrt(std::max(0.0, square - 2 * factor * product + factor * factor * own) / square);
+      m.cost =
+          std::sqrt(std::max(0.0, square - 2 * factor * product + factor * factor * own) / square);
       return m;
     };
     for (const std::size_t column : singles_) {
@@ -1057,7 +1121,7 @@ double roundest(const std::function<double(double)>& cost, double best) {
   constexpr double kAsGood = 0.2;  // of the logarithm of the mean square difference
   const double least = cost(best);
   for (const double step : {90.0, 45.0, 30.0, 10.0, 5.0, 1.0, 0.5, 0.25, 0.1, 0.05, 0.01, 0.005,
-                            1e-3, 1e-4, 1e-5}) {
+                            1e-3, 1e-4, 1e-5, 1e-6}) {
     const double round = std::round(best / step) * step;
     if (std::abs(round - best) < 2 && cost(round) <= least + kAsGood) return round;
   }
@@ -1102,8 +1166,7 @@ MappingGuess Guesser::finish(const Found& found) {
     for (const auto& row : table_.rows)
       if (is_computed(row[column])) largest = std::max(largest, std::abs(row[column]));
     const int digits = table_.digits[column] > 0 ? table_.digits[column] : most_digits;
-    if (digits > 0)
-      guess.digits = guess.digits == 0 ? digits : std::min(guess.digits, digits);
+    if (digits > 0) guess.digits = guess.digits == 0 ? digits : std::min(guess.digits, digits);
     if (largest == 0 || digits == 0 || peak == 0) return;
     const double half = std::pow(10.0, std::floor(std::log10(largest)) - digits + 1) / 2;
     guess.rounding = std::max(guess.rounding, half * in_our_unit / peak);
@@ -1118,8 +1181,12 @@ MappingGuess Guesser::finish(const Found& found) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const Group& group = groups_[g];
     const Match& m = a.groups[g];
-    const bool by_name = m.found() && is_quantity(words_of(group.key), vectors_[m.index].quantity);
-    const bool fits = m.found() && (m.cost < kNoChannel || (by_name && m.cost < 2.5));
+    // Its name says the quantity, or which of the pistons it is.
+    const bool by_name =
+        m.found() && (is_quantity(words_of(group.key), vectors_[m.index].quantity) ||
+                      (vectors_[m.index].piston > 0 && piston_in(group.key, pistons_) > 0));
+    const bool fits =
+        m.found() && (m.cost < kNoChannel || m.signs_differ || (by_name && m.cost < 2.5));
     if (!fits || !taken.insert(vectors_[m.index].ours).second) {
       for (const auto& column : group.columns)
         if (column)
@@ -1183,7 +1250,8 @@ MappingGuess Guesser::finish(const Found& found) {
     for (double& value : values) value *= m.sign * ours.channel.unit_in_si / unit;
     pairing.curves.push_back(std::move(values));
     pairings.push_back(std::move(pairing));
-    curve.columns.push_back({table_.header[column], ours.channel.name, m.unit, unit, double(m.sign)});
+    curve.columns.push_back(
+        {table_.header[column], ours.channel.name, m.unit, unit, double(m.sign)});
     rounding(column, unit / ours.channel.unit_in_si, ours.peak);
   }
   if (pairings.empty())
@@ -1227,11 +1295,13 @@ MappingGuess Guesser::finish(const Found& found) {
           proposal.remark.empty())
         proposal.remark = "the file says " + unit;
     }
-    proposal.correlation = theirs_square > 0 && ours_square > 0
-                               ? product / std::sqrt(theirs_square * ours_square)
-                               : 0;
+    proposal.correlation =
+        theirs_square > 0 && ours_square > 0 ? product / std::sqrt(theirs_square * ours_square) : 0;
     proposal.difference = square > 0 ? std::sqrt(difference / square) : 0;
-    if (proposal.difference > kNoChannel) proposal.remark = "its name says so, its curve does not";
+    if (proposal.difference > kNoChannel)
+      proposal.remark = pairing.columns.size() > 1
+                            ? "differs by its signs, or only its name says so"
+                            : "its name says so, its curve does not";
     guess.proposals.push_back(std::move(proposal));
   }
   std::stable_sort(guess.proposals.begin(), guess.proposals.end(),
@@ -1244,14 +1314,28 @@ MappingGuess Guesser::finish(const Found& found) {
   if (curve.angle.turn_from_deg)
     *curve.angle.turn_from_deg =
         phase + (found.sign > 0 ? *curve.angle.turn_from_deg : -*curve.angle.turn_from_deg - 360);
+  // Angles that a run of as many samples has: then nothing need be resampled.
+  const std::size_t angle = column_of(curve.angle.column);
+  std::vector<double> values;
+  for (const auto& row : table_.rows) values.push_back(row[angle]);
+  const compare::Turn turn = compare::one_turn(
+      table_.file.string(), curve.angle, values, [&](std::size_t row) { return table_.place(row); },
+      degrees_per_second_);
+  const double step = 360.0 / static_cast<double>(turn.rows.size());
+  const double same = std::max(1e-9, curve.angle.rounding_deg);
+  if (same < step / 10 && std::all_of(turn.theta_deg.begin(), turn.theta_deg.end(), [&](double at) {
+        return std::abs(std::remainder(at, step)) <= same;
+      }))
+    guess.samples = static_cast<int>(turn.rows.size());
   if (uses_frame) {
     curve.frame.axes_of = a.frame.axes_of;
     curve.frame.cosines = a.frame.axes;
-    curve.frame.words = a.frame.axes_of.empty() ? "the axes of each reaction"
-                                                : "the axes of " + a.frame.axes_of;
+    curve.frame.words =
+        a.frame.axes_of.empty() ? "the axes of each reaction" : "the axes of " + a.frame.axes_of;
     if (!a.frame.euler.empty())
-      curve.frame.words += fmt::format(", turned by {:g}, {:g}, {:g} deg about {}", a.frame.angles[0],
-                                       a.frame.angles[1], a.frame.angles[2], a.frame.euler);
+      curve.frame.words +=
+          fmt::format(", turned by {:g}, {:g}, {:g} deg about {}", a.frame.angles[0],
+                      a.frame.angles[1], a.frame.angles[2], a.frame.euler);
     else if (!a.frame.plain())
       curve.frame.words += ", exchanged";
     guess.euler = a.frame.euler;
@@ -1265,7 +1349,8 @@ MappingGuess Guesser::finish(const Found& found) {
 std::size_t MappingGuess::recognised() const {
   std::size_t count = curve.columns.size();
   for (const auto& vector : curve.vectors)
-    count += 3 - static_cast<std::size_t>(std::count(vector.theirs.begin(), vector.theirs.end(), ""));
+    count +=
+        3 - static_cast<std::size_t>(std::count(vector.theirs.begin(), vector.theirs.end(), ""));
   return count;
 }
 

@@ -91,7 +91,7 @@ namespace {
 // A model's curve has this many angles for a guess: finer than what tells one curve from another.
 constexpr int kGuessSamples = 360;
 // Nothing agrees better than this with what another program has written.
-constexpr double kBestTolerance = 5e-6;
+constexpr double kBestTolerance = 1e-5;
 // A component in our axes is the sum of up to three rounded ones.
 constexpr double kOfRounding = 4;
 
@@ -177,9 +177,8 @@ std::string proposal_text(const MappingGuess& guess) {
     ours = std::max(ours, p.ours.size());
   }
   for (const auto& [column, why] : guess.ignored) width = std::max(width, column.size());
-  std::string text =
-      fmt::format("{:<{}}  {:<{}}  {:>4}  {:<6}  {:>11}  {:>10}\n", "column", width, "ours", ours,
-                  "sign", "unit", "correlation", "difference");
+  std::string text = fmt::format("{:<{}}  {:<{}}  {:>4}  {:<6}  {:>11}  {:>10}\n", "column", width,
+                                 "ours", ours, "sign", "unit", "correlation", "difference");
   for (const auto& p : guess.proposals)
     text += fmt::format("{:<{}}  {:<{}}  {:>4}  {:<6}  {:>11.7f}  {:>10.1e}{}\n", p.theirs, width,
                         p.ours, ours, p.sign < 0 ? "-1" : "+1", p.unit, p.correlation, p.difference,
@@ -201,6 +200,7 @@ std::string description_of(const MappingGuess& guess, const std::string& source,
       "schema = 1\n"
       "kind = \"external\"\n"
       "case = \"case.toml\"\n"
+      "{}"
       "source = {}\n"
       "how_made = \"not stated\"\n"
       "who_may_change = \"not stated\"\n"
@@ -215,6 +215,9 @@ std::string description_of(const MappingGuess& guess, const std::string& source,
       "absolute_Nm = 0.0\n"
       "tube_deg = 0.0\n"
       "\n{}",
+      guess.samples == 0
+          ? ""
+          : fmt::format("samples_per_revolution = {}  # the record's own angles\n", guess.samples),
       toml_text(source.empty() ? guess.curve.file.filename().string() + ", not stated by whom"
                                : source),
       std::clamp(guess.digits, 1, 16), tolerance ? "" : "; proposed: what the file's digits allow",
@@ -304,9 +307,9 @@ GoldenUpdate update_golden(const ReferenceDescription& description,
     std::string what;
     bool agrees = false;
     try {
-      const auto stored = compare::read_reference_curve(description, curve, table.channels,
-                                                        6 * the_case.operation.speed_rpm,
-                                                        frames_of(the_case));
+      const auto stored =
+          compare::read_reference_curve(description, curve, table.channels,
+                                        6 * the_case.operation.speed_rpm, frames_of(the_case));
       const auto judgement = compare::judge(description, {stored}, table, run.zero_scales);
       what = changes(judgement);
       // A new column is worth a new file, round-off is not.

@@ -1,8 +1,7 @@
 #include "bentaxis/study/reference_set.h"
 
-#include <cmath>
-
 #include <algorithm>
+#include <cmath>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/study/achieved_error.h"

@@ -17,7 +17,7 @@ import scipy.io
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-SAMPLES = 400
+SAMPLES = 200
 SPEED = 9000.0  # deg/s
 # A numeric cell of a CSV import by LibreOffice: comma, quote, UTF-8, from line 1, standard cells, English.
 CSV_IN = "CSV:44,34,76,1,,1033"
@@ -156,7 +156,7 @@ def tab_text(out, c, spoil=None):
     columns += [c["Td_z1_Nm"], c["Rcs_z4_N"] / 1e3]
     if spoil:
         spoil(names, columns)
-    data = numpy.array(sorted_by((c["theta_deg"] + 251.1) % 360 / SPEED * 1e3, columns)).T
+    data = numpy.array(sorted_by((c["theta_deg"] + 252) % 360 / SPEED * 1e3, columns)).T
     octave(f"f = fopen('{out}', 'w'); fprintf(f, '%s\\n%s\\n', header, units); fclose(f);"
            f"dlmwrite('{out}', data, 'delimiter', '\\t', 'precision', '%.10g', '-append');",
            header="\t".join(["t", *names]),

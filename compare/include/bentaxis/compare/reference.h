@@ -33,7 +33,7 @@ struct AngleMap {
   bool is_time = false;  ///< degrees_per_unit are then seconds, and the speed of the case counts
   double sign = 1;       ///< and any further factor
   double offset_deg = 0;
-  double rounding_deg = 0;  ///< the angles of the file are good to this
+  double rounding_deg = 0;              ///< the angles of the file are good to this
   std::optional<double> turn_from_deg;  ///< take the turn that starts here from a longer record
 };
 
@@ -46,8 +46,8 @@ using FrameAxes = std::map<std::string, Axes>;
 
 /// The frame that the vectors of a foreign curve are given in: one for the whole file.
 struct FrameMap {
-  std::string axes_of;    ///< "S1", "S2": all of them in axes turned out of these; "" = each out of
-                          ///< the axes of its own reaction
+  std::string axes_of;  ///< "S1", "S2": all of them in axes turned out of these; "" = each out of
+                        ///< the axes of its own reaction
   Axes cosines = kNoTurn;  ///< rows: their x, y, z in those axes
   std::string words;       ///< as the description says it
 };
@@ -158,8 +158,8 @@ struct ReferenceCurve {
 ///         not a number, angles that do not make one turn.
 ReferenceCurve read_reference_curve(const ReferenceDescription& description,
                                     const CurveDescription& curve,
-                                    const std::vector<Channel>& channels,
-                                    double degrees_per_second, const FrameAxes& frames = {});
+                                    const std::vector<Channel>& channels, double degrees_per_second,
+                                    const FrameAxes& frames = {});
 
 /// Rows of a record in the order of the shaft angle, each with its angle in [0, 360); one turn.
 struct Turn {

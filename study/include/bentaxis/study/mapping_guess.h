@@ -1,5 +1,5 @@
-// What the columns of a foreign record stand for, guessed from the curves themselves by holding them
-// to a model's curves.
+// What the columns of a foreign record stand for, guessed from the curves themselves by holding
+// them to a model's curves.
 #pragma once
 
 #include <array>
@@ -25,11 +25,12 @@ struct MappingProposal {
 
 /// A proposed mapping of a whole file.
 struct MappingGuess {
-  compare::CurveDescription curve;         ///< guessed = true
-  std::vector<MappingProposal> proposals;  ///< worst first
+  compare::CurveDescription curve;                           ///< guessed = true
+  std::vector<MappingProposal> proposals;                    ///< worst first
   std::vector<std::pair<std::string, std::string>> ignored;  ///< columns, and why
   double rounding = 0;  ///< of the values, over the peak of their group: the largest of all
   int digits = 0;       ///< significant ones of the columns that are mapped
+  int samples = 0;      ///< per turn of a run that has the record's angles; 0 = none has
   std::string euler;    ///< of a frame at Euler angles: their sequence
   std::array<double, 3> euler_deg{};
 
@@ -37,10 +38,12 @@ struct MappingGuess {
 };
 
 /// Proposes a mapping. It can choose, and nothing else:
-/// - per file: column, unit and direction of the angle; one phase shift; one frame, out of the axes of
+/// - per file: column, unit and direction of the angle; one phase shift; one frame, out of the axes
+/// of
 ///   each reaction, of S1 and of S2, their axes exchanged and turned by right angles, or turned by
 ///   Euler angles that are whole multiples of 5 deg; one numbering of the pistons;
-/// - per quantity: one sign (the force on the other body); a frame turned by right angles and a sign
+/// - per quantity: one sign (the force on the other body); a frame turned by right angles and a
+/// sign
 ///   together only where two vectors show it;
 /// - per column or vector: channel and unit, of a list of units.
 /// The phase shift is the roundest angle that fits as well as the best one. No factor, scale or
