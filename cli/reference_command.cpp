@@ -1,7 +1,12 @@
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <optional>
+#include <sstream>
 
+#include "bentaxis/files/output_folder.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/study/reference_maker.h"
 #include "commands.h"
 #include "console.h"
@@ -14,20 +19,52 @@ namespace fs = std::filesystem;
 
 struct Options {
   CaseOption the_case;
-  std::string from, out, folder;
+  std::string from, sheet, mapping, source, out, folder;
+  bool accept = false;
+  std::optional<double> tolerance;
   int samples = study::kGoldenSamples;
 };
 
+std::string read_mapping(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file + ": cannot be read: no such file, or no permission");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
 int make_new(const Options& options) {
-  const fs::path out = options.out.empty()
-                           ? "reference_" + fs::path(options.the_case.file).stem().string()
-                           : options.out;
-  const study::NewReference made = study::make_reference(
-      options.the_case.read(), !options.the_case.changes.empty(), options.from, out);
-  for (const auto& path : made.files) std::printf("%s\n", path.c_str());
-  std::printf(
-      "%d of %zu columns recognised; complete description.toml, then: bentaxis regress %s\n",
-      made.recognised, made.columns, out.c_str());
+  const std::string stem = "reference_" + fs::path(options.the_case.file).stem().string();
+  const fs::path out = options.out.empty() ? stem : options.out;
+  const bool changed = !options.the_case.changes.empty();
+  const Case the_case = options.the_case.read();
+  std::string description;
+  if (!options.mapping.empty()) {
+    if (options.accept) throw InputError("--accept takes the guess: it excludes --mapping");
+    description = read_mapping(options.mapping);
+  } else {
+    const study::MappingGuess guess = study::guess_reference(the_case, options.from, options.sheet);
+    std::printf("%s", study::proposal_text(guess).c_str());
+    std::printf("%zu of %zu columns recognised\n", guess.recognised(),
+                guess.recognised() + guess.ignored.size());
+    description = study::description_of(guess, options.source, options.tolerance);
+    if (!options.accept) {
+      const fs::path proposal = out.parent_path() / (out.filename().string() + "_mapping.toml");
+      if (fs::exists(proposal))
+        throw InputError(proposal.string() +
+                         ": exists; use it by --mapping, or take it away for a new guess");
+      std::ofstream(proposal, std::ios::binary) << description;
+      if (!fs::exists(proposal)) throw InputError(proposal.string() + ": cannot be written");
+      std::printf(
+          "%s: confirm or edit it, then: bentaxis reference new .. --mapping %s (or --accept the "
+          "guess)\n",
+          proposal.c_str(), proposal.c_str());
+      return kDone;
+    }
+  }
+  for (const auto& path : study::make_reference(the_case, changed, options.from, description, out))
+    std::printf("%s\n", path.c_str());
+  std::printf("now: bentaxis regress %s\n", out.c_str());
   return kDone;
 }
 
@@ -62,11 +99,25 @@ Command add_reference_command(CommandParser program) {
       program.subcommand("reference", "Make reference data for regress, and update golden curves");
   command.require_subcommand();
   CommandParser make = command.subcommand(
-      "new", "Folder for a curve of another tool or a rig, with a guess at what its columns are");
+      "new", "Folder for a record of another tool or a rig, with a guess at what its columns are");
   add_case(make, options->the_case);
-  make.option("--from", options->from, "the curve (CSV, one header line)")
+  make.option("--from", options->from, "the record: text, ADAMS table or request file, .xlsx, .mat")
       .required()
-      .text("CURVE.csv");
+      .text("FILE");
+  make.option("--sheet", options->sheet, "sheet of a workbook, variable of a MATLAB file")
+      .text("NAME [the first with a table]");
+  auto mapping =
+      make.option("--mapping", options->mapping,
+                  "what the columns are: a proposal of this command, confirmed or edited")
+          .text("FILE.toml");
+  make.flag("--accept", options->accept, "take the guess as it is");
+  make.option("--source", options->source, "which tool or rig, which version, who, when")
+      .text("TEXT")
+      .excludes(mapping);
+  make.option("--tolerance", options->tolerance, "allowed difference over the reaction's peak")
+      .positive_number()
+      .text("NUMBER [what the digits of the file allow]")
+      .excludes(mapping);
   make.option("--out", options->out, "new folder").text("DIR [reference_CASE]");
   CommandParser golden = command.subcommand(
       "golden", "Folder with the curves that both models give today, to detect changes");

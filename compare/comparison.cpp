@@ -64,6 +64,7 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
                      std::size_t b, const Options& options, ChannelComparison& result) {
   std::size_t both = 0;
   double square = 0;
+  double beyond = 0, uncertainty_there = 0;
   for (std::size_t row = 0; row < first.rows(); ++row) {
     const double x = first.at(row, a);
     const double y = second.at(row, b);
@@ -79,12 +80,16 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
     result.mean[0] += x;
     result.mean[1] += y;
     result.mean_difference += difference;
-    if (both == 1 || std::abs(difference) > result.largest) {
+    const double uncertainty = options.uncertainty ? options.uncertainty->at(row, a) : 0;
+    if (both == 1 || std::abs(difference) - uncertainty > beyond) {
+      beyond = std::abs(difference) - uncertainty;
+      uncertainty_there = uncertainty;
       result.largest = std::abs(difference);
       result.theta_of_largest_deg = first.theta_deg[row];
     }
   }
   if (both == 0) return;
+  result.allowed += uncertainty_there;
   const auto count = static_cast<double>(both);
   result.rms = std::sqrt(square / count);
   for (double* value : {&result.mean[0], &result.mean[1], &result.mean_difference}) *value /= count;

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "bentaxis/files/csv.h"
+#include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -39,55 +40,141 @@ const std::vector<std::string> kKinds = {"high-precision", "published", "golden"
 const std::vector<std::string> kFolders = {"high_precision", "published", "golden", ""};
 const std::vector<std::string> kModels = {"analytic", "multibody"};
 
+constexpr double kPoundForce = 4.4482216152605;
+constexpr double kKilogramForce = 9.80665;
+constexpr double kInch = 0.0254;
+
 // Units a foreign column may have: the channel unit it is a multiple of, and its SI value.
-struct Unit {
-  const char* family;
-  double si;
-};
-const std::map<std::string, Unit>& units() {
-  constexpr double kPoundForce = 4.4482216152605;
-  constexpr double kInch = 0.0254;
-  static const std::map<std::string, Unit> all = {{"N", {"N", 1}},
-                                                  {"kN", {"N", 1e3}},
-                                                  {"MN", {"N", 1e6}},
-                                                  {"lbf", {"N", kPoundForce}},
-                                                  {"Nm", {"Nm", 1}},
-                                                  {"kNm", {"Nm", 1e3}},
-                                                  {"Nmm", {"Nm", 1e-3}},
-                                                  {"lbf in", {"Nm", kPoundForce * kInch}},
-                                                  {"m", {"mm", 1}},
-                                                  {"mm", {"mm", 1e-3}},
-                                                  {"um", {"mm", 1e-6}},
-                                                  {"in", {"mm", kInch}},
-                                                  {"Pa", {"bar", 1}},
-                                                  {"kPa", {"bar", 1e3}},
-                                                  {"MPa", {"bar", 1e6}},
-                                                  {"bar", {"bar", 1e5}},
-                                                  {"psi", {"bar", 6894.757293168361}}};
+const std::map<std::string, ForeignUnit>& units() {
+  static const std::map<std::string, ForeignUnit> all = {
+      {"N", {"N", 1}},
+      {"kN", {"N", 1e3}},
+      {"MN", {"N", 1e6}},
+      {"daN", {"N", 10}},
+      {"kgf", {"N", kKilogramForce}},
+      {"lbf", {"N", kPoundForce}},
+      {"Nm", {"Nm", 1}},
+      {"kNm", {"Nm", 1e3}},
+      {"Nmm", {"Nm", 1e-3}},
+      {"lbf in", {"Nm", kPoundForce * kInch}},
+      {"lbf ft", {"Nm", kPoundForce * 12 * kInch}},
+      {"m", {"mm", 1}},
+      {"cm", {"mm", 1e-2}},
+      {"mm", {"mm", 1e-3}},
+      {"um", {"mm", 1e-6}},
+      {"in", {"mm", kInch}},
+      {"Pa", {"bar", 1}},
+      {"kPa", {"bar", 1e3}},
+      {"MPa", {"bar", 1e6}},
+      {"bar", {"bar", 1e5}},
+      {"mbar", {"bar", 1e2}},
+      {"psi", {"bar", 6894.757293168361}}};
   return all;
+}
+
+const std::map<std::string, double>& angle_units() {
+  static const std::map<std::string, double> all = {{"deg", 1},
+                                                    {"rad", 1 / kRadPerDegree},
+                                                    {"mrad", 1e-3 / kRadPerDegree},
+                                                    {"turn", 360},
+                                                    {"gon", 0.9}};
+  return all;
+}
+const std::map<std::string, double>& time_units() {
+  static const std::map<std::string, double> all = {
+      {"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}};
+  return all;
+}
+
+// Sign and any further factor.
+double read_factor(TableReader& in) {
+  const int sign = in.integer("sign", -1, 1, 1);
+  if (sign == 0) in.fail("sign", "must be 1 or -1");
+  return sign * in.number("factor", kPositive, 1.0);
+}
+
+// The SI value of the unit of a column; `family` is the unit of ours.
+double read_unit(TableReader& in, const std::string& unit, const std::string& family,
+                 const std::string& ours) {
+  if (unit.empty()) return 0;
+  const auto it = units().find(unit);
+  if (it == units().end()) {
+    std::string known;
+    for (const auto& [name, value] : units()) known += (known.empty() ? "" : ", ") + name;
+    in.fail("unit", "must be one of " + known);
+  }
+  if (!family.empty() && family != it->second.family)
+    in.fail("unit", "cannot become " + family + ", the unit of " + ours);
+  return it->second.si;
 }
 
 ColumnMap read_column(TableReader in) {
   ColumnMap map;
   map.theirs = in.text("theirs");
   map.ours = in.text("ours");
-  const std::string unit = in.text("unit", "");
-  if (!unit.empty()) {
-    const auto it = units().find(unit);
-    if (it == units().end()) {
-      std::string known;
-      for (const auto& [name, value] : units()) known += (known.empty() ? "" : ", ") + name;
-      in.fail("unit", "must be one of " + known);
+  map.unit = in.text("unit", "");
+  // The suffix of a channel's name is its unit.
+  map.unit_in_si = read_unit(in, map.unit, map.ours.substr(map.ours.rfind('_') + 1), map.ours);
+  map.factor = read_factor(in);
+  in.finish();
+  return map;
+}
+
+VectorMap read_vector(TableReader in) {
+  VectorMap map;
+  const auto theirs = in.texts("theirs");
+  if (theirs.size() != 3)
+    in.fail("theirs", "must be three columns, their x, y and z; \"\" for one that the file lacks");
+  std::copy(theirs.begin(), theirs.end(), map.theirs.begin());
+  map.ours = in.text("ours");
+  map.unit = in.text("unit", "");
+  map.unit_in_si = read_unit(in, map.unit, "", map.ours);
+  map.factor = read_factor(in);
+  in.finish();
+  return map;
+}
+
+FrameMap read_frame(TableReader in) {
+  FrameMap map;
+  map.axes_of = in.text("axes_of", "own");
+  map.words = map.axes_of == "own" ? "the axes of each reaction" : "the axes of " + map.axes_of;
+  if (map.axes_of == "own") map.axes_of.clear();
+  if (in.has("euler_deg") && in.has("x"))
+    in.fail("x", "either euler_deg or direction cosines x, y, z");
+  if (in.has("euler_deg")) {
+    const std::string sequence = in.text("euler", "ZXZ");
+    const auto angles = in.numbers("euler_deg");
+    if (angles.size() != 3) in.fail("euler_deg", "must be three angles");
+    try {
+      map.cosines = turned_axes(sequence, {angles[0], angles[1], angles[2]});
+    } catch (const InputError& error) {
+      in.fail("euler", error.what());
     }
-    // The suffix of a channel's name is its unit.
-    const std::string suffix = map.ours.substr(map.ours.rfind('_') + 1);
-    if (suffix != it->second.family)
-      in.fail("unit", "cannot become " + suffix + ", the unit of " + map.ours);
-    map.unit_in_si = it->second.si;
+    map.words += fmt::format(", turned by {:g}, {:g}, {:g} deg about {}", angles[0], angles[1],
+                             angles[2], sequence);
+  } else if (in.has("x") || in.has("y") || in.has("z")) {
+    const char* names[] = {"x", "y", "z"};
+    map.words += " with";
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = in.numbers(names[i]);
+      if (row.size() != 3) in.fail(names[i], "must be three direction cosines");
+      std::copy(row.begin(), row.end(), map.cosines[i].begin());
+      map.words += fmt::format(" {} = [{:g}, {:g}, {:g}]", names[i], row[0], row[1], row[2]);
+    }
+    constexpr double kRounded = 1e-5;  // of cosines written in 6 digits
+    const Axes& c = map.cosines;
+    const auto dot = [](const auto& a, const auto& b) {
+      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    const std::array<double, 3> cross = {c[0][1] * c[1][2] - c[0][2] * c[1][1],
+                                         c[0][2] * c[1][0] - c[0][0] * c[1][2],
+                                         c[0][0] * c[1][1] - c[0][1] * c[1][0]};
+    for (std::size_t i = 0; i < 3; ++i)
+      if (std::abs(dot(c[i], c[i]) - 1) > kRounded ||
+          std::abs(dot(c[i], c[(i + 1) % 3])) > kRounded)
+        in.fail(names[i], "axes must have length 1 and be at right angles");
+    if (dot(cross, c[2]) < 0) in.fail("z", "axes must be right-handed: x cross y = z");
   }
-  const int sign = in.integer("sign", -1, 1, 1);
-  if (sign == 0) in.fail("sign", "must be 1 or -1");
-  map.factor = sign * in.number("factor", kPositive, 1.0);
   in.finish();
   return map;
 }
@@ -95,13 +182,16 @@ ColumnMap read_column(TableReader in) {
 AngleMap read_angle(TableReader in) {
   AngleMap map;
   map.column = in.text("column", "theta_deg");
-  const std::size_t unit = in.choice("unit", {"deg", "rad", "turn", "s"}, 0);
-  map.degrees_per_unit = unit == 1 ? 1 / kRadPerDegree : unit == 2 ? 360 : 1;
-  map.is_time = unit == 3;
-  const int sign = in.integer("sign", -1, 1, 1);
-  if (sign == 0) in.fail("sign", "must be 1 or -1");
-  map.sign = sign;
+  map.unit = in.text("unit", "deg");
+  map.is_time = seconds_per(map.unit) > 0;
+  map.degrees_per_unit = map.is_time ? seconds_per(map.unit) : degrees_per(map.unit);
+  if (map.degrees_per_unit == 0)
+    in.fail("unit",
+            "must be one of deg, rad, mrad, turn, gon, or of s, ms, us, min with the speed of the "
+            "case");
+  map.sign = read_factor(in);
   map.offset_deg = in.number("offset_deg", kAny, 0.0);
+  map.rounding_deg = in.number("rounding_deg", kNotNegative, 0.0);
   if (in.has("turn_from_deg")) map.turn_from_deg = in.number("turn_from_deg", kAny);
   in.finish();
   return map;
@@ -123,7 +213,11 @@ CurveDescription read_curve(TableReader in, const fs::path& folder) {
     if (std::find(kModels.begin(), kModels.end(), model) == kModels.end())
       in.fail("models", "must be \"analytic\", \"multibody\" or both");
   if (curve.models.empty()) curve.models = kModels;
+  curve.sheet = in.text("sheet", "");
+  curve.guessed = in.flag("guessed", false);
   curve.angle = read_angle(in.optional_table("angle"));
+  curve.frame = read_frame(in.optional_table("frame"));
+  for (TableReader& vector : in.tables("vector")) curve.vectors.push_back(read_vector(vector));
   for (TableReader& column : in.tables("column")) curve.columns.push_back(read_column(column));
   curve.ignored = in.texts("ignore");
   in.finish();
@@ -137,62 +231,11 @@ bool ends_its_last_line(const fs::path& file) {
   return in.get() == '\n';
 }
 
-// Rows of a file in the order of the shaft angle, each with its angle; one turn, not repeated.
-struct Turn {
-  std::vector<double> theta_deg;
-  std::vector<std::size_t> rows;
-  std::optional<std::pair<std::size_t, std::size_t>> repeated;  // first row, the same a turn later
-};
-
-Turn one_turn(const std::string& file, const AngleMap& map, const NumericTable& data,
-              std::size_t column, double degrees_per_second) {
-  const auto fail = [&](const std::string& why) { throw InputError(file + ": " + why); };
-  std::vector<std::pair<double, std::size_t>> points;
-  const double scale = map.sign * (map.is_time ? degrees_per_second : map.degrees_per_unit);
-  for (std::size_t row = 0; row < data.rows.size(); ++row)
-    points.emplace_back(scale * data.rows[row][column] + map.offset_deg, row);
-  if (scale == 0)
-    fail("column " + map.column + " is a time, but the shaft of the case stands still");
-  if (points.size() > 1 && points.back().first < points.front().first)
-    std::reverse(points.begin(), points.end());
-  for (std::size_t i = 1; i < points.size(); ++i)
-    if (!(points[i].first > points[i - 1].first))
-      throw InputError(file + ":" + std::to_string(data.lines[points[i].second]) +
-                       ": angles in column " + map.column + " must increase or decrease strictly");
-  if (map.turn_from_deg) {
-    const double from = *map.turn_from_deg;
-    if (points.front().first > from + kSameAngle || points.back().first < from + 360 - kLargestGap)
-      fail("turn_from_deg = " + number_text(from) + ": the record covers " +
-           number_text(points.front().first) + ".." + number_text(points.back().first) + " deg");
-    std::erase_if(points, [&](const auto& p) {
-      return p.first < from - kSameAngle || p.first > from + 360 + kSameAngle;
-    });
-  }
-  Turn turn;
-  const double span = points.back().first - points.front().first;
-  if (span > 360 + kSameAngle)
-    fail("covers " + number_text(span) +
-         " deg: more than a turn; choose one by turn_from_deg in [curve.angle]");
-  if (span > 360 - kSameAngle) {
-    turn.repeated = {points.front().second, points.back().second};
-    points.pop_back();
-  }
-  for (auto& [angle, row] : points) angle = wrap_degrees(angle);
-  for (auto& [angle, row] : points)  // a hair below a whole turn is the turn
-    if (angle > 360 - kSameAngle) angle = 0;
-  std::sort(points.begin(), points.end());
-  for (const auto& [angle, row] : points) {
-    turn.theta_deg.push_back(angle);
-    turn.rows.push_back(row);
-  }
-  return turn;
-}
-
 // Index of an angle among rising ones, or their number.
-std::size_t find_angle(const std::vector<double>& theta, double angle) {
-  const auto it = std::lower_bound(theta.begin(), theta.end(), angle - kSameAngle);
-  if (it != theta.end() && *it <= angle + kSameAngle)
-    return static_cast<std::size_t>(it - theta.begin());
+std::size_t find_angle(const std::vector<double>& theta, double angle, double same) {
+  const auto it = std::lower_bound(theta.begin(), theta.end(), angle - same);
+  if (it != theta.end() && *it <= angle + same) return static_cast<std::size_t>(it - theta.begin());
+  if (angle + 360 - theta.back() <= same) return theta.size() - 1;  // 359.9999, rounded, is 0
   return theta.size();
 }
 
@@ -329,26 +372,60 @@ class Hints {
   mutable std::map<std::size_t, PeriodicSpline> splines_;
 };
 
-// How well a spline through every other point meets the points between; the spline through all of
-// them is better by the factor of a curve with a kinked slope, 4. Over the peak.
-double resampling_error(const ReferenceCurve& curve, std::size_t column, double peak) {
-  std::vector<double> x, y;
-  for (std::size_t row = 0; row < curve.table.rows(); row += 2) {
-    x.push_back(curve.table.theta_deg[row]);
-    y.push_back(curve.table.at(row, column));
+// How far the spline through every other point misses those between, per point.
+std::vector<double> misses(const std::vector<double>& theta, const std::vector<double>& values) {
+  std::vector<double> miss(theta.size(), 0);
+  for (std::size_t start = 0; start < 2; ++start) {
+    std::vector<double> x, y;
+    for (std::size_t i = start; i < theta.size(); i += 2) {
+      x.push_back(theta[i]);
+      y.push_back(values[i]);
+    }
+    if (x.size() < 3) continue;
+    const PeriodicSpline spline(x, y);
+    for (std::size_t i = 1 - start; i < theta.size(); i += 2)
+      miss[i] = std::abs(spline(theta[i]) - values[i]);
   }
-  if (x.size() < 3 || peak == 0) return 0;
-  const PeriodicSpline half(x, y);
-  double worst = 0;
-  for (std::size_t row = 1; row < curve.table.rows(); row += 2)
-    worst =
-        std::max(worst, std::abs(half(curve.table.theta_deg[row]) - curve.table.at(row, column)));
-  return worst / 4 / peak;
+  return miss;
+}
+
+// The largest of some rows on either side of each interval, which begins at point i.
+std::vector<double> largest_nearby(const std::vector<double>& values) {
+  constexpr std::size_t kReach = 4;
+  const std::size_t n = values.size();
+  std::vector<double> out(n, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k <= 2 * kReach + 1 && k < n; ++k)
+      out[i] = std::max(out[i], values[(i + n * kReach - kReach + k) % n]);
+  return out;
+}
+
+// Estimated error of the spline through all points, per interval between two of them: three times
+// what the spline through every other point misses nearby. That is what a jump (the reversal of a
+// friction force) may cost, where more points do not help: between two points the spline may miss
+// by the whole jump, twice the miss half way; with a point on it by half the jump, 2.6 times the
+// miss. A smooth curve is better than that, by up to 48 times. Which of them a curve is there
+// cannot be told from its points alone: a steep flank beside the jump looks as smooth.
+std::vector<double> resampling_errors(const std::vector<double>& theta,
+                                      const std::vector<double>& values) {
+  std::vector<double> errors(theta.size(), 0);
+  if (theta.size() < 6) return errors;
+  errors = largest_nearby(misses(theta, values));
+  for (double& error : errors) error *= 3;
+  return errors;
+}
+
+// The interval of rising angles that an angle of the turn lies in: its first point.
+std::size_t interval_of(const std::vector<double>& theta, double angle) {
+  const auto above = std::upper_bound(theta.begin(), theta.end(), angle);
+  return above == theta.begin() ? theta.size() - 1
+                                : static_cast<std::size_t>(above - theta.begin()) - 1;
 }
 
 // The reference at the angles of the result, with the band of the tube.
 struct Resampled {
   ResultTable middle, low, high;
+  ResultTable uncertainty;  // of the middle
   bool exact = true;
   double error = 0;
 };
@@ -364,7 +441,8 @@ Resampled resample(const ReferenceDescription& description, const ReferenceCurve
   const auto& theta = curve.table.theta_deg;
   std::vector<std::size_t> at;
   std::vector<std::vector<Between>> near;
-  for (const double angle : theta_deg) at.push_back(find_angle(theta, reduced(angle)));
+  for (const double angle : theta_deg)
+    at.push_back(find_angle(theta, reduced(angle), std::max(kSameAngle, curve.angle_rounding_deg)));
   out.exact = std::all_of(at.begin(), at.end(), [&](std::size_t i) { return i < theta.size(); });
   const bool tube = description.tube_deg > 0;
   if (!out.exact || tube)
@@ -380,25 +458,33 @@ Resampled resample(const ReferenceDescription& description, const ReferenceCurve
   if (tube)
     for (const double angle : theta_deg)
       near.push_back(points_near(theta, reduced(angle), description.tube_deg));
-  out.low = out.high = table;
+  out.low = out.high = out.uncertainty = table;
   for (std::size_t column = 0; column < table.columns(); ++column) {
     const std::vector<double> values = column_of(curve.table, column);
     const auto known = std::count_if(values.begin(), values.end(), is_computed);
     if (known == 0) continue;
     const bool gaps = known < static_cast<std::ptrdiff_t>(values.size());
-    if (gaps && (!out.exact || tube))
+    const double rounding = curve.angle_rounding_deg;
+    if (gaps && (!out.exact || tube || rounding > 0))
       throw InputError(curve.file.string() + ": column of " + table.channels[column].name +
                        " has empty fields and cannot be resampled");
     std::optional<PeriodicSpline> spline;
-    if (!out.exact) {
+    std::vector<double> errors;
+    if (!out.exact || rounding > 0) {
       spline.emplace(theta, values);
-      out.error =
-          std::max(out.error,
-                   resampling_error(curve, column, curve.table.peak(table.channels[column].group)));
+      errors = resampling_errors(theta, values);
     }
+    const double peak = curve.table.peak(table.channels[column].group);
     for (std::size_t row = 0; row < table.rows(); ++row) {
       const std::size_t index = row * table.columns() + column;
-      table.values[index] = at[row] < theta.size() ? values[at[row]] : (*spline)(theta_deg[row]);
+      const bool there = at[row] < theta.size();
+      table.values[index] = there ? values[at[row]] : (*spline)(theta_deg[row]);
+      double& uncertainty = out.uncertainty.values[index] = 0;
+      if (!there) uncertainty = errors[interval_of(theta, reduced(theta_deg[row]))];
+      if (rounding > 0)
+        for (const double by : {-rounding, rounding})
+          uncertainty += std::abs((*spline)(theta_deg[row] + by) - (*spline)(theta_deg[row])) / 2;
+      if (peak > 0) out.error = std::max(out.error, uncertainty / peak);
       if (!tube) continue;
       double low = table.values[index], high = low;
       for (const auto& point : near[row]) {
@@ -453,6 +539,125 @@ bool Judgement::agrees() const {
     compared = compared || channel.finding == Finding::agrees;
   }
   return compared;
+}
+
+Turn one_turn(const std::string& file, const AngleMap& map, const std::vector<double>& values,
+              const std::function<std::string(std::size_t)>& place, double degrees_per_second) {
+  const auto fail = [&](const std::string& why) { throw InputError(file + ": " + why); };
+  std::vector<std::pair<double, std::size_t>> points;
+  const double scale = map.sign * map.degrees_per_unit * (map.is_time ? degrees_per_second : 1);
+  // Angles this close are the same angle, rounded.
+  const double same = std::max(kSameAngle, 2 * map.rounding_deg);
+  double turns = 0;  // of an angle that begins anew in every turn
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    const double angle = scale * values[row] + map.offset_deg;
+    if (row > 0 && !map.is_time) {
+      const double step = angle + turns - points.back().first;
+      if (std::abs(step) > 180 && std::abs(step) <= 360 + same) turns += step > 0 ? -360 : 360;
+    }
+    points.emplace_back(angle + turns, row);
+  }
+  if (scale == 0)
+    fail("column " + map.column + " is a time, but the shaft of the case stands still");
+  if (points.size() > 1 && points.back().first < points.front().first)
+    std::reverse(points.begin(), points.end());
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if (!(points[i].first > points[i - 1].first))
+      throw InputError(place(points[i].second) + ": angles in column " + map.column +
+                       " must increase or decrease strictly");
+  if (map.turn_from_deg) {
+    const double from = *map.turn_from_deg;
+    if (points.front().first > from + same || points.back().first < from + 360 - kLargestGap)
+      fail("turn_from_deg = " + number_text(from) + ": the record covers " +
+           number_text(points.front().first) + ".." + number_text(points.back().first) + " deg");
+    std::erase_if(points, [&](const auto& p) {
+      return p.first < from - same || p.first > from + 360 + same;
+    });
+  }
+  Turn turn;
+  const double span = points.back().first - points.front().first;
+  if (span > 360 + same)
+    fail("covers " + number_text(span) +
+         " deg: more than a turn; choose one by turn_from_deg in [curve.angle]");
+  if (span > 360 - same) {
+    turn.repeated = {points.front().second, points.back().second};
+    points.pop_back();
+  }
+  for (auto& [angle, row] : points) angle = wrap_degrees(angle);
+  for (auto& [angle, row] : points)  // a hair below a whole turn is the turn
+    if (angle > 360 - kSameAngle) angle = 0;
+  std::sort(points.begin(), points.end());
+  for (const auto& [angle, row] : points) {
+    turn.theta_deg.push_back(angle);
+    turn.rows.push_back(row);
+  }
+  return turn;
+}
+
+const ForeignUnit* find_unit(const std::string& name) {
+  const auto it = units().find(name);
+  return it == units().end() ? nullptr : &it->second;
+}
+double degrees_per(const std::string& angle_unit) {
+  const auto it = angle_units().find(angle_unit);
+  return it == angle_units().end() ? 0 : it->second;
+}
+double seconds_per(const std::string& time_unit) {
+  const auto it = time_units().find(time_unit);
+  return it == time_units().end() ? 0 : it->second;
+}
+
+Axes turned_axes(const std::string& sequence, const std::array<double, 3>& angles_deg) {
+  Axes axes = kNoTurn;
+  if (sequence.size() != 3) throw InputError("must be three axes, as in ZXZ or 313");
+  for (std::size_t turn = 0; turn < 3; ++turn) {
+    const std::size_t axis = std::string("xyzXYZ123").find(sequence[turn]) % 3;
+    if (std::string("xyzXYZ123").find(sequence[turn]) == std::string::npos)
+      throw InputError("must be three axes, as in ZXZ or 313");
+    const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const double c = std::cos(radians(angles_deg[turn])), s = std::sin(radians(angles_deg[turn]));
+    const auto first = axes[a], second = axes[b];
+    for (std::size_t i = 0; i < 3; ++i) {
+      axes[a][i] = c * first[i] + s * second[i];
+      axes[b][i] = c * second[i] - s * first[i];
+    }
+  }
+  return axes;
+}
+
+std::vector<std::string> assumptions_of(const CurveDescription& curve) {
+  std::vector<std::string> lines;
+  if (!curve.guessed) return lines;
+  const AngleMap& angle = curve.angle;
+  lines.push_back(fmt::format(
+      "assumed, guessed from the curves of {}: theta = {}{}{} in {}{}{}, the phase shift of the "
+      "whole file",
+      curve.file.filename().string(), angle.sign < 0 ? "-" : "",
+      std::abs(angle.sign) == 1 ? "" : fmt::format("{:g} x ", std::abs(angle.sign)), angle.column,
+      angle.unit, angle.is_time ? " x speed" : "",
+      fmt::format(" {} {:g} deg", angle.offset_deg < 0 ? "-" : "+", std::abs(angle.offset_deg))));
+  if (!curve.vectors.empty())
+    lines.push_back("assumed: the vectors of the file are given in " +
+                    (curve.frame.words.empty() ? "the axes of each reaction" : curve.frame.words));
+  std::map<std::string, std::string> meanings;  // "x -1, kN" -> columns
+  const auto add = [&](const std::string& theirs, const std::string& ours, double factor,
+                       const std::string& unit) {
+    auto& list = meanings[fmt::format("{:+g}{}", factor, unit.empty() ? "" : " x " + unit)];
+    list += (list.empty() ? "" : ", ") + ours + " = " + theirs;
+  };
+  for (const auto& vector : curve.vectors)
+    add("(" + vector.theirs[0] + ", " + vector.theirs[1] + ", " + vector.theirs[2] + ")",
+        vector.ours, vector.factor, vector.unit);
+  for (const auto& column : curve.columns)
+    add(column.theirs, column.ours, column.factor, column.unit);
+  for (const auto& [meaning, list] : meanings)
+    lines.push_back("assumed, times " + meaning + ": " + list);
+  if (!curve.ignored.empty()) {
+    std::string list;
+    for (const auto& name : curve.ignored) list += (list.empty() ? "" : ", ") + name;
+    lines.push_back("assumed to stand for no result: " + list);
+  }
+  return lines;
 }
 
 std::vector<fs::path> find_references(const fs::path& root) {
@@ -550,11 +755,16 @@ void check_files(const ReferenceDescription& description, const std::vector<fs::
 
 ReferenceCurve read_reference_curve(const ReferenceDescription& description,
                                     const CurveDescription& curve,
-                                    const std::vector<Channel>& channels,
-                                    double degrees_per_second) {
+                                    const std::vector<Channel>& channels, double degrees_per_second,
+                                    const FrameAxes& frames) {
   const std::string file = curve.file.string();
   const auto fail = [&](const std::string& why) { throw InputError(file + ": " + why); };
-  const NumericTable data = read_numeric_csv(curve.file, true);
+  const bool foreign = description.kind == ReferenceKind::external;
+  const ForeignTable whole = foreign ? read_table(curve.file, curve.sheet) : ForeignTable{};
+  const NumericTable data = foreign ? NumericTable(whole) : read_numeric_csv(curve.file, true);
+  const auto place = [&](std::size_t row) {
+    return foreign ? whole.place(row) : file + ":" + std::to_string(data.lines[row]);
+  };
   if (description.kind != ReferenceKind::external && !ends_its_last_line(curve.file))
     fail("the last line is not ended: the file is truncated");
   if (data.rows.size() != static_cast<std::size_t>(curve.points))
@@ -576,63 +786,152 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
   const std::size_t angle = column_index(curve.angle.column);
   for (std::size_t row = 0; row < data.rows.size(); ++row)
     if (!is_computed(data.rows[row][angle]))
-      fail("row " + std::to_string(row + 1) + " has no value in " + curve.angle.column);
+      throw InputError(place(row) + ": has no value in " + curve.angle.column);
 
-  // Every column is the angle, mapped, one of ours by its name, or ignored by name.
-  struct Source {
-    std::size_t column;
-    double factor;
-  };
+  // Every column is the angle, mapped, one of ours by its name, or ignored by name. A channel is a
+  // sum of columns: one, or the components of a vector in other axes.
+  using Source = std::vector<std::pair<std::size_t, double>>;
   ReferenceCurve out;
   out.file = curve.file;
   out.rows = data.rows.size();
+  out.angle_rounding_deg = curve.angle.rounding_deg;
   ResultTable& table = out.table;
   table.name = "reference";
   std::vector<Source> sources;
+  std::vector<std::pair<std::string, Source>> without_channel;
   std::set<std::size_t> taken = {angle};
-  const auto take = [&](std::size_t column, const std::string& ours, double unit, double factor) {
-    const auto channel = std::find_if(channels.begin(), channels.end(),
-                                      [&](const Channel& c) { return c.name == ours; });
-    if (channel == channels.end())
-      fail("column \"" + data.header[column] + "\" is mapped to \"" + ours +
-           "\", which is no column of a result");
-    if (table.find(ours) < table.columns()) fail("two columns stand for " + ours);
-    table.channels.push_back(*channel);
-    sources.push_back({column, factor * (unit == 0 ? 1 : unit / channel->unit_in_si)});
-    taken.insert(column);
+  const auto is_free = [&](const std::string& name) {
+    const std::size_t column = column_index(name);
+    if (!taken.insert(column).second) fail("column \"" + name + "\" is used twice");
+    return column;
+  };
+  const auto take = [&](const Channel& channel, Source source) {
+    if (table.find(channel.name) < table.columns()) fail("two columns stand for " + channel.name);
+    table.channels.push_back(channel);
+    sources.push_back(std::move(source));
+  };
+  const auto in_our_unit = [](double unit, const Channel& channel) {
+    return unit == 0 ? 1 : unit / channel.unit_in_si;
+  };
+  for (const VectorMap& map : curve.vectors) {
+    std::vector<Channel> ours;  // of one frame
+    for (const Channel& channel : channels)
+      if (!channel.axis.empty() &&
+          channel.quantity + (channel.piston > 0 ? "_" + std::to_string(channel.piston) : "") ==
+              map.ours &&
+          (ours.empty() || ours.front().frame == channel.frame))
+        ours.push_back(channel);
+    if (ours.empty()) fail("a vector is mapped to \"" + map.ours + "\", which is none of a result");
+    const std::string& unit = ours.front().unit;
+    if (const ForeignUnit* theirs = find_unit(map.unit);
+        theirs != nullptr && theirs->family != unit)
+      fail("unit " + map.unit + " of " + map.ours + " cannot become " + unit);
+    std::array<std::optional<std::size_t>, 3> columns;
+    for (std::size_t j = 0; j < 3; ++j)
+      if (!map.theirs[j].empty()) columns[j] = is_free(map.theirs[j]);
+    // Their axes in those of the reaction.
+    Axes axes = curve.frame.cosines;
+    if (!curve.frame.axes_of.empty() && curve.frame.axes_of != ours.front().frame) {
+      const auto from = frames.find(curve.frame.axes_of), to = frames.find(ours.front().frame);
+      if (from == frames.end() || to == frames.end())
+        fail("axes of " + curve.frame.axes_of + " and " + ours.front().frame + " of " + map.ours +
+             ": must both be S1 or S2, or axes_of = \"own\"");
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < 3; ++i) {
+          axes[j][i] = 0;
+          for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t l = 0; l < 3; ++l)
+              axes[j][i] += curve.frame.cosines[j][k] * from->second[k][l] * to->second[i][l];
+        }
+    }
+    bool any = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      constexpr double kNothing = 1e-9;  // of a cosine
+      const auto channel = std::find_if(
+          ours.begin(), ours.end(), [&](const Channel& c) { return c.axis.front() == "xyz"[i]; });
+      Source source;
+      bool complete = true;
+      for (std::size_t j = 0; j < 3; ++j) {
+        if (std::abs(axes[j][i]) < kNothing) continue;
+        complete = complete && columns[j];
+        if (columns[j])
+          source.emplace_back(*columns[j],
+                              axes[j][i] * map.factor * in_our_unit(map.unit_in_si, ours.front()));
+      }
+      if (!complete) continue;
+      any = any || channel != ours.end();
+      if (channel != ours.end())
+        take(*channel, source);
+      else
+        without_channel.emplace_back(map.ours + " along " + "xyz"[i] + ours.front().frame.substr(1),
+                                     source);
+    }
+    if (!any)
+      fail("the columns of vector " + map.ours + " give none of its components in our axes");
+  }
+  const auto known = [&](const std::string& ours) {
+    return std::find_if(channels.begin(), channels.end(),
+                        [&](const Channel& c) { return c.name == ours; });
   };
   for (const ColumnMap& map : curve.columns) {
-    const std::size_t column = column_index(map.theirs);
-    if (taken.count(column) > 0) fail("column \"" + map.theirs + "\" is used twice");
-    take(column, map.ours, map.unit_in_si, map.factor);
+    const std::size_t column = is_free(map.theirs);
+    const auto channel = known(map.ours);
+    if (channel == channels.end())
+      fail("column \"" + map.theirs + "\" is mapped to \"" + map.ours +
+           "\", which is no column of a result");
+    take(*channel, {{column, map.factor * in_our_unit(map.unit_in_si, *channel)}});
   }
   for (const auto& name : curve.ignored) taken.insert(column_index(name));
   for (std::size_t column = 0; column < data.header.size(); ++column) {
     if (taken.count(column) > 0) continue;
     const std::string& name = data.header[column];
-    if (std::none_of(channels.begin(), channels.end(),
-                     [&](const auto& c) { return c.name == name; }))
+    const auto channel = known(name);
+    if (channel == channels.end())
       fail("column \"" + name +
            "\" is used by nothing: map it in [[curve.column]] or name it in ignore");
-    take(column_index(name), name, 0, 1);
+    is_free(name);
+    take(*channel, {{column, 1}});
   }
 
-  const Turn turn = one_turn(file, curve.angle, data, angle, degrees_per_second);
+  std::vector<double> angles;
+  for (const auto& row : data.rows) angles.push_back(row[angle]);
+  const Turn turn = one_turn(file, curve.angle, angles, place, degrees_per_second);
+  const auto value_of = [&](const Source& source, std::size_t row) {
+    double sum = 0;
+    for (const auto& [column, factor] : source) {
+      const double value = data.rows[row][column];
+      if (!is_computed(value)) return value;
+      sum = source.size() == 1 ? factor * value : sum + factor * value;
+    }
+    return sum;
+  };
   table.theta_deg = turn.theta_deg;
   for (const auto row : turn.rows)
-    for (const auto& source : sources) {
-      const double value = data.rows[row][source.column];
-      table.values.push_back(is_computed(value) ? source.factor * value : value);
-    }
+    for (const auto& source : sources) table.values.push_back(value_of(source, row));
+  for (const auto& [words, source] : without_channel) {
+    double largest = 0;
+    for (const auto row : turn.rows)
+      if (const double value = value_of(source, row); is_computed(value))
+        largest = std::max(largest, std::abs(value));
+    const std::string quantity = words.substr(0, words.find_first_of("_ "));
+    double peak = 0;
+    for (const Channel& channel : table.channels)
+      if (channel.quantity == quantity) peak = std::max(peak, table.peak(channel.group));
+    if (largest > description.relative * peak)
+      out.notes.push_back(
+          fmt::format("the file has a part of {} up to {:.2e} of its peak: not "
+                      "compared, the models have none there",
+                      words, peak > 0 ? largest / peak : 1));
+  }
   if (turn.repeated) {
     for (std::size_t c = 0; c < table.columns(); ++c) {
-      const double start = data.rows[turn.repeated->first][sources[c].column] * sources[c].factor;
-      const double again = data.rows[turn.repeated->second][sources[c].column] * sources[c].factor;
+      const double start = value_of(sources[c], turn.repeated->first);
+      const double again = value_of(sources[c], turn.repeated->second);
       const auto absolute = description.absolute.find(table.channels[c].unit);
       const double allowed = description.relative * table.peak(table.channels[c].group) +
                              (absolute == description.absolute.end() ? 0 : absolute->second);
       if (is_computed(start) && is_computed(again) && std::abs(again - start) > allowed)
-        fail("column \"" + data.header[sources[c].column] +
+        fail("column \"" + data.header[sources[c].front().first] +
              "\" ends the turn at another value than it starts with: the record is not periodic");
     }
   }
@@ -651,6 +950,7 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
     append_columns(reference.middle, one.middle);
     append_columns(reference.low, one.low);
     append_columns(reference.high, one.high);
+    append_columns(reference.uncertainty, one.uncertainty);
     reference.exact = reference.exact && one.exact;
     reference.error = std::max(reference.error, one.error);
   }
@@ -661,6 +961,7 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
   options.zero_scales = zero_scales;
   options.most_digits = std::min(options.most_digits, static_cast<double>(description.digits));
   if (description.tube_deg > 0) options.band = Band{&reference.low, &reference.high};
+  options.uncertainty = &reference.uncertainty;
   const Comparison comparison = compare_tables(reference.middle, result, options);
   const Hints hints(reference.middle, result);
 

@@ -4,10 +4,13 @@
 #define CSV_IO_NO_THREAD
 #include <libfccp/csv.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <string_view>
 
+#include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -80,25 +83,88 @@ NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empt
   return table;
 }
 
+namespace {
+
+// Column of a foreign table that is an angle or a pressure, with the size of its unit (degrees,
+// Pa); by unit, else by name.
+struct PressureColumn {
+  std::size_t index;
+  double unit;
+};
+
+PressureColumn find_column(const ForeignTable& table, const std::map<std::string, double>& units,
+                           const std::vector<std::string>& names, const std::string& what) {
+  std::vector<PressureColumn> found;
+  for (const bool by_name : {false, true}) {
+    if (!found.empty()) break;
+    for (std::size_t c = 0; c < table.header.size(); ++c) {
+      const std::string unit = known_unit(table.units[c]);
+      std::string name = table.header[c];
+      std::transform(name.begin(), name.end(), name.begin(),
+                     [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+      if (const auto it = units.find(unit); it != units.end()) {
+        found.push_back({c, it->second});
+      } else if (by_name && std::any_of(names.begin(), names.end(), [&](const auto& word) {
+                   return name.find(word) != std::string::npos;
+                 })) {
+        throw InputError(table.file.string() + ": column \"" + table.header[c] +
+                         "\" has no unit of " + what + ": name one in its heading, as in [" +
+                         units.begin()->first + "]");
+      }
+    }
+  }
+  if (found.size() == 1) return found.front();
+  std::string all;
+  for (const auto& column : table.header) all += (all.empty() ? "" : ", ") + column;
+  throw InputError(table.file.string() + ": must have one column of " + what +
+                   " with its unit; its columns are " + all);
+}
+
+}  // namespace
+
 PressureCurve read_pressure_curve(const std::filesystem::path& file) {
-  const NumericTable table = read_numeric_csv(file);
-  const std::vector<std::string> wanted = {"theta_deg", "pressure_bar"};
-  if (table.header != wanted)
-    throw InputError(file.string() + ":1: header must be theta_deg,pressure_bar");
+  const ForeignTable table = read_table(file);
+  const auto angle =
+      find_column(table, {{"deg", 1}, {"rad", 1 / kRadPerDegree}, {"turn", 360}, {"gon", 0.9}},
+                  {"theta", "angle", "phi", "winkel"}, "angle");
+  const auto pressure = find_column(table,
+                                    {{"bar", pascals(1)},
+                                     {"mbar", 1e2},
+                                     {"Pa", 1},
+                                     {"kPa", 1e3},
+                                     {"MPa", 1e6},
+                                     {"psi", 6894.757293168361}},
+                                    {"press", "druck"}, "pressure");
   PressureCurve curve;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const double theta = table.rows[i][0];
+    const double theta = table.rows[i][angle.index] * angle.unit;
+    const double value = table.rows[i][pressure.index];
     const auto refuse = [&](const std::string& range) {
-      throw InputError(file.string() + ":" + std::to_string(table.lines[i]) +
-                       ": theta_deg = " + number_text(theta) + ": must be " + range);
+      throw InputError(table.place(i) + ": " + table.header[angle.index] + " = " +
+                       number_text(table.rows[i][angle.index]) + ": must be " + range);
     };
+    if (!is_computed(theta) || !is_computed(value))
+      throw InputError(table.place(i) + ": " +
+                       table.header[is_computed(theta) ? pressure.index : angle.index] +
+                       " = \"\": must be a finite number");
     if (i > 0 && !(theta > curve.theta_deg.back()))
-      refuse("> " + number_text(curve.theta_deg.back()) + " (angles increase strictly)");
+      refuse("> " + number_text(curve.theta_deg.back()) + " deg (angles increase strictly)");
+    const double pascal =
+        known_unit(table.units[pressure.index]) == "bar" ? pascals(value) : value * pressure.unit;
+    constexpr double kSameAngle = 1e-9;
+    if (i > 0 && i + 1 == table.rows.size() &&
+        std::abs(theta - curve.theta_deg.front() - 360) < kSameAngle) {
+      // The end point may come again.
+      if (pascal != curve.pressure.front())
+        throw InputError(table.place(i) + ": " + table.header[pressure.index] + " = " +
+                         number_text(value) +
+                         ": must be what the turn begins with: the curve is periodic");
+      break;
+    }
     if (i > 0 && !(theta - curve.theta_deg.front() < 360))
-      refuse("< " + number_text(curve.theta_deg.front() + 360) +
-             " (a turn after the first; the end point is not repeated)");
+      refuse("< " + number_text(curve.theta_deg.front() + 360) + " deg (a turn after the first)");
     curve.theta_deg.push_back(theta);
-    curve.pressure.push_back(pascals(table.rows[i][1]));
+    curve.pressure.push_back(pascal);
   }
   return curve;
 }

@@ -196,6 +196,18 @@ std::pair<double, double> TableReader::pair(const std::string& key, NumberRange 
   return values;
 }
 
+std::vector<double> TableReader::numbers(const std::string& key) {
+  const auto node = find(key, "a list of numbers", true);
+  std::vector<double> values;
+  if (!node) return values;
+  const toml::array* array = node->node->as_array();
+  if (array == nullptr) fail_at(*node, key, "must be a list of numbers [1, 2.5]");
+  for (const toml::node& item : *array)
+    values.push_back(number_of({node->file, &item}, key, kAny, false));
+  record(key, quoted(*node->node));
+  return values;
+}
+
 std::vector<std::string> TableReader::texts(const std::string& key) {
   const auto node = find(key, "a list of texts", true);
   std::vector<std::string> values;

@@ -12,6 +12,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
+#include "bentaxis/files/foreign_table.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/results/result_table.h"
@@ -88,6 +89,16 @@ void read_as_csv(const std::uint8_t* data, std::size_t size) {
     } catch (const InputError& error) {
       check_message(error);
     }
+  }
+  try {
+    const ForeignTable table = read_table(file);
+    require(table.rows.size() == table.lines.size() && table.header.size() == table.units.size() &&
+                table.header.size() == table.digits.size(),
+            "table is not complete");
+    for (const auto& row : table.rows)
+      require(row.size() == table.header.size(), "row of a table is not complete");
+  } catch (const InputError& error) {
+    check_message(error);
   }
 }
 

@@ -12,8 +12,10 @@
 
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
+#include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/study/reference_set.h"
 
 namespace bentaxis::study {
@@ -54,82 +56,6 @@ std::string toml_text(const std::string& text) {
   return out.str();
 }
 
-// ---- reference new: what do the columns of a foreign curve stand for? ---------------------------
-
-// Lower-case words of a column name: "Joint 1.FX [kN]" -> joint 1 fx kn.
-std::vector<std::string> words_of(const std::string& name) {
-  std::vector<std::string> words(1);
-  for (const char letter : name) {
-    const auto c = static_cast<unsigned char>(letter);
-    if (std::isalnum(c) == 0) {
-      if (!words.back().empty()) words.emplace_back();
-    } else {
-      words.back() += static_cast<char>(std::tolower(c));
-    }
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
-
-// The unit a column's name ends with: "Joint 1.FX [kN]", "torque_Nmm".
-std::string unit_in(const std::string& name) {
-  std::string last;
-  for (const char c : name)
-    if (std::isalpha(static_cast<unsigned char>(c)) != 0)
-      last += c;
-    else if (c == '_' || c == ' ' || c == '[' || c == '(' || c == '/')
-      last.clear();
-  for (const char* unit : {"N", "kN", "MN", "lbf", "Nm", "kNm", "Nmm", "m", "mm", "um", "in", "Pa",
-                           "kPa", "MPa", "bar", "psi"})
-    if (last == unit) return unit;
-  return "";
-}
-
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-struct Guess {
-  std::string ours, unit;
-};
-
-// The channel whose name's words (quantity, piston, axis) all occur in the column's name.
-Guess guess_channel(const std::string& column, const std::vector<Channel>& channels) {
-  const auto words = words_of(column);
-  Guess best;
-  std::size_t most = 0;
-  for (const Channel& channel : channels) {
-    if (channel.kind == ChannelKind::check) continue;
-    auto needed = words_of(channel.name);
-    needed.pop_back();  // the unit may differ
-    // The axis may be given without the number of the frame.
-    bool all = true;
-    for (const auto& word : needed)
-      all = all && (contains(words, word) ||
-                    (word == words_of(channel.axis.empty() ? "-" : channel.axis).front() &&
-                     contains(words, word.substr(0, 1))));
-    if (channel.quantity == "Td" && contains(words, "torque") && channel.axis == "z1") all = true;
-    if (all && needed.size() > most) {
-      most = needed.size();
-      best.ours = channel.name;
-    }
-  }
-  best.unit = best.ours.empty() ? "" : unit_in(column);
-  return best;
-}
-
-// Column of the angle and its unit; empty where none looks like one.
-Guess guess_angle(const std::vector<std::string>& header) {
-  for (const auto& column : header)
-    for (const char* word : {"theta", "angle", "phi", "rotation", "deg", "degrees"})
-      if (contains(words_of(column), word))
-        return {column, contains(words_of(column), "rad") ? "rad" : "deg"};
-  for (const auto& column : header)
-    for (const char* word : {"time", "t", "s"})
-      if (contains(words_of(column), word)) return {column, "s"};
-  return {};
-}
-
 // What is worth keeping of a result: reactions and what follows from them, not the checks, which
 // are round-off.
 ResultTable kept(const ResultTable& table) {
@@ -160,78 +86,150 @@ std::string changes(const compare::Judgement& judgement) {
 
 }  // namespace
 
-NewReference make_reference(const Case& the_case, bool changed, const fs::path& curve,
-                            const fs::path& out) {
-  const NumericTable data = read_numeric_csv(curve, true);
-  const ChannelLayout layout(the_case.pump.geometry.pistons);
-  must_be_new(out);
-  const std::string curve_name = curve.filename();
-  if (curve_name == "case.toml" || curve_name == "description.toml")
-    throw InputError(curve.string() + ": a curve must not be named so");
+namespace {
 
-  Guess angle = guess_angle(data.header);
-  std::string columns, ignored;
-  std::set<std::string> taken;
-  int mapped = 0;
-  for (const auto& column : data.header) {
-    if (column == angle.ours) continue;
-    const Guess guess = guess_channel(column, layout.channels());
-    if (guess.ours.empty() || !taken.insert(guess.ours).second) {
-      ignored += (ignored.empty() ? "" : ", ") + toml_text(column);
-      continue;
-    }
-    ++mapped;
-    columns += fmt::format("\n[[curve.column]]\ntheirs = {}\nours = {}\n", toml_text(column),
-                           toml_text(guess.ours));
-    const std::string own = guess.ours.substr(guess.ours.rfind('_') + 1);
-    columns += fmt::format("unit = {}  # of their column\nsign = 1\n",
-                           toml_text(guess.unit.empty() ? own : guess.unit));
-  }
-  if (angle.ours.empty()) {
-    angle = {data.header.front(), "deg"};
-    ignored.clear();
-    for (std::size_t i = 1; i < data.header.size(); ++i)
-      if (columns.find("theirs = " + toml_text(data.header[i]) + "\n") == std::string::npos)
-        ignored += (ignored.empty() ? "" : ", ") + toml_text(data.header[i]);
-  }
-  const std::string description = fmt::format(
-      "# A guess, made by bentaxis reference new: check every line, then run bentaxis regress on "
-      "this "
-      "folder.\n"
-      "schema = 1\n"
-      "kind = \"external\"\n"
-      "case = \"case.toml\"\n"
-      "source = \"TODO: which tool or rig, which version, who, when\"\n"
-      "how_made = \"TODO: model, settings, filtering\"\n"
-      "who_may_change = \"TODO\"\n"
-      "digits = 6  # that are good in the curve\n"
-      "\n"
-      "# Allowed: absolute + relative x the reaction's peak. A value near a steep edge may lie "
-      "anywhere\n"
-      "# between what the curve spans over +-tube_deg.\n"
-      "[tolerance]\n"
-      "relative = 0.01\n"
-      "absolute_N = 0.0\n"
-      "absolute_Nm = 0.0\n"
-      "tube_deg = 0.0\n"
-      "\n"
+// A model's curve has this many angles for a guess: finer than what tells one curve from another.
+constexpr int kGuessSamples = 360;
+// Nothing agrees better than this with what another program has written.
+constexpr double kBestTolerance = 1e-5;
+// A component in our axes is the sum of up to three rounded ones.
+constexpr double kOfRounding = 4;
+
+std::string list_text(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const auto& text : texts) list += (list.empty() ? "" : ", ") + toml_text(text);
+  return "[" + list + "]";
+}
+
+std::string factor_lines(const std::string& unit, double factor) {
+  std::string text;
+  if (!unit.empty()) text += "unit = " + toml_text(unit) + "\n";
+  if (factor < 0) text += "sign = -1\n";
+  return text;
+}
+
+std::string curve_text(const MappingGuess& guess) {
+  const compare::CurveDescription& curve = guess.curve;
+  std::string text = fmt::format(
       "[[curve]]\n"
       "file = {}\n"
-      "points = {}\n"
-      "ignore = [{}]  # columns that stand for no result\n"
+      "{}points = {}\n"
+      "guessed = true  # every report says what was assumed; take the line away once you have "
+      "checked it\n"
+      "ignore = {}  # columns that stand for no result\n"
       "\n"
       "# theta_deg = sign x column (in degrees) + offset_deg; theta = 0 where piston 1 is deepest "
       "in.\n"
       "[curve.angle]\n"
       "column = {}\n"
-      "unit = {}  # deg, rad, turn, or s with the speed of the case\n"
-      "sign = 1\n"
-      "offset_deg = 0.0\n"
-      "# turn_from_deg = 360.0  # of a record longer than a turn\n"
-      "{}",
-      toml_text(curve_name), data.rows.size(), ignored, toml_text(angle.ours),
-      toml_text(angle.unit), columns);
+      "unit = {}  # deg, rad, mrad, turn, gon; s, ms, us, min with the speed of the case\n"
+      "sign = {}\n"
+      "offset_deg = {}\n",
+      toml_text(curve.file.filename()),
+      curve.sheet.empty() ? "" : "sheet = " + toml_text(curve.sheet) + "\n", curve.points,
+      list_text(curve.ignored), toml_text(curve.angle.column), toml_text(curve.angle.unit),
+      curve.angle.sign < 0 ? -1 : 1, number_text(curve.angle.offset_deg));
+  if (curve.angle.rounding_deg > 0)
+    text += fmt::format("rounding_deg = {:.2g}  # half a unit of its last digit\n",
+                        curve.angle.rounding_deg);
+  if (curve.angle.turn_from_deg)
+    text += "turn_from_deg = " + number_text(*curve.angle.turn_from_deg) +
+            "  # of a record longer than a turn: the last one\n";
+  if (!curve.vectors.empty()) {
+    text += fmt::format(
+        "\n# The axes that vectors are given in: \"own\" (those of each reaction), \"S1\" or "
+        "\"S2\", turned.\n[curve.frame]\naxes_of = \"{}\"\n",
+        curve.frame.axes_of.empty() ? "own" : curve.frame.axes_of);
+    if (!guess.euler.empty())
+      text += fmt::format("euler = \"{}\"\neuler_deg = [{:g}, {:g}, {:g}]\n", guess.euler,
+                          guess.euler_deg[0], guess.euler_deg[1], guess.euler_deg[2]);
+    else
+      for (std::size_t i = 0; i < 3; ++i)
+        text += fmt::format("{} = [{:g}, {:g}, {:g}]{}\n", "xyz"[i], curve.frame.cosines[i][0],
+                            curve.frame.cosines[i][1], curve.frame.cosines[i][2],
+                            i == 0 ? "  # direction cosines of their x" : "");
+  }
+  for (const auto& vector : curve.vectors)
+    text += fmt::format("\n[[curve.vector]]\ntheirs = {}\nours = {}\n{}",
+                        list_text({vector.theirs.begin(), vector.theirs.end()}),
+                        toml_text(vector.ours), factor_lines(vector.unit, vector.factor));
+  for (const auto& column : curve.columns)
+    text += fmt::format("\n[[curve.column]]\ntheirs = {}\nours = {}\n{}", toml_text(column.theirs),
+                        toml_text(column.ours), factor_lines(column.unit, column.factor));
+  return text;
+}
 
+}  // namespace
+
+MappingGuess guess_reference(const Case& the_case, const fs::path& file, const std::string& sheet) {
+  const ForeignTable table = read_table(file, sheet);
+  Case sampled = the_case;
+  sampled.operation.samples_per_revolution = kGuessSamples;
+  const ReadyCase ready = prepare(std::move(sampled));
+  return guess_mapping(table, run_turn(ready, Model::analytic), frames_of(the_case),
+                       6 * the_case.operation.speed_rpm);
+}
+
+std::string proposal_text(const MappingGuess& guess) {
+  std::size_t width = 6, ours = 4;
+  for (const auto& p : guess.proposals) {
+    width = std::max(width, p.theirs.size());
+    ours = std::max(ours, p.ours.size());
+  }
+  for (const auto& [column, why] : guess.ignored) width = std::max(width, column.size());
+  std::string text = fmt::format("{:<{}}  {:<{}}  {:>4}  {:<6}  {:>11}  {:>10}\n", "column", width,
+                                 "ours", ours, "sign", "unit", "correlation", "difference");
+  for (const auto& p : guess.proposals)
+    text += fmt::format("{:<{}}  {:<{}}  {:>4}  {:<6}  {:>11.7f}  {:>10.1e}{}\n", p.theirs, width,
+                        p.ours, ours, p.sign < 0 ? "-1" : "+1", p.unit, p.correlation, p.difference,
+                        p.remark.empty() ? "" : "  " + p.remark);
+  for (const auto& [column, why] : guess.ignored)
+    text += fmt::format("{:<{}}  {:<{}}  {}\n", column, width, "-", ours, why);
+  for (const auto& line : compare::assumptions_of(guess.curve))
+    if (line.find("times") == std::string::npos && line.find("stand for no") == std::string::npos)
+      text += line + "\n";
+  return text;
+}
+
+std::string description_of(const MappingGuess& guess, const std::string& source,
+                           std::optional<double> tolerance) {
+  const double relative =
+      tolerance ? *tolerance : std::max(kBestTolerance, kOfRounding * guess.rounding);
+  return fmt::format(
+      "# Made by bentaxis reference new.\n"
+      "schema = 1\n"
+      "kind = \"external\"\n"
+      "case = \"case.toml\"\n"
+      "{}"
+      "source = {}\n"
+      "how_made = \"not stated\"\n"
+      "who_may_change = \"not stated\"\n"
+      "digits = {}  # that are good in the curve\n"
+      "\n"
+      "# Allowed: absolute + relative x the reaction's peak{}. A value near a steep edge may lie "
+      "anywhere\n"
+      "# between what the curve spans over +-tube_deg.\n"
+      "[tolerance]\n"
+      "relative = {:.2g}\n"
+      "absolute_N = 0.0\n"
+      "absolute_Nm = 0.0\n"
+      "tube_deg = 0.0\n"
+      "\n{}",
+      guess.samples == 0
+          ? ""
+          : fmt::format("samples_per_revolution = {}  # the record's own angles\n", guess.samples),
+      toml_text(source.empty() ? guess.curve.file.filename().string() + ", not stated by whom"
+                               : source),
+      std::clamp(guess.digits, 1, 16), tolerance ? "" : "; proposed: what the file's digits allow",
+      relative, curve_text(guess));
+}
+
+std::vector<fs::path> make_reference(const Case& the_case, bool changed, const fs::path& curve,
+                                     const std::string& description, const fs::path& out) {
+  must_be_new(out);
+  const std::string curve_name = curve.filename();
+  if (curve_name == "case.toml" || curve_name == "description.toml")
+    throw InputError(curve.string() + ": a curve must not be named so");
   OutputFolder folder(out);
   // A case written anew names its curve where it lies.
   folder.add("case.toml", changed ? case_text(the_case) : read_text(the_case.file));
@@ -243,7 +241,7 @@ NewReference make_reference(const Case& the_case, bool changed, const fs::path& 
   }
   folder.add(curve_name, read_text(curve));
   folder.add("description.toml", description);
-  return {folder.commit(), mapped, data.header.size() - 1};
+  return folder.commit();
 }
 
 std::vector<fs::path> make_golden(Case the_case, bool changed, int samples, const fs::path& out,
@@ -309,8 +307,9 @@ GoldenUpdate update_golden(const ReferenceDescription& description,
     std::string what;
     bool agrees = false;
     try {
-      const auto stored = compare::read_reference_curve(description, curve, table.channels,
-                                                        6 * the_case.operation.speed_rpm);
+      const auto stored =
+          compare::read_reference_curve(description, curve, table.channels,
+                                        6 * the_case.operation.speed_rpm, frames_of(the_case));
       const auto judgement = compare::judge(description, {stored}, table, run.zero_scales);
       what = changes(judgement);
       // A new column is worth a new file, round-off is not.

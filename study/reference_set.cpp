@@ -1,6 +1,7 @@
 #include "bentaxis/study/reference_set.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/study/achieved_error.h"
@@ -34,6 +35,11 @@ ReadyCase read(const compare::ReferenceDescription& description, const fs::path&
 }
 
 }  // namespace
+
+compare::FrameAxes frames_of(const Case& the_case) {
+  const double c = std::cos(the_case.pump.geometry.tilt), s = std::sin(the_case.pump.geometry.tilt);
+  return {{"S1", compare::kNoTurn}, {"S2", {{{1, 0, 0}, {0, c, -s}, {0, s, c}}}}};
+}
 
 ReferenceCases::ReferenceCases(const compare::ReferenceDescription& description,
                                const PartProgress& progress_of)

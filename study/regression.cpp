@@ -76,6 +76,11 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
                         {"digits", std::to_string(description.digits)},
                         {"tolerance, relative to peak", fmt::format("{:g}", description.relative)},
                         {"tube, deg", fmt::format("{:g}", description.tube_deg)}};
+  for (const auto& curve : description.curves)
+    for (const auto& line : compare::assumptions_of(curve)) {
+      outcome.notes.push_back(line);
+      outcome.properties.emplace_back("assumption", line);
+    }
   bool any = false;
   for (const Model which : kModels) {
     const std::string model = to_string(which);
@@ -90,7 +95,10 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
     for (const auto& curve : description.curves)
       if (holds(curve))
         curves.push_back(compare::read_reference_curve(description, curve, layout.channels(),
-                                                       6 * the_case.operation.speed_rpm));
+                                                       6 * the_case.operation.speed_rpm,
+                                                       frames_of(the_case)));
+    for (const auto& curve : curves)
+      for (const auto& note : curve.notes) outcome.notes.push_back(model + ": " + note);
     const ReferenceRun run = result_of(which);
     const std::size_t stride = stride_of(description, the_case);
     const compare::Judgement judgement =
@@ -98,7 +106,7 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
     if (judgement.resampled)
       outcome.notes.push_back(fmt::format(
           "{}: the reference has other angles than the case and was resampled, which adds an error "
-          "of about {:.1e} of peak",
+          "of up to {:.1e} of peak; around each angle that is allowed on top",
           model, judgement.resampling_error));
     const double seconds = stopwatch.seconds();
     auto lines = group_lines(judgement);

@@ -173,9 +173,12 @@ TEST_F(ReferenceFolder, OtherAnglesAreResampledBySplineOfFourthOrder) {
     const Judgement j = judge(d, {curve(d)}, result(36), {});
     EXPECT_TRUE(j.resampled);
     double worst = 0;
-    for (const auto& c : j.channels) worst = std::max(worst, c.comparison.largest_over_peak());
-    EXPECT_GT(j.resampling_error, worst / 2)
-        << "the estimate is no promise, but no small one either";
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t row = 0; row < 36; ++row)
+        worst = std::max(worst, std::abs(j.reference.at(row, c) - result(36).at(row, c)) /
+                                    result(36).peak(kChannels[c].group));
+    EXPECT_GT(j.resampling_error, worst);
+    EXPECT_LT(j.resampling_error, 80 * worst) << "48 times in the limit, where it is worst";
     errors.push_back(worst);
   }
   // Halving the step of a smooth curve divides the error by 16.
@@ -191,6 +194,33 @@ TEST_F(ReferenceFolder, ResampledCurvesMayNotHaveLargerGapsThanSaid) {
   };
   EXPECT_EQ(judged(12), "nothing");
   EXPECT_THAT(judged(11), HasSubstr("must cover the turn with gaps of at most 30 deg"));
+}
+
+TEST_F(ReferenceFolder, JumpIsResampledWithTheUncertaintyItHas) {
+  // A friction force reverses between two points of the reference, wherever that is between them.
+  constexpr double kJump = 30;
+  for (const double reversal : {100.0, 100.1, 101.2, 102.5, 103.9, 104.8, 106.3, 108.0}) {
+    const auto with_friction = [&](double deg) {
+      const double share = deg == reversal || deg == 300 ? 0.5
+                           : deg < reversal || deg > 300 ? 0
+                                                         : 1;
+      return x_of(deg) + share * kJump;
+    };
+    write_curve(72, [&](double a) -> std::array<double, 4> {
+      return {a, with_friction(a), y_of(a), t_of(a)};
+    });
+    ResultTable fine = result(720);
+    for (std::size_t row = 0; row < fine.rows(); ++row)
+      fine.values[row * 3] = with_friction(fine.theta_deg[row]);
+    const auto d = description(72, "", "relative = 1e-4");
+    const Judgement j = judge(d, {curve(d)}, fine, {});
+    EXPECT_EQ(finding(j, "X_x_N"), Finding::agrees) << reversal;
+    EXPECT_GT(j.resampling_error, 0.3 * kJump / 120);
+    EXPECT_LT(j.resampling_error, 2 * kJump / 120);
+    // Far from the jump nothing is forgiven.
+    fine.values[3 * 400] += 0.002 * 120;
+    EXPECT_EQ(finding(judge(d, {curve(d)}, fine, {}), "X_x_N"), Finding::differs) << reversal;
+  }
 }
 
 TEST_F(ReferenceFolder, ToleranceIsAbsolutePlusRelativeToThePeakOfTheVector) {

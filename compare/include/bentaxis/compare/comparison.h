@@ -34,7 +34,8 @@ struct ChannelComparison {
   bool judged = false;  ///< counts for the overall verdict (reactions and what follows from them)
   double peak = 0;      ///< largest magnitude of the channel's group in the first table, or the
                         ///< case's load scale where that is zero
-  double largest = 0;   ///< largest magnitude of the difference
+  double largest = 0;   ///< largest magnitude of the difference; where the first table is
+                        ///< uncertain: at the row that is furthest beyond or nearest to its limit
   double theta_of_largest_deg = 0;
   double rms = 0;
   double mean[2] = {0, 0};
@@ -42,7 +43,7 @@ struct ChannelComparison {
   std::vector<Harmonic> harmonics;
   double digits = 0;     ///< of agreement: -log10(largest / peak), at most Options::most_digits
   double tolerance = 0;  ///< over peak
-  double allowed = 0;    ///< absolute + tolerance x peak, channel's unit
+  double allowed = 0;    ///< absolute + tolerance x peak + uncertainty there, channel's unit
   std::string gap;       ///< of an incomplete channel: which table lacks it, and where
 
   /// Both tables have it, and the numbers above say how far apart they are.
@@ -69,6 +70,8 @@ struct Options {
   ZeroScales zero_scales;
   double most_digits = 16;   ///< of agreement that can be claimed: those of the poorer table
   std::optional<Band> band;  ///< a difference is then the distance from the band
+  /// How far each value of the first table may be off, in its unit: a table of its shape.
+  const ResultTable* uncertainty = nullptr;
   /// Whether a value of a channel may be missing at a row: then the channel is not computed,
   /// without it incomplete. Where this is not given, a value may be missing in both tables, not in
   /// one.

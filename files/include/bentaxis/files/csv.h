@@ -23,7 +23,9 @@ struct NumericTable {
 /// @throws InputError naming file, line, column and text.
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty = false);
 
-/// Reads a curve file: CSV with the header theta_deg,pressure_bar.
+/// Reads the curve of a chamber pressure from any table of foreign_table.h: one column of angles
+/// (deg, rad, turn, gon) and one of gauge pressures (bar, mbar, Pa, kPa, MPa, psi), with units in
+/// their headings. The first point may come again a turn later, with the same pressure.
 /// @throws InputError naming file and line.
 PressureCurve read_pressure_curve(const std::filesystem::path& file);
 

@@ -42,6 +42,8 @@ class TableReader {
   /// [a, b].
   std::pair<double, double> pair(const std::string& key, NumberRange range,
                                  std::optional<std::pair<double, double>> fallback = {});
+  /// [1, 2.5, ...], finite; empty where the key is missing.
+  std::vector<double> numbers(const std::string& key);
   /// ["a", "b", ...]; empty where the key is missing.
   std::vector<std::string> texts(const std::string& key);
 

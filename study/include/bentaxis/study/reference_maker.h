@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bentaxis/compare/reference.h"
+#include "bentaxis/study/mapping_guess.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -14,17 +16,30 @@ namespace bentaxis::study {
 /// A golden curve says that something changed, not what: few angles are enough.
 inline constexpr int kGoldenSamples = 36;
 
-/// A folder made for the curve of another tool or a rig.
-struct NewReference {
-  std::vector<std::filesystem::path> files;
-  int recognised = 0;       ///< columns that look like one of ours
-  std::size_t columns = 0;  ///< of the curve beside the angle
-};
-/// Copies the case and the curve into a new folder, with a description to be completed.
+/// Reads the record of another tool or a rig and guesses what its columns are, by holding them to
+/// the analytic model's curves of the case.
+/// @param sheet  of a workbook, variable of a MATLAB file; "" = the first with a table
+/// @throws InputError where the record cannot be read or fits nothing; ComputationError
+MappingGuess guess_reference(const Case& the_case, const std::filesystem::path& file,
+                             const std::string& sheet = "");
+
+/// The proposals as a table, worst first, and the angle and frame that were taken.
+std::string proposal_text(const MappingGuess& guess);
+
+/// The description.toml that says the same.
+/// @param source     of the record, in words; "" = not stated
+/// @param tolerance  of peak; where not given what the digits of the file allow
+std::string description_of(const MappingGuess& guess, const std::string& source = "",
+                           std::optional<double> tolerance = {});
+
+/// Copies the case and the record into a new folder, beside a description. Returns the paths of its
+/// files.
 /// @param changed  the case is not as its file has it: it is written anew instead of copied
-/// @throws InputError where the folder is not new or the curve cannot be read
-NewReference make_reference(const Case& the_case, bool changed, const std::filesystem::path& curve,
-                            const std::filesystem::path& out);
+/// @throws InputError where the folder is not new
+std::vector<std::filesystem::path> make_reference(const Case& the_case, bool changed,
+                                                  const std::filesystem::path& curve,
+                                                  const std::string& description,
+                                                  const std::filesystem::path& out);
 
 /// Makes a folder with the curves that both models give a case today. Returns the paths of its
 /// files.

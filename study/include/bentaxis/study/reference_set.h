@@ -22,6 +22,9 @@ std::vector<ReferencePlace> references_below(const std::filesystem::path& root);
 /// Files that the cases of a reference use beside the case files themselves.
 std::vector<std::filesystem::path> files_of(const Case& the_case);
 
+/// The axes of the frames S1 and S2 of a case in S1, for curves given in other axes than ours.
+compare::FrameAxes frames_of(const Case& the_case);
+
 /// The cases that the models of a reference are given: read, with the description's number of
 /// samples, and with their chamber pressure computed where they leave it to the hydraulic model.
 /// @throws InputError, ComputationError

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""Tests of importing foreign records: tests/imports holds files that LibreOffice, Octave and scipy have written.
+
+usage: import_test.py BENTAXIS REPO_ROOT [options of unittest]
+BENTAXIS_MAKE_EXPORTS=1 has make_exports.py write the files anew first (packages of the slow group).
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import command_line_test as base
+from command_line_test import BAD_INPUT, DONE, OUT_OF_TOLERANCE, Case, ProgramTest
+
+EXPORTS = pathlib.Path(__file__).resolve().parent / "imports"
+
+
+class ImportTest(ProgramTest):
+    def new(self, file, *arguments, status=DONE):
+        return self.run_program("reference", "new", base.REPO / "cases" / "bap63_rated.toml", "--from", file, "--out",
+                                "ref", *arguments, status=status)
+
+    def regress(self, status):
+        result = self.run_program("regress", "ref", status=status)
+        return result.out + result.err
+
+    def description(self):
+        return (self.folder / "ref" / "description.toml").read_text()
+
+
+class ExportTest(ImportTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.exports = EXPORTS
+        if os.environ.get("BENTAXIS_MAKE_EXPORTS"):
+            cls.exports = pathlib.Path(tempfile.mkdtemp())
+            subprocess.run(["/usr/bin/python3", EXPORTS / "make_exports.py", cls.exports], check=True)
+
+    def files(self, kind):
+        files = sorted((self.exports / kind).iterdir())
+        self.assertGreaterEqual(len(files), {"good": 6, "bad": 10}[kind])
+        return files
+
+    def test_what_is_right_agrees(self):
+        for file in self.files("good"):
+            with self.subTest(file.name):
+                shutil.rmtree(self.folder / "ref", ignore_errors=True)
+                out = self.new(file, "--accept").out
+                correlations = [float(c) for c in re.findall(r" (-?[01]\.\d{7}) ", out)]
+                self.assertGreaterEqual(len(correlations), 2)
+                self.assertGreater(min(correlations), 0.999999)
+                report = self.regress(DONE)
+                # A tight tolerance, and what was guessed is said.
+                self.assertLessEqual(float(re.search(r"^relative = (\S+)", self.description(), re.M)[1]), 1e-4)
+                self.assert_mentions(report, "assumed", "phase shift of the whole file", "times")
+
+    def test_what_is_wrong_differs(self):
+        for file in self.files("bad"):
+            with self.subTest(file.name):
+                shutil.rmtree(self.folder / "ref", ignore_errors=True)
+                self.new(file, "--accept")
+                self.regress(OUT_OF_TOLERANCE)
+
+    def test_proposal_is_confirmed_or_edited(self):
+        file = self.exports / "good" / "bench.csv"
+        out = self.new(file).out
+        self.assertFalse((self.folder / "ref").exists())
+        mapping = self.folder / "ref_mapping.toml"
+        self.assert_mentions(out, "Antriebsmoment", "Td_z1_Nm", "correlation", str(mapping.name))
+        # Worst first.
+        differences = [float(d) for d in re.findall(r"\d\.\d{7} +(\d\.\de[+-]\d\d)", out)]
+        self.assertEqual(differences, sorted(differences, reverse=True))
+        self.assert_mentions(self.new(file, status=BAD_INPUT).err, mapping.name, "exists")
+        text = mapping.read_text()
+        mapping.write_text(re.sub("guessed = true.*\n", "", text))
+        self.new(file, "--mapping", mapping)
+        self.assertNotIn("assumed", self.regress(DONE))
+        shutil.rmtree(self.folder / "ref")
+        mapping.write_text(text.replace("offset_deg = -37", "offset_deg = -36.9"))
+        self.new(file, "--mapping", mapping)
+        self.regress(OUT_OF_TOLERANCE)
+        self.assert_mentions(self.new(file, "--mapping", mapping, "--accept", status=BAD_INPUT).err, "--mapping")
+
+    def test_sheets(self):
+        book = self.exports / "good" / "results.xlsx"
+        self.assert_mentions(self.new(book, "--sheet", "Absent", status=BAD_INPUT).err, "Absent", "Info, Results")
+        self.assert_mentions(self.new(book, "--sheet", "Info", status=BAD_INPUT).err, "Info", "no table")
+        self.new(book, "--sheet", "Results", "--accept")
+        self.assertIn('sheet = "Results"', self.description())
+        self.assert_mentions(self.new(self.exports / "good" / "run.mat", "--sheet", "absent", status=BAD_INPUT).err,
+                             "absent", "run", "comment")
+
+
+class RefusalTest(ImportTest):
+    def refused_file(self, text, *words):
+        file = self.folder / "record.csv"
+        file.write_bytes(text if isinstance(text, bytes) else text.encode())
+        error = self.new(file, status=BAD_INPUT).err
+        self.assertEqual(error.count("\n"), 1, error)
+        self.assert_mentions(error, "record.csv", *words)
+
+    def test_refusals(self):
+        rows = [f"{10 * i};{i % 7},5;{i % 5},25" for i in range(36)]
+        table = lambda: "\n".join(["Angle [deg];a;b", *rows]) + "\n"
+        self.refused_file("", "empty")
+        self.refused_file("only words\nand more\n", "no table")
+        self.refused_file(b"PK\x03\x04 no archive", "zip")
+        self.refused_file(b"\xd0\xcf\x11\xe0 old", ".xls")
+        self.refused_file(b"# Created by Octave 7\n", "-v7")
+        self.refused_file(b"MATLAB 5.0 MAT-file, cut", "MATLAB")
+        rows[10] = "100;nan;1,5"
+        self.refused_file(table(), ":12:", "a = ", "nan", "finite")
+        rows[10] = "100;1,5"
+        self.refused_file(table(), ":12:", "2 fields")
+        rows[10] = "100;1.5;1,5"
+        self.refused_file(table(), ":12:", "1.5")
+        rows[10] = "oops"
+        self.refused_file(table(), ":12:", "oops")
+        rows[10] = "100;1,5;1,5"
+        self.refused_file("\n".join(rows[:20]), "330 deg")
+
+
+class PressureCurveTest(ImportTest):
+    PLAIN = "theta_deg,pressure_bar\n0,5\n90,6\n180,100\n270,90\n"
+
+    def curve(self, text, name="curve.csv"):
+        (self.folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+        Case(**{"pressure.kind": '"curve"', "pressure.file": f'"{name}"',
+                "operation.samples_per_revolution": 24}).write(self.folder / "case.toml")
+        return "run", "case.toml", "--model", "analytic"
+
+    def torque(self, text, name="curve.csv"):
+        shutil.rmtree(self.folder / "out", ignore_errors=True)
+        self.run_program(*self.curve(text, name), "--out", "out")
+        return next((self.folder / "out").glob("*.csv")).read_text()
+
+    def test_formats(self):
+        plain = self.torque(self.PLAIN)
+        self.assertEqual(plain, self.torque(self.PLAIN + "360,5\n"), "the end point comes again")
+        self.assertEqual(plain, self.torque("Chamber 1\n\nPressure;Angle\n[bar];[deg]\n5;0\n6;90\n100;180\n90;270\n"))
+        self.assertEqual(plain, self.torque("﻿\"theta [turn]\"\t\"p [bar]\"\r\n0\t5\r\n0,25\t6\r\n0,5\t100\r\n0,75\t90\r\n"))
+
+    def test_refusals(self):
+        for text, *words in ((self.PLAIN + "360,5.5\n", ":6:", "5.5", "periodic"),
+                             (self.PLAIN + "361,5\n", ":6:", "361", "turn after the first"),
+                             ("theta_deg,pressure\n0,5\n90,6\n180,7\n", "pressure", "unit"),
+                             ("t [s],p [bar]\n0,5\n90,6\n180,7\n", "angle")):
+            with self.subTest(text):
+                self.assert_mentions(self.refused(*self.curve(text)), *words)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    base.PROGRAM, base.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
