@@ -116,6 +116,10 @@ Option CommandParser::option(const std::string& name, std::vector<std::string>& 
   return Option(app_->add_option(name, values, what));
 }
 
+void CommandParser::flag(const std::string& name, bool& value, const std::string& what) {
+  app_->add_flag(name, value, what);
+}
+
 Option CommandParser::choice_of(const std::string& name, const std::function<void(int)>& set,
                                 const std::vector<std::string>& words, const std::string& what,
                                 const std::string& otherwise) {

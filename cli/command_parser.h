@@ -54,6 +54,8 @@ class CommandParser {
   Option option(const std::string& name, std::vector<double>& values, const std::string& what);
   Option option(const std::string& name, std::vector<std::string>& values, const std::string& what);
 
+  void flag(const std::string& name, bool& value, const std::string& what);
+
   /// An option whose values are an enumeration's names in its order. Its text is
   /// "WORD|WORD.. [default]".
   template <class Enumeration>

@@ -64,6 +64,7 @@ std::string render_page(const Document& document, const Curves& curves) {
            {"@DYGRAPHS_CSS@", parts.at("dygraph.min.css")},
            {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},
            {"@REPORT_JS@", script()},
+           {"@PICTURE@", document.picture},
            {"@CURVES_JSON@", script_safe(compact_json(curves))},
            {"@REPORT_JSON@", script_safe(compact_json(document))}})
     replace_once(page, marker, value);

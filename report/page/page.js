@@ -46,6 +46,7 @@ function prepare(report, curves) {
 }
 
 const SECTIONS = [
+  ["pump", "Pump", pumpHead],
   ["verdict", "Verdict", verdictBanner], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
   ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
   ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],

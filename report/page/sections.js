@@ -26,6 +26,22 @@ function verdictBanner({ verdict, meaning }, data) {
     meaning ? el("p.meaning", {}, meaning) : null);
 }
 
+// The pump in one line, what is doubtful about it, and its picture, which is in the page as SVG.
+function pumpHead({ plausibility }) {
+  const picture = document.getElementById("picture");
+  picture.remove();
+  if (!plausibility) return null;
+  picture.hidden = false;
+  picture.removeAttribute("id");
+  picture.className = "scroll picture";
+  return el("div", {}, el("p.pump-line", {}, plausibility.summary),
+    !list(plausibility.warnings).length ? null : el("ul.warnings", {}, plausibility.warnings.map(w =>
+      el("li", {}, el("strong", {}, "Doubtful: " + w.code), el("span", {}, w.text)))),
+    !list(plausibility.meant).length ? null : el("p.hint", {}, "Doubtful, and meant: "
+      + plausibility.meant.map(w => `${w.code} (${w.reason})`).join("; ")),
+    picture);
+}
+
 // What a report has to say in words: {text, groups: [{title, lines}]}.
 const summary = ({ summary }) => !summary ? null : el("div", {},
   summary.text ? el("p", {}, summary.text) : null,
