@@ -172,6 +172,8 @@ Facts::Facts(const Case& of)
 
 // ---- Words
 
+constexpr double kFarSlip = 3;
+
 // A usual slip: the value times `factor` is what may have been meant.
 struct Slip {
   double factor;
@@ -188,10 +190,17 @@ constexpr Slip kMetres{1000, "in metres?"}, kCentimetres{10, "in centimetres?"},
     kHundredth{1e-2, "a hundred times too large?"}, kKgM2{1e6, "in kg m2?"},
     kGMm2{1e-3, "in g mm2?"}, kSquareCm{100, "in cm2?"}, kSquareM{1e6, "in m2?"};
 
+// The first slip that explains a value outside of [low, high]; a slip that would move it by far
+// more than it is outside explains nothing.
 std::string guess(double value, double low, double high, Slips slips) {
-  for (const Slip& slip : slips)
-    if (const double meant = value * slip.factor; meant >= low && meant <= high)
+  const double off = value > high ? value / high : low / value;
+  for (const Slip& slip : slips) {
+    const double meant = value * slip.factor;
+    const double moved = std::max(std::abs(slip.factor), 1 / std::abs(slip.factor));
+    if (meant >= low && meant <= high &&
+        (moved <= kFarSlip || !(off > 0) || moved <= kFarSlip * off * off))
       return fmt::format("; {} {:.4g} would do", slip.words, meant);
+  }
   return "";
 }
 
@@ -674,11 +683,11 @@ const Check kChecks[] = {
                        kTenfold,
                        kThousandfold});
      }},
-    {"samples", "fewer than 6 or more than 1e5 angles in a turn, or more than 1e4 revolutions",
+    {"samples", "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions",
      [](const Facts& f) {
        return first_of(
-           {outside("samples_per_revolution", f.the_case.operation.samples_per_revolution, 6, 1e5,
-                    "", "a turn is seen from 6 angles on; 1e5 are every 13 seconds of arc"),
+           {outside("samples_per_revolution", f.the_case.operation.samples_per_revolution, 6, 1e6,
+                    "", "a turn is seen from 6 angles on; 1e6 are every second of arc"),
             outside("revolutions", f.the_case.operation.revolutions, 0, 1e4, "",
                     "every turn is alike")});
      }},
