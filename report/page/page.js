@@ -46,8 +46,7 @@ function prepare(report, curves) {
 }
 
 const SECTIONS = [
-  ["pump", "Pump", pumpHead],
-  ["verdict", "Verdict", verdictBanner], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
+  ["verdict", "Verdict", verdictBanner], ["pump", "Pump", pumpHead], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
   ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
   ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
   ["runs", "Runs", runs], ["published", "Against the published numbers", published],
@@ -63,7 +62,8 @@ function header(report, data) {
   const parts = [report.case && report.case.file, tables.map(t => t.name).join(" and "), angles,
                  list(list(report.program)[0]).join(" ")];
   return [el("h1", {}, report.title || document.title),
-          el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))];
+          report.plausibility ? el("p.pump-line", {}, report.plausibility.summary) : null,
+          el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))].filter(Boolean);
 }
 
 // Contents beside the report where there is room, folded above it where there is not.

@@ -1,6 +1,6 @@
 // The sections of the report but for the comparison and the figures.
 
-function verdictBanner({ verdict, meaning }, data) {
+function verdictBanner({ verdict, meaning, plausibility }, data) {
   if (!verdict && !meaning) return null;
   const tiles = [];
   if (verdict) {
@@ -17,6 +17,8 @@ function verdictBanner({ verdict, meaning }, data) {
       if (verdict.digits != null) tiles.push(["digits in common", verdict.digits.toFixed(1)]);
     }
   }
+  const doubts = list(plausibility && plausibility.warnings).length;
+  if (doubts) tiles.push(["doubtful inputs", `${doubts}, below`]);
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
   return el("div", {},
     el("div.banner." + tone, { role: "status" },
@@ -26,7 +28,7 @@ function verdictBanner({ verdict, meaning }, data) {
     meaning ? el("p.meaning", {}, meaning) : null);
 }
 
-// The pump in one line, what is doubtful about it, and its picture, which is in the page as SVG.
+// What is doubtful about the pump, and its picture, which is in the page as SVG.
 function pumpHead({ plausibility }) {
   const picture = document.getElementById("picture");
   picture.remove();
@@ -34,7 +36,7 @@ function pumpHead({ plausibility }) {
   picture.hidden = false;
   picture.removeAttribute("id");
   picture.className = "scroll picture";
-  return el("div", {}, el("p.pump-line", {}, plausibility.summary),
+  return el("div", {},
     !list(plausibility.warnings).length ? null : el("ul.warnings", {}, plausibility.warnings.map(w =>
       el("li", {}, el("strong", {}, "Doubtful: " + w.code), el("span", {}, w.text)))),
     !list(plausibility.meant).length ? null : el("p.hint", {}, "Doubtful, and meant: "
