@@ -17,7 +17,8 @@ struct Options {
 
 int blocktorque(const Options& options) {
   const auto rows = study::block_torques(
-      options.the_case.read(), CaseOption{options.hydraulic, options.the_case.changes}.read(),
+      options.the_case.read(),
+      CaseOption{options.hydraulic, options.the_case.changes, options.the_case.strict}.read(),
       progress_of);
   std::printf("%s", study::block_torque_text(rows).c_str());
   return kDone;

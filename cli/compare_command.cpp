@@ -32,7 +32,8 @@ int compare(const Options& options) {
   Case first = options.the_case.read();
   std::optional<Case> second;
   if (!options.multibody_case.empty())
-    second = CaseOption{options.multibody_case, options.the_case.changes}.read();
+    second = CaseOption{options.multibody_case, options.the_case.changes, options.the_case.strict}
+                 .read();
   for (const auto& text : options.analytic)
     study::apply_assumption(text, first.pump, first.analytic);
   Case& of_multibody = second ? *second : first;

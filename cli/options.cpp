@@ -5,6 +5,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/study/plausibility.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -20,7 +21,19 @@ std::vector<std::string> changeable_keys() {
 
 }  // namespace
 
-Case CaseOption::read() const { return read_case(file, changes); }
+Case CaseOption::read() const {
+  Case the_case = read_case(file, changes);
+  const study::Plausibility looked = study::plausibility(the_case);
+  std::fprintf(stderr, "pump: %s\n", looked.summary().c_str());
+  const char* kind = strict ? "error" : "warning";
+  for (const study::Doubt& doubt : looked.warnings)
+    std::fprintf(stderr, "bentaxis: %s: %s: %s\n", kind, doubt.code.c_str(), doubt.text.c_str());
+  if (strict && !looked.warnings.empty())
+    throw InputError(file +
+                     ": doubtful values, and --strict; what is meant needs a reason in "
+                     "[plausibility] (docs/plausibility.md)");
+  return the_case;
+}
 
 void add_case(CommandParser command, CaseOption& the_case) {
   command.option("case", the_case.file, "case file (TOML)").required().text("CASE");
@@ -30,6 +43,8 @@ void add_case(CommandParser command, CaseOption& the_case) {
       .repeatable()
       .completed_with(changeable_keys())
       .text("TABLE.KEY=VALUE");
+  command.flag("--strict", the_case.strict,
+               "values that are possible but hardly meant are errors: exit status 2");
 }
 
 void add_out(CommandParser command, std::string& folder, const std::string& what) {

@@ -18,11 +18,13 @@ namespace bentaxis::cli {
 struct CaseOption {
   std::string file;
   std::vector<std::string> changes;  ///< TABLE.KEY=VALUE
+  bool strict = false;               ///< doubtful values are errors
 
-  /// The case as if its file said so. @throws InputError
+  /// The case as if its file said so. Says on standard error what pump it is, and what of it is
+  /// doubtful. @throws InputError, with `strict` for doubtful values too
   Case read() const;
 };
-/// CASE and --set.
+/// CASE, --set and --strict.
 void add_case(CommandParser command, CaseOption& the_case);
 void add_out(CommandParser command, std::string& folder, const std::string& what);
 /// A list of integrators; empty where not given.

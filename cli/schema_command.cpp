@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bentaxis/files/schema.h"
+#include "bentaxis/study/plausibility.h"
 #include "commands.h"
 
 namespace bentaxis::cli {
@@ -16,12 +17,14 @@ Command add_schema_command(CommandParser program) {
   command
       .option("--markdown", *tables,
               "print the keys of these tables as Markdown tables instead (docs/case_file.md); "
-              "top stands for the keys above all tables")
+              "top stands for the keys above all tables, checks for the checks of plausibility")
       .text("TABLE..");
   return {command, [tables] {
             std::string text;
             for (const std::string& table : *tables)
-              text += (text.empty() ? "" : "\n") + markdown_table(table == "top" ? "" : table);
+              text += (text.empty() ? "" : "\n") +
+                      (table == "checks" ? study::plausibility_markdown()
+                                         : markdown_table(table == "top" ? "" : table));
             if (tables->empty()) text = case_schema();
             std::fputs(text.c_str(), stdout);
             return kDone;

@@ -118,6 +118,7 @@ AnyView whole_view(AnyCase& the_case) {
   view.hydraulics = &the_case.hydraulics;
   view.analytic = &the_case.analytic;
   view.multibody = &the_case.multibody;
+  view.meant = &the_case.meant;
   return view;
 }
 
@@ -148,6 +149,7 @@ ConstView as_const(const View& v) {
   view.hydraulics = v.hydraulics;
   view.analytic = v.analytic;
   view.multibody = v.multibody;
+  view.meant = v.meant;
   return view;
 }
 

@@ -199,6 +199,17 @@ Table assumptions_table(const std::string& model, Model) {
                  }}}};
 }
 
+Table plausibility_table() {
+  return {.name = "plausibility",
+          .meaning = "reasons for values that a check holds to be doubtful (plausibility.md)",
+          .presence = Presence::silent,
+          .parameters = {{.key = "meant",
+                          .field = text_at([](const auto& v) { return v.meant; }),
+                          .fallback = {std::string()},
+                          .meaning = "`CODE: reason; CODE: reason`: these are meant, and do not "
+                                     "warn"}}};
+}
+
 std::vector<Parameter> joined(std::vector<std::vector<Parameter>> lists) {
   std::vector<Parameter> all;
   for (auto& list : lists)
@@ -892,7 +903,8 @@ const Registry& standard_registry() {
       {top_level(), pump_table(), gear_table(), bearings_table(), piston_table(), shaft_table(),
        block_table(), friction_table(), operation_table(), pressure_table(), port_plate_table(),
        hydraulics_table(), assumptions_table("analytic", [](const auto& v) { return v.analytic; }),
-       assumptions_table("multibody", [](const auto& v) { return v.multibody; })}};
+       assumptions_table("multibody", [](const auto& v) { return v.multibody; }),
+       plausibility_table()}};
   return registry;
 }
 

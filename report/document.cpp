@@ -67,6 +67,7 @@ Json json_of(const CaseSection&);
 Json json_of(const DerivedQuantity&);
 Json json_of(const Verdict&);
 Json json_of(const Summary&);
+Json json_of(const PlausibilitySection&);
 Json json_of(const Warning&);
 Json json_of(const CommonInput&);
 Json json_of(const ValidityRow&);
@@ -272,6 +273,17 @@ Json json_of(const Summary& summary) {
   return {{"text", summary.text},
           {"groups", list_of(summary.groups, [](const Summary::Group& group) {
              return Json{{"title", group.title}, {"lines", group.lines}};
+           })}};
+}
+
+Json json_of(const PlausibilitySection& section) {
+  return {{"summary", section.summary},
+          {"warnings", list_of(section.warnings,
+                               [](const DoubtRow& row) {
+                                 return Json{{"code", row.code}, {"text", row.text}};
+                               })},
+          {"meant", list_of(section.meant, [](const DoubtRow& row) {
+             return Json{{"code", row.code}, {"text", row.text}, {"reason", row.reason}};
            })}};
 }
 
@@ -501,6 +513,7 @@ Json to_json(const Document& document) {
   if (!document.files.empty()) json["files"] = document.files;
   add(json, "provenance", document.provenance);
   add(json, "case", document.the_case);
+  add(json, "plausibility", document.plausibility);
   add(json, "derived", document.derived);
   add(json, "verdict", document.verdict);
   if (!document.meaning.empty()) json["meaning"] = document.meaning;

@@ -77,6 +77,7 @@ std::string render_page(const Document& document, const Curves& curves) {
            {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},
            {"@REPORT_JS@", script()},
            {"@PICTURES@", pictures(document, curves)},
+           {"@PICTURE@", document.picture},
            {"@CURVES_JSON@", script_safe(compact_json(curves))},
            {"@REPORT_JSON@", script_safe(compact_json(document))}})
     replace_once(page, marker, value);

@@ -9,6 +9,7 @@
 #include "bentaxis/report/text.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/regression_document.h"
 #include "comparison_figures.h"
 #include "hydraulic_sections.h"
@@ -170,7 +171,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  document.the_case = case_section(the_case);
+  describe_case(document, the_case);
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =

@@ -9,6 +9,7 @@
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
 
 namespace bentaxis::study {
@@ -373,7 +374,7 @@ InertiaReport inertia_report(const InertiaStudy& s, const compare::Published* pu
   report::Document& document = result.document;
   document.title = "Lumped or real pistons: " + s.the_case.name;
   document.program = program;
-  document.the_case = case_section(s.the_case);
+  describe_case(document, s.the_case);
   document.derived = derived_section(s.the_case);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->tolerance = kInertiaModelsAgree;

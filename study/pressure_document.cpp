@@ -8,6 +8,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
 #include "hydraulic_sections.h"
 
@@ -27,7 +28,7 @@ report::Document pressure_document(const OperatingPoint& point, const report::Li
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  document.the_case = case_section(the_case);
+  describe_case(document, the_case);
   document.derived = derived_section(the_case);
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
   document.runs = {hydraulic_section(the_case, point.state())};

@@ -9,6 +9,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
 
 namespace bentaxis::study {
 namespace {
@@ -294,7 +295,7 @@ report::Document tradeoff_document(const TradeoffStudy& study, const report::Lin
   report::Document document;
   document.title = study.the_case.name + ": speed against error";
   document.program = program;
-  document.the_case = case_section(study.the_case);
+  describe_case(document, study.the_case);
   document.summary = summary_of(study);
   document.records = records(study);
   document.runs.emplace();

@@ -51,7 +51,7 @@ function prepare(report, curves) {
 }
 
 const SECTIONS = [
-  ["verdict", "Verdict", verdictBanner], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
+  ["verdict", "Verdict", verdictBanner], ["pump", "Pump", pumpHead], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
   ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
   ["comparison", "Comparison", comparison], ["budget", "Torque, power and efficiency", budget], ["assumptions", "Assumptions", assumptionSplit],
   ["runs", "Runs", runs], ["published", "Against the published numbers", published],
@@ -67,7 +67,8 @@ function header(report, data) {
   const parts = [report.case && report.case.file, tables.map(t => t.name).join(" and "), angles,
                  list(list(report.program)[0]).join(" ")];
   return [el("h1", {}, report.title || document.title),
-          el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))];
+          report.plausibility ? el("p.pump-line", {}, report.plausibility.summary) : null,
+          el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))].filter(Boolean);
 }
 
 // Contents beside the report where there is room, folded above it where there is not.

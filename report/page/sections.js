@@ -1,6 +1,6 @@
 // The sections of the report but for the comparison and the figures.
 
-function verdictBanner({ verdict, meaning }, data) {
+function verdictBanner({ verdict, meaning, plausibility }, data) {
   if (!verdict && !meaning) return null;
   const tiles = [];
   if (verdict) {
@@ -18,6 +18,8 @@ function verdictBanner({ verdict, meaning }, data) {
     }
   }
   const reference = verdict && verdict.reference;
+  const doubts = list(plausibility && plausibility.warnings).length;
+  if (doubts) tiles.push(["doubtful inputs", `${doubts}, below`]);
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
   return el("div", {},
     el("div.banner." + tone, { role: "status" },
@@ -28,6 +30,22 @@ function verdictBanner({ verdict, meaning }, data) {
       el("p.word", {}, `${reference.name}: ${reference.agrees ? "agrees" : "differs"}`),
       el("p.headline", {}, reference.headline)) : null,
     meaning ? el("p.meaning", {}, meaning) : null);
+}
+
+// What is doubtful about the pump, and its picture, which is in the page as SVG.
+function pumpHead({ plausibility }) {
+  const picture = document.getElementById("picture");
+  picture.remove();
+  if (!plausibility) return null;
+  picture.hidden = false;
+  picture.removeAttribute("id");
+  picture.className = "scroll picture";
+  return el("div", {},
+    !list(plausibility.warnings).length ? null : el("ul.warnings", {}, plausibility.warnings.map(w =>
+      el("li", {}, el("strong", {}, "Doubtful: " + w.code), el("span", {}, w.text)))),
+    !list(plausibility.meant).length ? null : el("p.hint", {}, "Doubtful, and meant: "
+      + plausibility.meant.map(w => `${w.code} (${w.reason})`).join("; ")),
+    picture);
 }
 
 // What a report has to say in words: {text, groups: [{title, lines}]}.

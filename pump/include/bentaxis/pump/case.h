@@ -36,6 +36,7 @@ struct Case {
   std::optional<HydraulicData> hydraulics;  ///< present where pressure.kind is hydraulic
   Assumptions analytic;                     ///< what the analytic model assumes in this case
   Assumptions multibody;                    ///< what the multibody model assumes
+  std::string meant;                ///< reasons for doubtful values: "CODE: reason; CODE: reason"
   std::vector<InputEntry> entries;  ///< as read from a file; empty for a case made in memory
 };
 

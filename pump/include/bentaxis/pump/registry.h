@@ -33,6 +33,7 @@ struct BasicView {
   Pointer<PressureSpec> pressure = nullptr;
   Pointer<std::optional<HydraulicData>> hydraulics = nullptr;
   Pointer<Assumptions> analytic = nullptr, multibody = nullptr;
+  Pointer<std::string> meant = nullptr;
 
   // Parts that need not be there: null where they are not.
   Pointer<PistonMass::Real> real_piston() const { return address(pump->piston.real); }

@@ -205,6 +205,16 @@ struct Verdict {
       std::nullopt;  ///< of both models against curves from elsewhere
 };
 
+/// Values that are possible but hardly meant.
+struct DoubtRow {
+  std::string code, text;
+  std::string reason;  ///< why they are meant, or ""
+};
+struct PlausibilitySection {
+  std::string summary;  ///< the pump in one line
+  std::vector<DoubtRow> warnings, meant;
+};
+
 struct Warning {
   std::string name, text;
 };
@@ -314,6 +324,8 @@ struct Document {
   std::vector<std::string> files =
       {};  ///< written together with the report, it too; none: it stands alone
   std::optional<CaseSection> the_case = std::nullopt;
+  std::optional<PlausibilitySection> plausibility = std::nullopt;
+  std::string picture = {};  ///< SVG at the head of the page, or ""; not in the JSON
   std::optional<std::vector<DerivedQuantity>> derived = std::nullopt;
   std::optional<Verdict> verdict = std::nullopt;
   std::string meaning = {};  ///< what the verdict says and what not, or ""

@@ -1,0 +1,46 @@
+// What of a case is possible but hardly meant: a tilt in radians, millimetres given as metres,
+// radii exchanged. Limits follow from the geometry and physics of the given pump.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bentaxis/pump/case.h"
+
+namespace bentaxis::study {
+
+/// A value, or values together, that are hardly meant.
+struct Doubt {
+  std::string code;    ///< stable short name: "tilt-in-radians"
+  std::string text;    ///< one line: the key with its value, the limit and its reason
+  std::string reason;  ///< why it is meant all the same, where the case says so
+};
+
+/// What an engineer checks first about a pump.
+struct Plausibility {
+  double displacement = 0;       ///< m3 per revolution
+  double ideal_flow = 0;         ///< m3/s
+  double ideal_torque = 0;       ///< Nm, displacement x (delivery - suction) / 2 pi
+  double speed_rpm = 0;          ///< as given
+  double delivery = 0;           ///< Pa gauge
+  double mean_piston_speed = 0;  ///< m/s, two strokes per turn
+
+  std::vector<Doubt> warnings;  ///< in the order of the table of checks
+  std::vector<Doubt> meant;     ///< those that `[plausibility] meant` gives a reason for
+
+  /// The pump in one line: the six numbers above.
+  std::string summary() const;
+};
+
+/// Looks at a case before it is run: its numbers one by one and together, and one turn of the
+/// analytic model for what carries block and gear. Where the pressure is still to be computed the
+/// turn is made with an ideal trace between the port pressures. Milliseconds.
+/// @throws InputError where `[plausibility] meant` names no check or gives no reason
+Plausibility plausibility(const Case& the_case);
+
+/// All checks as a Markdown table: name, and what is held to be doubtful.
+std::string plausibility_markdown();
+/// Names of all checks.
+std::vector<std::string> plausibility_codes();
+
+}  // namespace bentaxis::study

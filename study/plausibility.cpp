@@ -1,0 +1,1121 @@
+#include "bentaxis/study/plausibility.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+
+#include "bentaxis/analytic/derived.h"
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/validity.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/samples.h"
+
+namespace bentaxis::study {
+namespace {
+
+// ---- Limits that are no geometry
+
+constexpr double kSteel = 8000;     // kg/m3; bronze is a tenth more
+constexpr double kYield = 1000e6;   // Pa, of hardened steel
+constexpr double kLightest = 0.06;  // of solid steel: hollow aluminium is a third of it, halved
+constexpr double kMostPressure = 1000e5;  // Pa; hydraulic pumps end at 500 bar
+constexpr double kFastest = 10;           // m/s, mean piston speed; bent-axis pumps reach 5..7
+constexpr double kSlowest = 0.05;         // m/s
+constexpr double kCreep = 1;              // m/s, below it losses are no longer shares of the power
+constexpr double kLightLoad = 100e5;      // Pa, likewise
+constexpr int kTurnAngles = 72;
+constexpr double kShareOfTurn = 0.05;    // a limit violated for less is an edge of the pressure
+constexpr double kOutsideShare = 0.25;   // likewise of the film force's point, when ports open
+constexpr double kIdealTransition = 20;  // deg, where the pressure is still to be computed
+
+double bar(double pascals) { return pascals / kPascalPerBar; }
+double mm(double metres) { return metres * 1e3; }
+double mm2(double area) { return area * 1e6; }
+double deg(double angle) { return angle / kRadPerDegree; }
+double square(double x) { return x * x; }
+// Smallest bore that fills its room.
+double least_filling(int pistons) { return pistons > 2 ? 0.5 : 0.15; }
+
+// ---- What the checks look at
+
+struct Turn {
+  double work_ratio = 1;     // of pressure on a piston over a turn, over the ideal one
+  double mean_pressure = 0;  // Pa
+  double lowest_pressure = 0, highest_pressure = 0;
+  double land_force = 0, press_force = 0;  // N, mean
+  std::vector<analytic::ValidityLimit> limits;
+};
+
+struct Facts {
+  explicit Facts(const Case& of);
+
+  const Case& the_case;
+  const PumpParameters& pump;
+  const Geometry& g;
+  const PortPressures& ports;
+  const HydraulicData* oil;
+  analytic::DerivedQuantities derived;
+  double speed;         // rpm, magnitude
+  double piston_speed;  // m/s, mean
+  double spacing;       // m, between the axes of neighbouring bores; 0 with one piston
+  double bore_room;     // m, the bore at which bores overlap
+  // What other checks take for the bore, so that a wrong one is said once: where it is no bore for
+  // this circle, a usual one.
+  double bore, area;    // m, m2
+  double bores_radius;  // m, that encloses all bores
+  double highest;       // Pa, of the port pressures, at most kMostPressure
+  double load;          // Pa, likewise, at least kLightLoad
+  double piston_span;   // m, length of a piston with its ball and head
+  double block_length;  // m
+  double shaft_reach;   // m, from the joints to the farther bearing, at most 10 Ra
+  double full_torque;   // Nm, ideal torque at `load` if the axes stood at a right angle
+  bool real;            // whether the data of real pistons are used
+  std::optional<Turn> turn;
+
+  bool defaulted(const std::string& table, const std::string& key) const {
+    for (const InputEntry& entry : the_case.entries)
+      if (entry.table == table && entry.key == key) return entry.defaulted;
+    return the_case.entries.empty();
+  }
+  const analytic::ValidityLimit* limit(const std::string& name) const {
+    if (!turn) return nullptr;
+    for (const auto& limit : turn->limits)
+      if (limit.name == name) return limit.applicable ? &limit : nullptr;
+    return nullptr;
+  }
+};
+
+double land_area(const PortPlate& plate, const PortArc& arc) {
+  const double radial = (square(plate.r3) - square(plate.r2)) / 2 +
+                        (plate.r4 - plate.r3) * (2 * plate.r3 + plate.r4) / 6 +
+                        (plate.r2 - plate.r1) * (2 * plate.r2 + plate.r1) / 6;
+  return radial * (arc.to_deg - arc.from_deg) * kRadPerDegree;
+}
+
+std::optional<Turn> turn_of(const Facts& f) {
+  Case c = f.the_case;
+  c.operation.samples_per_revolution = kTurnAngles;
+  c.operation.revolutions = 1;
+  if (c.pressure.kind == PressureKind::hydraulic) {
+    c.pressure.kind = PressureKind::ideal;
+    c.pressure.transition_deg = kIdealTransition;
+    c.pressure.delivery_start_deg = 180;
+  }
+  try {
+    const PressureTrace trace(c.pressure);
+    const Samples samples = sample_case(c, trace);
+    const ResultTable table = analytic::run(c, c.analytic, samples);
+    const ChannelLayout at(c.pump.geometry.pistons);
+    Turn turn;
+    turn.limits = analytic::check_validity(c, c.analytic, samples, table);
+    const std::size_t rows = table.rows();
+    turn.lowest_pressure = turn.highest_pressure = trace(table.theta_deg[0]);
+    double work = 0;
+    for (std::size_t row = 0; row < rows; ++row) {
+      const double p = trace(table.theta_deg[row]);
+      work += (p - f.ports.suction) *
+              (table.at((row + 1) % rows, at.zB(0)) - table.at((row + rows - 1) % rows, at.zB(0))) /
+              2e3;
+      turn.mean_pressure += p / static_cast<double>(rows);
+      turn.lowest_pressure = std::min(turn.lowest_pressure, p);
+      turn.highest_pressure = std::max(turn.highest_pressure, p);
+    }
+    const double ideal = (f.ports.delivery - f.ports.suction) * f.derived.stroke;
+    if (ideal > 0) turn.work_ratio = work / ideal;
+    turn.press_force =
+        c.pump.block.spring_force + f.g.pistons * c.pump.block.bottom_area * turn.mean_pressure;
+    if (c.pump.port_plate)
+      turn.land_force =
+          land_area(*c.pump.port_plate, c.pump.port_plate->delivery) * f.ports.delivery +
+          land_area(*c.pump.port_plate, c.pump.port_plate->suction) * f.ports.suction;
+    return turn;
+  } catch (const InputError&) {
+    return std::nullopt;  // the run itself will say it
+  } catch (const ComputationError&) {
+    return std::nullopt;
+  }
+}
+
+Facts::Facts(const Case& of)
+    : the_case(of),
+      pump(of.pump),
+      g(of.pump.geometry),
+      ports(of.pressure.ports),
+      oil(of.hydraulics && of.pressure.kind == PressureKind::hydraulic ? &*of.hydraulics : nullptr),
+      derived(analytic::derived_quantities(g)),
+      speed(std::abs(of.operation.speed_rpm)),
+      piston_speed(2 * derived.stroke * speed / 60),
+      spacing(g.pistons > 1 ? 2 * g.bore_circle_radius * std::sin(kPi / g.pistons) : 0),
+      bore_room(g.pistons > 2 ? spacing : 2 * g.bore_circle_radius),
+      bore(g.bore_diameter < bore_room && g.bore_diameter >= least_filling(g.pistons) * bore_room
+               ? g.bore_diameter
+               : 0.8 * bore_room),
+      area(kPi / 4 * square(bore)),
+      bores_radius(g.bore_circle_radius + bore / 2),
+      highest(std::min(std::max(std::abs(ports.delivery), std::abs(ports.suction)), kMostPressure)),
+      load(std::max(highest, kLightLoad)),
+      piston_span(g.piston_length + bore),
+      block_length(g.piston_length + derived.stroke),
+      shaft_reach(std::min(
+          10 * g.joint_circle_radius,
+          std::max(std::abs(pump.bearings.tapered_z), std::abs(pump.bearings.cylindrical_z)))),
+      full_torque(g.pistons * area * g.joint_circle_radius * load / kPi),
+      real(pump.piston.real && (pump.piston.inertia != PistonInertia::lumped ||
+                                of.analytic.inertia != PistonInertia::lumped ||
+                                of.multibody.inertia != PistonInertia::lumped)) {
+  turn = turn_of(*this);
+}
+
+// ---- Words
+
+constexpr double kFarSlip = 3;
+
+// A usual slip: the value times `factor` is what may have been meant.
+struct Slip {
+  double factor;
+  const char* words;
+};
+using Slips = std::initializer_list<Slip>;
+constexpr Slip kMetres{1000, "in metres?"}, kCentimetres{10, "in centimetres?"},
+    kInches{25.4, "in inches?"}, kMicrometres{1e-3, "in micrometres?"},
+    kRadius{2, "a radius for a diameter?"}, kDiameter{0.5, "a diameter for a radius?"},
+    kSign{-1, "with the other sign?"}, kTenth{0.1, "ten times too large?"},
+    kTenfold{10, "ten times too small?"}, kGrams{1e-3, "in grams?"}, kTons{1e3, "in tons?"},
+    kRadians{180 / kPi, "in radians?"}, kThousandth{1e-3, "a thousand times too large?"},
+    kThousandfold{1e3, "a thousand times too small?"},
+    kHundredth{1e-2, "a hundred times too large?"}, kKgM2{1e6, "in kg m2?"},
+    kGMm2{1e-3, "in g mm2?"}, kSquareCm{100, "in cm2?"}, kSquareM{1e6, "in m2?"};
+
+// The first slip that explains a value outside of [low, high]; a slip that would move it by far
+// more than it is outside explains nothing.
+std::string guess(double value, double low, double high, Slips slips) {
+  const double off = value > high ? value / high : low / value;
+  for (const Slip& slip : slips) {
+    const double meant = value * slip.factor;
+    const double moved = std::max(std::abs(slip.factor), 1 / std::abs(slip.factor));
+    if (meant >= low && meant <= high &&
+        (moved <= kFarSlip || !(off > 0) || moved <= kFarSlip * off * off))
+      return fmt::format("; {} {:.4g} would do", slip.words, meant);
+  }
+  return "";
+}
+
+// "" where value is in [low, high].
+std::string outside(const std::string& key, double value, double low, double high,
+                    const std::string& unit, const std::string& why, Slips slips = {}) {
+  if (value >= low && value <= high) return "";
+  const bool below = value < low;
+  const std::string unit_text = unit.empty() ? "" : " " + unit;
+  return fmt::format("{} = {:.6g} is {} {:.4g}{}: {}{}", key, value, below ? "below" : "above",
+                     below ? low : high, unit_text, why, guess(value, low, high, slips));
+}
+
+std::string first_of(std::initializer_list<std::string> texts) {
+  for (const std::string& text : texts)
+    if (!text.empty()) return text;
+  return "";
+}
+
+// ---- Checks, in the order of the case file
+
+struct Check {
+  const char* code;
+  const char* doubtful;               // what is, in words: docs/plausibility.md
+  std::string (*text)(const Facts&);  // "" where nothing is
+};
+
+const Check kChecks[] = {
+    // Main dimensions
+    {"pump-size", "Ra below 4 or above 250 mm: no bent-axis pump has this size",
+     [](const Facts& f) {
+       return outside("joint_circle_radius_mm", mm(f.g.joint_circle_radius), 4, 250, "mm",
+                      "no pump has this size",
+                      {kMetres, kInches, kCentimetres, kMicrometres, kTenth});
+     }},
+    {"tilt-in-radians", "0 < tilt < 1 deg. 0 is a limit, and meant",
+     [](const Facts& f) -> std::string {
+       const double tilt = deg(f.g.tilt);
+       if (tilt == 0 || tilt >= 1) return "";
+       return fmt::format("tilt_deg = {:.6g} is below 1 deg: in radians it would be {:.4g} deg",
+                          tilt, deg(tilt));
+     }},
+    {"tilt-beyond-45", "tilt above 46 deg: bent-axis pumps end at 45",
+     [](const Facts& f) {
+       return outside("tilt_deg", deg(f.g.tilt), 0, 46, "deg",
+                      fmt::format("bent-axis pumps end at 45 deg; measured from the other axis it "
+                                  "would be {:.4g}",
+                                  90 - deg(f.g.tilt)));
+     }},
+    {"radii-exchanged",
+     "Rd > Ra, and exchanged the pistons would tilt less: the joints' circle is seen as an ellipse "
+     "of half axes Ra and Ra cos(tilt), and the bores lie between the two",
+     [](const Facts& f) -> std::string {
+       const Geometry& g = f.g;
+       if (g.bore_circle_radius <= g.joint_circle_radius) return "";
+       Geometry exchanged = g;
+       std::swap(exchanged.bore_circle_radius, exchanged.joint_circle_radius);
+       if (assembly_margin(exchanged).longest_distance >= assembly_margin(g).longest_distance)
+         return "";
+       return fmt::format(
+           "bore_circle_radius_mm = {:.6g} exceeds joint_circle_radius_mm = {:.6g}: the bores "
+           "should lie between {:.4g} (Ra cos tilt) and Ra; exchanged, no joint would be farther "
+           "than {:.3g} mm from its bore's axis instead of {:.3g}",
+           mm(g.bore_circle_radius), mm(g.joint_circle_radius),
+           mm(g.joint_circle_radius) * std::cos(g.tilt),
+           mm(assembly_margin(exchanged).longest_distance),
+           mm(assembly_margin(g).longest_distance));
+     }},
+    {"bores-overlap", "bore >= distance of neighbouring bore axes 2 Rd sin(180 deg/N), or >= 2 Rd",
+     [](const Facts& f) -> std::string {
+       const double room = f.bore_room;
+       if (f.g.bore_diameter < room) return "";
+       return fmt::format("bore_diameter_mm = {:.6g} is not below {:.4g}, {}: the bores overlap{}",
+                          mm(f.g.bore_diameter), mm(room),
+                          f.g.pistons > 2
+                              ? fmt::format("the distance of {} neighbours on Rd", f.g.pistons)
+                              : "twice Rd",
+                          guess(mm(f.g.bore_diameter), mm(room) / 2, mm(room) * 0.97,
+                                {kDiameter, kTenth, kMicrometres}));
+     }},
+    {"bores-touch",
+     "the wall between neighbouring bores would bear more than 1000 MPa: highest pressure x bore "
+     "/ wall, or is thinner than 2 % of the bore",
+     [](const Facts& f) -> std::string {
+       const double wall = f.spacing - f.g.bore_diameter;
+       if (f.g.pistons < 3 || wall <= 0) return "";
+       const double stress = f.highest * f.g.bore_diameter / wall;
+       if (stress <= kYield && wall >= 0.02 * f.g.bore_diameter) return "";
+       return fmt::format(
+           "bore_diameter_mm = {:.6g} leaves a wall of {:.3g} mm to the next bore: {:.4g} MPa at "
+           "{:.4g} bar, steel yields at {:.4g}",
+           mm(f.g.bore_diameter), mm(wall), stress / 1e6, bar(f.highest), kYield / 1e6);
+     }},
+    {"bore-small",
+     "bore below half of the distance of neighbours (less than 3 pistons: 0.3 Rd): a radius, or "
+     "metres",
+     [](const Facts& f) {
+       const double most = f.bore_room;
+       const double least = least_filling(f.g.pistons) * most;
+       const double d = mm(f.g.bore_diameter);
+       return d >= mm(least) ? std::string()
+                             : outside("bore_diameter_mm", d, mm(least), mm(most), "mm",
+                                       fmt::format("the block would be solid between {} bores on "
+                                                   "Rd = {:.4g}",
+                                                   f.g.pistons, mm(f.g.bore_circle_radius)),
+                                       {kRadius, kCentimetres, kInches, kMetres});
+     }},
+    {"axis-offset", "b beyond +-Ra/2",
+     [](const Facts& f) {
+       const double most = mm(f.g.joint_circle_radius) / 2;
+       return outside("axis_offset_mm", mm(f.g.axis_offset), -most, most, "mm",
+                      "the axes meet far from the plane of the joints", {kMicrometres, kTenth});
+     }},
+    {"piston-tilt",
+     "largest tilt of a piston in its bore above atan(Dpi / 4 stroke), at most 15 deg: a shank of "
+     "half the bore meets the bore's edge",
+     [](const Facts& f) -> std::string {
+       const double most = std::min(std::atan2(f.bore / 4, f.derived.stroke), 15 * kRadPerDegree);
+       if (f.derived.largest_tilt <= most) return "";
+       return fmt::format(
+           "the pistons tilt up to {:.3g} deg in their bores: over a stroke of {:.4g} mm a shank "
+           "of half the bore's diameter allows {:.3g} (joint_circle_radius_mm = {:.6g}, "
+           "bore_circle_radius_mm = {:.6g} where Ra (1 + cos tilt)/2 = {:.4g} tilts them least, "
+           "axis_offset_mm = {:.6g}, piston_length_mm = {:.6g})",
+           deg(f.derived.largest_tilt), mm(f.derived.stroke), deg(most),
+           mm(f.g.joint_circle_radius), mm(f.g.bore_circle_radius),
+           mm(f.g.joint_circle_radius) * (1 + std::cos(f.g.tilt)) / 2, mm(f.g.axis_offset),
+           mm(f.g.piston_length));
+     }},
+    {"piston-length",
+     "b1 below the stroke (the shaft would meet the block) or half the bore, or above 4 Ra",
+     [](const Facts& f) {
+       return outside(
+           "piston_length_mm", mm(f.g.piston_length), mm(std::max(f.derived.stroke, f.bore / 2)),
+           mm(4 * f.g.joint_circle_radius), "mm",
+           fmt::format("a piston is longer than its stroke of {:.4g} mm or half its bore, and "
+                       "shorter than 4 Ra",
+                       mm(f.derived.stroke)),
+           {kTenth, kCentimetres, kInches, kMicrometres, kMetres});
+     }},
+    // Gear
+    {"gear-inside-bores", "d/2 < Rd + Dpi/2: the teeth would stand in the bores",
+     [](const Facts& f) {
+       return outside("pitch_diameter_mm", mm(f.pump.gear.pitch_diameter), mm(2 * f.bores_radius),
+                      HUGE_VAL, "mm",
+                      "the teeth would stand within the bores, which reach to this diameter",
+                      {kRadius, kCentimetres, kInches, kMetres});
+     }},
+    {"gear-large", "d/2 > 3 (Rd + Dpi/2)",
+     [](const Facts& f) {
+       return outside("pitch_diameter_mm", mm(f.pump.gear.pitch_diameter), 0,
+                      mm(6 * f.bores_radius), "mm", "three times what encloses the bores",
+                      {kDiameter, kTenth, kMicrometres});
+     }},
+    {"pressure-angle", "0 < pressure angle < 10 deg, or > 35 deg",
+     [](const Facts& f) -> std::string {
+       if (f.pump.gear.pressure_angle == 0) return "";
+       return outside("pressure_angle_deg", deg(f.pump.gear.pressure_angle), 10, 35, "deg",
+                      "teeth are cut at 14.5 to 30 deg", {kRadians, {2, "half of it?"}});
+     }},
+    // Bearings
+    {"bearing-side", "a bearing at z1 > -Ra/4: on the pistons' side, or in the plane of the joints",
+     [](const Facts& f) {
+       const double most = -mm(f.g.joint_circle_radius) / 4;
+       const auto one = [&](const char* key, double z) {
+         return outside(key, mm(z), -HUGE_VAL, most, "mm",
+                        "the shaft leaves the joints towards -z1, the pistons stand at +z1",
+                        {{-1, "with the other sign?"}, kMetres, kCentimetres});
+       };
+       return first_of({one("tapered_z_mm", f.pump.bearings.tapered_z),
+                        one("cylindrical_z_mm", f.pump.bearings.cylindrical_z)});
+     }},
+    {"bearings-exchanged", "the tapered bearing is the farther one from the joints",
+     [](const Facts& f) -> std::string {
+       const Bearings& b = f.pump.bearings;
+       if (b.tapered_z >= b.cylindrical_z || b.cylindrical_z > 0) return "";
+       return fmt::format(
+           "tapered_z_mm = {:.6g} is farther from the joints than cylindrical_z_mm = {:.6g}: the "
+           "tapered bearing, which takes the thrust, sits next to the pistons",
+           mm(b.tapered_z), mm(b.cylindrical_z));
+     }},
+    {"bearings-close", "bearings less than Ra/4 apart: there is no room for two",
+     [](const Facts& f) -> std::string {
+       const double apart = std::abs(f.pump.bearings.tapered_z - f.pump.bearings.cylindrical_z);
+       if (apart >= f.g.joint_circle_radius / 4) return "";
+       return fmt::format(
+           "tapered_z_mm and cylindrical_z_mm are {:.3g} mm apart, less than a quarter of Ra = "
+           "{:.4g}: there is no room for two bearings",
+           mm(apart), mm(f.g.joint_circle_radius));
+     }},
+    {"bearing-far", "the nearer bearing beyond 5 Ra or the farther beyond 10 Ra",
+     [](const Facts& f) {
+       const Bearings& b = f.pump.bearings;
+       const bool tapered_nearer = std::abs(b.tapered_z) < std::abs(b.cylindrical_z);
+       const auto one = [&](const char* key, double z, bool nearer) {
+         const double most = (nearer ? 5 : 10) * mm(f.g.joint_circle_radius);
+         return outside(key, mm(z), -most, HUGE_VAL, "mm",
+                        nearer ? "5 Ra from the pistons that it carries" : "10 Ra from the pistons",
+                        {kTenth, kMicrometres});
+       };
+       return first_of({one("tapered_z_mm", b.tapered_z, tapered_nearer),
+                        one("cylindrical_z_mm", b.cylindrical_z, !tapered_nearer)});
+     }},
+    // Piston
+    {"piston-heavier-than-steel",
+     "piston mass above a steel cylinder of the bore's diameter and the length b1 + Dpi",
+     [](const Facts& f) {
+       const double most = kSteel * f.area * f.piston_span;
+       return outside("[piston] mass_kg", f.pump.piston.mass, 0, most, "kg",
+                      fmt::format("a solid steel cylinder of bore {:.4g} mm and length {:.4g} mm",
+                                  mm(f.bore), mm(f.piston_span)),
+                      {kTenth, kHundredth, kGrams});
+     }},
+    {"piston-too-light",
+     "piston mass below 6 % of that cylinder (a hollow one of aluminium); 0 is a limit, and meant "
+     "where pressure forces exceed the inertia of a steel piston ten times",
+     [](const Facts& f) -> std::string {
+       const double steel = kSteel * f.area * f.piston_span;
+       const double mass = f.pump.piston.mass;
+       const double omega = f.speed * kRadPerSecondPerRpm;
+       const double inertia = steel / 3 * f.g.joint_circle_radius * square(omega);
+       if (mass == 0 && f.highest * f.area >= 10 * inertia) return "";
+       if (mass == 0)
+         return fmt::format(
+             "[piston] mass_kg = 0 where inertia matters: a steel piston would be pushed with "
+             "{:.3g} N at {:.4g} rpm, pressure pushes with {:.3g} N",
+             inertia, f.speed, f.highest * f.area);
+       return outside("[piston] mass_kg", mass, kLightest * steel, HUGE_VAL, "kg",
+                      "a hollow piston of aluminium weighs this",
+                      {kTenfold, {100, "a hundred times too small?"}, kTons});
+     }},
+    {"piston-centre-of-mass", "centre of mass outside 0.1 .. 0.9 b1 from A (lumped: (1 - chi) b1)",
+     [](const Facts& f) -> std::string {
+       if (f.pump.piston.mass == 0) return "";
+       const double b1 = mm(f.g.piston_length);
+       if (f.real)
+         return outside("[piston] centre_of_mass_mm", mm(f.pump.piston.real->centre_of_mass),
+                        0.1 * b1, 0.9 * b1, "mm",
+                        fmt::format("it lies between A and B, {:.4g} mm apart", b1),
+                        {kCentimetres, kTenth, kMetres, kMicrometres, kSign});
+       return outside("joint_mass_fraction", f.pump.piston.joint_mass_fraction, 0.1, 0.9, "",
+                      "the centre of mass would lie next to A or B",
+                      {{10, "ten times too small?"}, {1e2, "in hundredths?"}});
+     }},
+    {"piston-transverse-inertia",
+     "It outside of what a steel body of that mass within bore and length b1 + Dpi can have: of a "
+     "solid disc that fills the bore, and of two masses at the ends",
+     [](const Facts& f) -> std::string {
+       if (!f.real || f.pump.piston.mass == 0) return "";
+       const double m = f.pump.piston.mass;
+       const double r = f.bore / 2;
+       const double disc = m / (1.1 * kSteel * f.area);
+       const double least = m * (square(r) / 4 + square(disc) / 12);
+       const double most = m * (square(f.piston_span / 2) + square(r) / 2);
+       return outside(
+           "transverse_inertia_kg_mm2", f.pump.piston.real->transverse_inertia * 1e6, least * 1e6,
+           most * 1e6, "kg mm2",
+           fmt::format("no body of {:.4g} kg in a bore of {:.4g} mm over {:.4g} mm has it", m,
+                       mm(f.bore), mm(f.piston_span)),
+           {kTenth, kTenfold, kKgM2, kGMm2, kHundredth});
+     }},
+    {"piston-axial-inertia",
+     "Ia outside of what a steel body of that mass within bore and length b1 + Dpi can have: of a "
+     "rod of that length, and of a tube on the bore",
+     [](const Facts& f) -> std::string {
+       if (!f.real || f.pump.piston.mass == 0) return "";
+       const double m = f.pump.piston.mass;
+       const double least = m * m / (2 * kPi * 1.1 * kSteel * f.piston_span);
+       const double most = m * square(f.bore / 2);
+       return outside(
+           "[piston] axial_inertia_kg_mm2", f.pump.piston.real->axial_inertia * 1e6, least * 1e6,
+           most * 1e6, "kg mm2",
+           fmt::format("no body of {:.4g} kg in a bore of {:.4g} mm over {:.4g} mm has it", m,
+                       mm(f.bore), mm(f.piston_span)),
+           {kTenth, kTenfold, kKgM2, kGMm2});
+     }},
+    {"piston-spin", "spin beyond +-2.5 x speed: shaft and block, which drag it round, turn slower",
+     [](const Facts& f) -> std::string {
+       if (!f.real) return "";
+       const double most = 2.5 * f.speed;
+       return outside(
+           "spin_rpm", f.pump.piston.real->spin / kRadPerSecondPerRpm, -most, most, "rpm",
+           fmt::format("shaft and block, which drag the pistons round, turn at {:.4g}", f.speed),
+           {kTenth});
+     }},
+    // Shaft and block
+    {"shaft-mass",
+     "shaft mass outside 0.12 .. 4 times a steel cylinder of radius Ra + Dpi/2 to the farther "
+     "bearing; 0 is a limit, and meant",
+     [](const Facts& f) -> std::string {
+       if (f.pump.shaft.mass == 0) return "";
+       const double size =
+           kSteel * kPi * square(f.g.joint_circle_radius + f.bore / 2) * f.shaft_reach;
+       return outside(
+           "[shaft] mass_kg", f.pump.shaft.mass, 0.12 * size, 4 * size, "kg",
+           fmt::format("a steel cylinder around joints and bearings weighs {:.3g} kg", size),
+           {kTenth, kTenfold, kGrams, kTons});
+     }},
+    {"shaft-centre-of-mass",
+     "shaft's centre of mass at z1 > -Ra/5, or beyond twice the farther bearing",
+     [](const Facts& f) -> std::string {
+       if (f.pump.shaft.mass == 0) return "";
+       return outside("[shaft] centre_of_mass_z_mm", mm(f.pump.shaft.centre_of_mass_z),
+                      -2 * mm(f.shaft_reach), -mm(f.g.joint_circle_radius) / 5, "mm",
+                      "the shaft reaches from the joints past its bearings, along -z1",
+                      {kSign, kTenth, kMetres, kMicrometres});
+     }},
+    {"shaft-inertia",
+     "I_s of a shaft: below a steel rod of that mass to the farther bearing, or above m (2.5 Ra)2",
+     [](const Facts& f) -> std::string {
+       if (f.pump.shaft.mass == 0 || f.defaulted("shaft", "axial_inertia_kg_mm2")) return "";
+       const double m = f.pump.shaft.mass;
+       const double rod =
+           m * m / (2 * kPi * kSteel * (2 * f.shaft_reach + f.g.joint_circle_radius));
+       return outside("[shaft] axial_inertia_kg_mm2", f.pump.shaft.axial_inertia * 1e6, rod * 1e6,
+                      m * square(2.5 * f.g.joint_circle_radius) * 1e6, "kg mm2",
+                      fmt::format("no shaft of {:.4g} kg and this size has it", m),
+                      {kTenth, kTenfold, kKgM2, kGMm2});
+     }},
+    {"block-mass",
+     "block mass outside 0.1 .. 1.2 times a steel cylinder of radius Rd + Dpi and length b1 + "
+     "stroke; 0 is a limit, and meant",
+     [](const Facts& f) -> std::string {
+       if (f.pump.block.mass == 0) return "";
+       const double size = kSteel * kPi * square(f.g.bore_circle_radius + f.bore) * f.block_length;
+       return outside("[block] mass_kg", f.pump.block.mass, 0.1 * size, 1.2 * size, "kg",
+                      fmt::format("a steel cylinder around the bores weighs {:.3g} kg", size),
+                      {kTenth, kTenfold, kGrams, kTons});
+     }},
+    {"block-centre-of-mass", "block's centre of mass at z2 < b1/10 or > b1 + stroke + Dpi",
+     [](const Facts& f) -> std::string {
+       if (f.pump.block.mass == 0) return "";
+       return outside("[block] centre_of_mass_z_mm", mm(f.pump.block.centre_of_mass_z),
+                      mm(f.g.piston_length) / 10, mm(f.block_length + f.bore), "mm",
+                      "the block stands around the pistons' heads, along +z2",
+                      {kSign, kTenfold, kTenth, kMetres, kMicrometres});
+     }},
+    {"block-inertia",
+     "I_c of a block: below a steel rod of that mass and the block's length, or above m (Rd + "
+     "Dpi)2",
+     [](const Facts& f) -> std::string {
+       if (f.pump.block.mass == 0 || f.defaulted("block", "axial_inertia_kg_mm2")) return "";
+       const double m = f.pump.block.mass;
+       return outside("[block] axial_inertia_kg_mm2", f.pump.block.axial_inertia * 1e6,
+                      m * m / (2 * kPi * kSteel * f.block_length) * 1e6,
+                      m * square(f.g.bore_circle_radius + f.bore) * 1e6, "kg mm2",
+                      fmt::format("no block of {:.4g} kg and this size has it", m),
+                      {kTenth, kTenfold, kKgM2, kGMm2});
+     }},
+    {"pin-position", "pin at z2 < 0.15 (b1 + stroke), or > b1 + stroke + 2 Dpi: outside the block",
+     [](const Facts& f) {
+       return outside("pin_z_mm", mm(f.pump.block.pin_z), 0.15 * mm(f.block_length),
+                      mm(f.block_length + 2 * f.bore), "mm",
+                      "the pin meets the block inside of it, along +z2",
+                      {kSign, kTenfold, kTenth, kMetres, kMicrometres});
+     }},
+    {"bottom-area", "Ac above the area of a bore, or 0 < Ac below a twentieth of it",
+     [](const Facts& f) -> std::string {
+       if (f.pump.block.bottom_area == 0) return "";
+       const double area = mm2(f.area);
+       return outside("bottom_area_mm2", mm2(f.pump.block.bottom_area), area / 20, area, "mm2",
+                      fmt::format("it is a part of each bore's {:.4g} mm2", area),
+                      {kTenth,
+                       kTenfold,
+                       kSquareCm,
+                       kHundredth,
+                       kSquareM,
+                       {1. / f.g.pistons, "of all bores?"}});
+     }},
+    {"spring-force",
+     "spring above what a coil spring between the bores bears at 1000 MPa, or below a tenth of the "
+     "block's weight; 0 is a limit, and meant",
+     [](const Facts& f) -> std::string {
+       const double force = f.pump.block.spring_force;
+       if (force == 0) return "";
+       // Of outer radius r and index 4: wire 2 r/5, mean diameter 8 r/5; F = pi d^3 tau / (8 D).
+       const double r = std::max(f.g.bore_circle_radius - f.bore / 2, 0.1 * f.g.bore_circle_radius);
+       const double most = kPi * 0.005 * square(r) * kYield;
+       const double least = std::min(0.1 * f.pump.block.mass * 9.81, most);
+       return outside(
+           "spring_force_N", force, least, most, "N",
+           fmt::format("a coil spring of {:.3g} mm between the bores bears {:.3g} N, the "
+                       "block weighs {:.3g} N",
+                       2 * mm(r), most, f.pump.block.mass * 9.81),
+           {kTenth, kTenfold, {1e3, "in kN?"}, kThousandth});
+     }},
+    // Friction
+    {"piston-friction",
+     "Fc + cv v above a tenth of the pressure force on a piston (at 100 bar at least)",
+     [](const Facts& f) -> std::string {
+       const double v = f.speed * kRadPerSecondPerRpm * f.derived.stroke / 2;
+       const double friction = f.pump.friction.piston_coulomb + f.pump.friction.piston_viscous * v;
+       const double force = f.load * f.area;
+       if (friction <= 0.1 * force) return "";
+       return fmt::format(
+           "piston_coulomb_N = {:.6g} and piston_viscous_N_s_per_m = {:.6g} make {:.4g} N of "
+           "friction on a piston that {:.4g} bar push with {:.4g} N: more than a tenth would be "
+           "lost",
+           f.pump.friction.piston_coulomb, f.pump.friction.piston_viscous, friction, bar(f.load),
+           force);
+     }},
+    {"block-viscous-torque", "Cc n above a tenth of N A 2 Ra p/(2 pi), with p of 100 bar at least",
+     [](const Facts& f) -> std::string {
+       const double torque = f.pump.friction.block_viscous * f.speed * kRadPerSecondPerRpm;
+       if (torque <= 0.1 * f.full_torque) return "";
+       return fmt::format(
+           "block_viscous_Nm_per_rpm = {:.4g} takes {:.4g} Nm at {:.6g} rpm, above a tenth of "
+           "{:.4g} Nm; in Nm s/rad it would be {:.4g} Nm",
+           f.pump.friction.block_viscous * kRadPerSecondPerRpm, torque, f.speed, f.full_torque,
+           torque * kRadPerSecondPerRpm);
+     }},
+    {"shaft-viscous-torque", "Cs n above 3 % of that torque",
+     [](const Facts& f) -> std::string {
+       const double torque = f.pump.friction.shaft_viscous * f.speed * kRadPerSecondPerRpm;
+       if (torque <= 0.03 * f.full_torque) return "";
+       return fmt::format(
+           "shaft_viscous_Nm_per_rpm = {:.4g} takes {:.4g} Nm at {:.6g} rpm, above 3 % of {:.4g} "
+           "Nm; in Nm s/rad it would be {:.4g} Nm",
+           f.pump.friction.shaft_viscous * kRadPerSecondPerRpm, torque, f.speed, f.full_torque,
+           torque * kRadPerSecondPerRpm);
+     }},
+    {"torque-factor", "Ct below 0.8: the loss instead of what is left, or per cent",
+     [](const Facts& f) -> std::string {
+       const double ct = f.pump.friction.shaft_torque_factor;
+       if (ct >= 0.8) return "";
+       return fmt::format(
+           "shaft_torque_factor = {:.6g} is below 0.8: {:.3g} % of the drive torque would be lost "
+           "(1 is no loss)",
+           ct, 100 * (1 - ct));
+     }},
+    {"regularization",
+     "v_reg above a tenth of the joints' speed omega Ra: friction hardly acts fully",
+     [](const Facts& f) -> std::string {
+       if (f.pump.friction.piston_coulomb == 0 || f.speed == 0) return "";
+       return outside("regularization_m_per_s", f.pump.friction.regularization, 0,
+                      f.speed * kRadPerSecondPerRpm * f.g.joint_circle_radius / 10, "m/s",
+                      "a tenth of the speed of the joints: Coulomb friction would hardly act fully",
+                      {{1e-3, "in mm/s?"}, kTenth});
+     }},
+    // Operation
+    {"speed-in-rad-per-s",
+     "a speed that is no multiple of 10 rpm, below 628, and read as rad/s within 0.1 % of a "
+     "multiple of 50 rpm",
+     [](const Facts& f) -> std::string {
+       const double rpm = f.speed / kRadPerSecondPerRpm;
+       const double nearest = 50 * std::round(rpm / 50);
+       if (rpm < 300 || rpm > 6000 || std::fmod(f.speed, 10) == 0) return "";
+       if (std::abs(rpm - nearest) > 1e-3 * nearest) return "";
+       return fmt::format("speed_rpm = {:.6g}: in rad/s it would be {:.6g} rpm",
+                          f.the_case.operation.speed_rpm, rpm);
+     }},
+    {"piston-speed", "mean piston speed, two strokes per turn, above 10 m/s",
+     [](const Facts& f) -> std::string {
+       if (f.piston_speed <= kFastest) return "";
+       return fmt::format(
+           "the pistons move at {:.4g} m/s on average at speed_rpm = {:.6g} (stroke {:.4g} mm): "
+           "pumps reach 5 to 7 m/s",
+           f.piston_speed, f.the_case.operation.speed_rpm, mm(f.derived.stroke));
+     }},
+    {"speed-low", "a speed, not 0, at which the pistons of the full stroke move below 0.05 m/s",
+     [](const Facts& f) -> std::string {
+       if (f.speed == 0) return "";
+       const double v = f.speed / 60 * 2 * std::max(f.derived.stroke, f.g.joint_circle_radius);
+       if (v >= kSlowest) return "";
+       return fmt::format(
+           "speed_rpm = {:.6g} moves the pistons at {:.3g} m/s on average; in revolutions per "
+           "second it would be {:.6g} rpm",
+           f.the_case.operation.speed_rpm, v, 60 * f.the_case.operation.speed_rpm);
+     }},
+    {"gravity", "gravity that is not 0 and outside 1.5 .. 20 m/s2 (it acts along -y1)",
+     [](const Facts& f) -> std::string {
+       if (f.pump.gravity == 0) return "";
+       return outside("gravity_m_per_s2", f.pump.gravity, 1.5, 20, "m/s2",
+                      "it is 9.81 on earth, 1.6 on the moon, positive along -y1",
+                      {kSign,
+                       {1e-3, "in mm/s2?"},
+                       {1e-2, "in cm/s2?"},
+                       {9.80665, "in g?"},
+                       kTenth,
+                       kTenfold,
+                       kThousandfold});
+     }},
+    {"samples", "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions",
+     [](const Facts& f) {
+       return first_of(
+           {outside("samples_per_revolution", f.the_case.operation.samples_per_revolution, 6, 1e6,
+                    "", "a turn is seen from 6 angles on; 1e6 are every second of arc"),
+            outside("revolutions", f.the_case.operation.revolutions, 0, 1e4, "",
+                    "every turn is alike")});
+     }},
+    // Pressure
+    {"pressure-beyond-1000-bar", "delivery, suction or the curve above 1000 bar",
+     [](const Facts& f) {
+       const auto one = [](const char* key, double p) {
+         return outside(key, bar(p), -HUGE_VAL, bar(kMostPressure), "bar",
+                        "hydraulic pumps end at 500 bar",
+                        {{1e-5, "in pascals?"},
+                         {1e-2, "in kPa?"},
+                         {0.0689476, "in psi?"},
+                         {0.1, "ten times too large?"}});
+       };
+       return first_of({one("delivery_bar", f.ports.delivery), one("suction_bar", f.ports.suction),
+                        f.turn && f.the_case.pressure.kind == PressureKind::curve
+                            ? one("[pressure] file: its highest", f.turn->highest_pressure)
+                            : std::string()});
+     }},
+    {"pressure-low", "0 < delivery < 3 bar. 0 is no load, and meant",
+     [](const Facts& f) -> std::string {
+       const double p = bar(f.ports.delivery);
+       if (p <= 0) return "";
+       return outside("delivery_bar", p, 3, HUGE_VAL, "bar", "next to no load",
+                      {{100, "in units of 100 bar?"}, {1000, "in kbar?"}});
+     }},
+    {"delivery-below-suction", "delivery pressure below suction pressure",
+     [](const Facts& f) -> std::string {
+       if (f.ports.delivery >= f.ports.suction) return "";
+       return fmt::format("delivery_bar = {:.6g} is below suction_bar = {:.6g}: exchanged?",
+                          bar(f.ports.delivery), bar(f.ports.suction));
+     }},
+    {"suction-pressure",
+     "suction below -1.014 bar (absolute vacuum), above 100 bar, or 1 atmosphere (pressures are "
+     "gauge)",
+     [](const Facts& f) -> std::string {
+       const double suction = bar(f.ports.suction);
+       if (std::abs(suction - 1.01325) < 1e-3)
+         return fmt::format("suction_bar = {:.6g}: pressures are gauge; absolute?", suction);
+       return outside("suction_bar", suction, -1.014, 100, "bar",
+                      "absolute vacuum is at -1.013, charged circuits reach 30",
+                      {{1e-5, "in pascals?"}, {1e-2, "in kPa?"}, kTenth});
+     }},
+    {"transition", "0 < transition < 1 deg (0 is a step, and meant), or > 90 deg",
+     [](const Facts& f) -> std::string {
+       const PressureSpec& p = f.the_case.pressure;
+       if (p.kind != PressureKind::ideal || p.transition_deg == 0) return "";
+       return outside("transition_deg", p.transition_deg, 1, 90, "deg",
+                      "the pressure changes while a bore passes from port to port", {kRadians});
+     }},
+    {"pressure-phase",
+     "the pressure on a piston does less than 0.6 of the ideal work (delivery - suction) x A x "
+     "stroke over a turn: it does not act while the chamber shrinks (180 .. 360 deg)",
+     [](const Facts& f) -> std::string {
+       if (!f.turn || f.ports.delivery - f.ports.suction < kPascalPerBar ||
+           f.derived.stroke < 0.01 * f.g.joint_circle_radius || f.turn->work_ratio >= 0.6)
+         return "";
+       const bool ideal = f.the_case.pressure.kind == PressureKind::ideal;
+       const double start = f.the_case.pressure.delivery_start_deg;
+       return fmt::format(
+           "{}: the pressure does {:.3g} of the ideal work over a turn; chambers shrink from 180 "
+           "to "
+           "360 deg{}",
+           ideal ? fmt::format("delivery_start_deg = {:.6g}", start) : "[pressure] file",
+           f.turn->work_ratio,
+           ideal ? guess(start, 150, 210, {kRadians})
+                 : "; another zero or sense of the angle, or "
+                   "another unit of pressure?");
+     }},
+    {"curve-pressure",
+     "the highest pressure of the curve is not within 0.5 .. 2 times delivery_bar, or the lowest "
+     "is below absolute vacuum by more than 10 % of it",
+     [](const Facts& f) -> std::string {
+       if (f.the_case.pressure.kind != PressureKind::curve || !f.turn) return "";
+       const double delivery = bar(f.ports.delivery), top = bar(f.turn->highest_pressure);
+       if (delivery <= 1) return "";
+       return first_of({outside("[pressure] file: its highest", top, delivery / 2, 2 * delivery,
+                                "bar", fmt::format("delivery_bar = {:.6g}", delivery),
+                                {{10, "in MPa?"},
+                                 {1e-5, "in pascals?"},
+                                 {1e-2, "in kPa?"},
+                                 {0.0689476, "in psi?"}}),
+                        outside("[pressure] file: its lowest", bar(f.turn->lowest_pressure),
+                                -1.014 - delivery / 10, HUGE_VAL, "bar",
+                                "absolute vacuum is at -1.013", {kSign})});
+     }},
+    // Port plate
+    {"lands-off-bores",
+     "the bore circle lies outside r1 .. r4, or the groove r2 .. r3 reaches beyond Rd -+ Dpi/2",
+     [](const Facts& f) -> std::string {
+       if (!f.pump.port_plate) return "";
+       const PortPlate& p = *f.pump.port_plate;
+       const double rd = f.g.bore_circle_radius, half = f.bore / 2;
+       if (p.r1 < rd && rd < p.r4 && p.r2 >= rd - half && p.r3 <= rd + half) return "";
+       return fmt::format(
+           "inner_land_mm = [{:.6g}, {:.6g}], outer_land_mm = [{:.6g}, {:.6g}]: the groove between "
+           "them feeds bores that reach from {:.4g} to {:.4g} mm (Rd -+ Dpi/2){}",
+           mm(p.r1), mm(p.r2), mm(p.r3), mm(p.r4), mm(rd - half), mm(rd + half),
+           guess(mm(p.r2 + p.r3) / 2, 0.8 * mm(rd), 1.2 * mm(rd),
+                 {kDiameter, kMetres, kCentimetres, kTenth, kInches}));
+     }},
+    {"port-arcs-exchanged",
+     "delivery port over 0 .. 180 deg, where chambers fill, and suction port over 180 .. 360: by "
+     "the y of their middles",
+     [](const Facts& f) -> std::string {
+       const auto middle = [](const PortArc& arc) { return (arc.from_deg + arc.to_deg) / 2; };
+       const auto wrong = [&](const PortArc& delivery, const PortArc& suction) {
+         return std::sin(middle(delivery) * kRadPerDegree) >
+                std::sin(middle(suction) * kRadPerDegree);
+       };
+       const auto text = [&](const char* table, const PortArc& delivery, const PortArc& suction) {
+         return wrong(delivery, suction)
+                    ? fmt::format(
+                          "[{}] delivery_arc_deg = [{:.6g}, {:.6g}], suction_arc_deg = [{:.6g}, "
+                          "{:.6g}]: chambers fill from 0 to 180 deg and deliver from 180 to 360: "
+                          "exchanged?",
+                          table, delivery.from_deg, delivery.to_deg, suction.from_deg,
+                          suction.to_deg)
+                    : std::string();
+       };
+       // A pump that delivers elsewhere is the business of pressure-phase.
+       if (f.turn && f.turn->work_ratio < 0.6) return "";
+       return first_of(
+           {f.pump.port_plate
+                ? text("port_plate", f.pump.port_plate->delivery, f.pump.port_plate->suction)
+                : std::string(),
+            f.oil ? text("hydraulics", f.oil->delivery.arc, f.oil->suction.arc) : std::string()});
+     }},
+    {"port-arc", "a port of less than 30 or more than 180 deg",
+     [](const Facts& f) {
+       const auto one = [](const std::string& key, const PortArc& arc) {
+         return outside(key + " covers", arc.to_deg - arc.from_deg, 30, 180, "deg",
+                        fmt::format("from {:.6g} to {:.6g}; a port serves half a turn less the "
+                                    "bridges",
+                                    arc.from_deg, arc.to_deg),
+                        {kRadians});
+       };
+       return first_of(
+           {f.pump.port_plate ? one("[port_plate] delivery_arc_deg", f.pump.port_plate->delivery)
+                              : std::string(),
+            f.pump.port_plate ? one("[port_plate] suction_arc_deg", f.pump.port_plate->suction)
+                              : std::string(),
+            f.oil ? one("[hydraulics] delivery_arc_deg", f.oil->delivery.arc) : std::string(),
+            f.oil ? one("[hydraulics] suction_arc_deg", f.oil->suction.arc) : std::string()});
+     }},
+    {"port-arcs-overlap", "delivery and suction port share an angle",
+     [](const Facts& f) {
+       const auto one = [](const char* table, const PortArc& a, const PortArc& b) -> std::string {
+         const auto within = [](double angle, const PortArc& arc) {
+           double past = std::fmod(angle - arc.from_deg, 360);
+           if (past < 0) past += 360;
+           return past < arc.to_deg - arc.from_deg;
+         };
+         if (!within(a.from_deg, b) && !within(b.from_deg, a)) return "";
+         return fmt::format(
+             "[{}] delivery_arc_deg = [{:.6g}, {:.6g}] and suction_arc_deg = [{:.6g}, {:.6g}] "
+             "overlap: the ports would be one",
+             table, a.from_deg, a.to_deg, b.from_deg, b.to_deg);
+       };
+       return first_of(
+           {f.pump.port_plate
+                ? one("port_plate", f.pump.port_plate->delivery, f.pump.port_plate->suction)
+                : std::string(),
+            f.oil ? one("hydraulics", f.oil->delivery.arc, f.oil->suction.arc) : std::string()});
+     }},
+    // One turn of the analytic model
+    {"block-lifts-off",
+     "the film would have to pull the block onto the plate (Fh > 0) in more than 5 % of the turn",
+     [](const Facts& f) -> std::string {
+       const auto* limit = f.limit("Fh reversed");
+       if (limit == nullptr || limit->violated_share <= kShareOfTurn) return "";
+       return fmt::format(
+           "the block lifts off its plate in {:.3g} % of the turn, worst {:.4g} N at {:.4g} deg: "
+           "block balance (push of the lands over bottom areas and spring) is {:.3g} (lands {:.4g} "
+           "N, bottom_area_mm2 = {:.6g} and spring_force_N = {:.6g} make {:.4g} N)",
+           100 * limit->violated_share, limit->worst, limit->theta_deg,
+           f.turn->press_force > 0 ? f.turn->land_force / f.turn->press_force : HUGE_VAL,
+           f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
+           f.turn->press_force);
+     }},
+    {"block-overpressed",
+     "block balance below 0.3 at more than 100 bar: the film would have to carry the rest",
+     [](const Facts& f) -> std::string {
+       if (!f.pump.port_plate || !f.turn || f.ports.delivery < kLightLoad ||
+           f.turn->press_force <= 0)
+         return "";
+       const double balance = f.turn->land_force / f.turn->press_force;
+       if (balance >= 0.3) return "";
+       return fmt::format(
+           "block balance is {:.3g}, below 0.3: the lands push {:.4g} N, bottom_area_mm2 = {:.6g} "
+           "and spring_force_N = {:.6g} {:.4g} N; the film would have to carry the rest",
+           balance, f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
+           f.turn->press_force);
+     }},
+    {"film-force-outside",
+     "the film force would act beyond r4 in more than 25 % of the turn: the block tips",
+     [](const Facts& f) -> std::string {
+       const auto* limit = f.limit("(xh, yh) beyond r4");
+       if (limit == nullptr || limit->violated_share <= kOutsideShare) return "";
+       return fmt::format(
+           "the film force acts outside of the plate (r4 = {:.4g} mm) in {:.3g} % of the turn, up "
+           "to {:.4g} mm from its axis at {:.4g} deg: the block tips; block balance is {:.3g}",
+           mm(f.pump.port_plate->r4), 100 * limit->violated_share, limit->worst, limit->theta_deg,
+           f.turn->press_force > 0 ? f.turn->land_force / f.turn->press_force : HUGE_VAL);
+     }},
+    {"tooth-force-flank",
+     "Rcs < 0 in more than 5 % of the turn, but at standstill: the other flank would carry",
+     [](const Facts& f) -> std::string {
+       const auto* limit = f.limit("Rcs < 0");
+       if (limit == nullptr || limit->violated_share <= kShareOfTurn || f.speed == 0) return "";
+       return fmt::format(
+           "the tooth force is on the other flank in {:.3g} % of the turn, worst {:.4g} N at "
+           "{:.4g} "
+           "deg: the block runs ahead of the shaft (block_viscous_Nm_per_rpm = {:.4g} holds it "
+           "back)",
+           100 * limit->violated_share, limit->worst, limit->theta_deg,
+           f.pump.friction.block_viscous * kRadPerSecondPerRpm);
+     }},
+    // Hydraulics
+    {"oil-density", "density outside 600 .. 1300 kg/m3",
+     [](const Facts& f) {
+       return f.oil == nullptr
+                  ? std::string()
+                  : outside("density_kg_per_m3", f.oil->density, 600, 1300, "kg/m3",
+                            "oils have 800 to 900, water 1000, esters 1200", {kTenth, kTenfold});
+     }},
+    {"bulk-modulus", "bulk modulus outside 400 .. 3500 MPa",
+     [](const Facts& f) {
+       return f.oil == nullptr ? std::string()
+                               : outside("bulk_modulus_MPa", f.oil->bulk_modulus / 1e6, 400, 3500,
+                                         "MPa", "oils have 1200 to 1800, water 2200",
+                                         {{0.1, "in bar?"},
+                                          {1e-6, "in pascals?"},
+                                          {1e-3, "in kPa?"},
+                                          {6.89476e-3, "in psi?"},
+                                          kTenfold});
+     }},
+    {"air-content", "air below 0.02 or above 15 per cent",
+     [](const Facts& f) {
+       return f.oil == nullptr
+                  ? std::string()
+                  : outside("air_percent", 100 * f.oil->air_share, 0.02, 15, "percent",
+                            "oil in a tank holds 0.2 to 2", {{100, "a share?"}, kTenth});
+     }},
+    {"atmosphere", "atmosphere outside 0.5 .. 1.2 bar",
+     [](const Facts& f) {
+       return f.oil == nullptr
+                  ? std::string()
+                  : outside("atmosphere_bar", bar(f.oil->atmosphere), 0.5, 1.2, "bar",
+                            "it is 1.013 at the sea and 0.54 at 5000 m; a charged tank "
+                            "is suction_bar",
+                            {{10, "in MPa?"}});
+     }},
+    {"kidney",
+     "kidney wider than the pitch 360/N or narrower than a fifth of the bore; higher than the bore "
+     "or of less than 8 % of its area",
+     [](const Facts& f) -> std::string {
+       if (f.oil == nullptr) return "";
+       const double pitch = 360.0 / f.g.pistons;
+       const double bore = 2 * deg(std::asin(std::min(1.0, f.bore / 2 / f.g.bore_circle_radius)));
+       const double area =
+           f.oil->kidney_width_deg * kRadPerDegree * f.g.bore_circle_radius * f.oil->kidney_height;
+       return first_of(
+           {outside("kidney_width_deg", f.oil->kidney_width_deg, bore / 5, pitch, "deg",
+                    fmt::format("a bore covers {:.3g} deg, the pitch of {} kidneys is {:.4g}", bore,
+                                f.g.pistons, pitch),
+                    {kRadians, kTenfold, kTenth}),
+            outside("kidney_height_mm", mm(f.oil->kidney_height), 0, mm(f.bore), "mm",
+                    "a kidney is not higher than its bore", {kTenth, kMicrometres}),
+            outside("kidney_height_mm: kidney area", mm2(area), 0.08 * mm2(f.area), HUGE_VAL, "mm2",
+                    fmt::format("8 % of the bore's {:.4g} mm2 (height {:.4g} mm)", mm2(f.area),
+                                mm(f.oil->kidney_height)))});
+     }},
+    {"notch",
+     "a notch of less than 1 deg, or of less than 2e-4 or more than 0.2 of the bore's area",
+     [](const Facts& f) -> std::string {
+       if (f.oil == nullptr) return "";
+       const auto one = [&](const std::string& port, const Notch& notch) -> std::string {
+         if (notch.length_deg == 0 || notch.area == 0) return "";
+         const double area = mm2(f.area);
+         return first_of(
+             {outside(port + "_notch_deg", notch.length_deg, 1, 90, "deg",
+                      "a silencing notch leads by 5 to 20 deg", {kRadians}),
+              outside(port + "_notch_area_mm2", mm2(notch.area), 2e-4 * area, 0.2 * area, "mm2",
+                      fmt::format("a bore has {:.4g} mm2, a notch some", area),
+                      {kSquareCm, kHundredth, kSquareM, kTenth})});
+       };
+       return first_of(
+           {one("delivery", f.oil->delivery.notch), one("suction", f.oil->suction.notch)});
+     }},
+    {"discharge-coefficient", "Cd outside 0.3 .. 1",
+     [](const Facts& f) {
+       return f.oil == nullptr ? std::string()
+                               : outside("discharge_coefficient", f.oil->discharge_coefficient, 0.3,
+                                         1, "", "edges have 0.6 to 0.7, a nozzle 1", {kTenfold});
+     }},
+    {"transition-pressure", "p_cr above 5 bar and a twentieth of the delivery pressure",
+     [](const Facts& f) {
+       return f.oil == nullptr ? std::string()
+                               : outside("transition_pressure_bar", bar(f.oil->transition_pressure),
+                                         0, std::max(5.0, bar(f.ports.delivery) / 20), "bar",
+                                         "orifices are turbulent well below the delivery pressure",
+                                         {{1e-5, "in pascals?"}, kTenth});
+     }},
+    {"leakage", "chambers on delivery lose more than 15 % of the ideal flow (at 1 m/s at least)",
+     [](const Facts& f) -> std::string {
+       if (f.oil == nullptr || f.derived.stroke == 0) return "";
+       const double lost = 0.5 * f.g.pistons * f.oil->leakage * std::max(0.0, f.ports.delivery);
+       const double flow = f.g.pistons * f.area * std::max(f.piston_speed, kCreep) / 2;
+       if (lost <= 0.15 * flow) return "";
+       return fmt::format(
+           "leakage_l_per_min_per_bar = {:.4g} loses {:.4g} l/min at {:.4g} bar, above 15 % of "
+           "{:.4g} l/min",
+           f.oil->leakage * 6e4 * kPascalPerBar, lost * 6e4, bar(f.ports.delivery), flow * 6e4);
+     }},
+    {"case-pressure", "case pressure above 20 bar",
+     [](const Facts& f) {
+       return f.oil == nullptr ? std::string()
+                               : outside("case_bar", bar(f.oil->case_pressure), -1.014, 20, "bar",
+                                         "shaft seals bear a few bar",
+                                         {{1e-5, "in pascals?"}, {1e-2, "in kPa?"}, kTenth});
+     }},
+    {"dead-volume", "V0 below 0.03 or above 5 times the stroke's volume",
+     [](const Facts& f) -> std::string {
+       if (f.oil == nullptr || f.derived.stroke == 0) return "";
+       const double stroke = f.area * f.derived.stroke * 1e6;
+       return outside(
+           "dead_volume_cm3", f.oil->dead_volume * 1e6, 0.03 * stroke, 5 * stroke, "cm3",
+           fmt::format("a stroke displaces {:.4g} cm3", stroke),
+           {{1e-3, "in mm3?"}, {1e3, "in litres?"}, {1e6, "in m3?"}, kTenfold, kHundredth});
+     }},
+    {"delivery-volume", "delivery volume below 0.05 or above 1000 times the displacement",
+     [](const Facts& f) -> std::string {
+       if (f.oil == nullptr || f.derived.stroke == 0) return "";
+       const double turn = f.derived.displacement * 1e3;
+       return outside("delivery_volume_l", f.oil->delivery_volume * 1e3, 0.05 * turn, 1000 * turn,
+                      "l", fmt::format("a turn displaces {:.4g} l", turn),
+                      {{1e-3, "in cm3?"}, {1e3, "in m3?"}});
+     }},
+    {"curve-points", "fewer than 90 points of the computed pressure in a turn",
+     [](const Facts& f) {
+       return f.the_case.pressure.kind != PressureKind::hydraulic
+                  ? std::string()
+                  : outside("points", f.the_case.pressure.points, 90, HUGE_VAL, "",
+                            "a port opens within some degrees");
+     }},
+};
+
+bool is_code(const std::string& code) {
+  return std::any_of(std::begin(kChecks), std::end(kChecks),
+                     [&](const Check& check) { return check.code == code; });
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+// "CODE: reason; CODE: reason"
+std::vector<Doubt> stated(const Case& the_case) {
+  std::vector<Doubt> list;
+  const std::string& text = the_case.meant;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(';', at), text.size());
+    const std::string part = trimmed(text.substr(at, end - at));
+    at = end + 1;
+    if (part.empty()) continue;
+    const std::size_t colon = part.find(':');
+    const std::string code = trimmed(part.substr(0, colon));
+    const std::string reason = colon == std::string::npos ? "" : trimmed(part.substr(colon + 1));
+    const std::string where = the_case.file.string() + ": [plausibility] meant: ";
+    if (!is_code(code))
+      throw InputError(where + "\"" + code +
+                       "\" is no check (docs/plausibility.md lists them); must be \"CODE: reason; "
+                       "CODE: reason\"");
+    if (reason.empty())
+      throw InputError(where + "\"" + code + "\" needs a reason: \"" + code + ": why\"");
+    list.push_back({code, "", reason});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string Plausibility::summary() const {
+  return fmt::format(
+      "{:.4g} cm3/rev: {:.4g} l/min at {:.6g} rpm, {:.4g} Nm at {:.4g} bar (ideal); mean piston "
+      "speed {:.3g} m/s",
+      displacement * 1e6, ideal_flow * 6e4, speed_rpm, ideal_torque, bar(delivery),
+      mean_piston_speed);
+}
+
+Plausibility plausibility(const Case& the_case) {
+  const std::vector<Doubt> reasons = stated(the_case);
+  const Facts facts(the_case);
+  Plausibility result;
+  result.displacement = facts.derived.displacement;
+  result.speed_rpm = the_case.operation.speed_rpm;
+  result.ideal_flow = result.displacement * facts.speed / 60;
+  result.delivery = facts.ports.delivery;
+  result.ideal_torque =
+      result.displacement * (facts.ports.delivery - facts.ports.suction) / (2 * kPi);
+  result.mean_piston_speed = facts.piston_speed;
+  for (const Check& check : kChecks) {
+    const std::string text = check.text(facts);
+    if (text.empty()) continue;
+    const auto reason = std::find_if(reasons.begin(), reasons.end(),
+                                     [&](const Doubt& d) { return d.code == check.code; });
+    if (reason == reasons.end())
+      result.warnings.push_back({check.code, text, ""});
+    else
+      result.meant.push_back({check.code, text, reason->reason});
+  }
+  return result;
+}
+
+std::string plausibility_markdown() {
+  std::string text = "| name | doubtful |\n|---|---|\n";
+  for (const Check& check : kChecks)
+    text += fmt::format("| `{}` | {} |\n", check.code, check.doubtful);
+  return text;
+}
+
+std::vector<std::string> plausibility_codes() {
+  std::vector<std::string> codes;
+  for (const Check& check : kChecks) codes.emplace_back(check.code);
+  return codes;
+}
+
+}  // namespace bentaxis::study

@@ -1,0 +1,241 @@
+#!/usr/bin/env python3
+"""What is possible but hardly meant is warned of by name, and what is meant is not; the picture is to scale.
+
+usage: plausibility_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import fnmatch
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+import xml.etree.ElementTree as xml
+
+PROGRAM = REPO = None  # set in main
+SECONDS = 120          # no single command may take longer
+WARNING = re.compile(r"^bentaxis: warning: ([a-z0-9A-Z-]+): (.+)$", re.MULTILINE)
+ERROR = re.compile(r"^bentaxis: error: ([a-z0-9A-Z-]+): (.+)$", re.MULTILINE)
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=SECONDS)
+
+
+def warned(case, *arguments):
+    """Codes of the warnings of a case."""
+    done = run("show", case, *arguments)
+    assert done.returncode == 0, done.stderr
+    return [code for code, _ in WARNING.findall(done.stderr)]
+
+
+def implausible():
+    return sorted((REPO / "tests" / "implausible").glob("*.toml"))
+
+
+def expected(case):
+    """Codes that the first line of an implausible case names."""
+    return re.match(r"# expect: (.+)\n", case.read_text())[1].split()
+
+
+class DoubtTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bentaxis_plausibility_")))
+        self.rated = REPO / "cases" / "bap63_rated.toml"
+
+    def checks(self):
+        return re.findall(r"^\| `([a-z0-9A-Z-]+)` \|", run("schema", "--markdown", "checks").stdout, re.MULTILINE)
+
+    def test_every_implausible_case_is_warned_of_by_name(self):
+        cases = [case for case in implausible() if case.name != "meant.toml"]
+        self.assertGreaterEqual(len(cases), 40)
+        for case in cases:
+            with self.subTest(case=case.stem):
+                self.assertLessEqual(set(expected(case)), set(warned(case)))
+
+    def test_every_check_has_an_implausible_case(self):
+        named = {code for case in implausible() if case.name != "meant.toml" for code in expected(case)}
+        codes = self.checks()
+        self.assertEqual(len(codes), len(set(codes)))
+        self.assertEqual(named - set(codes), set(), "no such check")
+        self.assertEqual(set(codes) - named, set(), "checks without a case")
+
+    def test_a_warning_names_key_value_and_limit(self):
+        for case in implausible():
+            if case.name == "meant.toml":
+                continue
+            for code, text in WARNING.findall(run("show", case).stderr):
+                with self.subTest(case=case.stem, code=code):
+                    self.assertRegex(text, r"\d", "no number")
+                    self.assertRegex(text, r"[a-z]+_[a-z]+|mass_kg|revolutions|points|pistons|stroke|block balance|tooth"
+                                     r"|\[pressure\] file", "no key")
+
+    def test_shipped_stored_and_hard_cases_are_doubted_for_stated_reasons_only(self):
+        entries = tomllib.loads((REPO / "tests" / "implausible" / "meant.toml").read_text())["meant"]
+        data = REPO / "reference_data"
+        cases = {f"shipped/{case.stem}": case for case in (REPO / "cases").glob("*.toml")}
+        cases |= {str(case.parent.relative_to(data)): case for case in data.rglob("case.toml")}
+        self.assertGreater(len(cases), 60)
+        for entry in entries:
+            self.assertGreater(len(entry["reason"]), 20)
+        for name, case in sorted(cases.items()):
+            with self.subTest(case=name):
+                stated = [code for entry in entries if any(fnmatch.fnmatch(name, p) for p in entry["cases"])
+                          for code in entry["codes"]]
+                self.assertEqual(sorted(warned(case)), sorted(stated))
+
+    def test_pumps_of_all_sizes_are_not_doubted(self):
+        """The rated pump at the same stresses and speeds of points: as a pump of 8 and of 500 cm3."""
+        text = self.rated.read_text()
+        power = {"joint_circle_radius_mm": 1, "bore_circle_radius_mm": 1, "axis_offset_mm": 1, "piston_length_mm": 1,
+                 "bore_diameter_mm": 1, "pitch_diameter_mm": 1, "tapered_z_mm": 1, "cylindrical_z_mm": 1,
+                 "centre_of_mass_z_mm": 1, "centre_of_mass_mm": 1, "pin_z_mm": 1, "mass_kg": 3, "bottom_area_mm2": 2,
+                 "transverse_inertia_kg_mm2": 5, "axial_inertia_kg_mm2": 5, "spring_force_N": 2, "piston_coulomb_N": 2,
+                 "block_viscous_Nm_per_rpm": 4, "shaft_viscous_Nm_per_rpm": 4, "speed_rpm": -1, "inner_land_mm": 1,
+                 "outer_land_mm": 1}
+        for factor in (0.5, 2.0):
+            def scaled(match):
+                f = factor ** power.get(match[1], 0)
+                return match[1] + " = " + re.sub(r"-?\d+(\.\d+)?", lambda n: repr(float(n[0]) * f), match[2])
+            case = self.folder / "scaled.toml"
+            case.write_text(re.sub(r"(?m)^(\w+) = ((?:\[[^\]]*\])|(?:-?\d+\.\d+))", scaled, text)
+                            .replace('inertia = "lumped"', 'inertia = "real"'))
+            with self.subTest(factor=factor):
+                self.assertEqual(warned(case), [])
+                self.assertIn("278.8" if factor == 1 else f"{278.83 * factor ** 3:.4g} Nm", run("show", case).stderr)
+
+    def test_what_is_a_limit_is_meant(self):
+        for change in ("pump.tilt_deg=0", "operation.speed_rpm=0", "operation.speed_rpm=-1500", "operation.gravity_m_per_s2=0",
+                       "pressure.delivery_bar=0", "pressure.transition_deg=0", "block.spring_force_N=0", "piston.mass_kg=0",
+                       "shaft.mass_kg=0", "block.mass_kg=0", "gear.pressure_angle_deg=0", "friction.regularization_m_per_s=0"):
+            with self.subTest(change=change):
+                self.assertEqual(warned(self.rated, "--set", change), [])
+
+
+class SaidTest(unittest.TestCase):
+    setUp = DoubtTest.setUp
+
+    def test_the_pump_is_said_first_in_one_line(self):
+        for command in (["run", self.rated, "--model", "analytic"], ["compare", self.rated], ["show", self.rated],
+                        ["reference", "golden", self.rated, "--out", "golden"]):
+            with self.subTest(command=command[0]):
+                done = run(*command, cwd=self.folder)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(done.stderr.splitlines()[0],
+                                 "pump: 63.71 cm3/rev: 95.56 l/min at 1500 rpm, 278.8 Nm at 275 bar (ideal); "
+                                 "mean piston speed 1.6 m/s")
+
+    def test_strict_ends_with_status_2_and_writes_nothing(self):
+        doubtful = ["--set", "gear.pressure_angle_deg=0.349", "--set", "piston.mass_kg=0.9", "--strict"]
+        for command in (["run", self.rated, "--model", "analytic"], ["compare", self.rated], ["show", self.rated, "--out", "a.svg"],
+                        ["inertia", self.rated], ["tradeoff", self.rated], ["reference", "golden", self.rated, "--out", "g"],
+                        ["pressure", REPO / "cases" / "bap63_rated_hydraulic.toml"],
+                        ["calibrate", self.rated, "--with", "290", "--without", "289"],
+                        ["blocktorque", self.rated, REPO / "cases" / "bap63_rated_hydraulic.toml"]):
+            with self.subTest(command=command[0]):
+                done = run(*command, *doubtful, cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stdout, "")
+                self.assertEqual({code for code, _ in ERROR.findall(done.stderr)},
+                                 {"pressure-angle", "piston-heavier-than-steel"})
+                self.assertEqual(len(done.stderr.splitlines()), 4)  # pump, two errors, the end
+                self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_strict_lets_pass_what_is_not_doubtful(self):
+        self.assertEqual(run("show", self.rated, "--strict").returncode, 0)
+
+    def test_a_stated_reason_silences(self):
+        heavy = ["--set", "piston.mass_kg=0.3"]
+        reason = ["--set", "plausibility.meant=piston-heavier-than-steel: pistons of tungsten; gravity: unused"]
+        self.assertEqual(run("show", self.rated, *heavy, "--strict").returncode, 2)
+        self.assertEqual(run("show", self.rated, *heavy, *reason, "--strict").returncode, 0)
+        done = run("compare", self.rated, *heavy, *reason, "--out", self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads((self.folder / "report.json").read_text())["plausibility"]
+        self.assertEqual(said["warnings"], [])
+        self.assertEqual([(row["code"], row["reason"]) for row in said["meant"]],
+                         [("piston-heavier-than-steel", "pistons of tungsten")])
+        for wrong, why in (("piston-heavy: so", "is no check"), ("gravity", "needs a reason"), ("gravity: ", "needs a reason")):
+            with self.subTest(wrong=wrong):
+                done = run("show", self.rated, "--set", "plausibility.meant=" + wrong)
+                self.assertEqual(done.returncode, 2)
+                self.assertEqual(len(done.stderr.splitlines()), 1)
+                self.assertIn(why, done.stderr)
+
+    def test_the_report_says_the_same(self):
+        done = run("compare", REPO / "tests" / "implausible" / "radii_exchanged.toml", "--out", self.folder)
+        said = json.loads((self.folder / "report.json").read_text())["plausibility"]
+        self.assertEqual([(row["code"], row["text"]) for row in said["warnings"]], WARNING.findall(done.stderr))
+        self.assertEqual("pump: " + said["summary"], done.stderr.splitlines()[0])
+        self.assertIn('class="bentaxis-pump"', (self.folder / "report.html").read_text())
+
+
+class PictureTest(unittest.TestCase):
+    setUp = DoubtTest.setUp
+
+    def picture(self, *changes):
+        file = self.folder / "pump.svg"
+        done = run("show", self.rated, *changes, "--out", file)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return xml.parse(file).getroot()
+
+    def drawn(self, picture, view):
+        """Scale of a view, px/mm, and its elements, which are in mm."""
+        group = picture.find(f".//{SVG}g[@class='view-{view}']/{SVG}g[@class='mm']")
+        scale = re.search(r"scale\((\S+) (\S+)\)", group.get("transform"))
+        self.assertAlmostEqual(float(scale[1]), -float(scale[2]))
+        return float(scale[1]), group
+
+    def test_it_is_to_scale(self):
+        picture = self.picture("--set", "pump.bore_diameter_mm=20.5")
+        scales = {self.drawn(picture, view)[0] for view in ("side", "joints", "block")}
+        self.assertEqual(len(scales), 1)
+        _, block = self.drawn(picture, "block")
+        bores = [c for c in block.iter(SVG + "circle") if c.get("class") == "bore"]
+        self.assertEqual([float(c.get("r")) for c in bores], [10.25] * 5)
+        for bore in bores:
+            self.assertAlmostEqual(float(bore.get("cx")) ** 2 + float(bore.get("cy")) ** 2, 22.0 ** 2, places=2)
+        self.assertEqual((float(bores[0].get("cx")), float(bores[0].get("cy"))), (0, 22))
+        self.assertGreater(float(bores[1].get("cx")), 0)  # piston 2 follows piston 1: theta_2 = -72 deg
+        joints = block.find(f"{SVG}ellipse")
+        self.assertEqual((joints.get("rx"), joints.get("ry")), ("24.92", "19.0898"))
+        _, side = self.drawn(picture, "side")
+        edge = next(p for p in side.iter(SVG + "path") if p.get("class") == "edge")
+        self.assertEqual(edge.get("d"), "M0 -24.92L0 24.92")
+
+    def test_exchanged_radii_are_seen(self):
+        """The circle of the bores leaves the ellipse of the joints' circle altogether."""
+        def touches(*changes):
+            _, block = self.drawn(self.picture(*changes), "block")
+            bore = next(c for c in block.iter(SVG + "circle") if c.get("class") == "bore")
+            ellipse = block.find(f"{SVG}ellipse")
+            return float(ellipse.get("ry")) <= float(bore.get("cy")) <= float(ellipse.get("rx"))
+        self.assertTrue(touches())
+        self.assertFalse(touches("--set", "pump.joint_circle_radius_mm=22", "--set", "pump.bore_circle_radius_mm=24.92"))
+
+    def test_any_case_is_drawn(self):
+        """Within the sheet, however absurd the case, and with text that is no markup."""
+        cases = [*implausible(), *(REPO / "reference_data").rglob("case.toml")]
+        for case in cases:
+            if case.name == "meant.toml":
+                continue
+            with self.subTest(case=str(case.relative_to(REPO))):
+                file = self.folder / "pump.svg"
+                self.assertEqual(run("show", case, "--out", file).returncode, 0)
+                picture = xml.parse(file).getroot()
+                self.assertNotRegex(file.read_text(), r"\b(nan|inf)\b")
+                width, height = map(float, picture.get("viewBox").split()[2:])
+                self.assertTrue(200 < height < width, (width, height))
+                for text in picture.iter(SVG + "text"):
+                    self.assertTrue(0 <= float(text.get("x")) <= width and 0 <= float(text.get("y")) <= height, text.text)
+        picture = self.picture("--set", 'name=<b>&"x"</b>')
+        self.assertIn('<b>&"x"</b>', picture.find(f"{SVG}title").text)
+
+
+if __name__ == "__main__":
+    PROGRAM, REPO = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
