@@ -240,10 +240,6 @@ void CommandParser::flag(const std::string& name, bool& value, const std::string
   app_->add_flag(name, value, what);
 }
 
-void CommandParser::flag(const std::string& name, bool& value, const std::string& what) {
-  app_->add_flag(name, value, what);
-}
-
 Option CommandParser::choice_of(const std::string& name, const std::function<void(int)>& set,
                                 const std::vector<std::string>& words, const std::string& what,
                                 const std::string& otherwise) {
