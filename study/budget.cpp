@@ -143,7 +143,7 @@ std::vector<report::Budget::Quantity> power_lines(const std::vector<Turn>& turns
       },
       "work of -p dV per turn from the balance of mass: beside the power of the pressure");
   const auto useful = [](const Turn& turn) {
-    return turn.ready.hydraulics->summary.flow_at_inlet * turn.pressure_difference();
+    return turn.ready.hydraulics->summary.flow * turn.pressure_difference();
   };
   add("flow to the load", "out", useful,
       "of the power on the oil: flow at the density of the inlet x (mean delivery - suction "
