@@ -1027,9 +1027,9 @@ const Check kChecks[] = {
                       "l", fmt::format("a turn displaces {:.4g} l", turn),
                       {{1e-3, "in cm3?"}, {1e3, "in m3?"}});
      }},
-    {"curve-points", "fewer than 90 points of the computed pressure in a turn",
+    {"curve-points", "a spline of fewer than 90 points of the computed pressure in a turn",
      [](const Facts& f) {
-       return f.the_case.pressure.kind != PressureKind::hydraulic
+       return f.the_case.pressure.kind != PressureKind::hydraulic || f.the_case.pressure.points == 0
                   ? std::string()
                   : outside("points", f.the_case.pressure.points, 90, HUGE_VAL, "",
                             "a port opens within some degrees");
