@@ -663,7 +663,7 @@ BAD_CURVES = (
     ("another heading", CURVE.replace("pressure_bar", "pressure"), 1, ["theta_deg,pressure_bar"]),
     ("falling angles", CURVE.replace("180,", "80,"), 4, ["theta_deg", "80"]),
     ("equal angles", CURVE.replace("180,", "90,"), 4, ["theta_deg", "90"]),
-    ("end point repeated", CURVE + "360,5\n", 6, ["theta_deg", "360"]),
+    ("end point repeated, another value", CURVE + "360,6\n", 6, ["pressure_bar", "6", "periodic"]),
 )
 
 

@@ -398,15 +398,15 @@ class ForeignCurveTest(RegressTest):
                                      for row in rows]
         (self.folder / "rig.csv").write_text("\n".join(lines) + "\n")
         shutil.copy(base.REPO / "cases" / "bap63_rated.toml", self.folder / "pump.toml")
-        out = self.run_program("reference", "new", "pump.toml", "--from", "rig.csv", "--out", "mine").out
-        self.assertIn("3 of 4 columns", out)
+        out = self.run_program("reference", "new", "pump.toml", "--from", "rig.csv", "--out", "mine", "--accept").out
+        self.assertIn("4 of 4 columns", out)
         self.assertEqual({p.name for p in (self.folder / "mine").iterdir()},
                          {"case.toml", "rig.csv", "description.toml"})
-        self.assertIn('ignore = ["film"]', (self.folder / "mine" / "description.toml").read_text())
+        self.assertIn('theirs = "film"', (self.folder / "mine" / "description.toml").read_text())
         out = self.regress("mine")
-        self.assert_mentions(out, "Rb1", "Td", "missing     mine: no curve of Fh")
-        self.assert_mentions(self.refused("reference", "new", "pump.toml", "--from", "rig.csv", "--out", "mine"),
-                             "mine", "not empty")
+        self.assert_mentions(out, "Rb1", "Td", "Fh", "missing     mine: no curve of Rb2", "assumed")
+        self.assert_mentions(self.refused("reference", "new", "pump.toml", "--from", "rig.csv", "--out", "mine",
+                                          "--accept"), "mine", "not empty")
 
     def test_steep_edge_within_a_tube(self):
         """A pressure edge half a degree off fails at its flank, and passes in a tube of one degree."""
