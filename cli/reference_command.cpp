@@ -38,15 +38,14 @@ int make_new(const Options& options) {
   const fs::path out = options.out.empty() ? stem : options.out;
   const bool changed = !options.the_case.changes.empty();
   const Case the_case = options.the_case.read();
-  std::string description;
+  std::string description, proposals;
   if (!options.mapping.empty()) {
     if (options.accept) throw InputError("--accept takes the guess: it excludes --mapping");
     description = read_mapping(options.mapping);
   } else {
     const study::MappingGuess guess = study::guess_reference(the_case, options.from, options.sheet);
-    std::printf("%s", study::proposal_text(guess).c_str());
-    std::printf("%zu of %zu columns recognised\n", guess.recognised(),
-                guess.recognised() + guess.ignored.size());
+    proposals = study::proposal_text(guess) + std::to_string(guess.recognised()) + " of " +
+                std::to_string(guess.recognised() + guess.ignored.size()) + " columns recognised\n";
     description = study::description_of(guess, options.source, options.tolerance);
     if (!options.accept) {
       const fs::path proposal = out.parent_path() / (out.filename().string() + "_mapping.toml");
@@ -55,6 +54,7 @@ int make_new(const Options& options) {
                          ": exists; use it by --mapping, or take it away for a new guess");
       std::ofstream(proposal, std::ios::binary) << description;
       if (!fs::exists(proposal)) throw InputError(proposal.string() + ": cannot be written");
+      std::printf("%s", proposals.c_str());
       std::printf(
           "%s: confirm or edit it, then: bentaxis reference new .. --mapping %s (or --accept the "
           "guess)\n",
@@ -62,8 +62,9 @@ int make_new(const Options& options) {
       return kDone;
     }
   }
-  for (const auto& path : study::make_reference(the_case, changed, options.from, description, out))
-    std::printf("%s\n", path.c_str());
+  const auto paths = study::make_reference(the_case, changed, options.from, description, out);
+  std::printf("%s", proposals.c_str());
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
   std::printf("now: bentaxis regress %s\n", out.c_str());
   return kDone;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <string_view>
 
@@ -123,7 +124,17 @@ PressureColumn find_column(const ForeignTable& table, const std::map<std::string
 }  // namespace
 
 PressureCurve read_pressure_curve(const std::filesystem::path& file) {
-  const ForeignTable table = read_table(file);
+  // A file with our own heading is held to it line by line.
+  ForeignTable table;
+  std::string heading;
+  std::getline(std::ifstream(file), heading);
+  if (trimmed(heading) == "theta_deg,pressure_bar") {
+    static_cast<NumericTable&>(table) = read_numeric_csv(file);
+    table.file = file;
+    table.units = {"deg", "bar"};
+  } else {
+    table = read_table(file);
+  }
   const auto angle =
       find_column(table, {{"deg", 1}, {"rad", 1 / kRadPerDegree}, {"turn", 360}, {"gon", 0.9}},
                   {"theta", "angle", "phi", "winkel"}, "angle");

@@ -660,7 +660,7 @@ BAD_CURVES = (
     ("infinite", CURVE.replace("90,6", "90,inf"), 3, ["inf", "pressure_bar", "finite"]),
     ("too few fields", CURVE.replace("90,6", "90"), 3, []),
     ("too many fields", CURVE.replace("90,6", "90,6,7"), 3, []),
-    ("another heading", CURVE.replace("pressure_bar", "pressure"), 1, ["theta_deg,pressure_bar"]),
+    ("another heading", CURVE.replace("pressure_bar", "pressure"), 0, ["pressure", "unit"]),
     ("falling angles", CURVE.replace("180,", "80,"), 4, ["theta_deg", "80"]),
     ("equal angles", CURVE.replace("180,", "90,"), 4, ["theta_deg", "90"]),
     ("end point repeated, another value", CURVE + "360,6\n", 6, ["pressure_bar", "6", "periodic"]),
