@@ -39,7 +39,7 @@ function pumpHead({ plausibility }) {
   if (!plausibility) return null;
   picture.hidden = false;
   picture.removeAttribute("id");
-  picture.className = "scroll picture";
+  picture.className = "scroll pump";
   return el("div", {},
     !list(plausibility.warnings).length ? null : el("ul.warnings", {}, plausibility.warnings.map(w =>
       el("li", {}, el("strong", {}, "Doubtful: " + w.code), el("span", {}, w.text)))),
