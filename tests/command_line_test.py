@@ -998,7 +998,7 @@ class PressureTest(ProgramTest):
         cases = [REPO / "cases" / f"{name}.toml" for name in ("bap63_rated", "bap63_rated_hydraulic")]
         result = self.run_program("blocktorque", *cases)
         self.assertIn(result.out, (REPO / "docs" / "shaft_to_block_torque.md").read_text())
-        self.assert_mentions(self.refused("blocktorque", cases[0]), "hydraulic")
+        self.assert_mentions(self.refused("blocktorque", cases[0]), "HYDRAULIC_CASE is missing")
         self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0}), "--with", 2, "--without", 1),
                              "piston_coulomb_N")
 

@@ -359,8 +359,9 @@ TEST(Report, LinesAreOneAnothersByTheirMeaning) {
   const SteadyState state = steady_state(rated());
   std::map<std::string, double> value;
   for (const Line& line : lines(state)) value[line.name] = line.value;
-  EXPECT_DOUBLE_EQ(value.at("volumetric efficiency"),
-                   100 * value.at("mean flow, at suction pressure") / value.at("ideal flow"));
+  EXPECT_DOUBLE_EQ(
+      value.at("volumetric efficiency, mean flow to the load over ideal flow"),
+      100 * value.at("mean flow to the load") / value.at("ideal flow, displacement x speed"));
   EXPECT_DOUBLE_EQ(value.at("mean torque of that work") * 2 * kPi,
                    value.at("work of the pistons per turn"));
   EXPECT_DOUBLE_EQ(value.at("load orifice"), state.summary.load_area * 1e6);
