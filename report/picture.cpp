@@ -868,7 +868,8 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
       add(root, "path",
           {{"d", path}, {"stroke", "#fff"}, {"stroke-width", "4"}, {"stroke-linecap", "round"}});
       add(root, "path",
-          {{"d", path},
+          {{"class", "contour"},
+           {"d", path},
            {"stroke", "#a11212"},
            {"stroke-width", "1.8"},
            {"stroke-linecap", "round"}});

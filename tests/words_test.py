@@ -17,6 +17,8 @@ import unittest
 PROGRAM = REPO = None  # set in main
 DONE, BAD_INPUT = 0, 2
 SECONDS = 120
+# What every command says about the pump before anything else: another test's business.
+PUMP = re.compile(r"^(pump|bentaxis: warning: [a-z0-9-]+): [^\n]+\n", re.MULTILINE)
 
 
 class WordsTest(unittest.TestCase):
@@ -34,9 +36,10 @@ class WordsTest(unittest.TestCase):
         """One line on standard error, no file made."""
         before = sorted(self.folder.rglob("*"))
         result = self.run_program(*arguments, status=BAD_INPUT, **options)
-        self.assertEqual((result.stdout, result.stderr.count("\n")), ("", 1), result.stderr)
+        said = PUMP.sub("", result.stderr)
+        self.assertEqual((result.stdout, said.count("\n")), ("", 1), result.stderr)
         self.assertEqual(sorted(self.folder.rglob("*")), before)
-        return result.stderr.removeprefix("bentaxis: ").removesuffix("\n").removesuffix(" (see bentaxis --help)")
+        return said.removeprefix("bentaxis: ").removesuffix("\n").removesuffix(" (see bentaxis --help)")
 
     def changed_case(self, old, new):
         text = self.case.read_text()

@@ -34,12 +34,9 @@ function verdictBanner({ verdict, meaning, plausibility }, data) {
 
 // What is doubtful about the pump, and its picture, which is in the page as SVG.
 function pumpHead({ plausibility }) {
-  const picture = document.getElementById("picture");
-  picture.remove();
   if (!plausibility) return null;
-  picture.hidden = false;
-  picture.removeAttribute("id");
-  picture.className = "scroll pump";
+  const picture = el("div.scroll.pump");
+  picture.append(document.querySelector("#picture svg").cloneNode(true));
   return el("div", {},
     !list(plausibility.warnings).length ? null : el("ul.warnings", {}, plausibility.warnings.map(w =>
       el("li", {}, el("strong", {}, "Doubtful: " + w.code), el("span", {}, w.text)))),
