@@ -11,7 +11,8 @@ namespace bentaxis::study {
 /// @param program  what computed it: names and versions
 report::Document comparison_document(const ComparisonResult& result, const report::Lines& program);
 
-/// The curves that its figures name: of both models, their budgets, and the reference they are held to.
+/// The curves that its figures name: of both models, their budgets, and the reference they are held
+/// to.
 report::Curves comparison_curves(const ComparisonResult& result, const report::Document& document);
 
 /// The result in words for a terminal: verdict, worst channels, checks, warnings.
