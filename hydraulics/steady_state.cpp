@@ -33,6 +33,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFinest = 3e-13;
 // Of the allowed error of the curve, what its interpolation may take.
 constexpr double kInterpolation = 0.1;
+// What no longer falls is noise of the integration up to as many times the usual.
+constexpr double kStalled = 3;
 // Rows of a table: as many as the samples, or a multiple of them, within these.
 constexpr int kFewestRows = 720, kMostRows = 7200;
 
@@ -97,6 +99,7 @@ void refine(const Network& network, PeriodMap& map, double tolerance, Found& fou
     const double size = size_of(f);
     if (size <= kNoise * tolerance) return;
     if (!(size < 0.5 * before)) {
+      if (size <= kStalled * kNoise * tolerance) return;
       // Slow: take the fine map's own derivatives.
       Matrix jacobian;
       search(map, found.z, tolerance, jacobian, found.iterations, alive);
