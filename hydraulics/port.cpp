@@ -9,6 +9,9 @@
 namespace bentaxis::hydraulics {
 namespace {
 
+// Edges closer than this are one, degrees.
+constexpr double kSameEdge = 1e-9;
+
 double wrap(double angle) {
   const double wrapped = angle - 360.0 * std::floor(angle / 360.0);
   return wrapped >= 360.0 ? 0.0 : wrapped;
@@ -171,7 +174,9 @@ std::vector<Bridge> bridges(const PortOpening& suction, const PortOpening& deliv
   std::vector<double> edges = suction.edges_deg();
   edges.insert(edges.end(), delivery.edges_deg().begin(), delivery.edges_deg().end());
   std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  edges.erase(
+      std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kSameEdge; }),
+      edges.end());
   if (edges.empty()) edges = {0};
   std::vector<Bridge> all;
   for (std::size_t i = 0; i < edges.size(); ++i) {

@@ -466,6 +466,61 @@ TEST(PortOpening, OverlapIsWhatArcsAndKidneyMake) {
   EXPECT_NEAR(both, 30, 1e-11);
 }
 
+// Ports that open and close at the same angle but for round-off have no overlap.
+TEST(PortOpening, RoundOffIsNoOverlap) {
+  HydraulicData data = plain();
+  data.kidney_width_deg = 51.3;
+  data.suction = {{25.65, 180 - 25.65}, {}};
+  data.delivery = {{180 + 25.65, 360 - 25.65}, {}};
+  EXPECT_TRUE(
+      bridges(PortOpening(data, data.suction, kRadius), PortOpening(data, data.delivery, kRadius))
+          .empty());
+}
+
+TEST(Control, EveryNumberOfOilAndPortsCounts) {
+  Case base = rated();
+  HydraulicData& h = *base.hydraulics;
+  h.cavitation = Cavitation::equilibrium;
+  h.bulk_modulus_slope = 9;
+  h.delivery.trailing_notch = {5, 1e-6};
+  h.delivery.groove = {150, 160, 0.001, 0.4e-6};
+  h.delivery.holes = {{{185, 0.001}, {357, 0.001}}};
+  h.suction.table = trapezoid();
+  for (double& angle : h.suction.table.theta_deg) angle -= 175;
+  base.hydraulics->tolerance = 1e-11;
+  const SteadyState usual = steady_state(base);
+  using Change = void (*)(HydraulicData&);
+  const Change changes[] = {[](HydraulicData& d) { d.bulk_modulus_slope *= 1.001; },
+                            [](HydraulicData& d) { d.dissolved_air *= 1.001; },
+                            [](HydraulicData& d) { d.saturation_pressure += 100; },
+                            [](HydraulicData& d) { d.vapour_pressure *= 1.001; },
+                            [](HydraulicData& d) { d.cavitation = Cavitation::ignored; },
+                            [](HydraulicData& d) { d.kidney_ends = KidneyEnds::circular; },
+                            [](HydraulicData& d) { d.delivery.trailing_notch.length_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.trailing_notch.area *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.groove.from_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.groove.to_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.groove.width *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.groove.area *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.holes[0].angle_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.holes[0].diameter *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.holes[1].angle_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.holes[1].diameter *= 1.001; },
+                            [](HydraulicData& d) { d.suction.table.theta_deg[10] += 0.01; },
+                            [](HydraulicData& d) { d.suction.table.area[10] *= 1.001; }};
+  int number = 0;
+  for (const Change change : changes) {
+    Case changed = base;
+    change(*changed.hydraulics);
+    const SteadyState state = steady_state(changed);
+    double most = 0;
+    for (std::size_t i = 0; i < usual.chamber.pressure.size(); ++i)
+      most = std::max(most, std::abs(state.chamber.pressure[i] - usual.chamber.pressure[i]));
+    EXPECT_GT(most, 10 * (usual.computed->error + state.computed->error)) << number;
+    ++number;
+  }
+}
+
 // ---- From a case file
 // ----------------------------------------------------------------------------
 
