@@ -83,7 +83,8 @@ class PortOpening {
   };
   using Part = std::variant<Overlap, Wedge, Groove, Hole, Table>;
 
-  void add_geometry(const HydraulicData& data, const PlatePort& port, double metres_per_degree);
+  // length: m per degree on the bore circle
+  void add_geometry(const HydraulicData& data, const PlatePort& port, double length);
   void add_table(const OpeningTable& table);
   void add_edge(double theta_deg);
 
