@@ -1044,7 +1044,7 @@ Table hydraulics_table() {
                             return std::min(kKidneyRounding, v.hydraulic_data()->kidney_width_deg);
                           },
                           .words = "5, at most the width"},
-             .meaning = "overlap over which the opening grows as its square: rounded ends; 0: "
+             .meaning = "overlap over which the opening of rounded ends grows as its square; 0: "
                         "straight",
              .practice = "about half the height, as an angle"},
             {.key = "notch_law",

@@ -239,9 +239,11 @@ Profile slot(double from, double to, double height, bool circular) {
   };
 }
 
-// Common area by counting strips: everything is symmetric to the bore circle.
+// Common area by counting strips: everything is symmetric to the bore circle. Round ends are met
+// to 1/strips^1.5, a straight one to half a strip.
+constexpr double kStrip = 1.5e-4;
 double common(const Profile& a, const Profile& b, double from, double to) {
-  const int strips = 40000;
+  const int strips = 4000;
   const double width = (to - from) / strips;
   double sum = 0;
   for (int i = 0; i < strips; ++i) {
@@ -264,7 +266,7 @@ TEST(PortOpening, CircularEndsAreTheCommonAreaOfTwoSlots) {
     for (double theta = 150; theta < 370; theta += 0.73) {
       const double from = (theta - half) * kLength, to = (theta + half) * kLength;
       const double counted = common(slot(from, to, data.kidney_height, true), fixed, from, to);
-      EXPECT_NEAR(port.area(theta), counted, 1e-5 * data.kidney_height * data.kidney_height)
+      EXPECT_NEAR(port.area(theta), counted, 5e-5 * data.kidney_height * data.kidney_height)
           << theta;
       EXPECT_NEAR(port.area(theta - 720), port.area(theta), 1e-14);
       largest = std::max(largest, port.area(theta));
@@ -296,7 +298,7 @@ TEST(PortOpening, HolesAreWhatTheKidneyCoversOfThem) {
                                  data.kidney_height, circular),
                             disk(hole), x - r, x + r);
         }
-        EXPECT_NEAR(port.area(theta) - without.area(theta), counted, 2e-5 * diameter * diameter)
+        EXPECT_NEAR(port.area(theta) - without.area(theta), counted, kStrip * diameter * diameter)
             << theta << " " << circular;
       }
     }
@@ -412,13 +414,16 @@ TEST(PortOpening, EveryKinkIsAnEdge) {
     const double h = 1e-4;
     const double slope = kLength * data.kidney_height;  // of a straight kidney
     int kinks = 0;
-    for (double theta = 0; theta < 360; theta += h) {
-      const double before = port.area(theta - h), at = port.area(theta),
-                   after = port.area(theta + h);
+    double before = port.area(-h), at = port.area(0);
+    for (int i = 0; i < 3600000; ++i) {
+      const double theta = i * h, after = port.area(theta + h);
+      const double bend = std::abs(after - 2 * at + before) / h;
       ASSERT_LE(std::abs(after - at), 2 * slope * h) << each.name << " " << theta;
       // Round-off of the angles, wrapped, is 1e-13 of a slope; curvature gives at most 1e-3 of it
       // beyond a hundredth of a degree from where it is infinite.
-      if (std::abs(after - 2 * at + before) / h < 1e-3 * slope) continue;
+      before = at;
+      at = after;
+      if (bend < 1e-3 * slope) continue;
       ++kinks;
       const bool known = std::any_of(edges.begin(), edges.end(), [&](double edge) {
         return std::abs(std::remainder(theta - edge, 360)) < 0.01;
