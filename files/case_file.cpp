@@ -96,9 +96,12 @@ class CaseReader {
   void read_key(TableReader& in, const Table& table, const Parameter& parameter) {
     const bool active = is_active(table, parameter, registry_, here());
     if (!in.has(parameter.key) && !active) return;
-    if (std::holds_alternative<CurveField>(parameter.field)) {
-      const std::string file = in.text(parameter.key);
-      if (active) read_curve(in, parameter.key, file);
+    if (const auto* curve = std::get_if<CurveField>(&parameter.field)) {
+      std::optional<std::string> fallback;
+      if (const auto value = default_of(parameter, here()))
+        fallback = std::get<std::string>(*value);
+      const std::string name = in.text(parameter.key, fallback);
+      if (active && name != fallback) read_curve(in, parameter, *curve, name);
       return;
     }
     store(parameter, view(), value_in(in, parameter));
@@ -130,15 +133,19 @@ class CaseReader {
     return p.words[in.choice(p.key, p.words, index)];
   }
 
-  void read_curve(const TableReader& in, const std::string& key, const std::string& name) {
-    PressureSpec& pressure = result_.pressure;
-    pressure.file = result_.file.parent_path() / name;
-    if (!std::filesystem::exists(pressure.file))
-      in.fail(key, "no such file: " + pressure.file.string());
-    if (std::filesystem::is_directory(pressure.file))
-      in.fail(key, "is a folder: " + pressure.file.string());
-    pressure.curve = read_pressure_curve(pressure.file);
-    PressureTrace{pressure};  // refuses a curve that cannot be a periodic spline
+  void read_curve(const TableReader& in, const Parameter& parameter, const CurveField& field,
+                  const std::string& name) {
+    const std::filesystem::path file = result_.file.parent_path() / name;
+    if (!std::filesystem::exists(file)) in.fail(parameter.key, "no such file: " + file.string());
+    if (std::filesystem::is_directory(file))
+      in.fail(parameter.key, "is a folder: " + file.string());
+    store(parameter, view(), file.string());
+    if (field.opening != nullptr) {
+      *field.opening(view()) = read_opening_table(file);
+      return;
+    }
+    result_.pressure.curve = read_pressure_curve(file);
+    PressureTrace{result_.pressure};  // refuses a curve that cannot be a periodic spline
   }
 
   const Registry& registry_;

@@ -180,6 +180,36 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file) {
   return curve;
 }
 
+OpeningTable read_opening_table(const std::filesystem::path& file) {
+  const NumericTable table = read_numeric_csv(file);
+  if (table.header != std::vector<std::string>{"theta_deg", "area_mm2"})
+    throw InputError(file.string() + ":1: header must be theta_deg,area_mm2");
+  OpeningTable opening{file, {}, {}};
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto refuse = [&](std::size_t column, const std::string& range) {
+      throw InputError(file.string() + ":" + std::to_string(table.lines[i]) + ": " +
+                       table.header[column] + " = " + number_text(table.rows[i][column]) +
+                       ": must be " + range);
+    };
+    const double theta = table.rows[i][0];
+    if (i > 0 && !(theta > opening.theta_deg.back()))
+      refuse(0, "> " + number_text(opening.theta_deg.back()) + " (angles increase strictly)");
+    if (i > 0 && !(theta - opening.theta_deg.front() < 360))
+      refuse(0, "< " + number_text(opening.theta_deg.front() + 360) +
+                    " (a turn after the first; the end point is not repeated)");
+    if (!(table.rows[i][1] >= 0)) refuse(1, ">= 0");
+    opening.theta_deg.push_back(theta);
+    opening.area.push_back(square_metres(table.rows[i][1]));
+  }
+  constexpr std::size_t kFewestPoints = 3;
+  if (opening.area.size() < kFewestPoints)
+    throw InputError(file.string() + ": has " + std::to_string(opening.area.size()) +
+                     " points, must be at least 3");
+  if (*std::max_element(opening.area.begin(), opening.area.end()) == 0)
+    throw InputError(file.string() + ": area_mm2 is 0 at every angle: must be > 0 somewhere");
+  return opening;
+}
+
 std::string csv_header(const std::vector<Channel>& channels) {
   std::string text = "theta_deg";
   for (const Channel& channel : channels) text += "," + channel.name;

@@ -104,6 +104,14 @@ void read_as_csv(const std::uint8_t* data, std::size_t size) {
 
 void read_as_curve(const std::uint8_t* data, std::size_t size) {
   try {
+    const OpeningTable opening = read_opening_table(file_with(data, size));
+    require(opening.area.size() >= 3 && opening.area.size() == opening.theta_deg.size(),
+            "opening has too few points");
+    for (const double area : opening.area) require(area >= 0, "opening is negative");
+  } catch (const InputError& error) {
+    check_message(error);
+  }
+  try {
     PressureSpec spec;
     spec.kind = PressureKind::curve;
     spec.file = file_with(data, size);

@@ -1,18 +1,29 @@
-// Oil with entrained air.
+// Oil with entrained air, dissolved air and vapour.
 #pragma once
 
 #include "bentaxis/pump/hydraulic_data.h"
 
 namespace bentaxis::hydraulics {
 
-/// A fixed mass of oil of constant bulk modulus K and, beside it, a fixed mass of air that obeys
-/// P V^n = const. Per unit of volume at atmospheric pressure P0 the mixture takes up
+/// A fixed mass of oil, beside it a fixed mass of entrained air that obeys P V^n = const, and air
+/// dissolved in the oil. Per unit of volume of oil and entrained air at atmospheric pressure P0 the
+/// mixture takes up
 ///
-///   v(P) = (1 - x) exp(-(P - P0)/K) + x (P0/P)^(1/n),      density = rho0 (1 - x) / v,
+///   v = (1 - x) (1 + K' (P - P0)/K)^(-1/K') + x ((P0 - Pv)/(P - Pv))^(1/n)
+///     + (1 - x) y (P0/(P - Pv) - P0/(Ps - Pv)),                 density = rho0 (1 - x) / v,
 ///
-/// x the share of air; the mass of the air itself is neglected. All functions are of
-/// s = ln(P/P0), P absolute: any finite s is a pressure above absolute zero, and at low pressure
-/// the air makes the mixture so soft that s stays finite. Air does not dissolve; no vapour.
+/// exp(-(P - P0)/K) for K' = 0, the last term below the saturation pressure Ps only. x is the share
+/// of entrained air, y the volume at P0 of the air dissolved at saturation. Dalton: bubbles hold
+/// saturated vapour of pressure Pv, so that the air's own is P - Pv. Henry: the oil keeps the share
+/// (P - Pv)/(Ps - Pv) of its air, in equilibrium at each pressure; what has come out is as warm as
+/// the oil. The masses of air and vapour are neglected. Cavitation::ignored is y = Pv = 0.
+///
+/// All functions are of s = ln(P/P0), P absolute: any finite s is a pressure above absolute zero,
+/// and at low pressure the air makes the mixture so soft that s stays finite. Two kinks are rounded
+/// by w(t) = b ln(1 + exp(t/b)) in place of max(t, 0), all derivatives continuous: Henry's at
+/// t = ln((Ps - Pv)/(P - Pv)), b = 0.02 (nothing is left of it beyond a factor 2 in pressure); and
+/// t = ln(P/Pv), b = 0.002 (nothing is left 8 % above Pv), so that the law goes on, ever steeper, a
+/// few percent below Pv.
 class Fluid {
  public:
   explicit Fluid(const HydraulicData& data);
@@ -37,8 +48,36 @@ class Fluid {
 
   double atmosphere() const { return atmosphere_; }
 
+  /// Pressures below which dissolved air comes out and oil boils, Pa gauge; also where the law
+  /// leaves both out, so that a result can be held against them.
+  double saturation() const { return saturation_; }
+  double vapour() const { return vapour_ - atmosphere_; }
+  bool below_saturation(double s) const { return gauge(s) < saturation_; }
+  bool below_vapour(double s) const { return gauge(s) < vapour(); }
+  /// Share of the dissolved air that has come out, 0..1.
+  double released_air(double s) const;
+  /// Share of the volume that bubbles take: entrained and released air with its vapour.
+  double bubbles(double s) const;
+
  private:
-  double atmosphere_, bulk_modulus_, air_share_, inverse_exponent_, reference_density_;
+  // A function of s with two derivatives.
+  struct Smooth {
+    double value = 0, first = 0, second = 0;
+  };
+  Smooth air_pressure(double s) const;             // ln of the air's own over that at P0
+  Smooth under_saturation(const Smooth& q) const;  // ln((Ps - Pv)/(P - Pv)), at least 0
+  struct Volumes {
+    Smooth oil, air, released;  // first: -dv/ds
+  };
+  Volumes volumes(double s, double pressure) const;
+
+  double atmosphere_, bulk_modulus_, modulus_slope_, air_share_, inverse_exponent_,
+      reference_density_;
+  double saturation_, vapour_;  // Pa gauge, Pa absolute
+  bool boils_, dissolves_;
+  double log_vapour_ = 0, vapour_over_air_ = 0;  // ln(Pv/P0), ln(Pv/(P0 - Pv))
+  double log_saturation_ = 0;                    // ln((Ps - Pv)/(P0 - Pv))
+  double released_scale_ = 0;                    // (1 - x) y P0/(Ps - Pv)
 };
 
 }  // namespace bentaxis::hydraulics

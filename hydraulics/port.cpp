@@ -2,57 +2,202 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::hydraulics {
 namespace {
 
-double wrap_degrees(double angle) {
+// Edges closer than this are one, degrees.
+constexpr double kSameEdge = 1e-9;
+
+double wrap(double angle) {
   const double wrapped = angle - 360.0 * std::floor(angle / 360.0);
   return wrapped >= 360.0 ? 0.0 : wrapped;
 }
 
 }  // namespace
 
+double segment_area(double radius, double overlap) {
+  const double half_angle = 2 * std::asin(std::sqrt(std::clamp(overlap / (2 * radius), 0.0, 1.0)));
+  return radius * radius * (half_angle - std::sin(half_angle) * std::cos(half_angle));
+}
+
+double common_area(double radius, double smaller, double overlap) {
+  if (overlap <= 0) return 0;
+  if (overlap >= 2 * smaller) return kPi * smaller * smaller;
+  // The chord through both crossings cuts a segment off either circle.
+  const double twice_distance = 2 * (radius + smaller - overlap);
+  return segment_area(smaller, overlap * (2 * radius - overlap) / twice_distance) +
+         segment_area(radius, overlap * (2 * smaller - overlap) / twice_distance);
+}
+
+double PortOpening::Frame::past(double theta_deg) const {
+  return wrap(theta_deg + half_ - first_) + first_;
+}
+
+double PortOpening::Overlap::area(double theta_deg) const {
+  const double past = frame.past(theta_deg);
+  const double overlap = std::min(past, to) - std::max(frame.trailing(past), from);
+  if (!(overlap > 0)) return 0;
+  if (circular) {
+    const double long_by = overlap * length;
+    return common_area(height / 2, height / 2, long_by) + height * std::max(0.0, long_by - height);
+  }
+  return area_per_degree *
+         (overlap < rounding ? overlap * overlap / (2 * rounding) : overlap - rounding / 2);
+}
+
+double PortOpening::Wedge::passed(double length_deg) const {
+  const double share = std::clamp(length_deg / length, 0.0, 1.0);
+  return quadratic ? share * share : share;
+}
+
+double PortOpening::Wedge::area(double theta_deg) const {
+  const double leading = frame.past(theta_deg);
+  const double behind = frame.trailing(leading);
+  if (trailing)
+    return root_area * (passed(from + length - behind) - passed(from + length - leading));
+  return root_area * (passed(leading - from) - passed(behind - from));
+}
+
+double PortOpening::Groove::area(double theta_deg) const {
+  const double past = frame.past(theta_deg);
+  const double overlap = std::min(past, to) - std::max(frame.trailing(past), from);
+  return std::clamp(mouth_per_degree * overlap, 0.0, cross_section);
+}
+
+double PortOpening::Hole::area(double theta_deg) const {
+  const double past = frame.past(theta_deg);
+  // Only one end of the kidney is over the hole at a time.
+  const double overlap = radius + length * std::min(past - centre, centre - frame.trailing(past));
+  return end_radius > 0 ? common_area(end_radius, radius, overlap) : segment_area(radius, overlap);
+}
+
+double PortOpening::Table::area(double theta_deg) const { return curve(theta_deg - start); }
+
 PortOpening::PortOpening(const HydraulicData& data, const PlatePort& port,
-                         double bore_circle_radius)
-    : from_(port.arc.from_deg),
-      to_(port.arc.to_deg),
-      half_width_(data.kidney_width_deg / 2),
-      rounding_(data.kidney_rounding_deg),
-      area_per_degree_(radians(1) * bore_circle_radius * data.kidney_height),
-      notch_length_(port.notch.length_deg),
-      notch_area_(port.notch.length_deg > 0 ? port.notch.area : 0),
-      quadratic_(data.notch_law == NotchLaw::quadratic) {
-  for (const double at : {from_ - half_width_, from_ - half_width_ + rounding_, from_ + half_width_,
-                          to_ - half_width_, to_ + half_width_ - rounding_, to_ + half_width_})
-    edges_deg_.push_back(wrap_degrees(at));
-  if (notch_area_ > 0)
-    for (const double at :
-         {from_ - notch_length_ - half_width_, from_ - notch_length_ + half_width_})
-      edges_deg_.push_back(wrap_degrees(at));
+                         double bore_circle_radius) {
+  if (port.table.theta_deg.empty())
+    add_geometry(data, port, radians(1) * bore_circle_radius);
+  else
+    add_table(port.table);
   std::sort(edges_deg_.begin(), edges_deg_.end());
 }
 
-double PortOpening::passed(double length_deg) const {
-  const double share = std::clamp(length_deg / notch_length_, 0.0, 1.0);
-  return quadratic_ ? share * share : share;
+void PortOpening::add_edge(double theta_deg) { edges_deg_.push_back(wrap(theta_deg)); }
+
+void PortOpening::add_geometry(const HydraulicData& data, const PlatePort& port, double length) {
+  const double half = data.kidney_width_deg / 2;
+  const auto& [from, to] = port.arc;
+  const bool circular = data.kidney_ends == KidneyEnds::circular;
+  const double rounding = circular ? data.kidney_height / length : data.kidney_rounding_deg;
+  // Kidney, port and notches are shorter than a turn, so that one branch of the angle is enough.
+  const Frame frame(from - port.notch.length_deg, half);
+  parts_.emplace_back(Overlap{frame, from, to, rounding, length, data.kidney_height,
+                              length * data.kidney_height, circular});
+  for (const double at : {from - half, from - half + rounding, from + half, to - half,
+                          to + half - rounding, to + half})
+    add_edge(at);
+
+  const bool quadratic = data.notch_law == NotchLaw::quadratic;
+  const auto add_notch = [&](const Notch& notch, double start, double tip, bool trailing) {
+    if (notch.length_deg == 0 || notch.area == 0) return;
+    parts_.emplace_back(Wedge{frame, start, notch.length_deg, notch.area, quadratic, trailing});
+    add_edge(tip - half);
+    add_edge(tip + half);
+  };
+  add_notch(port.notch, from - port.notch.length_deg, from - port.notch.length_deg, false);
+  add_notch(port.trailing_notch, to, to + port.trailing_notch.length_deg, true);
+
+  if (const ReliefGroove& groove = port.groove; groove.area > 0) {
+    const double mouth = groove.width * length;  // per degree
+    parts_.emplace_back(
+        Groove{Frame(groove.from_deg, half), groove.from_deg, groove.to_deg, mouth, groove.area});
+    for (const double at : {groove.from_deg, groove.to_deg}) {
+      add_edge(at - half);
+      add_edge(at + half);
+    }
+    const double full = groove.area / mouth;
+    if (full < std::min(groove.to_deg - groove.from_deg, 2 * half)) {
+      add_edge(groove.from_deg - half + full);
+      add_edge(groove.to_deg + half - full);
+    }
+  }
+  for (const PlateHole& hole : port.holes) {
+    if (hole.diameter == 0) continue;
+    const double reach = hole.diameter / 2 / length;
+    parts_.emplace_back(Hole{Frame(hole.angle_deg - reach, half), hole.angle_deg, hole.diameter / 2,
+                             length, circular ? data.kidney_height / 2 : 0});
+    for (const double at : {hole.angle_deg - reach, hole.angle_deg + reach}) {
+      add_edge(at - half);
+      add_edge(at + half);
+    }
+  }
+}
+
+void PortOpening::add_table(const OpeningTable& table) {
+  const std::size_t n = table.theta_deg.size();
+  std::vector<double> span(n), rise(n), slope(n);  // of the stretch that begins at each point
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    span[i] = table.theta_deg[next] - table.theta_deg[i] + (next == 0 ? 360 : 0);
+    rise[i] = (table.area[next] - table.area[i]) / span[i];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t before = (i + n - 1) % n;
+    if (!(rise[before] * rise[i] > 0)) continue;
+    const double share = (span[before] + 2 * span[i]) / (3 * (span[before] + span[i]));
+    slope[i] = rise[before] * rise[i] / (share * rise[i] + (1 - share) * rise[before]);
+  }
+  std::vector<PeriodicCubic::Piece> pieces;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t next = (i + 1) % n;
+    pieces.push_back({table.theta_deg[i] - table.theta_deg[0], table.area[i], slope[i],
+                      table.area[next], slope[next]});
+    const std::size_t before = (i + n - 1) % n;
+    const bool closed_before = table.area[before] == 0, closed_after = table.area[next] == 0;
+    if (table.area[i] == 0 && closed_before != closed_after) add_edge(table.theta_deg[i]);
+  }
+  parts_.emplace_back(Table{table.theta_deg[0], PeriodicCubic(std::move(pieces))});
 }
 
 double PortOpening::area(double theta_deg) const {
-  // Angle of the kidney's leading edge past the start of notch and port; the kidney with the port
-  // is shorter than a turn, so that one branch is enough.
-  const double first = from_ - notch_length_;
-  const double past = wrap_degrees(theta_deg + half_width_ - first) + first;
-  const double trailing = past - 2 * half_width_;
-  const double overlap = std::min(past, to_) - std::max(trailing, from_);
-  double area = 0;
-  if (overlap > 0)
-    area = area_per_degree_ *
-           (overlap < rounding_ ? overlap * overlap / (2 * rounding_) : overlap - rounding_ / 2);
-  if (notch_area_ > 0) area += notch_area_ * (passed(past - first) - passed(trailing - first));
-  return area;
+  double sum = 0;
+  for (const Part& part : parts_)
+    sum += std::visit([&](const auto& p) { return p.area(theta_deg); }, part);
+  return sum;
+}
+
+std::vector<Bridge> bridges(const PortOpening& suction, const PortOpening& delivery) {
+  std::vector<double> edges = suction.edges_deg();
+  edges.insert(edges.end(), delivery.edges_deg().begin(), delivery.edges_deg().end());
+  std::sort(edges.begin(), edges.end());
+  edges.erase(
+      std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kSameEdge; }),
+      edges.end());
+  if (edges.empty()) edges = {0};
+  std::vector<Bridge> all;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const double to = i + 1 < edges.size() ? edges[i + 1] : edges[0] + 360;
+    const double middle = (edges[i] + to) / 2;
+    const bool open = suction.area(middle) > 0;
+    if (open != (delivery.area(middle) > 0)) continue;
+    if (!all.empty() && all.back().to_deg == edges[i] && all.back().both_open == open)
+      all.back().to_deg = to;
+    else
+      all.push_back({edges[i], to, open});
+  }
+  if (all.size() == 1 && all[0].to_deg - all[0].from_deg == 360)
+    return {{0, 360, all[0].both_open}};
+  // One that goes on over 0 degrees.
+  if (all.size() > 1 && all.back().to_deg == all.front().from_deg + 360 &&
+      all.back().both_open == all.front().both_open) {
+    all.back().to_deg = all.front().to_deg + 360;
+    all.erase(all.begin());
+  }
+  return all;
 }
 
 }  // namespace bentaxis::hydraulics

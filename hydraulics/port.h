@@ -1,19 +1,30 @@
 // How far a block kidney is open to a port of the plate.
 #pragma once
 
+#include <variant>
 #include <vector>
 
 #include "bentaxis/pump/hydraulic_data.h"
+#include "bentaxis/pump/periodic_cubic.h"
 
 namespace bentaxis::hydraulics {
 
-/// Opening between the kidney of a chamber and one port, over the chamber's own angle. The kidney
-/// is centred on the bore axis, so its edges stand at theta -+ width/2. Two parts:
+/// Opening between the kidney of a chamber and one port, over the chamber's own angle: the sum of
+/// its parts. The kidney is centred on the bore axis, so that its edges stand at theta -+ width/2;
+/// degrees are lengths on the bore circle. Parts:
 ///
-/// - the overlap of kidney and port arc, as a length on the bore circle, x kidney height. Over the
-///   first `kidney_rounding_deg` it grows as the square, like that of rounded ends;
-/// - the notch: root area x (passed length / notch length)^m, m = 1 or 2, from where the kidney's
-///   leading edge meets it to where the trailing edge has passed it.
+/// - the overlap of kidney and port arc. KidneyEnds::rounded: a length x the kidney's height, which
+///   grows as the square over the first `kidney_rounding_deg`. KidneyEnds::circular: the exact
+///   common area of two slots with semicircular ends;
+/// - notches before and behind the port: root area x (share of the length)^m, m = 1 or 2, from
+///   where an edge of the kidney meets the notch to where the other one has passed it;
+/// - a relief groove in the bridge: the smaller of cross-section and mouth under the kidney;
+/// - holes in the bridge: the exact area of them under the kidney, whose ends are straight or
+///   circular;
+///
+/// or instead of all that a table: the monotone cubic through its points (Fritsch and Butland, SIAM
+/// J. Sci. Stat. Comput. 5 (1984) 300-304), so that it is nowhere negative and its slope does not
+/// jump.
 class PortOpening {
  public:
   PortOpening(const HydraulicData& data, const PlatePort& port, double bore_circle_radius);
@@ -21,17 +32,79 @@ class PortOpening {
   /// Area, m2, at the chamber's angle, degrees (any real number). Continuous.
   double area(double theta_deg) const;
 
-  /// Chamber angles in [0, 360) where the slope of the area jumps, or nearly so, in rising order.
+  /// Chamber angles in [0, 360) where the slope of the area jumps, or nearly so, and where the port
+  /// opens or closes, in rising order.
   const std::vector<double>& edges_deg() const { return edges_deg_; }
 
  private:
-  double passed(double length_deg) const;
+  // A stretch of the plate that the kidney passes. `past` is the angle of the kidney's leading edge
+  // in the turn that begins at `first`, which is before the stretch.
+  class Frame {
+   public:
+    Frame(double first_deg, double half_width_deg) : first_(first_deg), half_(half_width_deg) {}
+    double past(double theta_deg) const;
+    double trailing(double past) const { return past - 2 * half_; }
+    double half() const { return half_; }
 
-  double from_, to_, half_width_, rounding_;
-  double area_per_degree_;
-  double notch_length_, notch_area_;
-  bool quadratic_;
+   private:
+    double first_, half_;
+  };
+
+  struct Overlap {
+    Frame frame;
+    double from, to, rounding;  // degrees
+    double length, height;      // m per degree, m
+    double area_per_degree;
+    bool circular;
+    double area(double theta_deg) const;
+  };
+  struct Wedge {  // notch; root at `from` or, behind the port, at `to`
+    Frame frame;
+    double from, length, root_area;
+    bool quadratic, trailing;
+    double passed(double length_deg) const;
+    double area(double theta_deg) const;
+  };
+  struct Groove {
+    Frame frame;
+    double from, to, mouth_per_degree, cross_section;
+    double area(double theta_deg) const;
+  };
+  struct Hole {
+    Frame frame;
+    double centre, radius, length;  // degrees, m, m per degree
+    double end_radius;              // of the kidney, m; 0: straight
+    double area(double theta_deg) const;
+  };
+  struct Table {
+    double start;
+    PeriodicCubic curve;  // over the angle past the first point
+    double area(double theta_deg) const;
+  };
+  using Part = std::variant<Overlap, Wedge, Groove, Hole, Table>;
+
+  // length: m per degree on the bore circle
+  void add_geometry(const HydraulicData& data, const PlatePort& port, double length);
+  void add_table(const OpeningTable& table);
+  void add_edge(double theta_deg);
+
+  std::vector<Part> parts_;
   std::vector<double> edges_deg_;
 };
+
+/// A stretch of chamber angles in which both ports are closed, or both are open.
+struct Bridge {
+  double from_deg = 0, to_deg = 0;  ///< from in [0, 360), from < to
+  bool both_open = false;           ///< negative overlap
+};
+
+/// All of them over the turn, in rising order of `from_deg`. One over the whole turn: [0, 360].
+std::vector<Bridge> bridges(const PortOpening& suction, const PortOpening& delivery);
+
+/// Common area of two circles of radii R and r <= R that overlap by the length u on the line of
+/// their centres, u in [0, 2r].
+double common_area(double radius, double smaller, double overlap);
+/// Part of a circle cut off by a chord at the distance u, in [0, 2r], from its edge.
+double segment_area(double radius, double overlap);
 
 }  // namespace bentaxis::hydraulics

@@ -33,6 +33,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFinest = 3e-13;
 // Of the allowed error of the curve, what its interpolation may take.
 constexpr double kInterpolation = 0.1;
+// What no longer falls is noise of the integration up to as many times the usual.
+constexpr double kStalled = 3;
 // Rows of a table: as many as the samples, or a multiple of them, within these.
 constexpr int kFewestRows = 720, kMostRows = 7200;
 
@@ -97,6 +99,7 @@ void refine(const Network& network, PeriodMap& map, double tolerance, Found& fou
     const double size = size_of(f);
     if (size <= kNoise * tolerance) return;
     if (!(size < 0.5 * before)) {
+      if (size > 0.9 * before && size <= kStalled * kNoise * tolerance) return;
       // Slow: take the fine map's own derivatives.
       Matrix jacobian;
       search(map, found.z, tolerance, jacobian, found.iterations, alive);
@@ -169,6 +172,8 @@ void summarize(const Case& the_case, const Network& network, const Integrals& in
   s.work = integrals.work * n;
   s.mass_in = integrals.suction * n;
   s.mass_out = (integrals.delivery + integrals.leakage) * n;
+  for (const Bridge& bridge : bridges(network.suction(), network.delivery()))
+    (bridge.both_open ? s.both_open_deg : s.both_closed_deg) += bridge.to_deg - bridge.from_deg;
 }
 
 // The state and the turn at one tolerance.
@@ -350,6 +355,8 @@ std::vector<Line> lines(const SteadyState& state) {
       {"mean torque of that work", s.work / (2 * kPi), "Nm"},
       {"mass in minus mass out, over mass in", (s.mass_in - s.mass_out) / s.mass_in, ""},
       {"load orifice", s.load_area * 1e6, "mm2"},
+      {"both ports open to a chamber (negative overlap)", s.both_open_deg, "deg per turn"},
+      {"both ports closed (positive overlap)", s.both_closed_deg, "deg per turn"},
   };
 }
 

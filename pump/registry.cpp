@@ -214,10 +214,10 @@ std::optional<Value> value_of(const Parameter& parameter, const ConstView& view)
                    return std::array{in_file_unit(*first, parameter.unit),
                                      in_file_unit(*second, parameter.unit)};
                  },
-                 [&](const CurveField&) -> std::optional<Value> {
-                   if (view.pressure == nullptr) return std::nullopt;
-                   const std::filesystem::path& file = view.pressure->file;
-                   return file.empty() ? std::string() : std::filesystem::absolute(file).string();
+                 [&](const CurveField& field) -> std::optional<Value> {
+                   const std::filesystem::path* file = read(field.file, view);
+                   if (file == nullptr) return std::nullopt;
+                   return file->empty() ? std::string() : std::filesystem::absolute(*file).string();
                  }},
       parameter.field);
 }
@@ -242,8 +242,8 @@ void store(const Parameter& parameter, const View& view, const Value& value) {
             write(field.first, view, to_si(pair[0], parameter.unit));
             write(field.second, view, to_si(pair[1], parameter.unit));
           },
-          [&](const CurveField&) {
-            if (view.pressure != nullptr) view.pressure->file = std::get<std::string>(value);
+          [&](const CurveField& field) {
+            write(field.file, view, std::filesystem::path(std::get<std::string>(value)));
           }},
       parameter.field);
 }

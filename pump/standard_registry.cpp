@@ -1,5 +1,6 @@
 // The parameters of this program. One entry each; what is made from them: registry.h.
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <sstream>
 
@@ -15,6 +16,8 @@ constexpr NumberRange kCount{1, kMostSamples};
 
 // Overlap over which a kidney with rounded ends opens, where the case does not say, degrees.
 constexpr double kKidneyRounding = 5;
+// Largest growth of a bulk modulus with pressure: above that of any liquid.
+constexpr double kSteepestModulus = 20;
 
 // ---- Units: the conversions that results hold to the last bit -----------------------------------
 
@@ -103,14 +106,81 @@ std::string outer_land_refusal(const ConstView& v) {
 std::string kidney_refusal(const ConstView& v) {
   const HydraulicData* data = v.hydraulic_data();
   const auto too_long = [&](const PlatePort& port) {
-    return port.arc.to_deg - port.arc.from_deg + port.notch.length_deg + data->kidney_width_deg >
+    return port.arc.to_deg - port.arc.from_deg + port.notch.length_deg +
+               port.trailing_notch.length_deg + data->kidney_width_deg >
            360;
   };
   for (const bool delivery : {true, false})
     if (too_long(delivery ? data->delivery : data->suction))
       return std::string("with the ") + (delivery ? "delivery" : "suction") +
-             " port's arc and notch must not exceed 360 deg";
+             " port's arc and notches must not exceed 360 deg";
   return "";
+}
+
+// Degrees on the bore circle.
+double degrees_of(double length, const ConstView& v) {
+  return length / v.pump->geometry.bore_circle_radius / kRadPerDegree;
+}
+
+std::string ends_refusal(const ConstView& v) {
+  const HydraulicData* data = v.hydraulic_data();
+  if (data->kidney_ends != KidneyEnds::circular) return "";
+  const double least = degrees_of(data->kidney_height, v);
+  for (const PortArc& arc :
+       {data->delivery.arc, data->suction.arc, PortArc{0, data->kidney_width_deg}})
+    if (arc.to_deg - arc.from_deg < least)
+      return "kidney_width_deg and the ports' arcs must then be at least " + short_text(least) +
+             " deg, which is kidney_height_mm on the bore circle";
+  return "";
+}
+
+std::string groove_refusal(const PlatePort& port, const HydraulicData& data) {
+  const ReliefGroove& groove = port.groove;
+  if (groove.area == 0) return "";
+  if (!(groove.from_deg < groove.to_deg) ||
+      groove.to_deg - groove.from_deg + data.kidney_width_deg > 360)
+    return "must be [from, to] with from < to, with kidney_width_deg at most 360 deg";
+  return "";
+}
+
+std::string groove_width_refusal(const PlatePort& port) {
+  return port.groove.area > 0 && port.groove.width == 0 ? "must be > 0 where there is a groove"
+                                                        : "";
+}
+
+std::string hole_refusal(const PlateHole& hole, const ConstView& v) {
+  const HydraulicData* data = v.hydraulic_data();
+  const double wide = radians(data->kidney_width_deg) * v.pump->geometry.bore_circle_radius;
+  const double most = std::min(data->kidney_height, wide);
+  return hole.diameter <= most
+             ? ""
+             : "must be <= " + short_text(most * 1e3) + ", the smaller side of a kidney";
+}
+
+std::string table_refusal(const OpeningTable& table) {
+  const auto& angles = table.theta_deg;
+  const auto& areas = table.area;
+  if (angles.empty() && areas.empty()) return "";
+  const auto outside = [](double area) { return !(area >= 0 && area < kInfinity); };
+  if (angles.size() < 3 || angles.size() != areas.size()) return "must have at least 3 points";
+  if (std::adjacent_find(angles.begin(), angles.end(), std::greater_equal<>()) != angles.end() ||
+      !(angles.back() - angles.front() < 360))
+    return "theta_deg must increase strictly and span less than 360 deg";
+  if (std::any_of(areas.begin(), areas.end(), outside) ||
+      *std::max_element(areas.begin(), areas.end()) == 0)
+    return "area_mm2 must be >= 0, and > 0 somewhere";
+  return "";
+}
+
+std::string boiling_refusal(const ConstView& v) {
+  const HydraulicData* data = v.hydraulic_data();
+  if (v.pressure->kind != PressureKind::hydraulic || data->cavitation == Cavitation::ignored)
+    return "";
+  const double least = data->atmosphere + std::min(v.pressure->ports.suction, data->case_pressure);
+  return data->vapour_pressure < least
+             ? ""
+             : "must be < " + short_text(least / kPascalPerBar) +
+                   ", the smaller absolute pressure of suction port and case";
 }
 
 std::string vacuum_refusal(const ConstView& v) {
@@ -130,7 +200,27 @@ PairField arc_at(Arc) {
                  [](const auto& v) { return in(Arc{}(v), &PortArc::to_deg); });
 }
 
-// Arc and notch of one port of [hydraulics]. `Port` finds it, `Plate` the arc of [port_plate].
+template <std::size_t kHole, class Port>
+NumberField hole_angle(Port) {
+  return number_at([](const auto& v) {
+    const auto port = Port{}(v);
+    return port == nullptr ? nullptr : &port->holes[kHole].angle_deg;
+  });
+}
+template <std::size_t kHole, class Port>
+NumberField hole_diameter(Port) {
+  return number_at([](const auto& v) {
+    const auto port = Port{}(v);
+    return port == nullptr ? nullptr : &port->holes[kHole].diameter;
+  });
+}
+
+template <class Place>
+CurveField curve_at(Place place) {
+  return {access<std::filesystem::path>(place), nullptr};
+}
+
+// What opens one port of [hydraulics]. `Port` finds it, `Plate` the arc of [port_plate].
 template <class Port, class Plate>
 std::vector<Parameter> port_parameters(const std::string& name, Port, Plate) {
   const auto arc = [](const auto& v) { return in(Port{}(v), &PlatePort::arc); };
@@ -140,6 +230,17 @@ std::vector<Parameter> port_parameters(const std::string& name, Port, Plate) {
   const auto notch_area = [](const auto& v) {
     return in(in(Port{}(v), &PlatePort::notch), &Notch::area);
   };
+  const auto trailing_length = [](const auto& v) {
+    return in(in(Port{}(v), &PlatePort::trailing_notch), &Notch::length_deg);
+  };
+  const auto trailing_area = [](const auto& v) {
+    return in(in(Port{}(v), &PlatePort::trailing_notch), &Notch::area);
+  };
+  const auto groove = [](const auto& v) { return in(Port{}(v), &PlatePort::groove); };
+  using Groove = decltype(groove);
+  CurveField table = curve_at(
+      [](const auto& v) { return in(in(Port{}(v), &PlatePort::table), &OpeningTable::file); });
+  table.opening = [](const View& v) { return &Port{}(v)->table; };
   return {{.key = name + "_arc_deg",
            .field = arc_at(arc),
            .unit = kDegrees,
@@ -164,7 +265,89 @@ std::vector<Parameter> port_parameters(const std::string& name, Port, Plate) {
            .range = kNotNegative,
            .fallback = {0.0},
            .meaning = "its area at the root, where it meets the port",
-           .practice = "some mm2"}};
+           .practice = "some mm2"},
+          {.key = name + "_trailing_notch_deg",
+           .field = number_at(trailing_length),
+           .unit = kDegrees,
+           .range = {0, 90},
+           .fallback = {0.0},
+           .meaning = "length of a notch behind the trailing edge of the " + name + " port"},
+          {.key = name + "_trailing_notch_area_mm2",
+           .field = number_at(trailing_area),
+           .unit = kSquareMillimetres,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "its area at the root"},
+          {.key = name + "_groove_deg",
+           .field = pair_at([](const auto& v) { return in(Groove{}(v), &ReliefGroove::from_deg); },
+                            [](const auto& v) { return in(Groove{}(v), &ReliefGroove::to_deg); }),
+           .unit = kDegrees,
+           .range_words = "[from, to], from < to",
+           .fallback = {std::array{0.0, 0.0}},
+           .meaning = "where a relief groove that leads to the " + name + " port lies"},
+          {.key = name + "_groove_width_mm",
+           .field = number_at([](const auto& v) { return in(Groove{}(v), &ReliefGroove::width); }),
+           .unit = kMillimetres,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "its radial width"},
+          {.key = name + "_groove_area_mm2",
+           .field = number_at([](const auto& v) { return in(Groove{}(v), &ReliefGroove::area); }),
+           .unit = kSquareMillimetres,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "its cross-section; 0: no groove",
+           .practice = "below 1 mm2"},
+          {.key = name + "_hole_deg",
+           .field = hole_angle<0>(Port{}),
+           .unit = kDegrees,
+           .fallback = {0.0},
+           .meaning = "centre of a hole in the bridge that leads to the " + name + " port"},
+          {.key = name + "_hole_diameter_mm",
+           .field = hole_diameter<0>(Port{}),
+           .unit = kMillimetres,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "its diameter; 0: no hole",
+           .practice = "1..3"},
+          {.key = name + "_hole_2_deg",
+           .field = hole_angle<1>(Port{}),
+           .unit = kDegrees,
+           .fallback = {0.0},
+           .meaning = "a second hole"},
+          {.key = name + "_hole_2_diameter_mm",
+           .field = hole_diameter<1>(Port{}),
+           .unit = kMillimetres,
+           .range = kNotNegative,
+           .fallback = {0.0},
+           .meaning = "its diameter; 0: no hole"},
+          {.key = name + "_opening_file",
+           .field = table,
+           .fallback = {std::string()},
+           .meaning = "CSV `theta_deg,area_mm2`, path relative to the case file: the opening over "
+                      "the chamber's angle in place of all other parts of the " +
+                      name + " port; empty: none"}};
+}
+
+// What the openings of a port must be to each other.
+template <class Port>
+std::vector<Rule> port_rules(const std::string& name, Port) {
+  return {{.key = name + "_groove_deg",
+           .after = "",
+           .broken =
+               [](const ConstView& v) { return groove_refusal(*Port{}(v), *v.hydraulic_data()); }},
+          {.key = name + "_groove_width_mm",
+           .after = "",
+           .broken = [](const ConstView& v) { return groove_width_refusal(*Port{}(v)); }},
+          {.key = name + "_opening_file",
+           .after = "",
+           .broken = [](const ConstView& v) { return table_refusal(Port{}(v)->table); }},
+          {.key = name + "_hole_diameter_mm",
+           .after = "",
+           .broken = [](const ConstView& v) { return hole_refusal(Port{}(v)->holes[0], v); }},
+          {.key = name + "_hole_2_diameter_mm", .after = "", .broken = [](const ConstView& v) {
+             return hole_refusal(Port{}(v)->holes[1], v);
+           }}};
 }
 
 template <class Model>
@@ -210,10 +393,11 @@ Table plausibility_table() {
                                      "warn"}}};
 }
 
-std::vector<Parameter> joined(std::vector<std::vector<Parameter>> lists) {
-  std::vector<Parameter> all;
+template <class Entry>
+std::vector<Entry> joined(std::vector<std::vector<Entry>> lists) {
+  std::vector<Entry> all;
   for (auto& list : lists)
-    for (Parameter& parameter : list) all.push_back(std::move(parameter));
+    for (Entry& entry : list) all.push_back(std::move(entry));
   return all;
 }
 
@@ -633,7 +817,7 @@ Table pressure_table() {
             .meaning = "middle of the rise",
             .active = kIdeal},
            {.key = "file",
-            .field = CurveField{},
+            .field = curve_at([](const auto& v) { return in(v.pressure, &PressureSpec::file); }),
             .meaning = "CSV `theta_deg,pressure_bar`, path relative to the case file",
             .active = kCurve}},
       .rules = {{.key = "points", .after = "points", .broken = too_few_points}}};
@@ -716,7 +900,7 @@ Table hydraulics_table() {
       .name = "hydraulics",
       .meaning = "oil, ports, leakage and delivery line",
       .part = &kHydraulicData,
-      .parameters = joined(
+      .parameters = joined<Parameter>(
           {{{.key = "density_kg_per_m3",
              .field = number_at(
                  [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::density); }),
@@ -762,7 +946,68 @@ Table hydraulics_table() {
              .range = {0.1, 10},
              .range_words = "[0.1, 10], above -`suction_bar`",
              .fallback = {1.01325},
-             .meaning = "absolute, where gauge pressure is 0"}},
+             .meaning = "absolute, where gauge pressure is 0"},
+            {.key = "bulk_modulus_slope",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::bulk_modulus_slope);
+             }),
+             .symbol = "K'",
+             .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+               const HydraulicData* data = v.hydraulic_data();
+               return NumberRange{
+                   0, std::min(kSteepestModulus, 0.9 * data->bulk_modulus / data->atmosphere)};
+             },
+             .range_words = "[0, 20], at most 0.9 K/P0",
+             .fallback = {0.0},
+             .meaning = "growth of the oil's bulk modulus with pressure, K + K' (P - P0)",
+             .practice = "mineral oil: 9..12"},
+            {.key = "cavitation",
+             .field = choice_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::cavitation); }),
+             .words = {"ignored", "equilibrium"},
+             .fallback = {std::string("ignored")},
+             .meaning = "ignored: entrained air only; equilibrium: dissolved air comes out by "
+                        "Henry's law, and bubbles hold vapour"},
+            {.key = "dissolved_air_percent",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::dissolved_air);
+             }),
+             .symbol = "y",
+             .unit = kPercent,
+             .range = {0, 100},
+             .fallback = {9.0},
+             .meaning = "volume at P0 of the air dissolved at saturation, of the oil's",
+             .practice = "mineral oil at 1 bar: 7..9 (Bunsen)"},
+            {.key = "vapour_bar",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::vapour_pressure);
+             }),
+             .symbol = "Pv",
+             .unit = kBar,
+             .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+               return NumberRange{0, in_file_unit(v.hydraulic_data()->atmosphere, kBar), false,
+                                  true};
+             },
+             .range_words = "[0, `atmosphere_bar`), below suction and case",
+             .fallback = {0.001},
+             .meaning = "absolute vapour pressure of the oil",
+             .practice = "mineral oil at 60 deg C: below 0.001"},
+            {.key = "saturation_bar",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::saturation_pressure);
+             }),
+             .symbol = "Ps",
+             .unit = kBar,
+             .range_here = [](const ConstView& v) -> std::optional<NumberRange> {
+               const HydraulicData* data = v.hydraulic_data();
+               return NumberRange{in_file_unit(data->vapour_pressure - data->atmosphere, kBar),
+                                  10000, true};
+             },
+             .range_words = "above vapour pressure",
+             .fallback = {0.0},
+             .meaning = "gauge pressure below which dissolved air comes out: that at which the oil "
+                        "lay with air",
+             .practice = "open tank: 0"}},
            port_parameters("delivery", delivery, DeliveryArc{}),
            port_parameters("suction", suction, SuctionArc{}),
            {{.key = "kidney_width_deg",
@@ -772,7 +1017,7 @@ Table hydraulics_table() {
              .symbol = "w",
              .unit = kDegrees,
              .range = {0, 180, true},
-             .range_words = "(0, 180], with arc and notch of a port at most 360",
+             .range_words = "(0, 180], with arc and notches of a port at most 360",
              .meaning = "of a block kidney, seen from the block axis"},
             {.key = "kidney_height_mm",
              .field = number_at([](const auto& v) {
@@ -788,6 +1033,14 @@ Table hydraulics_table() {
                           .words = "r3 - r2 of `[port_plate]`"},
              .meaning = "of a block kidney, radial, on the bore circle",
              .practice = "area about bore area less `bottom_area_mm2`"},
+            {.key = "kidney_ends",
+             .field = choice_at(
+                 [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::kidney_ends); }),
+             .words = {"rounded", "circular"},
+             .fallback = {std::string("rounded")},
+             .meaning = "rounded: the opening grows as the square over `kidney_rounding_deg`; "
+                        "circular: semicircles on kidney and port, `kidney_height_mm` wide, their "
+                        "common area"},
             {.key = "kidney_rounding_deg",
              .field = number_at([](const auto& v) {
                return in(v.hydraulic_data(), &HydraulicData::kidney_rounding_deg);
@@ -802,7 +1055,7 @@ Table hydraulics_table() {
                             return std::min(kKidneyRounding, v.hydraulic_data()->kidney_width_deg);
                           },
                           .words = "5, at most the width"},
-             .meaning = "overlap over which the opening grows as its square: rounded ends; 0: "
+             .meaning = "overlap over which the opening of rounded ends grows as its square; 0: "
                         "straight",
              .practice = "about half the height, as an angle"},
             {.key = "notch_law",
@@ -883,17 +1136,21 @@ Table hydraulics_table() {
              .meaning =
                  "largest error of the curve that the models get, of its peak: `tolerance` is "
                  "tightened until the estimate of it is smaller"}}}),
-      .rules = {
-          {.key = "delivery_arc_deg",
-           .after = "delivery_arc_deg",
-           .broken =
-               [](const ConstView& v) { return arc_refusal(&v.hydraulic_data()->delivery.arc); }},
-          {.key = "suction_arc_deg",
-           .after = "suction_arc_deg",
-           .broken =
-               [](const ConstView& v) { return arc_refusal(&v.hydraulic_data()->suction.arc); }},
-          {.key = "kidney_width_deg", .after = "kidney_width_deg", .broken = kidney_refusal},
-          {.key = "atmosphere_bar", .after = "", .broken = vacuum_refusal}}};
+      .rules = joined<Rule>(
+          {port_rules("delivery", delivery),
+           port_rules("suction", suction),
+           {{.key = "delivery_arc_deg",
+             .after = "delivery_arc_deg",
+             .broken =
+                 [](const ConstView& v) { return arc_refusal(&v.hydraulic_data()->delivery.arc); }},
+            {.key = "suction_arc_deg",
+             .after = "suction_arc_deg",
+             .broken =
+                 [](const ConstView& v) { return arc_refusal(&v.hydraulic_data()->suction.arc); }},
+            {.key = "kidney_width_deg", .after = "kidney_width_deg", .broken = kidney_refusal},
+            {.key = "kidney_ends", .after = "", .broken = ends_refusal},
+            {.key = "atmosphere_bar", .after = "", .broken = vacuum_refusal},
+            {.key = "vapour_bar", .after = "", .broken = boiling_refusal}}})};
 }
 
 }  // namespace

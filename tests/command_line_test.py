@@ -259,6 +259,19 @@ class UsageTest(ProgramTest):
             with self.subTest(command):
                 self.assert_mentions(self.refused(*command, "--set", "pump.tilt_deg=95"), "tilt_deg", "95")
 
+    def test_table_of_openings(self):
+        folder = self.folder / "pump"
+        folder.mkdir()
+        (folder / "case.toml").write_bytes((REPO / "cases" / "bap63_rated_hydraulic.toml").read_bytes())
+        table = "theta_deg,area_mm2\n0,0\n2,0\n20,100\n150,100\n178,0\n"
+        (folder / "suction.csv").write_text(table)
+        command = ["pressure", folder / "case.toml", "--set", "hydraulics.suction_opening_file=suction.csv"]
+        self.run_program(*command, "--out", "out")
+        areas = dict(zip(self.column("out/pressure.csv", "theta_deg"), self.column("out/pressure.csv", "as_1_mm2")))
+        self.assertEqual([round(float(areas[angle]), 9) for angle in ("1", "20", "100", "180")], [0, 100, 100, 0])
+        (folder / "suction.csv").write_text(table.replace("150,100", "150,-1"))
+        self.assert_mentions(self.refused(*command, "--out", "bad"), "suction.csv:5", "area_mm2 = -1", ">= 0")
+
     def test_options_that_would_change_nothing(self):
         case = self.case()
         analytic = ["run", case, "--model", "analytic", "--out", "out"]

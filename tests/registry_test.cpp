@@ -383,11 +383,22 @@ TEST(Validate, HydraulicsToo) {
   EXPECT_THAT(after([](Case& c) {
                 c.hydraulics->suction.arc = {0, 350};
               }),
-              HasSubstr("port's arc and notch must not exceed 360 deg"));
+              HasSubstr("port's arc and notches must not exceed 360 deg"));
   EXPECT_THAT(after([](Case& c) { c.hydraulics->case_pressure = -c.hydraulics->atmosphere; }),
               HasSubstr("case_bar = -1.01325: must be > -1.01325"));
   EXPECT_THAT(after([](Case& c) { c.pressure.ports.suction = -2e5; }),
               HasSubstr("[hydraulics] atmosphere_bar = 1.01325: must exceed -suction_bar"));
+  for (const OpeningTable& table :
+       {OpeningTable{"", {0, 1}, {1, 1}}, OpeningTable{"", {0, 1, 2}, {1, 1}},
+        OpeningTable{"", {0, 2, 1}, {1, 1, 1}}, OpeningTable{"", {0, 1, 360}, {1, 1, 1}},
+        OpeningTable{"", {0, 1, 2}, {1, -1, 1}}, OpeningTable{"", {0, 1, 2}, {0, 0, 0}}})
+    EXPECT_THAT(after([&](Case& c) { c.hydraulics->suction.table = table; }),
+                HasSubstr("suction_opening_file"));
+  EXPECT_NO_THROW(validate([&] {
+    Case the_case = good;
+    the_case.hydraulics->suction.table = {"", {0, 100, 200}, {0, 1e-6, 0}};
+    return the_case;
+  }()));
   EXPECT_THAT(after([](Case& c) { c.pressure.ports.delivery = -1; }),
               HasSubstr("delivery_bar = -1e-05: must be in [0, 10000]"));
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/hydraulic_data.h"
 #include "bentaxis/pump/pressure.h"
 #include "bentaxis/results/result_table.h"
 
@@ -28,6 +29,10 @@ NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empt
 /// their headings. The first point may come again a turn later, with the same pressure.
 /// @throws InputError naming file and line.
 PressureCurve read_pressure_curve(const std::filesystem::path& file);
+
+/// Reads the opening of a port: CSV with the header theta_deg,area_mm2, over the chamber's angle.
+/// @throws InputError naming file and line.
+OpeningTable read_opening_table(const std::filesystem::path& file);
 
 /// The table as CSV text: theta_deg, then one column per channel; shortest text that reads back to
 /// the same double; not computed = empty.

@@ -35,6 +35,8 @@ struct Summary {
   double work = 0;  ///< J per turn, of the pistons on the oil at gauge pressure: sum of -p dV
   double mass_in = 0, mass_out = 0;  ///< kg per turn: suction port; delivery port and leakage
   double load_area = 0;              ///< m2, of the load orifice; 0 for an open line
+  /// Degrees of a turn in which a chamber is open to both ports (negative overlap), or to neither.
+  double both_open_deg = 0, both_closed_deg = 0;
 };
 
 /// How the periodic state was found.

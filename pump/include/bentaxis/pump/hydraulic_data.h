@@ -1,6 +1,10 @@
 // The raw description of the hydraulic side of a pump: oil, ports, leakage, delivery line.
 #pragma once
 
+#include <array>
+#include <filesystem>
+#include <vector>
+
 #include "bentaxis/pump/parameters.h"
 
 namespace bentaxis {
@@ -11,31 +15,77 @@ enum class NotchLaw {
   linear,     ///< groove of constant depth: area in proportion to the length
 };
 
-/// Silencing notch in front of a port: it leads the port's leading edge by `length_deg`.
+/// Silencing notch beside a port: it goes on from the port's leading or trailing edge by
+/// `length_deg` into the bridge.
 struct Notch {
   double length_deg = 0;  ///< 0 = no notch
   double area = 0;        ///< m2, at its root, where it meets the port
 };
 
+/// Relief groove: a channel of constant cross-section in the bridge that leads to the port. A
+/// kidney over it uncovers a mouth of its width x the overlap; the smaller of mouth and
+/// cross-section is what is open.
+struct ReliefGroove {
+  double from_deg = 0, to_deg = 0;  ///< where it lies
+  double width = 0;                 ///< m, radial
+  double area = 0;                  ///< m2, cross-section; 0 = no groove
+};
+
+/// Hole in the bridge, on the bore circle, that leads to the port.
+struct PlateHole {
+  double angle_deg = 0;  ///< of its centre
+  double diameter = 0;   ///< m; 0 = no hole
+};
+
+/// Opening of a port as a table over the chamber's own angle, in place of its geometry. Angles in
+/// degrees: strictly increasing, spanning less than 360, end point not repeated; areas in m2.
+struct OpeningTable {
+  std::filesystem::path file;
+  std::vector<double> theta_deg;  ///< empty: no table; else at least 3
+  std::vector<double> area;
+};
+
 /// One port of the fixed plate as the kidneys of the block see it.
 struct PlatePort {
-  PortArc arc;  ///< degrees; psi as in PortArc
-  Notch notch;
+  PortArc arc;                ///< degrees; psi as in PortArc
+  Notch notch = {};           ///< before its leading edge
+  Notch trailing_notch = {};  ///< behind its trailing edge
+  ReliefGroove groove = {};
+  std::array<PlateHole, 2> holes = {};
+  OpeningTable table = {};
+};
+
+/// Ends of the block's kidneys and, where they are circular, of the ports.
+enum class KidneyEnds {
+  rounded,   ///< the opening grows as the square of the overlap over `kidney_rounding_deg`
+  circular,  ///< semicircles as wide as the kidney is high, on kidney and port
+};
+
+/// What low pressure does to the oil.
+enum class Cavitation {
+  ignored,      ///< entrained air alone: none dissolves or comes out, no vapour
+  equilibrium,  ///< dissolved air comes out by Henry's law; bubbles hold saturated vapour
 };
 
 /// All that the chamber pressures depend on beyond geometry and speed. Pressures in Pa; those of
 /// `[pressure]` and of the case are gauge.
 struct HydraulicData {
   // Oil with entrained air.
-  double density = 0;       ///< kg/m3, of the oil without air at atmospheric pressure
-  double bulk_modulus = 0;  ///< Pa, of the oil without air, isentropic
-  double air_share = 0;     ///< volume of air / volume of both at atmospheric pressure, > 0
-  double air_exponent = 0;  ///< polytropic exponent n of the air, p V^n = const
-  double atmosphere = 0;    ///< Pa absolute, where gauge pressure is 0
+  double density = 0;             ///< kg/m3, of the oil without air at atmospheric pressure
+  double bulk_modulus = 0;        ///< Pa, of the oil without air, isentropic
+  double air_share = 0;           ///< volume of air / volume of both at atmospheric pressure, > 0
+  double air_exponent = 0;        ///< polytropic exponent n of the air, p V^n = const
+  double atmosphere = 0;          ///< Pa absolute, where gauge pressure is 0
+  double bulk_modulus_slope = 0;  ///< K', dK/dp of the oil without air
+  Cavitation cavitation = Cavitation::ignored;
+  double dissolved_air = 0;        ///< volume at P0 of the air dissolved at saturation / oil's
+  double saturation_pressure = 0;  ///< Pa gauge: below it dissolved air comes out
+  double vapour_pressure = 0;      ///< Pa absolute, of the oil
   // Flow between the kidney of a chamber (in the block) and the ports of the plate.
   PlatePort delivery, suction;
-  double kidney_width_deg = 0;     ///< of a block kidney, seen from the block axis
-  double kidney_height = 0;        ///< m, radial
+  double kidney_width_deg = 0;  ///< of a block kidney, seen from the block axis
+  double kidney_height = 0;     ///< m, radial
+  KidneyEnds kidney_ends = KidneyEnds::rounded;
   double kidney_rounding_deg = 0;  ///< overlap over which the opening grows as its square
   NotchLaw notch_law = NotchLaw::quadratic;
   double discharge_coefficient = 0;  ///< Cd

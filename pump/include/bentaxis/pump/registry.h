@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -100,8 +101,12 @@ struct ChoiceField {
 struct PairField {
   Access<double> first, second;
 };
-/// A CSV file with the points of the pressure curve, relative to the case file.
-struct CurveField {};
+/// A CSV file with the points of a curve, relative to the case file: the opening of a port, or
+/// where `opening` is null the chamber pressure. An empty name: none.
+struct CurveField {
+  Access<std::filesystem::path> file;
+  OpeningTable* (*opening)(const View&) = nullptr;
+};
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;
 

@@ -1,0 +1,630 @@
+// Laws of the hydraulic side, one by one: the oil with its air and vapour, the openings of a port.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/hydraulics/steady_state.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "fluid.h"
+#include "port.h"
+#include "support.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+namespace fs = std::filesystem;
+using test::scaled;
+
+const fs::path kCases = fs::path(BENTAXIS_SOURCE_DIR) / "cases";
+Case rated() { return read_case(kCases / "bap63_rated_hydraulic.toml"); }
+
+constexpr double kAtmosphere = 101325;
+// Round-off of formulas of ten or so operations.
+constexpr double kRoundOff = 1e-13;
+// Beyond this in ln of pressure nothing is left of the rounded kink at saturation (fluid.h).
+constexpr double kBeyondKink = 0.8;
+// And so far above vapour pressure nothing of the other; there the air's own pressure is a
+// difference that has lost two digits.
+constexpr double kAboveVapour = 0.085;
+constexpr double kNearVapour = 100 * kRoundOff;
+
+HydraulicData oil(double dissolved, double saturation, double vapour, double modulus_slope = 0) {
+  HydraulicData data = *rated().hydraulics;
+  data.cavitation = Cavitation::equilibrium;
+  data.dissolved_air = dissolved;
+  data.saturation_pressure = saturation;
+  data.vapour_pressure = vapour;
+  data.bulk_modulus_slope = modulus_slope;
+  return data;
+}
+
+// Volume of what takes up a unit at P0 before any dissolved air comes out.
+double volume(const Fluid& fluid, const HydraulicData& data, double s) {
+  return data.density * (1 - data.air_share) / fluid.state(s).density;
+}
+
+// ---- Oil
+// -----------------------------------------------------------------------------------------
+
+TEST(Cavitation, WithoutDissolvedAirAndVapourIsTheSimpleLawToTheBit) {
+  const HydraulicData simple = *rated().hydraulics;
+  ASSERT_EQ(simple.cavitation, Cavitation::ignored);
+  ASSERT_GT(simple.dissolved_air, 0);  // the defaults, which it then leaves out
+  ASSERT_GT(simple.vapour_pressure, 0);
+  const Fluid a(simple), b(oil(0, 0, 0));
+  for (double s = -30; s < 9; s += 0.01) {
+    const auto first = a.state(s), second = b.state(s);
+    EXPECT_EQ(first.pressure, second.pressure);
+    EXPECT_EQ(first.density, second.density);
+    EXPECT_EQ(first.stiffness, second.stiffness);
+    EXPECT_EQ(first.d_stiffness, second.d_stiffness);
+    EXPECT_EQ(a.released_air(s), 0);
+    // Written out here again.
+    const double p = kAtmosphere * std::exp(s);
+    EXPECT_NEAR(volume(a, simple, s) / (0.995 * std::exp(-(p - kAtmosphere) / 1.4e9) +
+                                        0.005 * std::pow(p / kAtmosphere, -1 / 1.4)),
+                1, scaled(kRoundOff));
+  }
+}
+
+TEST(Cavitation, AirComesOutByHenrysLaw) {
+  for (const double saturation : {pascals(-0.4), 0.0, pascals(3)})
+    for (const double vapour : {0.0, pascals(0.02)}) {
+      const HydraulicData data = oil(0.09, saturation, vapour);
+      const Fluid fluid(data);
+      const double at_saturation = saturation + kAtmosphere - vapour;
+      int below = 0, above = 0;
+      for (double ratio = 1e-3; ratio < 1e4; ratio *= 1.07) {
+        const double air = at_saturation * ratio;  // the air's own pressure
+        if (std::abs(std::log(ratio)) < kBeyondKink || air < kAboveVapour * vapour) continue;
+        const double s = std::log((air + vapour) / kAtmosphere);
+        const double kept = std::min(1.0, ratio);
+        EXPECT_NEAR(fluid.released_air(s), 1 - kept, scaled(kNearVapour)) << ratio;
+        // Dalton and the gas law: what is out fills its room at the air's pressure.
+        const double oil_room = 0.995 * std::exp(-(air + vapour - kAtmosphere) / 1.4e9);
+        const double entrained = 0.005 * std::pow((kAtmosphere - vapour) / air, 1 / 1.4);
+        const double released = 0.995 * 0.09 * (1 - kept) * kAtmosphere / air;
+        EXPECT_NEAR(volume(fluid, data, s) / (oil_room + entrained + released), 1,
+                    scaled(kNearVapour))
+            << ratio;
+        EXPECT_NEAR(fluid.bubbles(s), (entrained + released) / (oil_room + entrained + released),
+                    scaled(kNearVapour));
+        EXPECT_EQ(fluid.below_saturation(s), ratio < 1);
+        ++(ratio < 1 ? below : above);
+      }
+      EXPECT_GT(below, 50);
+      EXPECT_GT(above, 50);
+    }
+}
+
+TEST(Cavitation, KinkAtSaturationIsRoundedOverTheBandStated) {
+  const HydraulicData data = oil(0.09, 0, 0);
+  const Fluid fluid(data);
+  HydraulicData none = data;
+  none.dissolved_air = 0;
+  const Fluid without(none);
+  const double b = 0.02;
+  for (double t = -1; t < 1; t += 0.003) {  // ln(Ps/P)
+    const double released = (volume(fluid, data, -t) - volume(without, none, -t)) / (0.995 * 0.09);
+    const double sharp = std::expm1(std::max(t, 0.0));
+    EXPECT_GE(released, sharp - scaled(1e-13));
+    EXPECT_LE(released - sharp,
+              std::exp(std::abs(t)) * b * std::exp(-std::abs(t) / b) + scaled(1e-13));
+  }
+  EXPECT_NEAR(fluid.released_air(0), 1 - std::pow(2, -b), scaled(kRoundOff));
+}
+
+TEST(Cavitation, PressureStaysAtVapourPressure) {
+  for (const double vapour : {pascals(1e-5), pascals(1e-3), pascals(0.02), pascals(0.5)})
+    for (const double air : {0.05, 0.005, 1e-6})
+      for (const double dissolved : {0.0, 0.09}) {
+        HydraulicData data = oil(dissolved, 0, vapour);
+        data.air_share = air;
+        const auto pressure_at = [&](double room) {
+          const Fluid fluid(data);
+          double low = -60, high = 0;
+          while (high - low > 1e-13) {
+            const double middle = (low + high) / 2;
+            (volume(fluid, data, middle) > room ? low : high) = middle;
+          }
+          return fluid.state(low).pressure;
+        };
+        // A chamber torn to a hundred times the oil in it.
+        EXPECT_GT(pressure_at(100), 0.95 * vapour) << vapour << " " << air;
+        if (dissolved > 0) {
+          EXPECT_GT(pressure_at(2), vapour);
+        }
+        data.vapour_pressure = 0;  // negative control
+        if (vapour > pascals(0.01) && dissolved == 0) {
+          EXPECT_LT(pressure_at(100), 0.1 * vapour);
+        }
+      }
+}
+
+TEST(Cavitation, DensityRisesAndFollowsItsOwnModulus) {
+  for (const HydraulicData& data :
+       {oil(0.09, 0, pascals(0.001)), oil(0.09, pascals(2), 0, 10), oil(0.3, 0, pascals(0.5), 3),
+        oil(0, 0, pascals(0.02)), oil(1, pascals(-0.9), pascals(0.05))}) {
+    const Fluid fluid(data);
+    const double lowest =
+        data.vapour_pressure > 0 ? std::log(0.95 * data.vapour_pressure / kAtmosphere) : -12;
+    const double h = 1e-6;  // against kinks rounded over 0.002
+    double before = 0;
+    for (double s = lowest; s < 8; s += 0.00137) {
+      const auto at = fluid.state(s);
+      EXPECT_GT(at.density, before) << s;
+      before = at.density;
+      const auto low = fluid.state(s - h), high = fluid.state(s + h);
+      EXPECT_NEAR(std::log(high.density / low.density) / (2 * h) * at.stiffness, 1,
+                  scaled(1e-5) + scaled(2e-10) * at.stiffness)
+          << s;
+      EXPECT_NEAR((high.stiffness - low.stiffness) / (2 * h), at.d_stiffness,
+                  scaled(1e-5) * (std::abs(at.d_stiffness) + at.stiffness))
+          << s;
+    }
+  }
+}
+
+TEST(Cavitation, BulkModulusGrowsWithPressure) {
+  HydraulicData data = oil(0, 0, 0, 9.5);
+  data.air_share = 1e-10;
+  const Fluid fluid(data);
+  for (const double bar : {0.0, 100.0, 350.0, 2000.0}) {
+    // Entrained air of 1e-10 softens by K/P0 x 1e-10.
+    EXPECT_NEAR(
+        fluid.effective_bulk_modulus(pascals(bar)) / (data.bulk_modulus + 9.5 * pascals(bar)), 1,
+        scaled(2e-6));
+    // dP/K(P) integrated: Murnaghan.
+    EXPECT_NEAR(fluid.density(pascals(bar)) / data.density /
+                    std::pow(1 + 9.5 * pascals(bar) / data.bulk_modulus, 1 / 9.5),
+                1, scaled(1e-9));
+  }
+  data.bulk_modulus_slope = 1e-7;
+  HydraulicData constant = data;
+  constant.bulk_modulus_slope = 0;
+  EXPECT_NEAR(Fluid(data).density(pascals(500)) / Fluid(constant).density(pascals(500)), 1,
+              scaled(1e-8));
+}
+
+// Torn oil: without the law the chambers are far below vapour pressure and say nothing of it.
+TEST(Cavitation, StarvedPumpStaysAboveVapourPressure) {
+  Case the_case = rated();
+  the_case.operation.speed_rpm = 3000;
+  const SteadyState simple = steady_state(the_case);
+  const double vapour = pascals(0.02);
+  ASSERT_LT(simple.summary.chamber_least + kAtmosphere, vapour);
+  the_case.hydraulics->cavitation = Cavitation::equilibrium;
+  for (const double pressure : {the_case.hydraulics->vapour_pressure, vapour}) {
+    the_case.hydraulics->vapour_pressure = pressure;
+    const SteadyState state = steady_state(the_case);
+    EXPECT_GT(state.summary.chamber_least + kAtmosphere, pressure);
+    EXPECT_LT(state.summary.chamber_least, -pascals(0.5));  // it is starved
+    EXPECT_LE(state.computed->error, the_case.hydraulics->curve_error * state.computed->peak);
+    EXPECT_NEAR(state.summary.mass_in / state.summary.mass_out, 1, scaled(1e-8));
+    // The bound on the work of any run is 1.5e7 steps x states; this is an ordinary one.
+    EXPECT_LT(state.convergence.steps, 40 * simple.convergence.steps);
+    RecordProperty("steps", std::to_string(state.convergence.steps));
+  }
+}
+
+// ---- Ports
+// ---------------------------------------------------------------------------------------
+
+constexpr double kRadius = 0.022;
+const double kLength = radians(1) * kRadius;  // m per degree on the bore circle
+
+HydraulicData plain() {
+  HydraulicData data = *rated().hydraulics;
+  data.delivery = {{204, 336}, {}};
+  data.suction = {{28, 154}, {}};
+  return data;
+}
+
+// Half the height of a slot or a disk over x; circular ends or straight ones.
+using Profile = std::function<double(double)>;
+Profile slot(double from, double to, double height, bool circular) {
+  return [=](double x) {
+    if (x < from || x > to) return 0.0;
+    const double r = height / 2;
+    if (!circular) return r;
+    const double off = std::max({0.0, from + r - x, x - (to - r)});
+    return std::sqrt(std::max(0.0, r * r - off * off));
+  };
+}
+
+// Common area by counting strips: everything is symmetric to the bore circle. Round ends are met
+// to 1/strips^1.5, a straight one to half a strip.
+constexpr double kStrip = 1.5e-4;
+double common(const Profile& a, const Profile& b, double from, double to) {
+  const int strips = 4000;
+  const double width = (to - from) / strips;
+  double sum = 0;
+  for (int i = 0; i < strips; ++i) {
+    const double x = from + (i + 0.5) * width;
+    sum += 2 * width * std::min(a(x), b(x));
+  }
+  return sum;
+}
+
+TEST(PortOpening, CircularEndsAreTheCommonAreaOfTwoSlots) {
+  HydraulicData data = plain();
+  data.kidney_ends = KidneyEnds::circular;
+  for (const PortArc arc : {PortArc{204, 336}, PortArc{190, 230}}) {  // the second shorter
+    data.delivery.arc = arc;
+    const PortOpening port(data, data.delivery, kRadius);
+    const Profile fixed =
+        slot(arc.from_deg * kLength, arc.to_deg * kLength, data.kidney_height, true);
+    const double half = data.kidney_width_deg / 2;
+    double largest = 0;
+    for (double theta = 150; theta < 370; theta += 0.73) {
+      const double from = (theta - half) * kLength, to = (theta + half) * kLength;
+      const double counted = common(slot(from, to, data.kidney_height, true), fixed, from, to);
+      EXPECT_NEAR(port.area(theta), counted, 5e-5 * data.kidney_height * data.kidney_height)
+          << theta;
+      EXPECT_NEAR(port.area(theta - 720), port.area(theta), 1e-14);
+      largest = std::max(largest, port.area(theta));
+    }
+    const double length = std::min(arc.to_deg - arc.from_deg, data.kidney_width_deg) * kLength;
+    const double r = data.kidney_height / 2;
+    EXPECT_NEAR(largest, 2 * r * (length - 2 * r) + kPi * r * r, 1e-12);
+  }
+}
+
+TEST(PortOpening, HolesAreWhatTheKidneyCoversOfThem) {
+  for (const bool circular : {false, true})
+    for (const double diameter : {0.001, 0.003, 0.008}) {
+      HydraulicData data = plain();
+      data.kidney_ends = circular ? KidneyEnds::circular : KidneyEnds::rounded;
+      const PortOpening without(data, data.delivery, kRadius);
+      data.delivery.holes = {{{190, diameter}, {350, diameter / 2}}};
+      const PortOpening port(data, data.delivery, kRadius);
+      const auto disk = [&](const PlateHole& hole) {
+        const double x = hole.angle_deg * kLength;
+        return slot(x - hole.diameter / 2, x + hole.diameter / 2, hole.diameter, true);
+      };
+      const double half = data.kidney_width_deg / 2;
+      for (double theta = 140; theta < 400; theta += 0.41) {
+        double counted = 0;
+        for (const PlateHole& hole : data.delivery.holes) {
+          const double x = hole.angle_deg * kLength, r = hole.diameter / 2;
+          counted += common(slot((theta - half) * kLength, (theta + half) * kLength,
+                                 data.kidney_height, circular),
+                            disk(hole), x - r, x + r);
+        }
+        EXPECT_NEAR(port.area(theta) - without.area(theta), counted, kStrip * diameter * diameter)
+            << theta << " " << circular;
+      }
+    }
+}
+
+TEST(PortOpening, TrailingNotchIsTheLeadingOneSeenBackwards) {
+  for (const NotchLaw law : {NotchLaw::quadratic, NotchLaw::linear}) {
+    HydraulicData data = plain();
+    data.notch_law = law;
+    const PlatePort behind{{204, 336}, {7, 2e-6}, {12, 4e-6}};
+    const PlatePort before{{24, 156}, {12, 4e-6}, {7, 2e-6}};
+    const PortOpening port(data, behind, kRadius), mirrored(data, before, kRadius);
+    for (double theta = 0; theta < 360; theta += 0.37)
+      EXPECT_NEAR(port.area(theta), mirrored.area(360 - theta), 1e-17) << theta;
+    // Its end: three degrees of twelve are left under the kidney.
+    const double share = law == NotchLaw::linear ? 0.25 : 0.0625;
+    EXPECT_NEAR(port.area(336 + 9 + data.kidney_width_deg / 2), share * 4e-6, 1e-17);
+    EXPECT_EQ(port.area(336 + 12.01 + data.kidney_width_deg / 2), 0);
+  }
+}
+
+TEST(PortOpening, ReliefGrooveIsTheSmallerOfMouthAndSection) {
+  HydraulicData data = plain();
+  data.delivery.groove = {170, 195, 0.001, 0.8e-6};
+  const PortOpening port(data, data.delivery, kRadius);
+  const double half = data.kidney_width_deg / 2;
+  const PortOpening without(plain(), plain().delivery, kRadius);
+  for (double theta = 100; theta < 300; theta += 0.19) {
+    double under = 0;  // degrees of groove under the kidney, counted
+    for (double psi = 170.0005; psi < 195; psi += 0.001)
+      if (std::abs(psi - theta) < half) under += 0.001;
+    EXPECT_NEAR(port.area(theta) - without.area(theta), std::min(under * kLength * 0.001, 0.8e-6),
+                2e-3 * kLength * 0.001)
+        << theta;
+  }
+  // Half a degree in: the mouth; far in: the section.
+  EXPECT_NEAR(port.area(170 - half + 0.5), 0.5 * kLength * 0.001, 1e-18);
+  EXPECT_EQ(port.area(170), 0.8e-6);
+}
+
+OpeningTable trapezoid() {
+  OpeningTable table{"made here", {}, {}};
+  for (double theta = 160; theta < 520; theta += 5) {
+    table.theta_deg.push_back(theta);
+    table.area.push_back(1e-6 * std::clamp(std::min(theta - 180, 380 - theta), 0.0, 40.0));
+  }
+  return table;
+}
+
+TEST(PortOpening, TableGoesThroughItsPointsAndStaysBetweenThem) {
+  HydraulicData data = plain();
+  data.delivery.table = trapezoid();
+  data.delivery.groove = {170, 195, 0.001, 0.8e-6};  // has no say
+  const OpeningTable& table = data.delivery.table;
+  const PortOpening port(data, data.delivery, kRadius);
+  const std::size_t n = table.area.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    EXPECT_NEAR(port.area(table.theta_deg[i] + 360 * (static_cast<int>(i % 3) - 1)), table.area[i],
+                1e-18);
+    const double next = table.area[(i + 1) % n];
+    double before = table.area[i];
+    for (double share = 0.1; share < 1; share += 0.1) {  // monotone from point to point
+      const double area = port.area(table.theta_deg[i] + 5 * share);
+      EXPECT_GE((area - before) * (next - table.area[i]), -1e-30);
+      EXPECT_TRUE(area == 0 || next + table.area[i] > 0);
+      before = area;
+    }
+  }
+  EXPECT_THAT(port.edges_deg(), testing::ElementsAre(testing::DoubleNear(20, 1e-12),
+                                                     testing::DoubleNear(180, 1e-12)));
+}
+
+// Between the edges listed no slope jumps, and the area nowhere.
+TEST(PortOpening, EveryKinkIsAnEdge) {
+  struct Port {
+    const char* name;
+    void (*change)(HydraulicData&);
+  };
+  const Port ports[] = {
+      {"square law", [](HydraulicData&) {}},
+      {"straight", [](HydraulicData& h) { h.kidney_rounding_deg = 0; }},
+      {"circular", [](HydraulicData& h) { h.kidney_ends = KidneyEnds::circular; }},
+      {"notches",
+       [](HydraulicData& h) {
+         h.delivery.notch = {18, 4e-6};
+         h.delivery.trailing_notch = {9, 3e-6};
+         h.notch_law = NotchLaw::linear;
+       }},
+      {"groove",
+       [](HydraulicData& h) {
+         h.delivery.groove = {-17, 1, 0.001, 0.8e-6};
+       }},
+      {"short groove",
+       [](HydraulicData& h) {
+         h.delivery.groove = {181, 182, 0.001, 0.8e-6};
+       }},
+      {"holes",
+       [](HydraulicData& h) {
+         h.delivery.holes = {{{190, 0.002}, {345, 0.003}}};
+       }},
+      {"holes, circular",
+       [](HydraulicData& h) {
+         h.kidney_ends = KidneyEnds::circular;
+         h.delivery.holes = {{{190, 0.002}, {345, 0.008}}};
+       }},
+      {"table", [](HydraulicData& h) { h.delivery.table = trapezoid(); }}};
+  for (const Port& each : ports) {
+    HydraulicData data = plain();
+    each.change(data);
+    const PortOpening port(data, data.delivery, kRadius);
+    const auto& edges = port.edges_deg();
+    ASSERT_TRUE(std::is_sorted(edges.begin(), edges.end()));
+    const double h = 1e-4;
+    const double slope = kLength * data.kidney_height;  // of a straight kidney
+    int kinks = 0;
+    double before = port.area(-h), at = port.area(0);
+    for (int i = 0; i < 3600000; ++i) {
+      const double theta = i * h, after = port.area(theta + h);
+      const double bend = std::abs(after - 2 * at + before) / h;
+      ASSERT_LE(std::abs(after - at), 2 * slope * h) << each.name << " " << theta;
+      // Round-off of the angles, wrapped, is 1e-13 of a slope; curvature gives at most 1e-3 of it
+      // beyond a hundredth of a degree from where it is infinite.
+      before = at;
+      at = after;
+      if (bend < 1e-3 * slope) continue;
+      ++kinks;
+      const bool known = std::any_of(edges.begin(), edges.end(), [&](double edge) {
+        return std::abs(std::remainder(theta - edge, 360)) < 0.01;
+      });
+      EXPECT_TRUE(known) << each.name << " " << theta;
+    }
+    if (std::string(each.name) == "straight") {
+      EXPECT_GE(kinks, 4);
+    }
+  }
+}
+
+TEST(PortOpening, OverlapIsWhatArcsAndKidneyMake) {
+  const auto of = [](PortArc suction, PortArc delivery, Notch notch) {
+    HydraulicData data = plain();
+    data.kidney_width_deg = 50;
+    data.suction = {suction, {}};
+    data.delivery = {delivery, notch};
+    return bridges(PortOpening(data, data.suction, kRadius),
+                   PortOpening(data, data.delivery, kRadius));
+  };
+  // The kidney leaves the suction port at 153 + 25 and meets the delivery port at 207 - 25.
+  auto found = of({27, 153}, {207, 333}, {});
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_NEAR(found[0].from_deg, 178, 1e-12);
+  EXPECT_NEAR(found[0].to_deg, 182, 1e-12);
+  EXPECT_FALSE(found[0].both_open);
+  EXPECT_NEAR(found[1].from_deg, 358, 1e-12);
+  EXPECT_NEAR(found[1].to_deg, 362, 1e-12);
+  EXPECT_FALSE(found[1].both_open);
+  // A notch of 10 deg opens at 172: 6 deg of negative overlap.
+  found = of({27, 153}, {207, 333}, {10, 1e-6});
+  ASSERT_EQ(found.size(), 2);
+  EXPECT_NEAR(found[0].from_deg, 172, 1e-12);
+  EXPECT_NEAR(found[0].to_deg, 178, 1e-12);
+  EXPECT_TRUE(found[0].both_open);
+  // The shipped plate: 30 deg of the turn.
+  const HydraulicData data = *rated().hydraulics;
+  double both = 0;
+  for (const Bridge& bridge : bridges(PortOpening(data, data.suction, kRadius),
+                                      PortOpening(data, data.delivery, kRadius))) {
+    EXPECT_TRUE(bridge.both_open);
+    both += bridge.to_deg - bridge.from_deg;
+  }
+  EXPECT_NEAR(both, 30, 1e-11);
+}
+
+// Ports that open and close at the same angle but for round-off have no overlap.
+TEST(PortOpening, RoundOffIsNoOverlap) {
+  HydraulicData data = plain();
+  data.kidney_width_deg = 51.3;
+  data.suction = {{25.65, 180 - 25.65}, {}};
+  data.delivery = {{180 + 25.65, 360 - 25.65}, {}};
+  EXPECT_TRUE(
+      bridges(PortOpening(data, data.suction, kRadius), PortOpening(data, data.delivery, kRadius))
+          .empty());
+}
+
+TEST(Control, EveryNumberOfOilAndPortsCounts) {
+  Case base = rated();
+  HydraulicData& h = *base.hydraulics;
+  h.cavitation = Cavitation::equilibrium;
+  h.bulk_modulus_slope = 9;
+  h.delivery.trailing_notch = {5, 1e-6};
+  h.delivery.groove = {150, 160, 0.001, 0.4e-6};
+  h.delivery.holes = {{{185, 0.001}, {357, 0.001}}};
+  h.suction.table = trapezoid();
+  for (double& angle : h.suction.table.theta_deg) angle -= 175;
+  base.hydraulics->tolerance = 1e-11;
+  const SteadyState usual = steady_state(base);
+  using Change = void (*)(HydraulicData&);
+  const Change changes[] = {[](HydraulicData& d) { d.bulk_modulus_slope *= 1.001; },
+                            [](HydraulicData& d) { d.dissolved_air *= 1.001; },
+                            [](HydraulicData& d) { d.saturation_pressure += 100; },
+                            [](HydraulicData& d) { d.vapour_pressure *= 1.001; },
+                            [](HydraulicData& d) { d.cavitation = Cavitation::ignored; },
+                            [](HydraulicData& d) { d.kidney_ends = KidneyEnds::circular; },
+                            [](HydraulicData& d) { d.delivery.trailing_notch.length_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.trailing_notch.area *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.groove.from_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.groove.to_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.groove.width *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.groove.area *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.holes[0].angle_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.holes[0].diameter *= 1.001; },
+                            [](HydraulicData& d) { d.delivery.holes[1].angle_deg += 0.01; },
+                            [](HydraulicData& d) { d.delivery.holes[1].diameter *= 1.001; },
+                            [](HydraulicData& d) { d.suction.table.theta_deg[10] += 0.01; },
+                            [](HydraulicData& d) { d.suction.table.area[10] *= 1.001; }};
+  int number = 0;
+  for (const Change change : changes) {
+    Case changed = base;
+    change(*changed.hydraulics);
+    const SteadyState state = steady_state(changed);
+    double most = 0;
+    for (std::size_t i = 0; i < usual.chamber.pressure.size(); ++i)
+      most = std::max(most, std::abs(state.chamber.pressure[i] - usual.chamber.pressure[i]));
+    EXPECT_GT(most, 10 * (usual.computed->error + state.computed->error)) << number;
+    ++number;
+  }
+}
+
+// ---- From a case file
+// ----------------------------------------------------------------------------
+
+class PortFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::path(testing::TempDir()) /
+        ("ports_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::create_directories(folder_);
+    fs::copy_file(kCases / "bap63_rated_hydraulic.toml", folder_ / "case.toml",
+                  fs::copy_options::overwrite_existing);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string refusal(const std::vector<std::string>& changes) const {
+    try {
+      read_case(folder_ / "case.toml", changes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  std::string refusal_of(const std::string& table) const {
+    std::ofstream(folder_ / "opening.csv") << table;
+    return refusal({"hydraulics.delivery_opening_file=opening.csv"});
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(PortFile, TableOfTheGeometryGivesTheSamePressures) {
+  const Case geometry = rated();
+  for (const char* name : {"delivery", "suction"}) {
+    const HydraulicData& h = *geometry.hydraulics;
+    const PortOpening port(h, name == std::string("suction") ? h.suction : h.delivery,
+                           geometry.pump.geometry.bore_circle_radius);
+    std::string text = "theta_deg,area_mm2\n";
+    for (int i = 0; i < 3600; ++i)
+      text += std::to_string(0.1 * i) + "," + std::to_string(port.area(0.1 * i) * 1e6) + "\n";
+    std::ofstream(folder_ / (std::string(name) + ".csv")) << text;
+  }
+  const Case the_case =
+      read_case(folder_ / "case.toml",
+                {"hydraulics.delivery_opening_file=delivery.csv",
+                 "hydraulics.suction_opening_file=suction.csv", "hydraulics.curve_error=1e-6"});
+  const SteadyState a = steady_state(geometry), b = steady_state(the_case);
+  double worst = 0;
+  for (std::size_t i = 0; i < a.chamber.pressure.size(); ++i)
+    worst = std::max(worst, std::abs(a.chamber.pressure[i] - b.chamber.pressure[i]));
+  // Kinks rounded over a tenth of a degree, areas to 1e-6 mm2.
+  EXPECT_LT(worst, 2e-3 * a.computed->peak);
+  // Written and read again.
+  std::ofstream(folder_ / "again.toml") << case_text(the_case);
+  const Case again = read_case(folder_ / "again.toml");
+  EXPECT_EQ(again.hydraulics->delivery.table.area, the_case.hydraulics->delivery.table.area);
+  EXPECT_EQ(again.hydraulics->suction.table.theta_deg,
+            the_case.hydraulics->suction.table.theta_deg);
+}
+
+TEST_F(PortFile, FaultsOfATableAreNamed) {
+  using testing::HasSubstr;
+  const std::string head = "theta_deg,area_mm2\n";
+  EXPECT_EQ(refusal_of(head + "0,0\n100,5\n200,5\n"), "");
+  EXPECT_THAT(refusal_of("angle,area\n0,1\n"),
+              HasSubstr("opening.csv:1: header must be theta_deg"));
+  EXPECT_THAT(refusal_of(head + "0,0\n100,-5\n200,5\n"),
+              HasSubstr("opening.csv:3: area_mm2 = -5: must be >= 0"));
+  EXPECT_THAT(refusal_of(head + "0,0\n100,5\n90,5\n"),
+              HasSubstr("opening.csv:4: theta_deg = 90: must be > 100"));
+  EXPECT_THAT(refusal_of(head + "0,0\n100,5\n360,0\n"),
+              HasSubstr("opening.csv:4: theta_deg = 360: must be < 360"));
+  EXPECT_THAT(refusal_of(head + "0,0\n100,x\n360,0\n"),
+              HasSubstr("opening.csv:3: area_mm2 = \"x\": must be a finite number"));
+  EXPECT_THAT(refusal_of(head + "0,0\n100,5\n"), HasSubstr("at least 3"));
+  EXPECT_THAT(refusal_of(head + "0,0\n100,0\n200,0\n"), HasSubstr("must be > 0 somewhere"));
+  EXPECT_THAT(refusal({"hydraulics.suction_opening_file=none.csv"}),
+              HasSubstr("no such file: " + (folder_ / "none.csv").string()));
+  EXPECT_THAT(refusal({"hydraulics.suction_opening_file=."}), HasSubstr("is a folder"));
+}
+
+TEST_F(PortFile, ImpossiblePartsAreRefused) {
+  using testing::HasSubstr;
+  const auto expect = [&](const std::vector<std::string>& changes, const std::string& why) {
+    std::vector<std::string> with;
+    for (const auto& change : changes) with.push_back("hydraulics." + change);
+    EXPECT_THAT(refusal(with), HasSubstr(why)) << changes[0];
+  };
+  expect({"delivery_groove_area_mm2=1", "delivery_groove_width_mm=1"}, "from < to");
+  expect({"delivery_groove_area_mm2=1", "delivery_groove_deg=[170, 190]"}, "must be > 0 where");
+  expect({"suction_hole_diameter_mm=8.5"}, "must be <= 8, the smaller side");
+  expect({"suction_hole_2_diameter_mm=8.5"}, "must be <= 8, the smaller side");
+  expect({"kidney_ends=circular", "suction_arc_deg=[80, 90]"}, "at least 20.8");
+  expect({"delivery_trailing_notch_deg=89", "delivery_notch_deg=89"}, "must not exceed 360 deg");
+  expect({"cavitation=equilibrium", "vapour_bar=0.9", "case_bar=-0.5"}, "must be < 0.51325");
+  expect({"vapour_bar=1.2"}, "[0, 1.01325)");
+  expect({"saturation_bar=-1.2"}, "saturation_bar");
+  expect({"bulk_modulus_slope=21"}, "20");
+}
+
+}  // namespace
+}  // namespace bentaxis::hydraulics
