@@ -81,7 +81,7 @@ int pressure(const Options& options) {
   }
   if (options.transient > 0) {
     const ResultTable transient =
-        hydraulics::transient_from_rest(point.the_case(), point.state().summary.load_area,
+        hydraulics::transient_from_rest(point.the_case(), point.state().summary.load_size,
                                         options.transient, 72, progress_of("transient"));
     study::add_transient(document, transient);
     curves.emplace_back("transient.csv", to_csv(transient));

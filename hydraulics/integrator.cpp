@@ -21,8 +21,15 @@ namespace bentaxis::hydraulics {
 namespace {
 
 // Effort is counted in steps x states, with sensitivities x states again: about a microsecond each.
-// A usual operating point takes 1e5, the wildest of our tests that ends 3e6.
+// A usual operating point takes 1e5, the wildest of our tests that ends 3e6. A delivery line has
+// more states, of which each step costs less and more are taken.
 constexpr double kMostEffort = 1.5e7;
+// Error per step of sensitivities with a delivery line.
+constexpr double kForWaves = 1e-4;
+constexpr int kUsualStates = 8;
+double most_effort(const Network& network) {
+  return kMostEffort * std::max(1.0, static_cast<double>(network.states()) / kUsualStates);
+}
 constexpr double kEffortBetweenSigns = 1e4;  // of life
 constexpr int kIntegrals = 5;
 
@@ -31,7 +38,7 @@ double* data(N_Vector v) { return N_VGetArrayPointer(v); }
 // What the callbacks of CVODES work on.
 struct Problem {
   const Network& network;
-  double load_area = 0;
+  double load_size = 0;
   Network::Flows flows;
   std::vector<double> by_state, by_load;  // of the sensitivity equations
   double mass_scale = 1;                  // kg/degree: of the integrals, for their error control
@@ -40,13 +47,13 @@ struct Problem {
 
 int rates(realtype x, N_Vector y, N_Vector dy, void* user) {
   const auto& problem = *static_cast<Problem*>(user);
-  return problem.network.rates(x, data(y), problem.load_area, data(dy)) ? 0 : 1;
+  return problem.network.rates(x, data(y), problem.load_size, data(dy)) ? 0 : 1;
 }
 
 int jacobian(realtype x, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
              N_Vector) {
   auto& problem = *static_cast<Problem*>(user);
-  problem.network.jacobian(x, data(y), problem.load_area, SUNDenseMatrix_Data(matrix),
+  problem.network.jacobian(x, data(y), problem.load_size, SUNDenseMatrix_Data(matrix),
                            problem.by_load.data());
   return 0;
 }
@@ -55,13 +62,12 @@ int sensitivity_rates(int count, realtype x, N_Vector y, N_Vector, N_Vector* s, 
                       void* user, N_Vector, N_Vector) {
   auto& problem = *static_cast<Problem*>(user);
   const Network& network = problem.network;
-  network.jacobian(x, data(y), problem.load_area, problem.by_state.data(), problem.by_load.data());
+  network.jacobian(x, data(y), problem.load_size, problem.by_state.data(), problem.by_load.data());
   const int size = network.size();
   for (int j = 0; j < count; ++j) {
     double* to = data(ds[j]);
     const double* from = data(s[j]);
-    for (int row = 0; row < size; ++row)
-      to[row] = j < network.pressures() ? 0 : problem.by_load[row];
+    for (int row = 0; row < size; ++row) to[row] = j < network.states() ? 0 : problem.by_load[row];
     for (int column = 0; column < size; ++column) {
       if (from[column] == 0) continue;
       const double* entries = problem.by_state.data() + column * size;
@@ -74,7 +80,7 @@ int sensitivity_rates(int count, realtype x, N_Vector y, N_Vector, N_Vector* s, 
 int integral_rates(realtype x, N_Vector y, N_Vector dq, void* user) {
   auto& problem = *static_cast<Problem*>(user);
   const Network& network = problem.network;
-  network.flows(x, data(y), problem.load_area, problem.flows);
+  network.flows(x, data(y), problem.load_size, problem.flows);
   double* to = data(dq);
   std::fill(to, to + kIntegrals, 0.0);
   const double mass = network.seconds_per_degree() / problem.mass_scale;
@@ -131,13 +137,13 @@ std::string sundials_version() {
 Integrator::Integrator(const Network& network, std::function<void()> alive)
     : network_(network), alive_(std::move(alive)) {}
 
-double Integrator::share_of_effort() const { return effort_ / kMostEffort; }
+double Integrator::share_of_effort() const { return effort_ / most_effort(network_); }
 
-std::vector<double> Integrator::over_period(const std::vector<double>& pressures, double load_area,
+std::vector<double> Integrator::over_period(const std::vector<double>& states, double load_size,
                                             double tolerance, std::vector<double>* sensitivity,
                                             Integrals* integrals, const Watch& watch) {
   const int size = network_.size();
-  Problem problem{network_, load_area, {}, {}, {}, 1, 1};
+  Problem problem{network_, load_size, {}, {}, {}, 1, 1};
   problem.by_state.resize(static_cast<std::size_t>(size) * size);
   problem.by_load.resize(size);
   // Integrals are scaled to the mass and the work of one piston's stroke at delivery pressure.
@@ -162,8 +168,8 @@ std::vector<double> Integrator::over_period(const std::vector<double>& pressures
   cv.sampled = N_VNew_Serial(size, cv.context);
   cv.matrix = SUNDenseMatrix(size, size, cv.context);
   if (cv.y == nullptr || cv.sampled == nullptr || cv.matrix == nullptr) throw std::bad_alloc();
-  std::copy(pressures.begin(), pressures.end(), data(cv.y));
-  if (!network_.open_line()) data(cv.y)[size - 1] = 0;
+  std::copy(states.begin(), states.end(), data(cv.y));
+  if (size > network_.states()) data(cv.y)[size - 1] = 0;
   cv.solver = SUNLinSol_Dense(cv.y, cv.matrix, cv.context);
   cv.memory = CVodeCreate(CV_BDF, cv.context);
   if (cv.memory == nullptr || cv.solver == nullptr) throw std::bad_alloc();
@@ -174,19 +180,22 @@ std::vector<double> Integrator::over_period(const std::vector<double>& pressures
   check(CVodeSetLinearSolver(cv.memory, cv.solver, cv.matrix));
   check(CVodeSetJacFn(cv.memory, jacobian));
   if (sensitivity != nullptr) {
-    cv.sensitivities = network_.pressures() + (network_.open_line() ? 0 : 1);
+    cv.sensitivities = network_.states() + (network_.load_sought() ? 1 : 0);
     cv.sensitivity = N_VCloneVectorArray(cv.sensitivities, cv.y);
     if (cv.sensitivity == nullptr) throw std::bad_alloc();
     for (int j = 0; j < cv.sensitivities; ++j) {
       N_VConst(0, cv.sensitivity[j]);
-      if (j < network_.pressures()) data(cv.sensitivity[j])[j] = 1;
+      if (j < network_.states()) data(cv.sensitivity[j])[j] = 1;
     }
     check(CVodeSensInit(cv.memory, cv.sensitivities, CV_SIMULTANEOUS, sensitivity_rates,
                         cv.sensitivity));
-    std::vector<double> absolute(cv.sensitivities, tolerance);
-    check(CVodeSensSStolerances(cv.memory, tolerance, absolute.data()));
-    // They serve as the Jacobian of a Newton iteration: the states set the steps.
-    check(CVodeSetSensErrCon(cv.memory, SUNFALSE));
+    // They serve as the Jacobian of a Newton iteration: the states set the steps. But a mode of a
+    // delivery line that the states do not excite would be followed in steps far too long.
+    const bool waves = network_.has_delivery_line();
+    const double sensitivity_tolerance = waves ? std::max(tolerance, kForWaves) : tolerance;
+    std::vector<double> absolute(cv.sensitivities, sensitivity_tolerance);
+    check(CVodeSensSStolerances(cv.memory, sensitivity_tolerance, absolute.data()));
+    check(CVodeSetSensErrCon(cv.memory, waves ? SUNTRUE : SUNFALSE));
   }
   if (integrals != nullptr) {
     cv.integrals = N_VNew_Serial(kIntegrals, cv.context);
@@ -222,11 +231,12 @@ std::vector<double> Integrator::over_period(const std::vector<double>& pressures
       taken.at_edge = flag == CV_TSTOP_RETURN;
       if (watch) watch(taken);
       effort_ += effort;
-      if (effort_ > most_ * kMostEffort)
+      if (effort_ > most_ * most_effort(network_))
         throw ComputationError(
             "hydraulics: no periodic state within " + std::to_string(work_.steps + steps) +
             " steps: the pressures are too stiff (see transition_pressure_bar, dead_volume_cm3, "
-            "delivery_volume_l)");
+            "delivery_volume_l" +
+            (network_.has_delivery_line() ? ", bandwidth_Hz of [delivery_line])" : ")"));
       if (alive_ && (since_sign_ += effort) > kEffortBetweenSigns) {
         since_sign_ = 0;
         alive_();

@@ -45,16 +45,17 @@ class Integrator {
   };
   using Watch = std::function<void(const Step& step)>;
 
-  /// State at the end of the period from the state at its start (pressures; the mean starts at 0).
+  /// State at the end of the period from the state at its start (Network::states(); the mean starts
+  /// at 0).
   /// @param tolerance    error of s (so relative error of P) allowed per step
-  /// @param sensitivity  if not null: receives d(end state)/d(start pressures, ln load_area),
-  ///                     column-major, size() rows; the last column only with a load
+  /// @param sensitivity  if not null: receives d(end state)/d(start states, ln load_size),
+  ///                     column-major, size() rows; the last column only where it is sought
   /// @param integrals    if not null: receives the integrals, with the same control of error
   /// @param watch        called after every step
   /// @throws StepsEnd naming the angle where the integration fails
   /// @throws ComputationError where all integrations so far have taken more steps than any pump
   ///         needs
-  std::vector<double> over_period(const std::vector<double>& pressures, double load_area,
+  std::vector<double> over_period(const std::vector<double>& states, double load_size,
                                   double tolerance, std::vector<double>* sensitivity = nullptr,
                                   Integrals* integrals = nullptr, const Watch& watch = {});
 
@@ -68,8 +69,8 @@ class Integrator {
   const Network& network_;
   std::function<void()> alive_;
   Work work_;
-  double effort_ = 0;  // of all calls so far, see kMostEffort
-  double most_ = 1;    // of kMostEffort
+  double effort_ = 0;  // of all calls so far
+  double most_ = 1;    // of the effort allowed
   double since_sign_ = 0;
 };
 

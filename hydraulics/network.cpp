@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -15,6 +16,8 @@ namespace {
 constexpr double kNoStroke = 1e-9;
 // Edges closer than this are one, degrees.
 constexpr double kSameEdge = 1e-9;
+// Of a delivery line: beyond, a search takes minutes.
+constexpr int kMostModes = 48;
 
 double seconds_per_degree(const Case& the_case) {
   const double speed = the_case.operation.speed_rpm;
@@ -37,11 +40,22 @@ const HydraulicData& data_of(const Case& the_case) {
   return *the_case.hydraulics;
 }
 
+bool finite(const double* from, const double* to) {
+  return std::all_of(from, to, [](double x) { return std::isfinite(x); });
+}
+
+LoadData load_of(const Case& the_case) { return data_of(the_case).load.value_or(LoadData()); }
+
+double kinematic_viscosity(const HydraulicData& data) {
+  return data.oil ? Viscosity(*data.oil, data.density).kinematic() : 0;
+}
+
 }  // namespace
 
 Network::Network(const Case& the_case)
     : n_(validate(the_case).pump.geometry.pistons),
-      open_(the_case.pressure.ports.delivery == 0),
+      fixed_end_(the_case.pressure.ports.delivery == 0 ||
+                 load_of(the_case).kind == LoadKind::constant_pressure),
       fluid_(data_of(the_case)),
       chamber_(the_case.pump.geometry, the_case.hydraulics->dead_volume),
       delivery_(*the_case.hydraulics, the_case.hydraulics->delivery,
@@ -49,17 +63,20 @@ Network::Network(const Case& the_case)
       suction_(*the_case.hydraulics, the_case.hydraulics->suction,
                the_case.pump.geometry.bore_circle_radius),
       seconds_per_degree_(hydraulics::seconds_per_degree(the_case)),
-      leakage_(the_case.hydraulics->leakage),
       delivery_volume_(the_case.hydraulics->delivery_volume),
-      discharge_(the_case.hydraulics->discharge_coefficient),
-      transition_squared_(the_case.hydraulics->transition_pressure *
-                          the_case.hydraulics->transition_pressure),
+      orifice_{the_case.hydraulics->discharge_coefficient,
+               the_case.hydraulics->transition_pressure * the_case.hydraulics->transition_pressure},
+      leakage_(the_case, fluid_, chamber_),
       suction_s_(fluid_.log_pressure(the_case.pressure.ports.suction)),
       delivery_s_(fluid_.log_pressure(the_case.pressure.ports.delivery)),
       delivery_pressure_(the_case.pressure.ports.delivery),
+      mean_scale_(delivery_pressure_ > 0 ? delivery_pressure_ : fluid_.atmosphere()),
       suction_state_(fluid_.state(suction_s_)),
-      case_state_(fluid_.state(fluid_.log_pressure(the_case.hydraulics->case_pressure))),
-      outside_(fluid_.state(0)) {
+      fixed_state_(fluid_.state(delivery_s_)),
+      outside_(fluid_.state(0)),
+      load_(load_of(the_case), orifice_, fluid_, suction_state_.density * load_of(the_case).flow),
+      fixed_(fixed_end_ && !the_case.hydraulics->delivery_line),
+      sought_(!fixed_end_ && load_.sought()) {
   const Geometry& g = the_case.pump.geometry;
   const double area = kPi / 4 * g.bore_diameter * g.bore_diameter;
   if (chamber_.swept() <= kNoStroke * area * g.piston_length)
@@ -67,6 +84,33 @@ Network::Network(const Case& the_case)
                      ": [pump] tilt_deg = " + number_text(g.tilt / kRadPerDegree) +
                      ": the pistons have no stroke, so that there is no displacement to compute a "
                      "hydraulic pressure from");
+  const HydraulicData& data = *the_case.hydraulics;
+  if (load_.kind() == LoadKind::flow && !fixed_end_ &&
+      !(data.load->flow > 0 && data.load->flow * suction_state_.density < ideal_mass_flow()))
+    throw InputError(the_case.file.string() +
+                     ": [load] flow_l_per_min = " + number_text(data.load->flow / kLitrePerMinute) +
+                     ": must be above 0 and below what the pump displaces, " +
+                     number_text(ideal_mass_flow() / suction_state_.density / kLitrePerMinute) +
+                     " l/min");
+  states_ = pressures();
+  if (data.suction_line) {
+    suction_line_.emplace(*data.suction_line, suction_state_, kinematic_viscosity(data));
+    suction_volume_ = data.suction_line->volume;
+    suction_at_ = states_;
+    states_ += 2;
+  }
+  if (data.delivery_line) {
+    using End = TransmissionLine::End;
+    pipe_.emplace(*data.delivery_line, fixed_end_ ? End::given_pressure : End::given_flow,
+                  fixed_state_, kinematic_viscosity(data));
+    if (pipe_->size() > kMostModes)
+      throw InputError(the_case.file.string() + ": [delivery_line] bandwidth_Hz = " +
+                       number_text(data.delivery_line->bandwidth) + ": takes " +
+                       std::to_string(pipe_->size()) + " modes, more than " +
+                       std::to_string(kMostModes) + ": lower it, or length_m");
+    pipe_at_ = states_;
+    states_ += pipe_->size();
+  }
   // All chambers meet an edge at the same angle within the period.
   for (const auto* port : {&delivery_, &suction_})
     for (const double edge : port->edges_deg()) {
@@ -79,116 +123,172 @@ Network::Network(const Case& the_case)
                    edges_deg_.end());
 }
 
-Network::Flow Network::orifice(double area, const Fluid::State& first,
-                               const Fluid::State& second) const {
-  if (area == 0) return {};
-  const double drop = first.pressure - second.pressure;
-  const double square = drop * drop + transition_squared_;
-  const double root = std::sqrt(std::sqrt(square));
-  const double law = drop / root;
-  const double slope = (drop * drop / 2 + transition_squared_) / (square * root);
-  const double weight = std::sqrt(first.density + second.density);  // sqrt(2 mean density)
-  const double by_density = discharge_ * area * law / (2 * weight);
-  return {discharge_ * area * weight * law,
-          discharge_ * area * weight * slope * first.pressure +
-              by_density * first.density / first.stiffness,
-          -discharge_ * area * weight * slope * second.pressure +
-              by_density * second.density / second.stiffness};
+double Network::ideal_mass_flow() const {
+  return suction_state_.density * displacement() / (360 * seconds_per_degree_);
 }
 
-Network::Flow Network::leak(const Fluid::State& chamber) const {
-  const double drop = chamber.pressure - case_state_.pressure;
-  const double density = (chamber.density + case_state_.density) / 2;
-  return {leakage_ * density * drop,
-          leakage_ * (density * chamber.pressure + drop * chamber.density / chamber.stiffness / 2),
-          0};
+double Network::load_size_for(double mass_flow) const {
+  return load_.sought() ? load_.size_for(mass_flow, fixed_state_) : load_.size();
 }
 
-double Network::load_area_for(double mass_flow) const {
-  const Flow one = orifice(1, fluid_.state(delivery_s_), outside_);
-  return mass_flow / one.value;
+std::vector<double> Network::uniform(double chambers, double delivery, double mass_flow) const {
+  std::vector<double> y(states_, chambers);
+  if (!fixed_) y[n_] = delivery;
+  if (suction_line_) {
+    y[suction_at_] = suction_s_;
+    y[suction_at_ + 1] = mass_flow / ideal_mass_flow();
+  }
+  if (pipe_) pipe_->uniform(fluid_.state(delivery).pressure, mass_flow, y.data() + pipe_at_);
+  return y;
 }
 
-bool Network::rates(double x, const double* y, double load_area, double* dy) const {
-  const Fluid::State line = open_ ? outside_ : fluid_.state(y[n_]);
-  double delivered = 0;
+double Network::load_gauge(const double* y) const {
+  if (fixed_end_) return delivery_pressure_;
+  return pipe_ ? pipe_->end_pressure(y + pipe_at_) - fluid_.atmosphere() : delivery_gauge(y);
+}
+
+double Network::to_load(const double* y, const Fluid::State& line, double load_size) const {
+  if (!pipe_) return load_.flow(line, load_size).value;
+  const double* modes = y + pipe_at_;
+  if (fixed_end_) return pipe_->outflow(modes);
+  return load_.flow(pipe_->end_side(modes), load_size).value;
+}
+
+bool Network::rates(double x, const double* y, double load_size, double* dy) const {
+  const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
+  const Fluid::State source = suction_line_ ? fluid_.state(y[suction_at_]) : suction_state_;
+  double delivered = 0, taken = 0;
   for (int k = 0; k < n_; ++k) {
     const double angle = angle_deg(x, k);
     const Chamber::Volume volume = chamber_.volume(radians(angle));
     const Fluid::State at = fluid_.state(y[k]);
-    const double out = orifice(delivery_.area(angle), at, line).value;
-    const double in = orifice(suction_.area(angle), suction_state_, at).value;
-    const double mass = in - out - leak(at).value;
+    const double out = orifice_.flow(delivery_.area(angle), at, line).value;
+    const double in = orifice_.flow(suction_.area(angle), source, at).value;
+    const double mass = in - out - leakage_.flow(at, volume.value).value;
     delivered += out;
+    taken += in;
     dy[k] = at.stiffness *
             (seconds_per_degree_ * mass / at.density - kRadPerDegree * volume.slope) / volume.value;
     if (!std::isfinite(dy[k])) return false;
   }
-  if (open_) return true;
-  dy[n_] = line.stiffness * seconds_per_degree_ *
-           (delivered - orifice(load_area, line, outside_).value) /
+  if (suction_line_) {
+    const double flow = y[suction_at_ + 1] * ideal_mass_flow();
+    dy[suction_at_] = source.stiffness * seconds_per_degree_ * (flow - taken) /
+                      (source.density * suction_volume_);
+    dy[suction_at_ + 1] =
+        seconds_per_degree_ * suction_line_->rate(source.pressure, flow) / ideal_mass_flow();
+  }
+  if (fixed_) return finite(dy + n_, dy + size());
+  const double load = to_load(y, line, load_size);
+  const double leaves = pipe_ ? pipe_->inflow(y + pipe_at_) : load;
+  dy[n_] = line.stiffness * seconds_per_degree_ * (delivered - leaves) /
            (line.density * delivery_volume_);
-  dy[n_ + 1] = (line.pressure - outside_.pressure) / (delivery_pressure_ * period_deg());
-  return std::isfinite(dy[n_]) && std::isfinite(dy[n_ + 1]);
+  dy[size() - 1] = (line.pressure - outside_.pressure) / (mean_scale_ * period_deg());
+  if (pipe_) {
+    double* modes = dy + pipe_at_;
+    pipe_->rates(y + pipe_at_, line.pressure, fixed_end_ ? fixed_state_.pressure : load, modes);
+    for (int i = 0; i < pipe_->size(); ++i) modes[i] *= seconds_per_degree_;
+  }
+  return finite(dy + n_, dy + size());
 }
 
-void Network::jacobian(double x, const double* y, double load_area, double* by_state,
+void Network::jacobian(double x, const double* y, double load_size, double* by_state,
                        double* by_load) const {
   const int size = this->size();
   std::fill(by_state, by_state + size * size, 0.0);
   std::fill(by_load, by_load + size, 0.0);
   const auto entry = [&](int row, int column) -> double& { return by_state[column * size + row]; };
-  const Fluid::State line = open_ ? outside_ : fluid_.state(y[n_]);
+  const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
+  const Fluid::State source = suction_line_ ? fluid_.state(y[suction_at_]) : suction_state_;
   const double line_factor =
       line.stiffness * seconds_per_degree_ / (line.density * delivery_volume_);
-  double delivered = 0;
+  const double source_factor =
+      suction_line_ ? source.stiffness * seconds_per_degree_ / (source.density * suction_volume_)
+                    : 0;
+  double delivered = 0, taken = 0;
   for (int k = 0; k < n_; ++k) {
     const double angle = angle_deg(x, k);
     const Chamber::Volume volume = chamber_.volume(radians(angle));
     const Fluid::State at = fluid_.state(y[k]);
-    const Flow out = orifice(delivery_.area(angle), at, line);
-    const Flow in = orifice(suction_.area(angle), suction_state_, at);
-    const Flow lost = leak(at);
+    const MassFlow out = orifice_.flow(delivery_.area(angle), at, line);
+    const MassFlow in = orifice_.flow(suction_.area(angle), source, at);
+    const MassFlow lost = leakage_.flow(at, volume.value);
     const double mass = in.value - out.value - lost.value;
     const double by_own = in.by_second - out.by_first - lost.by_first;
     delivered += out.value;
+    taken += in.value;
     entry(k, k) =
         (at.d_stiffness * (seconds_per_degree_ * mass / at.density - kRadPerDegree * volume.slope) +
          at.stiffness * seconds_per_degree_ * (by_own - mass / at.stiffness) / at.density) /
         volume.value;
-    if (open_) continue;
-    entry(k, n_) =
-        -at.stiffness * seconds_per_degree_ * out.by_second / (at.density * volume.value);
+    const double by_mass = at.stiffness * seconds_per_degree_;
+    if (suction_line_) {
+      entry(k, suction_at_) = by_mass * in.by_first / (at.density * volume.value);
+      entry(suction_at_, k) = -source_factor * in.by_second;
+      entry(suction_at_, suction_at_) -= source_factor * in.by_first;
+    }
+    if (fixed_) continue;
+    entry(k, n_) = -by_mass * out.by_second / (at.density * volume.value);
     entry(n_, k) = line_factor * out.by_first;
     entry(n_, n_) += line_factor * out.by_second;
   }
-  if (open_) return;
-  const Flow load = orifice(load_area, line, outside_);
-  // The factor K/P/density itself: its logarithmic derivative is (K/P)'/(K/P) - 1/(K/P).
-  entry(n_, n_) += line_factor * (-load.by_first + (delivered - load.value) *
-                                                       (line.d_stiffness - 1) / line.stiffness);
-  entry(n_ + 1, n_) = line.pressure / (delivery_pressure_ * period_deg());
-  by_load[n_] = -line_factor * load.value;
+  // The factor K/P/density of a volume itself: its logarithmic derivative is (K/P)'/(K/P) -
+  // 1/(K/P).
+  if (suction_line_) {
+    const int s = suction_at_, m = suction_at_ + 1;
+    const double flow = y[m] * ideal_mass_flow();
+    entry(s, s) += source_factor * (flow - taken) * (source.d_stiffness - 1) / source.stiffness;
+    entry(s, m) = source_factor * ideal_mass_flow();
+    entry(m, s) =
+        seconds_per_degree_ * suction_line_->by_port() * source.pressure / ideal_mass_flow();
+    entry(m, m) = seconds_per_degree_ * suction_line_->by_flow(flow);
+  }
+  if (fixed_) return;
+  entry(size - 1, n_) = line.pressure / (mean_scale_ * period_deg());
+  if (!pipe_) {
+    const Load::Flow load = load_.flow(line, load_size);
+    entry(n_, n_) += line_factor * (-load.by_side + (delivered - load.value) *
+                                                        (line.d_stiffness - 1) / line.stiffness);
+    by_load[n_] = -line_factor * load.by_size;
+    return;
+  }
+  const double* modes = y + pipe_at_;
+  entry(n_, n_) +=
+      line_factor * ((delivered - pipe_->inflow(modes)) * (line.d_stiffness - 1) / line.stiffness);
+  // What is given at the far end follows from the pressure there, which is that of every mode.
+  const Load::Flow load = fixed_end_ ? Load::Flow() : load_.flow(pipe_->end_side(modes), load_size);
+  for (int i = 0; i < pipe_->size(); ++i) {
+    const int row = pipe_at_ + i;
+    for (int j = 0; j < pipe_->size(); ++j)
+      entry(row, pipe_at_ + j) =
+          seconds_per_degree_ *
+          (pipe_->by_state(i, j) + (j < pipe_->pressures() ? pipe_->by_end(i) * load.by_side : 0));
+    entry(row, n_) = seconds_per_degree_ * pipe_->by_start(i) * line.pressure;
+    by_load[row] = seconds_per_degree_ * pipe_->by_end(i) * load.by_size;
+  }
+  for (int j = pipe_->pressures(); j < pipe_->size(); ++j)
+    entry(n_, pipe_at_ + j) = -line_factor * pipe_->inflow_by(j - pipe_->pressures());
 }
 
-void Network::flows(double x, const double* y, double load_area, Flows& flows) const {
+void Network::flows(double x, const double* y, double load_size, Flows& flows) const {
   flows.suction.resize(n_);
   flows.delivery.resize(n_);
   flows.leakage.resize(n_);
-  const Fluid::State line = open_ ? outside_ : fluid_.state(y[n_]);
+  const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
+  const Fluid::State source = suction_line_ ? fluid_.state(y[suction_at_]) : suction_state_;
   flows.load = 0;
   flows.power = 0;
   for (int k = 0; k < n_; ++k) {
     const double angle = angle_deg(x, k);
+    const Chamber::Volume volume = chamber_.volume(radians(angle));
     const Fluid::State at = fluid_.state(y[k]);
-    flows.delivery[k] = orifice(delivery_.area(angle), at, line).value;
-    flows.suction[k] = orifice(suction_.area(angle), suction_state_, at).value;
-    flows.leakage[k] = leak(at).value;
+    flows.delivery[k] = orifice_.flow(delivery_.area(angle), at, line).value;
+    flows.suction[k] = orifice_.flow(suction_.area(angle), source, at).value;
+    flows.leakage[k] = leakage_.flow(at, volume.value).value;
     flows.load += flows.delivery[k];
-    flows.power -= fluid_.gauge(y[k]) * chamber_.volume(radians(angle)).slope * kRadPerDegree /
-                   seconds_per_degree_;
+    flows.power -= fluid_.gauge(y[k]) * volume.slope * kRadPerDegree / seconds_per_degree_;
   }
-  if (!open_) flows.load = orifice(load_area, line, outside_).value;
+  if (!fixed_) flows.load = to_load(y, line, load_size);
 }
 
 }  // namespace bentaxis::hydraulics

@@ -1,28 +1,35 @@
-// The equations of the pump's hydraulic side: N chambers, two ports, a delivery volume, a load.
+// The equations of the pump's hydraulic side: N chambers, two ports, lines, a load.
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "bentaxis/pump/case.h"
 #include "chamber.h"
 #include "fluid.h"
+#include "leakage.h"
+#include "load.h"
+#include "orifice.h"
 #include "port.h"
+#include "suction_line.h"
+#include "transmission_line.h"
 
 namespace bentaxis::hydraulics {
 
 /// Rates of change of all pressures with the shaft angle x (degrees, which is where edges are
 /// exact) at constant speed.
 ///
-/// State: s_1..s_N of the chambers, s = ln(P/P0); with a load also s_d of the delivery volume and
-/// the mean so far of its gauge pressure over the pressure asked for. Chamber k stands at
-/// x - 360 (k-1)/N degrees. Balance of mass of a chamber with d(density)/density = dP/K:
+/// State: s_1..s_N of the chambers, s = ln(P/P0); then, of what there is, s_d of the delivery
+/// volume, s_s of the volume at the suction port and the flow of the suction line over the ideal
+/// one, the modes of the delivery line; and with a delivery volume the mean so far of its gauge
+/// pressure over the pressure asked for. Chamber k stands at x - 360 (k-1)/N degrees. Balance of
+/// mass of a volume with d(density)/density = dP/K:
 ///
-///   ds/dx = (K/P) (dt/dx sum(mass flows)/(density V) - (dV/dx)/V),
+///   ds/dx = (K/P) (dt/dx sum(mass flows)/(density V) - (dV/dx)/V).
 ///
-/// mass flow through an orifice Cd a sqrt(2 density) dp/(dp^2 + pcr^2)^(1/4), density the mean of
-/// both sides; leakage to the case laminar. With a delivery pressure of 0 the line is open: it
-/// stays at atmospheric pressure and there is no load.
+/// A delivery line at constant pressure (0 among them, an open line) without a pipe before it has
+/// no state: the delivery port stays at that pressure and takes what comes.
 class Network {
  public:
   /// @throws InputError where a case file that says the same would be refused; at standstill,
@@ -30,20 +37,27 @@ class Network {
   explicit Network(const Case& the_case);
 
   int pistons() const { return n_; }
-  bool open_line() const { return open_; }
-  /// Pressures in the state: N, or N + 1 with a load.
-  int pressures() const { return open_ ? n_ : n_ + 1; }
-  /// Length of the state: pressures, and with a load the mean.
-  int size() const { return open_ ? n_ : n_ + 2; }
+  /// Whether the delivery port is held at a pressure, without a delivery volume in the state.
+  bool fixed_line() const { return fixed_; }
+  /// Whether the size of the load is one more unknown, for which the mean delivery pressure is
+  /// given.
+  bool load_sought() const { return sought_; }
+  const Load& load() const { return load_; }
+  /// Pressures of chambers and delivery volume, the first of the state: N, or N + 1.
+  int pressures() const { return fixed_ ? n_ : n_ + 1; }
+  /// What comes back after a period, the first of the state: all but the mean.
+  int states() const { return states_; }
+  /// Length of the state.
+  int size() const { return fixed_ ? states_ : states_ + 1; }
   /// 360/N: after that angle every chamber stands where the one before it stood.
   double period_deg() const { return 360.0 / n_; }
   /// Angles in (0, period) where any area has an edge, rising.
   const std::vector<double>& edges_deg() const { return edges_deg_; }
 
   /// d(state)/dx. False where a value is not finite.
-  bool rates(double x, const double* y, double load_area, double* dy) const;
-  /// d(rates)/d(state), column-major size() x size(); and d(rates)/d(ln load_area), size().
-  void jacobian(double x, const double* y, double load_area, double* by_state,
+  bool rates(double x, const double* y, double load_size, double* dy) const;
+  /// d(rates)/d(state), column-major size() x size(); and d(rates)/d(ln load_size), size().
+  void jacobian(double x, const double* y, double load_size, double* by_state,
                 double* by_load) const;
 
   /// Mass flows at one state, kg/s; positive as named.
@@ -51,10 +65,10 @@ class Network {
     std::vector<double> suction;   ///< from the suction port into each chamber
     std::vector<double> delivery;  ///< from each chamber into the delivery port
     std::vector<double> leakage;   ///< from each chamber to the case
-    double load = 0;               ///< from the delivery volume; open line: all of the delivery
+    double load = 0;               ///< into the load; fixed line: all of the delivery
     double power = 0;              ///< of the pistons on the oil: -sum p dV/dt, W, p gauge
   };
-  void flows(double x, const double* y, double load_area, Flows& flows) const;
+  void flows(double x, const double* y, double load_size, Flows& flows) const;
 
   const Fluid& fluid() const { return fluid_; }
   const Chamber& chamber() const { return chamber_; }
@@ -64,28 +78,49 @@ class Network {
   double suction_log_pressure() const { return suction_s_; }
   double delivery_log_pressure() const { return delivery_s_; }  ///< of the mean asked for
   double delivery_pressure() const { return delivery_pressure_; }
-  /// Area that passes a mass flow at the delivery pressure asked for, m2. Not for an open line.
-  double load_area_for(double mass_flow) const;
+  /// What the mean in the state is a multiple of, Pa.
+  double mean_scale() const { return mean_scale_; }
+  /// Gauge pressure of the delivery volume, or of the fixed line.
+  double delivery_gauge(const double* y) const {
+    return fluid_.gauge(fixed_ ? delivery_s_ : y[n_]);
+  }
+  bool has_suction_line() const { return suction_line_.has_value(); }
+  bool has_delivery_line() const { return pipe_.has_value(); }
+  /// Gauge pressure in the suction port.
+  double suction_gauge(const double* y) const {
+    return fluid_.gauge(suction_line_ ? y[suction_at_] : suction_s_);
+  }
+  /// Gauge pressure in front of the load.
+  double load_gauge(const double* y) const;
+  /// Displacement x speed at the density in the tank, kg/s.
+  double ideal_mass_flow() const;
+  /// Size of the load that passes a mass flow at the delivery pressure asked for; or the given one.
+  double load_size_for(double mass_flow) const;
+  /// States with these pressures s in all chambers and on the delivery side, and a mass flow in the
+  /// lines.
+  std::vector<double> uniform(double chambers, double delivery, double mass_flow) const;
   /// Displacement of the pump, m3 per revolution.
   double displacement() const { return n_ * chamber_.swept(); }
   double angle_deg(double x, int k) const { return x - period_deg() * k; }  ///< k from 0
 
  private:
-  // Mass flow from side 1 to side 2 and its derivatives with respect to s on either side.
-  struct Flow {
-    double value = 0, by_first = 0, by_second = 0;
-  };
-  Flow orifice(double area, const Fluid::State& first, const Fluid::State& second) const;
-  Flow leak(const Fluid::State& chamber) const;
+  double to_load(const double* y, const Fluid::State& line, double load_size) const;
 
   int n_;
-  bool open_;
+  bool fixed_end_;  // the far end of the delivery side is held at a pressure
   Fluid fluid_;
   Chamber chamber_;
   PortOpening delivery_, suction_;
-  double seconds_per_degree_, leakage_, delivery_volume_, discharge_, transition_squared_;
-  double suction_s_, delivery_s_, delivery_pressure_;
-  Fluid::State suction_state_, case_state_, outside_;
+  double seconds_per_degree_, delivery_volume_, suction_volume_ = 0;
+  Orifice orifice_;
+  Leakage leakage_;
+  double suction_s_, delivery_s_, delivery_pressure_, mean_scale_;
+  Fluid::State suction_state_, fixed_state_, outside_;
+  Load load_;
+  std::optional<TransmissionLine> pipe_;
+  std::optional<SuctionLine> suction_line_;
+  bool fixed_, sought_;
+  int suction_at_ = 0, pipe_at_ = 0, states_ = 0;  // places in the state
   std::vector<double> edges_deg_;
 };
 

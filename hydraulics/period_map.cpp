@@ -18,19 +18,19 @@ constexpr int kMostHalvings = 12;
 
 }  // namespace
 
-double PeriodMap::load_area(const Vector& z) const {
-  return sized_ ? std::exp(z[network_.pressures()]) : 0;
+double PeriodMap::load_size(const Vector& z) const {
+  if (sized_) return std::exp(z[network_.states()]);
+  return sizing_ == Sizing::closed ? network_.load().closed() : network_.load().size();
 }
 
-std::vector<double> PeriodMap::pressures(const Vector& z) const {
-  return {z.data(), z.data() + network_.pressures()};
+std::vector<double> PeriodMap::states(const Vector& z) const {
+  return {z.data(), z.data() + network_.states()};
 }
 
 std::vector<double> PeriodMap::relabelled(const std::vector<double>& end) const {
   const int n = network_.pistons();
-  std::vector<double> next(network_.pressures());
+  std::vector<double> next(end.begin(), end.begin() + network_.states());
   for (int k = 0; k < n; ++k) next[(k + n - 1) % n] = end[k];
-  if (!network_.open_line()) next[n] = end[n];
   return next;
 }
 
@@ -38,20 +38,23 @@ PeriodMap::Vector PeriodMap::residual(const Vector& z, double tolerance, Matrix*
                                       Integrals* integrals, const Integrator::Watch& watch) {
   std::vector<double> sensitivity;
   const auto end =
-      integrator_.over_period(pressures(z), load_area(z), tolerance,
+      integrator_.over_period(states(z), load_size(z), tolerance,
                               jacobian != nullptr ? &sensitivity : nullptr, integrals, watch);
   const int n = network_.pistons();
   const int size = network_.size();
   Vector result(unknowns());
   const auto next = relabelled(end);
-  for (int i = 0; i < network_.pressures(); ++i) result[i] = next[i] - z[i];
+  for (int i = 0; i < network_.states(); ++i) result[i] = next[i] - z[i];
   if (sized_) result[unknowns() - 1] = end[size - 1] - 1;
+  mean_ =
+      network_.fixed_line() ? network_.delivery_pressure() : end[size - 1] * network_.mean_scale();
   if (jacobian != nullptr) {
     const Eigen::Map<const Matrix> end_by_start(sensitivity.data(), size, unknowns());
     jacobian->resize(unknowns(), unknowns());
     for (int k = 0; k < n; ++k) jacobian->row((k + n - 1) % n) = end_by_start.row(k);
-    for (int i = n; i < unknowns(); ++i) jacobian->row(i) = end_by_start.row(i);
-    for (int i = 0; i < network_.pressures(); ++i) (*jacobian)(i, i) -= 1;
+    for (int i = n; i < network_.states(); ++i) jacobian->row(i) = end_by_start.row(i);
+    if (sized_) jacobian->row(unknowns() - 1) = end_by_start.row(size - 1);
+    for (int i = 0; i < network_.states(); ++i) (*jacobian)(i, i) -= 1;
   }
   return result;
 }
@@ -62,7 +65,7 @@ void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::M
             int& iterations, const std::function<void()>& alive) {
   PeriodMap::Vector f = map.residual(z, tolerance, &jacobian);
   double best = size_of(f);
-  for (; best > kNoise * tolerance; ++iterations) {
+  for (; best > map.noise() * tolerance; ++iterations) {
     if (alive) alive();
     if (iterations >= kMostIterations)
       throw ComputationError("hydraulics: no periodic state found after " +
@@ -72,7 +75,7 @@ void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::M
     PeriodMap::Vector step = -jacobian.partialPivLu().solve(f);
     if (!step.allFinite())
       throw ComputationError(
-          "hydraulics: no periodic state found: no load orifice holds this mean delivery pressure");
+          "hydraulics: no periodic state found: no load holds this mean delivery pressure");
     step *= std::min(1.0, kLongestStep / size_of(step));
     bool accepted = false;
     for (int halving = 0; halving < kMostHalvings && !accepted; ++halving, step /= 2) {

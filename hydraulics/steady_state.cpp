@@ -41,21 +41,21 @@ constexpr int kFewestRows = 720, kMostRows = 7200;
 // Chambers as they come to stand at theta = 0 when half of them fill and half deliver.
 Vector first_guess(const Network& network, const std::optional<Start>& start) {
   const int n = network.pistons();
-  const bool open = network.open_line();
-  Vector z(network.pressures() + (open ? 0 : 1));
-  const double ideal_mass_flow = network.fluid().state(network.suction_log_pressure()).density *
-                                 network.displacement() / (360 * network.seconds_per_degree());
+  const Fluid& fluid = network.fluid();
+  const double flow = network.ideal_mass_flow();
+  auto states = network.uniform(
+      network.delivery_log_pressure(),
+      start ? fluid.log_pressure(start->line) : network.delivery_log_pressure(), flow);
   for (int k = 0; k < n; ++k) {
     const bool fills = k == 0 || 360.0 * k / n > 180;  // the chamber stands at -360 k/N
-    z[k] = start   ? network.fluid().log_pressure(start->chambers)
-           : fills ? network.suction_log_pressure()
-                   : network.delivery_log_pressure();
+    if (start)
+      states[k] = fluid.log_pressure(start->chambers);
+    else if (fills)
+      states[k] = network.suction_log_pressure();
   }
-  if (!open) {
-    z[n] = start ? network.fluid().log_pressure(start->line) : network.delivery_log_pressure();
-    z[n + 1] = std::log(start ? start->load_area : network.load_area_for(ideal_mass_flow));
-  }
-  return z;
+  if (network.load_sought())
+    states.push_back(std::log(start ? start->load_size : network.load_size_for(flow)));
+  return Eigen::Map<const Vector>(states.data(), static_cast<Eigen::Index>(states.size()));
 }
 
 // The state that a period repeats, and the derivatives that keep it there.
@@ -68,8 +68,9 @@ struct Found {
 // A few periods as they come: then every chamber has met a port and forgotten its start.
 void settle(const Network& network, PeriodMap& map, Vector& z, bool line_given) {
   for (int i = 0; i < kSettlingPeriods; ++i) {
-    z.head(network.pressures()) += map.residual(z, kCoarse).head(network.pressures());
-    if (!network.open_line() && !line_given) z[network.pistons()] = network.delivery_log_pressure();
+    z.head(network.states()) += map.residual(z, kCoarse).head(network.states());
+    if (!network.fixed_line() && !line_given)
+      z[network.pistons()] = network.delivery_log_pressure();
   }
 }
 
@@ -97,15 +98,15 @@ void refine(const Network& network, PeriodMap& map, double tolerance, Found& fou
       states.emplace_back(step.to, std::vector<double>(y, y + network.pressures()));
     });
     const double size = size_of(f);
-    if (size <= kNoise * tolerance) return;
+    if (size <= map.noise() * tolerance) return;
     if (!(size < 0.5 * before)) {
-      if (size > 0.9 * before && size <= kStalled * kNoise * tolerance) return;
+      if (size > 0.9 * before && size <= kStalled * map.noise() * tolerance) return;
       // Slow: take the fine map's own derivatives.
       Matrix jacobian;
       search(map, found.z, tolerance, jacobian, found.iterations, alive);
       found.chord.compute(jacobian);
       f = map.residual(found.z, tolerance);
-      if (size_of(f) > 100 * kNoise * tolerance)
+      if (size_of(f) > 100 * map.noise() * tolerance)
         throw ComputationError("hydraulics: no periodic state found: pressures still change by " +
                                number_text(size_of(f)) + " of themselves per period");
       return;
@@ -120,8 +121,8 @@ void refine(const Network& network, PeriodMap& map, double tolerance, Found& fou
 void refuse_what_is_out_of_reach(const Network& network, const Case& the_case,
                                  const std::function<void()>& alive) {
   Integrator integrator(network, alive);
-  PeriodMap map(network, Load::closed, integrator);
-  Vector z = first_guess(network, Start{0, 0, 1}).head(network.pressures());
+  PeriodMap map(network, Sizing::closed, integrator);
+  Vector z = first_guess(network, Start{0, 0, 1}).head(network.states());
   double largest = kInfinity, left = kInfinity;
   try {
     settle(network, map, z, true);
@@ -133,8 +134,7 @@ void refuse_what_is_out_of_reach(const Network& network, const Case& the_case,
       // As far as it came.
     }
     left = size_of(map.residual(z, kCoarse));
-    largest =
-        integrator.over_period(map.pressures(z), 0, kCoarse).back() * network.delivery_pressure();
+    largest = map.mean_delivery();
   } catch (const ComputationError&) {
     return;  // then the first failure has to say it
   }
@@ -142,8 +142,8 @@ void refuse_what_is_out_of_reach(const Network& network, const Case& the_case,
     throw ComputationError(
         the_case.file.string() +
         ": [pressure] delivery_bar = " + number_text(network.delivery_pressure() / kPascalPerBar) +
-        ": out of reach: with nothing passing the load orifice the mean delivery pressure is " +
-        (left > kNoise * kCoarse ? "about " : "") +
+        ": out of reach: with nothing passing the load the mean delivery pressure is " +
+        (left > map.noise() * kCoarse ? "about " : "") +
         number_text(std::round(10 * largest / kPascalPerBar) / 10) +
         " bar, and leakage, backflow and compression take all of the flow");
 }
@@ -185,7 +185,7 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   // Once more, finer: this is the result, and its difference from the last one its error.
   found.z -= found.chord.solve(f);
   const double finer = std::max(tolerance / 10, kFinest);
-  TurnRecord turn(network, map.load_area(found.z), rows_of(the_case));
+  TurnRecord turn(network, map.load_size(found.z), rows_of(the_case));
   Integrals integrals;
   f = map.residual(found.z, finer, nullptr, &integrals,
                    [&](const Integrator::Step& step) { turn.see(step); });
@@ -200,11 +200,12 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   result.convergence.pieces = curve.log_pressure.pieces().size();
   result.convergence.residual = size_of(f);
   result.convergence.tolerance = finer;
-  result.log_pressures = map.pressures(found.z);
+  result.states = map.states(found.z);
   Summary& s = result.summary;
-  s.load_area = map.load_area(found.z);
-  s.delivery_mean =
-      network.open_line() ? 0 : (1 + f[network.pressures()]) * network.delivery_pressure();
+  s.load = network.load().kind();
+  s.atmosphere = network.fluid().atmosphere();
+  s.load_size = network.fixed_line() ? 0 : map.load_size(found.z);
+  s.delivery_mean = map.mean_delivery();
   turn.summarize(integrals, s);
   summarize(the_case, network, integrals, s);
   result.computed = std::make_shared<ComputedPressure>(std::move(curve));
@@ -251,7 +252,7 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
     if (progress) progress(fraction = std::min(0.95, fraction + 0.001));
   };
   Integrator integrator(network, alive);
-  PeriodMap map(network, Load::mean_pressure, integrator);
+  PeriodMap map(network, Sizing::mean_pressure, integrator);
   SteadyState result;
   double tolerance = the_case.hydraulics->tolerance;
   Found found;
@@ -266,10 +267,15 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
       tolerance = std::max(tolerance / 10, kFinest);
       if (!improve(the_case, network, map, tolerance, found, alive, result)) break;
     }
-    if (!network.open_line() && !(result.summary.mass_flow > 0))
-      throw ComputationError("hydraulics: nothing is left for the load at this delivery pressure");
-  } catch (const ComputationError&) {
-    if (!network.open_line()) refuse_what_is_out_of_reach(network, the_case, alive);
+    if (!network.fixed_line() && !(result.summary.mass_flow > 0))
+      throw ComputationError("hydraulics: nothing is left for the load");
+  } catch (const ComputationError& error) {
+    if (network.load().kind() == LoadKind::flow && !network.fixed_line())
+      throw ComputationError(
+          the_case.file.string() + ": [load] flow_l_per_min = " +
+          number_text(the_case.hydraulics->load->flow / kLitrePerMinute) +
+          ": no delivery pressure found at which the pump delivers it: " + error.what());
+    if (network.load_sought()) refuse_what_is_out_of_reach(network, the_case, alive);
     throw;
   }
   result.chamber.theta_deg = result.table.theta_deg;
@@ -286,14 +292,13 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
   return result;
 }
 
-ResultTable transient_from_rest(const Case& the_case, double load_area, int revolutions,
+ResultTable transient_from_rest(const Case& the_case, double load_size, int revolutions,
                                 int samples, const Progress& progress) {
   const Network network(the_case);
   Integrator integrator(network);
-  const PeriodMap map(network, Load::mean_pressure, integrator);
+  const PeriodMap map(network, Sizing::mean_pressure, integrator);
   const int n = network.pistons();
-  std::vector<double> y(network.pressures(), network.suction_log_pressure());
-  if (!network.open_line()) y[n] = 0;
+  std::vector<double> y = network.uniform(network.suction_log_pressure(), 0, 0);
   ResultTable table;
   table.name = "transient";
   table.channels = pressure_channels();
@@ -303,7 +308,7 @@ ResultTable transient_from_rest(const Case& the_case, double load_area, int revo
   for (long long period = 0; period < periods; ++period) {
     int next = 0;
     y = map.relabelled(integrator.over_period(
-        y, load_area, the_case.hydraulics->tolerance, nullptr, nullptr,
+        y, load_size, the_case.hydraulics->tolerance, nullptr, nullptr,
         [&](const Integrator::Step& step) {
           for (; next < samples; ++next) {
             const double x = network.period_deg() * next / samples;
@@ -311,7 +316,7 @@ ResultTable transient_from_rest(const Case& the_case, double load_area, int revo
             const double* state = step.state(x);
             table.theta_deg.push_back(static_cast<double>(period) * network.period_deg() + x);
             table.values.push_back(fluid.gauge(state[chamber]) / kPascalPerBar);
-            table.values.push_back(network.open_line() ? 0 : fluid.gauge(state[n]) / kPascalPerBar);
+            table.values.push_back(network.delivery_gauge(state) / kPascalPerBar);
           }
         }));
     chamber = (chamber + n - 1) % n;
@@ -323,7 +328,32 @@ ResultTable transient_from_rest(const Case& the_case, double load_area, int revo
 void give_to(Case& the_case, const SteadyState& state) {
   the_case.pressure.computed = state.computed;
   if (the_case.pressure.points > 0) the_case.pressure.curve = state.chamber;
+  const auto& load = the_case.hydraulics->load;
+  if (load && load->sets_pressure() && the_case.pressure.ports.delivery > 0)
+    the_case.pressure.ports.delivery = state.summary.delivery_mean;
 }
+
+namespace {
+
+Line load_line(const Summary& s) {
+  switch (s.load) {
+    case LoadKind::laminar:
+      return {"load, laminar conductance", s.load_size * kPascalPerBar / kLitrePerMinute,
+              "l/min/bar"};
+    case LoadKind::relief_valve:
+      return {"load, relief valve's cracking pressure",
+              (s.load_size - s.atmosphere) / kPascalPerBar, "bar"};
+    case LoadKind::constant_pressure:
+      return {"load, constant pressure", s.delivery_mean / kPascalPerBar, "bar"};
+    case LoadKind::flow:
+      return {"load, given flow", s.flow / kLitrePerMinute, "l/min"};
+    case LoadKind::orifice:
+      break;
+  }
+  return {"load orifice", s.load_size * 1e6, "mm2"};
+}
+
+}  // namespace
 
 std::vector<Line> lines(const SteadyState& state) {
   const Summary& s = state.summary;
@@ -354,7 +384,7 @@ std::vector<Line> lines(const SteadyState& state) {
       {"work of the pistons per turn", s.work, "J"},
       {"mean torque of that work", s.work / (2 * kPi), "Nm"},
       {"mass in minus mass out, over mass in", (s.mass_in - s.mass_out) / s.mass_in, ""},
-      {"load orifice", s.load_area * 1e6, "mm2"},
+      load_line(s),
       {"both ports open to a chamber (negative overlap)", s.both_open_deg, "deg per turn"},
       {"both ports closed (positive overlap)", s.both_closed_deg, "deg per turn"},
   };

@@ -29,7 +29,7 @@ Channel channel(const std::string& name, const std::string& meaning, const std::
   return c;
 }
 
-std::vector<Channel> turn_channels() {
+std::vector<Channel> turn_channels(const Network& network) {
   std::vector<Channel> all = pressure_channels();
   const struct {
     const char *name, *meaning;
@@ -40,7 +40,7 @@ std::vector<Channel> turn_channels() {
                {"s", "through the suction port", 0},
                {"d", "through the delivery port", 0},
                {"l", "leakage of all chambers", 0},
-               {"load", "through the load orifice", 0}};
+               {"load", "into the load", 0}};
   for (const auto& f : flows)
     all.push_back(channel(std::string("Q") + f.name + "_l_per_min",
                           std::string("volume flow ") + f.meaning + ", at suction density", "l/min",
@@ -51,6 +51,12 @@ std::vector<Channel> turn_channels() {
   for (const auto& f : flows)
     all.push_back(channel(std::string("m") + f.name + "_g_per_s",
                           std::string("mass flow ") + f.meaning, "g/s", 1e-3, f.piston));
+  if (network.has_suction_line())
+    all.push_back(
+        channel("p_suction_bar", "pressure in the suction port, gauge", "bar", kPascalPerBar, 0));
+  if (network.has_delivery_line())
+    all.push_back(channel("p_load_bar", "pressure at the end of the delivery line, gauge", "bar",
+                          kPascalPerBar, 0));
   return all;
 }
 
@@ -89,8 +95,8 @@ std::vector<Channel> pressure_channels() {
       channel("p_delivery_bar", "pressure in the delivery volume, gauge", "bar", kPascalPerBar, 0)};
 }
 
-TurnRecord::TurnRecord(const Network& network, double load_area, int rows)
-    : network_(network), load_area_(load_area), state_(network.size()) {
+TurnRecord::TurnRecord(const Network& network, double load_size, int rows)
+    : network_(network), load_size_(load_size), state_(network.size()) {
   // Row i falls into segment i n / rows, seen by the chamber that starts there.
   const int n = network.pistons();
   const double period = network.period_deg();
@@ -103,7 +109,7 @@ TurnRecord::TurnRecord(const Network& network, double load_area, int rows)
   std::stable_sort(places_.begin(), places_.end(),
                    [](const Place& a, const Place& b) { return a.x < b.x; });
   delivery_.resize(rows);
-  values_.resize(rows * turn_channels().size());
+  values_.resize(rows * turn_channels(network).size());
   const auto windows = static_cast<std::size_t>(std::ceil(period / kRippleWindow));
   delivered_.assign(windows * kPerWindow + 1, 0.0);
   loaded_ = delivered_;
@@ -113,7 +119,7 @@ void TurnRecord::add_node(const Integrator::Step& step, double x) {
   const double* y = step.state(x);
   x_.push_back(x);
   s_.insert(s_.end(), y, y + network_.pressures());
-  network_.rates(x, y, load_area_, state_.data());
+  network_.rates(x, y, load_size_, state_.data());
   slope_.insert(slope_.end(), state_.begin(), state_.begin() + network_.pressures());
 }
 
@@ -121,9 +127,9 @@ void TurnRecord::add_row(const Integrator::Step& step) {
   const Place& place = places_[next_place_++];
   const double* y = step.state(place.x);
   const int k = place.chamber;
-  network_.flows(place.x, y, load_area_, flows_);
+  network_.flows(place.x, y, load_size_, flows_);
   const double angle = angles_[place.row];
-  delivery_[place.row] = network_.open_line() ? 0 : network_.fluid().gauge(y[network_.pistons()]);
+  delivery_[place.row] = network_.delivery_gauge(y);
   const double mass[] = {
       flows_.suction[k],      flows_.delivery[k],    flows_.leakage[k], total(flows_.suction),
       total(flows_.delivery), total(flows_.leakage), flows_.load};
@@ -136,6 +142,8 @@ void TurnRecord::add_row(const Integrator::Step& step) {
   *to++ = network_.suction().area(angle);
   *to++ = network_.delivery().area(angle);
   for (const double m : mass) *to++ = m;
+  if (network_.has_suction_line()) *to++ = network_.suction_gauge(y);
+  if (network_.has_delivery_line()) *to++ = network_.load_gauge(y);
 }
 
 void TurnRecord::see(const Integrator::Step& step) {
@@ -199,7 +207,7 @@ ComputedPressure TurnRecord::curve(double error) const {
 ResultTable TurnRecord::table(const PressureTrace& chamber) const {
   ResultTable table;
   table.name = "hydraulics";
-  table.channels = turn_channels();
+  table.channels = turn_channels(network_);
   table.theta_deg = angles_;
   table.values = values_;
   const std::size_t columns = table.columns();
@@ -234,7 +242,7 @@ void TurnRecord::summarize(const Integrals& over_period, Summary& summary) const
       if (p > summary.chamber_greatest)
         summary.chamber_greatest = p, summary.chamber_greatest_deg = angle;
     }
-    const double line = network_.open_line() ? 0 : fluid.gauge(s(i, n));
+    const double line = network_.delivery_gauge(&s_[i * network_.pressures()]);
     summary.delivery_least = std::min(summary.delivery_least, line);
     summary.delivery_greatest = std::max(summary.delivery_greatest, line);
   }
@@ -243,7 +251,7 @@ void TurnRecord::summarize(const Integrals& over_period, Summary& summary) const
   delivered.back() = over_period.delivery;
   loaded.back() = over_period.load;
   summary.port_flow_ripple = ripple(delivered);
-  summary.flow_ripple = network_.open_line() ? summary.port_flow_ripple : ripple(loaded);
+  summary.flow_ripple = network_.fixed_line() ? summary.port_flow_ripple : ripple(loaded);
 }
 
 }  // namespace bentaxis::hydraulics

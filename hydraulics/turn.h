@@ -20,7 +20,7 @@ std::vector<Channel> pressure_channels();
 class TurnRecord {
  public:
   /// @param rows  of the table over the turn
-  TurnRecord(const Network& network, double load_area, int rows);
+  TurnRecord(const Network& network, double load_size, int rows);
 
   /// For Integrator::over_period.
   void see(const Integrator::Step& step);
@@ -53,7 +53,7 @@ class TurnRecord {
   void add_row(const Integrator::Step& step);
 
   const Network& network_;
-  double load_area_;
+  double load_size_;
   std::vector<double> x_, s_, slope_, state_;  // of the nodes; s and slope: pressures() each
   std::vector<std::size_t> edges_;             // nodes at which a stretch between edges begins
   struct Place {

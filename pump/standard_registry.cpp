@@ -35,6 +35,12 @@ constexpr Unit kTorquePerSpeed{"Nm/rpm", [](double x) { return x / kRadPerSecond
 constexpr Unit kMegapascals{"MPa", [](double x) { return x * 1e6; }};
 constexpr Unit kPercent{"percent", [](double x) { return x / 100; }};
 constexpr Unit kCubicCentimetres{"cm3", [](double x) { return x / 1e6; }};
+constexpr Unit kMicrometres{"um", [](double x) { return x / 1e6; }};
+constexpr Unit kMetres{"m"};
+constexpr Unit kCentistokes{"cSt", [](double x) { return x / 1e6; }};
+constexpr Unit kPerGigapascal{"per GPa", [](double x) { return x / 1e9; }};
+constexpr Unit kLitresPerMinute{"l/min", [](double x) { return x / 6e4; }};
+constexpr Unit kAreaPerPressure{"mm2/bar", [](double x) { return x / 1e6 / kPascalPerBar; }};
 constexpr Unit kLitres{"l", [](double x) { return x / 1e3; }};
 // 1 l/min = 1e-3/60 m3/s
 constexpr Unit kLeakage{"l/min/bar", [](double x) { return x / 6e4 / kPascalPerBar; }};
@@ -45,6 +51,8 @@ constexpr Unit kLeakage{"l/min/bar", [](double x) { return x / 6e4 / kPascalPerB
 const When kIdeal{"pressure", "kind", {"ideal"}};
 const When kCurve{"pressure", "kind", {"curve"}};
 const When kHydraulic{"pressure", "kind", {"hydraulic"}};
+const When kReliefValve{"load", "kind", {"relief_valve"}};
+const When kGivenFlow{"load", "kind", {"flow"}};
 
 const Part kRealPiston{{"piston", "inertia", {"real", "dynamically_equivalent"}},
                        [](const ConstView& v) { return v.real_piston() != nullptr; },
@@ -60,6 +68,29 @@ const Part kHydraulicData{kHydraulic,
                           [](const View& v) {
                             if (v.hydraulics != nullptr) v.hydraulics->reset();
                           }};
+
+// A part of the hydraulic data that has a table of its own; null where it is missing.
+template <auto kMember, class V>
+auto hydraulic_part(const V& v) -> decltype(&*(v.hydraulic_data()->*kMember)) {
+  auto* const data = v.hydraulic_data();
+  return data != nullptr && (data->*kMember).has_value() ? &*(data->*kMember) : nullptr;
+}
+template <auto kMember>
+const Part kHydraulicPart{{},
+                          [](const ConstView& v) { return hydraulic_part<kMember>(v) != nullptr; },
+                          [](const View& v) {
+                            if (v.hydraulic_data() != nullptr)
+                              (v.hydraulic_data()->*kMember).emplace();
+                          }};
+template <auto kMember, auto kField>
+NumberField number_of() {
+  return number_at([](const auto& v) { return in(hydraulic_part<kMember>(v), kField); });
+}
+constexpr auto kOil = &HydraulicData::oil;
+constexpr auto kGaps = &HydraulicData::gaps;
+constexpr auto kLoad = &HydraulicData::load;
+constexpr auto kSuctionLine = &HydraulicData::suction_line;
+constexpr auto kDeliveryLine = &HydraulicData::delivery_line;
 
 // ---- What a rule says
 // ----------------------------------------------------------------------------
@@ -188,6 +219,40 @@ std::string vacuum_refusal(const ConstView& v) {
   return v.pressure->ports.suction > -v.hydraulic_data()->atmosphere
              ? ""
              : "must exceed -suction_bar of [pressure]: no absolute pressure is below zero";
+}
+
+std::string viscosity_refusal(const ConstView& v) {
+  const OilData* oil = hydraulic_part<kOil>(v);
+  return oil == nullptr || oil->viscosity_100 < oil->viscosity_40
+             ? ""
+             : "must be below viscosity_40C_cSt: oil thins as it warms";
+}
+
+std::string oil_refusal(const ConstView& v) {
+  return hydraulic_part<kGaps>(v) == nullptr || hydraulic_part<kOil>(v) != nullptr
+             ? ""
+             : "needs the table [oil]: gaps leak by viscosity";
+}
+
+std::string gap_length_refusal(const ConstView& v) {
+  const GapData* gaps = hydraulic_part<kGaps>(v);
+  return gaps == nullptr || gaps->piston_gap == 0 || gaps->piston_gap_length > 0
+             ? ""
+             : "must be > 0 where piston_gap_um is";
+}
+
+std::string plate_gap_refusal(const ConstView& v) {
+  const GapData* gaps = hydraulic_part<kGaps>(v);
+  return gaps == nullptr || gaps->plate_gap == 0 || v.port_plate() != nullptr
+             ? ""
+             : "needs the lands of [port_plate]";
+}
+
+std::string ring_slot_refusal(const ConstView& v) {
+  const GapData* gaps = hydraulic_part<kGaps>(v);
+  return gaps == nullptr || gaps->ring_slot_height == 0 || gaps->ring_slot_length > 0
+             ? ""
+             : "must be > 0 where ring_slot_um is";
 }
 
 // ---- Tables of a kind
@@ -1121,7 +1186,7 @@ Table hydraulics_table() {
              .unit = kLitres,
              .range = kPositive,
              .fallback = {0.5},
-             .meaning = "between pump and load orifice"},
+             .meaning = "between pump and load, or delivery line"},
             {.key = "tolerance",
              .field = number_at(
                  [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::tolerance); }),
@@ -1153,13 +1218,255 @@ Table hydraulics_table() {
             {.key = "vapour_bar", .after = "", .broken = boiling_refusal}}})};
 }
 
+Table oil_table() {
+  return {.name = "oil",
+          .meaning = "viscosity, for gaps and for laminar friction in lines",
+          .part = &kHydraulicPart<kOil>,
+          .parameters = {{.key = "temperature_C",
+                          .field = number_of<kOil, &OilData::temperature>(),
+                          .symbol = "T",
+                          .unit = {"C"},
+                          .range = {-50, 200},
+                          .fallback = {60.0},
+                          .meaning = "of the oil, everywhere"},
+                         {.key = "viscosity_40C_cSt",
+                          .field = number_of<kOil, &OilData::viscosity_40>(),
+                          .symbol = "nu",
+                          .unit = kCentistokes,
+                          .range = {1, 1e5},
+                          .fallback = {46.0},
+                          .meaning = "kinematic, at 40 deg C and atmospheric pressure",
+                          .practice = "ISO VG 46: 46"},
+                         {.key = "viscosity_100C_cSt",
+                          .field = number_of<kOil, &OilData::viscosity_100>(),
+                          .symbol = "nu",
+                          .unit = kCentistokes,
+                          .range = {1, 1e5},
+                          .range_words = "[1, 1e+05], below that at 40 deg C",
+                          .fallback = {6.8},
+                          .meaning = "the same at 100 deg C",
+                          .practice = "ISO VG 46, viscosity index 100: 6.8"},
+                         {.key = "pressure_viscosity_per_GPa",
+                          .field = number_of<kOil, &OilData::pressure_viscosity>(),
+                          .symbol = "alpha",
+                          .unit = kPerGigapascal,
+                          .range = {0, 100},
+                          .fallback = {20.0},
+                          .meaning = "viscosity grows as exp(alpha p)",
+                          .practice = "mineral oil: 15..25"}},
+          .rules = {{.key = "viscosity_100C_cSt",
+                     .after = "viscosity_100C_cSt",
+                     .broken = viscosity_refusal}}};
+}
+
+Table leakage_table() {
+  return {
+      .name = "leakage",
+      .meaning = "gaps from each chamber to the case, beside `leakage_l_per_min_per_bar`; 0: none",
+      .part = &kHydraulicPart<kGaps>,
+      .parameters =
+          {{.key = "piston_gap_um",
+            .field = number_of<kGaps, &GapData::piston_gap>(),
+            .symbol = "h",
+            .unit = kMicrometres,
+            .range = {0, 1000},
+            .fallback = {0.0},
+            .meaning = "between piston and bore, radial, of the concentric piston",
+            .practice = "5..20"},
+           {.key = "piston_gap_length_mm",
+            .field = number_of<kGaps, &GapData::piston_gap_length>(),
+            .symbol = "l",
+            .unit = kMillimetres,
+            .range = kNotNegative,
+            .range_words = "> 0 with a gap",
+            .fallback = {0.0},
+            .meaning = "of that gap, along the bore"},
+           {.key = "piston_gap_kind",
+            .field = choice_at(
+                [](const auto& v) { return in(hydraulic_part<kGaps>(v), &GapData::engaged); }),
+            .words = {"land", "engaged"},
+            .fallback = {std::string("land")},
+            .meaning = "a land that moves with the piston, of the same length always; or what of "
+                       "the piston is in the bore: the length is then the least, at the outer "
+                       "dead centre, and grows by the piston's way in"},
+           {.key = "eccentricity",
+            .field = number_of<kGaps, &GapData::eccentricity>(),
+            .symbol = "e",
+            .range = {0, 1},
+            .fallback = {0.0},
+            .meaning = "of the piston in its bore, over the radial gap; 1: it touches"},
+           {.key = "plate_gap_um",
+            .field = number_of<kGaps, &GapData::plate_gap>(),
+            .symbol = "h_p",
+            .unit = kMicrometres,
+            .range = {0, 1000},
+            .fallback = {0.0},
+            .meaning = "between block and port plate, over the lands of `[port_plate]`",
+            .practice = "5..15"},
+           {.key = "ring_slot_um",
+            .field = number_of<kGaps, &GapData::ring_slot_height>(),
+            .symbol = "h_r",
+            .unit = kMicrometres,
+            .range = {0, 1000},
+            .fallback = {0.0},
+            .meaning = "slot that a piston ring leaves at its joint"},
+           {.key = "ring_slot_width_mm",
+            .field = number_of<kGaps, &GapData::ring_slot_width>(),
+            .symbol = "b_r",
+            .unit = kMillimetres,
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "of that slot, across the flow"},
+           {.key = "ring_slot_length_mm",
+            .field = number_of<kGaps, &GapData::ring_slot_length>(),
+            .symbol = "l_r",
+            .unit = kMillimetres,
+            .range = kNotNegative,
+            .range_words = "> 0 with a slot",
+            .fallback = {0.0},
+            .meaning = "of that slot, along the flow: the width of the ring"}},
+      .rules = {{.key = "piston_gap_um", .after = "piston_gap_um", .broken = oil_refusal},
+                {.key = "piston_gap_length_mm",
+                 .after = "piston_gap_length_mm",
+                 .broken = gap_length_refusal},
+                {.key = "plate_gap_um", .after = "plate_gap_um", .broken = plate_gap_refusal},
+                {.key = "ring_slot_length_mm",
+                 .after = "ring_slot_length_mm",
+                 .broken = ring_slot_refusal}}};
+}
+
+Table suction_line_table() {
+  return {.name = "suction_line",
+          .meaning = "pipe from the tank, which is at `suction_bar`, to the suction port",
+          .part = &kHydraulicPart<kSuctionLine>,
+          .parameters = {
+              {.key = "length_m",
+               .field = number_of<kSuctionLine, &SuctionLineData::length>(),
+               .symbol = "L_s",
+               .unit = kMetres,
+               .range = {1e-3, 1000},
+               .meaning = "the oil in it is one mass"},
+              {.key = "diameter_mm",
+               .field = number_of<kSuctionLine, &SuctionLineData::diameter>(),
+               .symbol = "D_s",
+               .unit = kMillimetres,
+               .range = {0.1, 1e4},
+               .meaning = "inside"},
+              {.key = "loss_coefficient",
+               .field = number_of<kSuctionLine, &SuctionLineData::loss>(),
+               .symbol = "zeta",
+               .range = kNotNegative,
+               .fallback = {1.0},
+               .meaning = "pressure lost over the dynamic pressure in the pipe; laminar friction "
+                          "is added where there is `[oil]`",
+               .practice = "entry 0.5, bend 0.3, filter more"},
+              {.key = "volume_l",
+               .field = number_of<kSuctionLine, &SuctionLineData::volume>(),
+               .symbol = "V_s",
+               .unit = kLitres,
+               .range = kPositive,
+               .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                              const SuctionLineData* line = hydraulic_part<kSuctionLine>(v);
+                              if (line == nullptr) return std::nullopt;
+                              return kPi / 8 * line->diameter * line->diameter * line->length * 1e3;
+                            },
+                            .words = "half of the pipe's"},
+               .meaning = "at the suction port"}}};
+}
+
+Table delivery_line_table() {
+  return {.name = "delivery_line",
+          .meaning = "pipe between delivery volume and load, in which waves run",
+          .part = &kHydraulicPart<kDeliveryLine>,
+          .parameters = {{.key = "length_m",
+                          .field = number_of<kDeliveryLine, &DeliveryLineData::length>(),
+                          .symbol = "L",
+                          .unit = kMetres,
+                          .range = {1e-3, 1000},
+                          .meaning = "from the delivery volume to the load"},
+                         {.key = "diameter_mm",
+                          .field = number_of<kDeliveryLine, &DeliveryLineData::diameter>(),
+                          .symbol = "D",
+                          .unit = kMillimetres,
+                          .range = {0.1, 1e4},
+                          .meaning = "inside"},
+                         {.key = "bandwidth_Hz",
+                          .field = number_of<kDeliveryLine, &DeliveryLineData::bandwidth>(),
+                          .symbol = "f",
+                          .unit = {"Hz"},
+                          .range = {1, 1e6},
+                          .range_words = "[1, 1e+06], at most 48 modes",
+                          .fallback = {1000.0},
+                          .meaning = "up to which waves in it are right to 1e-3",
+                          .practice = "8 times the pistons' frequency"},
+                         {.key = "wave_speed_m_per_s",
+                          .field = number_of<kDeliveryLine, &DeliveryLineData::wave_speed>(),
+                          .symbol = "c",
+                          .unit = {"m/s"},
+                          .range = {0, 1e5},
+                          .fallback = {0.0},
+                          .meaning = "0: that of the oil at `delivery_bar`, in a rigid pipe",
+                          .practice = "hose: 600..900"}}};
+}
+
+Table load_table() {
+  return {
+      .name = "load",
+      .meaning = "what the pump delivers against; an orifice where there is no such table",
+      .part = &kHydraulicPart<kLoad>,
+      .parameters = {
+          {.key = "kind",
+           .field = choice_at(
+               [](const auto& v) { return in(hydraulic_part<kLoad>(v), &LoadData::kind); }),
+           .words = {"orifice", "laminar", "relief_valve", "constant_pressure", "flow"},
+           .fallback = {std::string("orifice")},
+           .meaning = "orifice and laminar: of the size that gives the mean `delivery_bar`; "
+                      "relief_valve: likewise by its cracking pressure, where that is not given; "
+                      "constant_pressure: a line held at `delivery_bar`; flow: takes a given flow"},
+          {.key = "cracking_bar",
+           .field = number_of<kLoad, &LoadData::cracking_pressure>(),
+           .symbol = "p_c",
+           .unit = kBar,
+           .range = {0, 10000},
+           .fallback = {0.0},
+           .meaning = "pressure at which the valve begins to open; 0: sought",
+           .active = kReliefValve},
+          {.key = "opening_mm2_per_bar",
+           .field = number_of<kLoad, &LoadData::opening>(),
+           .symbol = "k",
+           .unit = kAreaPerPressure,
+           .range = kPositive,
+           .fallback = {1.0},
+           .meaning = "area that it opens per pressure above that",
+           .practice = "95 l/min at 275 bar take about 9 mm2",
+           .active = kReliefValve},
+          {.key = "full_area_mm2",
+           .field = number_of<kLoad, &LoadData::full_area>(),
+           .unit = kSquareMillimetres,
+           .range = kPositive,
+           .fallback = {100.0},
+           .meaning = "area of the valve fully open",
+           .active = kReliefValve},
+          {.key = "flow_l_per_min",
+           .field = number_of<kLoad, &LoadData::flow>(),
+           .symbol = "Q",
+           .unit = kLitresPerMinute,
+           .range = kNotNegative,
+           .range_words = "> 0, below displacement x speed",
+           .meaning = "taken whatever the pressure, at the density in the tank; the pressure "
+                      "follows, and `delivery_bar` is where its search starts",
+           .active = kGivenFlow}}};
+}
+
 }  // namespace
 
 const Registry& standard_registry() {
   static const Registry registry{
       {top_level(), pump_table(), gear_table(), bearings_table(), piston_table(), shaft_table(),
        block_table(), friction_table(), operation_table(), pressure_table(), port_plate_table(),
-       hydraulics_table(), assumptions_table("analytic", [](const auto& v) { return v.analytic; }),
+       hydraulics_table(), oil_table(), leakage_table(), suction_line_table(),
+       delivery_line_table(), load_table(),
+       assumptions_table("analytic", [](const auto& v) { return v.analytic; }),
        assumptions_table("multibody", [](const auto& v) { return v.multibody; }),
        plausibility_table()}};
   return registry;

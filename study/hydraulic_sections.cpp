@@ -72,6 +72,12 @@ std::vector<report::Figure> hydraulic_figures(const Case& the_case,
   };
   add("hydraulic_pressure", "Pressure in chamber 1 and in the delivery volume", "Fig. 10, 17",
       "bar", {{"chamber 1", "p_1_bar"}, {"delivery volume", "p_delivery_bar"}});
+  // Of the lines, where there are any.
+  for (const auto& [label, name] : {std::pair{"suction port", "p_suction_bar"},
+                                    std::pair{"end of the delivery line", "p_load_bar"}})
+    for (const Channel& channel : state.table.channels)
+      if (channel.name == name)
+        add_series(figures.back(), label, report::values_of(state.table, name));
   const auto& s = state.summary;
   figures.back().note = fmt::format(
       "Chamber: greatest {:.5g} bar at {:.4g} deg, least {:.3g} bar at {:.4g} deg. Delivery: "
@@ -100,7 +106,7 @@ std::vector<report::Figure> hydraulic_figures(const Case& the_case,
   add("port_flow", "Flow through both ports, leakage and load, all chambers", "", "l/min",
       {{"suction port", "Qs_l_per_min"},
        {"delivery port", "Qd_l_per_min"},
-       {"load orifice", "Qload_l_per_min"},
+       {"load", "Qload_l_per_min"},
        {"leakage", "Ql_l_per_min"}});
   add("chamber_flow", "Flow of chamber 1", "", "l/min",
       {{"from the suction port", "Qs_1_l_per_min"},

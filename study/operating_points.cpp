@@ -22,6 +22,14 @@ constexpr double kPressureTolerance = 1e-6;
 // The first guess is in proportion and off by a few per cent: the first step to either side of it.
 constexpr double kBracketFactor = 1.05;
 
+// @throws InputError where a load says which pressure it is
+void require_pressure_asked_for(const Case& the_case) {
+  if (the_case.hydraulics && the_case.hydraulics->load &&
+      the_case.hydraulics->load->sets_pressure())
+    throw InputError(the_case.file.string() +
+                     ": [load] sets the delivery pressure: there is no other to compute");
+}
+
 }  // namespace
 
 void require_hydraulic(const Case& the_case) {
@@ -48,6 +56,7 @@ double mean(const ResultTable& table, const std::string& channel) {
 
 TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delivery_bar,
                          const Progress& progress) {
+  require_pressure_asked_for(the_case);
   const std::size_t count = delivery_bar.size();
   TorqueCurve curve;
   curve.bar = delivery_bar;
@@ -107,6 +116,7 @@ std::string to_csv(const TorqueCurve& curve) {
 double delivery_pressure_for(const OperatingPoint& start, const std::string& name, double wanted,
                              const std::function<double(const ResultTable&)>& statistic,
                              const PartProgress& progress_of) {
+  require_pressure_asked_for(start.the_case());
   const auto excess = [&](double pressure) {
     Case at = start.the_case();
     at.pressure.ports.delivery = pressure;

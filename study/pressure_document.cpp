@@ -163,7 +163,7 @@ void add_transient(report::Document& document, const ResultTable& transient) {
                    "bar", transient.theta_deg);
   add_series(figure, "chamber 1", report::values_of(transient, transient.channels[0].name));
   add_series(figure, "delivery volume", report::values_of(transient, transient.channels[1].name));
-  figure.note = "The load orifice is that of the periodic state.";
+  figure.note = "The load is that of the periodic state.";
   document.figures->push_back(std::move(figure));
 }
 

@@ -34,9 +34,13 @@ struct Summary {
   double undershoot = 0;                                  ///< Pa, suction pressure - chamber_least
   double work = 0;  ///< J per turn, of the pistons on the oil at gauge pressure: sum of -p dV
   double mass_in = 0, mass_out = 0;  ///< kg per turn: suction port; delivery port and leakage
-  double load_area = 0;              ///< m2, of the load orifice; 0 for an open line
   /// Degrees of a turn in which a chamber is open to both ports (negative overlap), or to neither.
   double both_open_deg = 0, both_closed_deg = 0;
+  LoadKind load = LoadKind::orifice;
+  /// Of an orifice its area, m2; of a laminar load its conductance, m3/(s Pa); of a relief valve
+  /// its absolute cracking pressure, Pa; 0 for a line held at a pressure and for a given flow.
+  double load_size = 0;
+  double atmosphere = 0;  ///< Pa absolute
 };
 
 /// How the periodic state was found.
@@ -59,21 +63,21 @@ struct SteadyState {
   Convergence convergence;
   /// Pa, of a spline through the `points` of the case from the computed curve; 0 without.
   double spline_error = 0;
-  std::vector<double>
-      log_pressures;  ///< ln(P/P0) of chambers 1..N and delivery volume at theta = 0
+  /// At theta = 0: ln(P/P0) of chambers 1..N and of the delivery volume, then what the lines have.
+  std::vector<double> states;
 };
 
 /// Where the search starts; the answer must not depend on it.
 struct Start {
   double chambers = 0;   ///< Pa gauge, in all chambers
   double line = 0;       ///< Pa gauge
-  double load_area = 0;  ///< m2
+  double load_size = 0;  ///< as in Summary
 };
 
 /// Finds the periodic state directly: Newton's method on the map of one N-th of a turn, after which
 /// chamber k must have the pressure chamber k-1 began with. Unknowns are the pressures at theta = 0
-/// and the size of the load orifice; the last equation is the mean delivery pressure asked for.
-/// Derivatives are the forward sensitivities of the same integration.
+/// and the size of the load where that is sought; the last equation is the mean delivery pressure
+/// asked for. Derivatives are the forward sensitivities of the same integration.
 /// @throws InputError at standstill, backwards (motoring), without stroke, or if the case has no
 ///         [hydraulics]
 /// @throws ComputationError where no state is found, e.g. because leakage takes all of the flow
@@ -83,11 +87,12 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
 /// From rest: at theta = 0 all chambers have the suction pressure and the line that of the
 /// surroundings; the shaft turns at full speed at once. Columns theta_deg (falls through all
 /// turns), p_1_bar, p_delivery_bar; `samples` rows per 360/N degrees.
-/// @param load_area  of the load orifice, m2; of the periodic state, say
-ResultTable transient_from_rest(const Case& the_case, double load_area, int revolutions,
+/// @param load_size  as in Summary; that of the periodic state, say
+ResultTable transient_from_rest(const Case& the_case, double load_size, int revolutions,
                                 int samples = 72, const Progress& progress = {});
 
-/// Puts the computed curve into the case's pressure, where both mechanical models find it.
+/// Puts the computed curve into the case's pressure, where both mechanical models find it; where the
+/// load sets the delivery pressure its mean too, which loads the lands of the port plate.
 void give_to(Case& the_case, const SteadyState& state);
 
 /// The summary as lines: name, value, unit.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "bentaxis/pump/parameters.h"
@@ -67,6 +68,65 @@ enum class Cavitation {
   equilibrium,  ///< dissolved air comes out by Henry's law; bubbles hold saturated vapour
 };
 
+/// What the pump delivers against. Size: what is sought so that the mean delivery pressure is the
+/// one asked for.
+enum class LoadKind {
+  orifice,       ///< to the atmosphere; its area is sought
+  laminar,       ///< to the atmosphere, flow in proportion to pressure; its conductance is sought
+  relief_valve,  ///< opens in proportion to the pressure above cracking, which is given or sought
+  constant_pressure,  ///< a line held at the delivery pressure
+  flow,               ///< takes a given flow; the pressure follows
+};
+
+/// `[load]`.
+struct LoadData {
+  LoadKind kind = LoadKind::orifice;
+  // Of the relief valve.
+  double cracking_pressure = 0;  ///< Pa gauge; 0: sought
+  double opening = 1e-11;        ///< m2/Pa, area per pressure above cracking
+  double full_area = 1e-4;       ///< m2, fully open
+  double flow = 0;               ///< m3/s, given, at the density in the suction port
+
+  /// Whether the mean delivery pressure follows from the load instead of being asked for.
+  bool sets_pressure() const {
+    return kind == LoadKind::flow || (kind == LoadKind::relief_valve && cracking_pressure > 0);
+  }
+};
+
+/// `[delivery_line]`: a pipe between the delivery volume and the load.
+struct DeliveryLineData {
+  double length = 0, diameter = 0;  ///< m, inside
+  double bandwidth = 0;             ///< Hz, up to which waves in it are right
+  double wave_speed = 0;            ///< m/s; 0: that of the oil at the delivery pressure
+};
+
+/// `[suction_line]`: a pipe from the tank to a volume at the suction port.
+struct SuctionLineData {
+  double length = 0, diameter = 0;  ///< m, inside
+  double loss = 0;                  ///< zeta: pressure loss over the dynamic pressure in the pipe
+  double volume = 0;                ///< m3, at the port
+};
+
+/// `[oil]`: viscosity.
+struct OilData {
+  double temperature = 60;            ///< deg C
+  double viscosity_40 = 46e-6;        ///< m2/s, kinematic, at 40 deg C and atmospheric pressure
+  double viscosity_100 = 6.8e-6;      ///< m2/s, likewise at 100 deg C
+  double pressure_viscosity = 20e-9;  ///< 1/Pa, alpha of Barus' law
+};
+
+/// `[leakage]`: gaps from each chamber to the case; a gap of 0 is none.
+struct GapData {
+  double piston_gap = 0;         ///< m, radial, of the concentric piston
+  double piston_gap_length = 0;  ///< m; where it is the engaged one, the least over the turn
+  bool engaged = false;          ///< the gap is longer where the piston is deeper in
+  double eccentricity = 0;       ///< over the radial gap, 0..1
+  double plate_gap = 0;          ///< m, between block and port plate
+  double ring_slot_height = 0;   ///< m, gap that a piston ring leaves at its joint
+  double ring_slot_width = 0;    ///< m
+  double ring_slot_length = 0;   ///< m, along the flow: the ring's width
+};
+
 /// All that the chamber pressures depend on beyond geometry and speed. Pressures in Pa; those of
 /// `[pressure]` and of the case are gauge.
 struct HydraulicData {
@@ -91,12 +151,17 @@ struct HydraulicData {
   double discharge_coefficient = 0;  ///< Cd
   double transition_pressure = 0;    ///< Pa, p_cr: below it the orifices are about linear
   // The rest.
-  double leakage = 0;          ///< m3/(s Pa), each chamber to the case, laminar
-  double case_pressure = 0;    ///< Pa gauge
-  double dead_volume = 0;      ///< V0, m3: smallest volume of a chamber
-  double delivery_volume = 0;  ///< m3, between pump and load orifice
-  double tolerance = 0;        ///< relative error of pressure per step of the time integration
-  double curve_error = 1e-7;   ///< largest of the computed curve, of its peak
+  double leakage = 0;            ///< m3/(s Pa), each chamber to the case, laminar
+  double case_pressure = 0;      ///< Pa gauge
+  double dead_volume = 0;        ///< V0, m3: smallest volume of a chamber
+  double delivery_volume = 0;    ///< m3, between pump and load
+  std::optional<LoadData> load;  ///< an orifice where there is none
+  std::optional<DeliveryLineData> delivery_line;
+  std::optional<SuctionLineData> suction_line;
+  std::optional<OilData> oil;
+  std::optional<GapData> gaps;
+  double tolerance = 0;       ///< relative error of pressure per step of the time integration
+  double curve_error = 1e-7;  ///< largest of the computed curve, of its peak
 };
 
 }  // namespace bentaxis

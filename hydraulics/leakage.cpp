@@ -1,0 +1,58 @@
+#include "leakage.h"
+
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::hydraulics {
+
+Leakage::Leakage(const Case& the_case, const Fluid& fluid, const Chamber& chamber)
+    : constant_(the_case.hydraulics->leakage),
+      case_state_(fluid.state(fluid.log_pressure(the_case.hydraulics->case_pressure))),
+      atmosphere_(fluid.atmosphere()) {
+  const HydraulicData& h = *the_case.hydraulics;
+  if (!h.gaps) return;
+  const GapData& gaps = *h.gaps;
+  viscosity_.emplace(h.oil.value(), h.density);
+  const double bore = the_case.pump.geometry.bore_diameter;
+  const auto cube = [](double x) { return x * x * x; };
+  if (gaps.piston_gap > 0)
+    piston_ =
+        kPi * bore * cube(gaps.piston_gap) * (1 + 1.5 * gaps.eccentricity * gaps.eccentricity) / 12;
+  length_ = gaps.piston_gap_length;
+  if (gaps.engaged) area_ = kPi / 4 * bore * bore;
+  largest_volume_ = h.dead_volume + chamber.swept();
+  if (gaps.plate_gap > 0) {
+    const PortPlate& plate = the_case.pump.port_plate.value();
+    double lands = 1 / std::log(plate.r4 / plate.r3);
+    if (plate.r1 > 0) lands += 1 / std::log(plate.r2 / plate.r1);
+    fixed_ += radians(h.kidney_width_deg) * cube(gaps.plate_gap) / 12 * lands;
+  }
+  if (gaps.ring_slot_height > 0)
+    fixed_ += gaps.ring_slot_width * cube(gaps.ring_slot_height) / (12 * gaps.ring_slot_length);
+}
+
+double Leakage::gaps(double volume) const {
+  if (piston_ == 0) return fixed_;
+  return fixed_ + piston_ / (area_ > 0 ? length_ + (largest_volume_ - volume) / area_ : length_);
+}
+
+MassFlow Leakage::flow(const Fluid::State& chamber, double volume) const {
+  const double drop = chamber.pressure - case_state_.pressure;
+  const double density = (chamber.density + case_state_.density) / 2;
+  MassFlow flow{
+      constant_ * density * drop,
+      constant_ * (density * chamber.pressure + drop * chamber.density / chamber.stiffness / 2), 0};
+  if (viscosity_) {
+    const double conductance = gaps(volume);
+    const double gauge = chamber.pressure - atmosphere_;
+    const double drive = viscosity_->drive(gauge, case_state_.pressure - atmosphere_);
+    flow.value += conductance * density * drive;
+    flow.by_first += conductance * (density * chamber.pressure / viscosity_->dynamic(gauge) +
+                                    drive * chamber.density / chamber.stiffness / 2);
+  }
+  return flow;
+}
+
+}  // namespace bentaxis::hydraulics

@@ -1,0 +1,627 @@
+// The circuit around the pump: loads, lines, gaps, viscosity: laws, limits with known answers, the
+// periodic state with each.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/hydraulics/steady_state.h"
+#include "bentaxis/pump/error.h"
+#include "integrator.h"
+#include "leakage.h"
+#include "load.h"
+#include "network.h"
+#include "support.h"
+#include "transmission_line.h"
+#include "viscosity.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+using test::scaled;
+using testing::HasSubstr;
+
+constexpr double kRoundOff = 1e-13;
+constexpr double kMassBalance = 1e-9;
+// Waves within the bandwidth: what docs/hydraulics.md says.
+constexpr double kBandwidthError = 1e-3;
+
+Case rated(const std::vector<std::string>& changes = {}) {
+  return read_case(
+      std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_rated_hydraulic.toml", changes);
+}
+
+// One of everything, alone and together.
+struct Circuit {
+  std::string name;
+  std::vector<std::string> changes;
+};
+const std::vector<Circuit> kCircuits = {
+    {"laminar", {"load.kind=laminar"}},
+    {"relief valve, sought", {"load.kind=relief_valve"}},
+    {"relief valve, given", {"load.kind=relief_valve", "load.cracking_bar=200"}},
+    {"relief valve, fully open",
+     {"load.kind=relief_valve", "load.cracking_bar=20", "load.full_area_mm2=9"}},
+    {"constant pressure", {"load.kind=constant_pressure"}},
+    {"given flow", {"load.kind=flow", "load.flow_l_per_min=90"}},
+    {"suction line", {"suction_line.length_m=1", "suction_line.diameter_mm=40"}},
+    {"suction line, open delivery",
+     {"suction_line.length_m=1", "suction_line.diameter_mm=40", "pressure.delivery_bar=0"}},
+    {"delivery line", {"delivery_line.length_m=1", "delivery_line.diameter_mm=20"}},
+    {"delivery line with friction, laminar",
+     {"delivery_line.length_m=1", "delivery_line.diameter_mm=20", "load.kind=laminar",
+      "oil.temperature_C=60"}},
+    {"delivery line, relief valve",
+     {"delivery_line.length_m=1", "delivery_line.diameter_mm=20", "load.kind=relief_valve"}},
+    {"delivery line, constant pressure",
+     {"delivery_line.length_m=1", "delivery_line.diameter_mm=20", "load.kind=constant_pressure"}},
+    {"delivery line, given flow",
+     {"delivery_line.length_m=1", "delivery_line.diameter_mm=20", "load.kind=flow",
+      "load.flow_l_per_min=90", "oil.temperature_C=60"}},
+    {"delivery line, open",
+     {"delivery_line.length_m=1", "delivery_line.diameter_mm=20", "pressure.delivery_bar=0",
+      "delivery_line.wave_speed_m_per_s=1300"}},
+    {"gaps",
+     {"oil.temperature_C=60", "leakage.piston_gap_um=15", "leakage.piston_gap_length_mm=10",
+      "leakage.piston_gap_kind=engaged", "leakage.eccentricity=0.8", "leakage.plate_gap_um=8",
+      "leakage.ring_slot_um=50", "leakage.ring_slot_width_mm=0.3", "leakage.ring_slot_length_mm=2",
+      "hydraulics.leakage_l_per_min_per_bar=0"}},
+    {"all",
+     {"oil.temperature_C=60", "leakage.piston_gap_um=15", "leakage.piston_gap_length_mm=10",
+      "leakage.piston_gap_kind=engaged", "leakage.eccentricity=0.8", "suction_line.length_m=1",
+      "suction_line.diameter_mm=40", "delivery_line.length_m=1", "delivery_line.diameter_mm=20",
+      "load.kind=relief_valve"}}};
+
+// ---- Viscosity and gaps
+// --------------------------------------------------------------------------
+
+TEST(Viscosity, GoesThroughBothPointsByWalthersLaw) {
+  for (const double celsius : {40.0, 100.0, 60.0, -20.0}) {
+    const Viscosity oil({celsius, 46e-6, 6.8e-6, 0}, 850);
+    // Written out here again, in decades.
+    const auto w = [](double nu) { return std::log10(std::log10(nu + 0.7)); };
+    const auto t = [](double c) { return std::log10(c + 273.15); };
+    const double slope = (w(6.8) - w(46)) / (t(100) - t(40));
+    const double nu = std::pow(10, std::pow(10, w(46) + slope * (t(celsius) - t(40)))) - 0.7;
+    EXPECT_NEAR(oil.kinematic() * 1e6 / nu, 1, scaled(1e-12)) << celsius;
+    if (celsius == 40) {
+      EXPECT_NEAR(oil.kinematic() * 1e6, 46, scaled(1e-11));
+    }
+    if (celsius == 100) {
+      EXPECT_NEAR(oil.kinematic() * 1e6, 6.8, scaled(1e-11));
+    }
+  }
+}
+
+TEST(Viscosity, DriveIsTheIntegralOfPressureOverViscosity) {
+  for (const double alpha : {0.0, 1e-16, 2e-8, 1e-7}) {
+    const Viscosity oil({40, 46e-6, 6.8e-6, alpha}, 850);
+    EXPECT_NEAR(oil.dynamic(1e8) / (46e-6 * 850 * std::exp(alpha * 1e8)), 1, scaled(1e-12));
+    const double low = -5e4, high = 4e7;
+    const int n = 2000;  // Simpson
+    double sum = 0;
+    for (int i = 0; i <= n; ++i)
+      sum += (i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2) / oil.dynamic(low + (high - low) * i / n);
+    EXPECT_NEAR(oil.drive(high, low) / (sum * (high - low) / n / 3), 1, scaled(1e-12)) << alpha;
+    EXPECT_NEAR(oil.drive(low, high), -oil.drive(high, low), scaled(1e-12) * oil.drive(high, low));
+  }
+}
+
+TEST(Leakage, PistonGapGrowsWithEccentricity) {
+  for (const double e : {0.0, 0.5, 1.0}) {
+    Case the_case = rated({"oil.temperature_C=40", "oil.pressure_viscosity_per_GPa=0",
+                           "leakage.piston_gap_um=20", "leakage.piston_gap_length_mm=12",
+                           "hydraulics.leakage_l_per_min_per_bar=0"});
+    the_case.hydraulics->gaps->eccentricity = e;
+    const Fluid fluid(*the_case.hydraulics);
+    const Chamber chamber(the_case.pump.geometry, 3e-6);
+    const Leakage leakage(the_case, fluid, chamber);
+    const auto at = fluid.state(fluid.log_pressure(2e7));
+    const double volume_flow =
+        leakage.flow(at, 1e-5).value / ((at.density + fluid.state(0).density) / 2);
+    // Slot flow h^3 dp/(12 mu l) per width, summed round the piston.
+    double sum = 0;
+    const int n = 360;
+    for (int i = 0; i < n; ++i) sum += std::pow(20e-6 * (1 + e * std::cos(2 * kPi * i / n)), 3) / n;
+    const double expected = kPi * 22.5e-3 * sum * 2e7 / (12 * 46e-6 * 850 * 12e-3);
+    EXPECT_NEAR(volume_flow / expected, 1, scaled(1e-11)) << e;
+    EXPECT_NEAR(sum / std::pow(20e-6, 3), 1 + 1.5 * e * e, scaled(1e-12));
+  }
+}
+
+TEST(Leakage, EngagedLengthGrowsByThePistonsWay) {
+  Case the_case = rated({"oil.temperature_C=40", "leakage.piston_gap_um=20",
+                         "leakage.piston_gap_length_mm=12", "leakage.piston_gap_kind=engaged"});
+  const Fluid fluid(*the_case.hydraulics);
+  const Chamber chamber(the_case.pump.geometry, the_case.hydraulics->dead_volume);
+  const Leakage leakage(the_case, fluid, chamber);
+  const double stroke = chamber.swept() / (kPi / 4 * 22.5e-3 * 22.5e-3);
+  const double deep = leakage.gaps(chamber.volume(0).value);
+  const double out = leakage.gaps(the_case.hydraulics->dead_volume + chamber.swept());
+  EXPECT_NEAR(out / deep, (12e-3 + stroke) / 12e-3, scaled(1e-9));
+  EXPECT_GT(stroke, 20e-3);
+}
+
+TEST(Leakage, PlateAndRingAddTheirs) {
+  Case the_case = rated({"oil.temperature_C=40", "leakage.plate_gap_um=10"});
+  const Fluid fluid(*the_case.hydraulics);
+  const Chamber chamber(the_case.pump.geometry, the_case.hydraulics->dead_volume);
+  const double plate = Leakage(the_case, fluid, chamber).gaps(1e-5);
+  // Slots in series along the radius, each as wide as the sector there.
+  double resistance[2] = {0, 0};
+  const double lands[2][2] = {{26e-3, 27e-3}, {17e-3, 18e-3}};
+  const int n = 20000;
+  for (int land = 0; land < 2; ++land)
+    for (int i = 0; i < n; ++i) {
+      const double dr = (lands[land][1] - lands[land][0]) / n;
+      const double r = lands[land][0] + (i + 0.5) * dr;
+      resistance[land] += 12 * dr / (radians(52) * r * std::pow(10e-6, 3));
+    }
+  EXPECT_NEAR(plate / (1 / resistance[0] + 1 / resistance[1]), 1, scaled(1e-8));
+  GapData& gaps = *the_case.hydraulics->gaps;
+  gaps.ring_slot_height = 50e-6;
+  gaps.ring_slot_width = 0.3e-3;
+  gaps.ring_slot_length = 2e-3;
+  const double ring = 0.3e-3 * std::pow(50e-6, 3) / (12 * 2e-3);
+  EXPECT_NEAR(Leakage(the_case, fluid, chamber).gaps(1e-5) / (plate + ring), 1, scaled(1e-12));
+}
+
+// ---- Loads
+// ---------------------------------------------------------------------------------------
+
+TEST(Load, ReliefValveCharacteristic) {
+  const HydraulicData data = *rated().hydraulics;
+  const Fluid fluid(data);
+  const Orifice orifice{0.67, 1e2};
+  const double per_pressure = 1e-6 / 1e5;  // 1 mm2 per bar
+  const Load valve({LoadKind::relief_valve, 2e7, per_pressure, 10e-6, 0}, orifice, fluid, 0);
+  EXPECT_FALSE(valve.sought());
+  EXPECT_EQ(valve.size(), 2e7 + data.atmosphere);
+  const auto flow = [&](double gauge) {
+    return valve.flow(fluid.state(fluid.log_pressure(gauge)), valve.size()).value;
+  };
+  EXPECT_EQ(flow(1.9e7), 0);
+  EXPECT_EQ(flow(2e7), 0);
+  // p_cr of 10 Pa is nothing at 200 bar: the plain law of an orifice.
+  for (const double above : {1e4, 1e5, 5e5, 9.9e5, 2e6}) {
+    const double density = (fluid.density(2e7 + above) + fluid.density(0)) / 2;
+    const double area = std::min(per_pressure * above, 10e-6);
+    EXPECT_NEAR(flow(2e7 + above) / (0.67 * area * std::sqrt(2 * density * (2e7 + above))), 1,
+                scaled(1e-9))
+        << above;
+  }
+  // What is sought: the cracking pressure that lets a flow pass.
+  const Side side = fluid.state(fluid.log_pressure(2e7));
+  EXPECT_NEAR(valve.flow(side, valve.size_for(0.5, side)).value, 0.5, scaled(1e-12));
+  EXPECT_EQ(valve.flow(side, valve.closed()).value, 0);
+}
+
+TEST(Network, JacobianIsTheDerivativeOfTheRates) {
+  std::mt19937 engine(3);
+  const auto random = [&](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(engine);
+  };
+  auto circuits = kCircuits;
+  circuits.push_back({"orifice", {}});
+  circuits.push_back({"open", {"pressure.delivery_bar=0"}});
+  for (const Circuit& circuit : circuits) {
+    const Network network(rated(circuit.changes));
+    const int n = network.size();
+    for (int trial = 0; trial < 30; ++trial) {
+      // Pressures around those of a circuit: of all chambers and volumes any; the modes small.
+      auto y = network.uniform(0, random(-2, 6), network.ideal_mass_flow() * random(-1, 2));
+      for (double& value : y) value += random(-0.1, 0.1);
+      for (int k = 0; k < network.pistons(); ++k) y[k] = random(-2, 6);
+      y.resize(n, random(0, 1));
+      const double x = random(0, 72);
+      const double size = network.load_size_for(network.ideal_mass_flow()) * random(0.3, 1);
+      std::vector<double> by_state(n * n), by_load(n), low(n), high(n);
+      network.jacobian(x, y.data(), size, by_state.data(), by_load.data());
+      const double h = 1e-6;
+      const auto expect_column = [&](const double* expected, double scale) {
+        for (int row = 0; row < n; ++row)
+          EXPECT_NEAR((high[row] - low[row]) / (2 * h), expected[row], scaled(1e-5) * (scale + 1))
+              << circuit.name << " " << row;
+      };
+      const auto scale_of = [&](const double* column) {
+        double scale = 0;
+        for (int row = 0; row < n; ++row) scale = std::max(scale, std::abs(column[row]));
+        return scale;
+      };
+      for (int column = 0; column < n; ++column) {
+        auto moved = y;
+        moved[column] = y[column] + h;
+        ASSERT_TRUE(network.rates(x, moved.data(), size, high.data()));
+        moved[column] = y[column] - h;
+        ASSERT_TRUE(network.rates(x, moved.data(), size, low.data()));
+        expect_column(by_state.data() + column * n, scale_of(by_state.data() + column * n));
+      }
+      network.rates(x, y.data(), size * std::exp(h), high.data());
+      network.rates(x, y.data(), size * std::exp(-h), low.data());
+      if (network.load_sought()) expect_column(by_load.data(), scale_of(by_load.data()));
+    }
+  }
+}
+
+// ---- Delivery line
+// -------------------------------------------------------------------------------
+
+const DeliveryLineData kPipe{2, 0.02, 2000, 1000};  // 2 m at 1000 m/s: 2 ms
+Fluid::State oil_in_pipe() { return {2e7, 850, 70, 0}; }
+
+// Frequencies, Hz, of undriven motion, rising; and the decay of each, 1/s.
+std::vector<std::pair<double, double>> eigenfrequencies(const TransmissionLine& line) {
+  Eigen::MatrixXd matrix(line.size(), line.size());
+  for (int i = 0; i < line.size(); ++i)
+    for (int j = 0; j < line.size(); ++j) matrix(i, j) = line.by_state(i, j);
+  std::vector<std::pair<double, double>> all;
+  for (const auto& value : matrix.eigenvalues())
+    if (value.imag() > 1) all.emplace_back(value.imag() / (2 * kPi), -value.real());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(DeliveryLine, EigenfrequenciesAreThoseOfAPipe) {
+  using End = TransmissionLine::End;
+  for (const End end : {End::given_flow, End::given_pressure})
+    for (const double viscosity : {0.0, 2e-5}) {
+      const TransmissionLine line(kPipe, end, oil_in_pipe(), viscosity);
+      const auto found = eigenfrequencies(line);
+      // Closed at one end: odd multiples of c/4L = 125 Hz; open at both: multiples of c/2L.
+      const double first = end == End::given_flow ? 125 : 250, step = 250;
+      for (int n = 0; first + n * step <= kPipe.bandwidth; ++n) {
+        ASSERT_LT(n, found.size());
+        EXPECT_NEAR(found[n].first / (first + n * step), 1, scaled(kBandwidthError)) << n;
+        // Half of the rate at which friction stops a flow: 32 nu/D^2.
+        EXPECT_NEAR(found[n].second, 32 * viscosity / (0.02 * 0.02) / 2,
+                    scaled(kBandwidthError) * 2 * kPi * found[n].first)
+            << n;
+      }
+    }
+}
+
+// A pulse enters at x = 0, where the pressure is given, and runs to and fro.
+TEST(DeliveryLine, PulsesRunAsDAlembertSays) {
+  using End = TransmissionLine::End;
+  const double travel = 2e-3, reference = 2e7, height = 1e5;
+  const double width = 3.7 / (kPi * kPipe.bandwidth);  // 1e-6 of its spectrum is above
+  const auto pulse = [&](double t) {
+    const double u = (t - 5 * width) / width;
+    return height * std::exp(-u * u);
+  };
+  const double impedance = 1000 / (kPi / 4 * 0.02 * 0.02);
+  enum class Case { closed, open, matched };
+  for (const Case end : {Case::closed, Case::open, Case::matched}) {
+    const TransmissionLine line(kPipe, end == Case::open ? End::given_pressure : End::given_flow,
+                                oil_in_pipe(), 0);
+    EXPECT_NEAR(line.impedance() / impedance, 1, scaled(kRoundOff));
+    const int size = line.size();
+    std::vector<double> y(size);
+    line.uniform(reference, 0, y.data());
+    const auto at_end = [&](const std::vector<double>& state) {
+      if (end == Case::open) return reference;
+      if (end == Case::closed) return 0.0;
+      return (line.end_pressure(state.data()) - reference) / impedance;
+    };
+    // The wave that has run to the right, at x = 0: the pulse and its reflections there.
+    const double reflection = end == Case::matched ? 0 : end == Case::closed ? -1 : 1;
+    const auto forward = [&](double t) {
+      double sum = 0;
+      for (int n = 0; n < 4; ++n) sum += std::pow(reflection, n) * pulse(t - 2 * n * travel);
+      return sum;
+    };
+    const double back = end == Case::matched ? 0 : end == Case::closed ? 1 : -1;
+    double seen = 0, worst = 0;
+    const double h = 1e-6;
+    std::vector<double> k[4], trial(size);
+    for (int i = 0; i < 10000; ++i) {  // 5 travel times, by Runge and Kutta
+      const double t = i * h;
+      const double out = end == Case::open ? line.outflow(y.data()) * impedance
+                                           : line.end_pressure(y.data()) - reference;
+      const double expected = (1 + std::abs(back)) * forward(t - travel);
+      worst = std::max(worst, std::abs(out - expected));
+      const double in = line.inflow(y.data()) * impedance;
+      worst = std::max(worst, std::abs(in - (forward(t) - back * forward(t - 2 * travel))));
+      seen = std::max(seen, std::abs(out));
+      for (int stage = 0; stage < 4; ++stage) {
+        const double step = stage == 0 ? 0 : stage == 3 ? h : h / 2;
+        for (int j = 0; j < size; ++j) trial[j] = y[j] + (stage == 0 ? 0 : step * k[stage - 1][j]);
+        k[stage].resize(size);
+        line.rates(trial.data(), reference + pulse(t + step), at_end(trial), k[stage].data());
+      }
+      for (int j = 0; j < size; ++j)
+        y[j] += h / 6 * (k[0][j] + 2 * k[1][j] + 2 * k[2][j] + k[3][j]);
+    }
+    EXPECT_NEAR(seen, (1 + std::abs(back)) * height, scaled(0.003) * height);
+    EXPECT_LT(worst, scaled(0.003) * height) << static_cast<int>(end);
+  }
+}
+
+std::vector<double> column(const ResultTable& table, const std::string& name) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    values.push_back(table.at(row, table.find(name)));
+  return values;
+}
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+double largest_difference(const SteadyState& a, const SteadyState& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.chamber.pressure.size(); ++i)
+    worst = std::max(worst, std::abs(a.chamber.pressure[i] - b.chamber.pressure[i]));
+  return worst;
+}
+
+// A load with the pipe's impedance sends nothing back: the pump cannot tell the pipe from the load.
+TEST(DeliveryLine, MatchedLoadIsNoLine) {
+  const SteadyState lumped = steady_state(rated({"load.kind=laminar"}));
+  const Summary& s = lumped.summary;
+  const double impedance = s.delivery_mean / s.mass_flow;
+  const double diameter = std::sqrt(1300 / impedance * 4 / kPi);
+  const auto with = [&](double d) {
+    return steady_state(
+        rated({"load.kind=laminar", "delivery_line.length_m=1.5", "delivery_line.bandwidth_Hz=2000",
+               "delivery_line.wave_speed_m_per_s=1300",
+               "delivery_line.diameter_mm=" + number_text(d * 1e3)}));
+  };
+  // What is left: the load's density follows the pressure, the pipe's does not: 1 % of the ripple.
+  const double ripple = s.delivery_greatest - s.delivery_least;
+  const SteadyState matched = with(diameter), wide = with(2 * diameter);
+  EXPECT_NEAR(matched.summary.delivery_greatest, s.delivery_greatest, scaled(0.02) * ripple);
+  EXPECT_NEAR(matched.summary.delivery_least, s.delivery_least, scaled(0.02) * ripple);
+  EXPECT_LT(largest_difference(matched, lumped), scaled(0.02) * ripple);
+  EXPECT_GT(largest_difference(wide, lumped), 0.1 * ripple);  // negative control
+}
+
+// ---- The periodic state with each
+// ----------------------------------------------------------------
+
+TEST(Circuit, MassThatEntersLeavesAndTheMeanIsTheOneAskedFor) {
+  for (const Circuit& circuit : kCircuits) {
+    const Case the_case = rated(circuit.changes);
+    const SteadyState state = steady_state(the_case);
+    const Summary& s = state.summary;
+    const double turn = 60 / the_case.operation.speed_rpm;
+    EXPECT_NEAR(s.mass_in / s.mass_out, 1, scaled(kMassBalance)) << circuit.name;
+    EXPECT_NEAR((s.mass_flow + s.leakage * s.density) * turn / s.mass_out, 1, scaled(kMassBalance))
+        << circuit.name;
+    EXPECT_LE(state.computed->error, the_case.hydraulics->curve_error * state.computed->peak)
+        << circuit.name;
+    const Network network(the_case);
+    if (network.load_sought() || network.fixed_line()) {
+      EXPECT_NEAR(s.delivery_mean, the_case.pressure.ports.delivery, scaled(1e-7) * 275e5)
+          << circuit.name;
+    }
+    EXPECT_LT(state.convergence.seconds, 30) << circuit.name;
+  }
+}
+
+TEST(Circuit, LaminarLoadPassesInProportion) {
+  const Case the_case = rated({"load.kind=laminar"});
+  const SteadyState state = steady_state(the_case);
+  const Fluid fluid(*the_case.hydraulics);
+  const auto pressure = column(state.table, "p_delivery_bar");
+  const auto flow = column(state.table, "mload_g_per_s");
+  for (std::size_t i = 0; i < flow.size(); i += 7) {
+    const double p = pressure[i] * 1e5;
+    const double density = (fluid.density(p) + fluid.density(0)) / 2;
+    EXPECT_NEAR(flow[i] * 1e-3 / (state.summary.load_size * density * p), 1, scaled(1e-9)) << i;
+  }
+  EXPECT_NEAR(mean(pressure), 275, scaled(0.01));
+}
+
+TEST(Circuit, ConstantPressureIsAnEndlessDeliveryVolume) {
+  const SteadyState constant = steady_state(rated({"load.kind=constant_pressure"}));
+  const SteadyState endless = steady_state(rated({"hydraulics.delivery_volume_l=1000"}));
+  // 0.5 l ripple by 13 bar: 1000 l by 6 mbar.
+  EXPECT_LT(largest_difference(constant, endless), scaled(2e-2) * 1e5);
+  EXPECT_EQ(constant.summary.delivery_greatest, constant.summary.delivery_least);
+  EXPECT_NEAR(constant.summary.delivery_mean, 275e5, 1e-6);
+  // Open line: the same at 0 bar, to the last bit.
+  const SteadyState open = steady_state(rated({"pressure.delivery_bar=0"}));
+  const SteadyState at_zero =
+      steady_state(rated({"pressure.delivery_bar=0", "load.kind=constant_pressure"}));
+  EXPECT_EQ(largest_difference(open, at_zero), 0);
+}
+
+// Hardly compressible oil: what is not taken leaks, and leakage says at which pressure.
+TEST(Circuit, GivenFlowSetsThePressureByLeakage) {
+  Case the_case = rated({"load.kind=flow", "load.flow_l_per_min=1", "pressure.delivery_bar=40"});
+  Geometry& g = the_case.pump.geometry;
+  g.axis_offset = 0;
+  g.bore_circle_radius = g.joint_circle_radius * (1 + std::cos(g.tilt)) / 2;
+  HydraulicData& h = *the_case.hydraulics;
+  h.delivery = {{180 + 26, 360 - 26}, {}};
+  h.suction = {{26, 180 - 26}, {}};
+  h.kidney_width_deg = 52;
+  h.kidney_rounding_deg = 0;
+  h.kidney_height = 0.1;  // m
+  h.bulk_modulus = 1e12;
+  h.air_share = 1e-9;
+  h.dead_volume = 1e-9;
+  h.delivery_volume = 1;
+  const Network ideal(the_case);
+  const double flow = ideal.displacement() * the_case.operation.speed_rpm / 60;
+  h.load->flow = 0.98 * flow;
+  h.leakage = 0.02 * flow / (2.5 * 100e5);  // half of five chambers at 100 bar
+  const SteadyState state = steady_state(the_case);
+  EXPECT_NEAR(state.summary.delivery_mean / 100e5, 1, scaled(1e-3));
+  EXPECT_NEAR(state.summary.flow / h.load->flow, 1, scaled(1e-9));
+}
+
+TEST(Circuit, GivenFlowBeyondTheDisplacementIsRefused) {
+  try {
+    steady_state(rated({"load.kind=flow", "load.flow_l_per_min=96"}));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("[load] flow_l_per_min = 96: must be above 0 and below what the pump"));
+  }
+}
+
+// No key is read and forgotten: 5 % of each moves the pressure by more than the error of the curve.
+TEST(Circuit, EveryKeyCounts) {
+  const auto expect_change = [](std::vector<std::string> base, const std::string& change) {
+    const SteadyState before = steady_state(rated(base));
+    base.push_back(change);
+    const SteadyState after = steady_state(rated(base));
+    EXPECT_GT(largest_difference(before, after), 100 * before.computed->error) << change;
+  };
+  std::vector<std::string> all = kCircuits.back().changes;
+  for (const char* more : {"leakage.plate_gap_um=8", "leakage.ring_slot_um=50",
+                           "leakage.ring_slot_width_mm=1", "leakage.ring_slot_length_mm=2"})
+    all.emplace_back(more);
+  for (const char* change : {"oil.temperature_C=63",
+                             "oil.viscosity_40C_cSt=44",
+                             "oil.viscosity_100C_cSt=6.5",
+                             "oil.pressure_viscosity_per_GPa=19",
+                             "leakage.piston_gap_um=15.5",
+                             "leakage.piston_gap_length_mm=10.5",
+                             "leakage.piston_gap_kind=land",
+                             "leakage.eccentricity=0.84",
+                             "leakage.plate_gap_um=8.4",
+                             "leakage.ring_slot_um=52",
+                             "leakage.ring_slot_width_mm=1.05",
+                             "leakage.ring_slot_length_mm=2.1",
+                             "suction_line.length_m=1.05",
+                             "suction_line.diameter_mm=42",
+                             "suction_line.loss_coefficient=1.05",
+                             "suction_line.volume_l=0.66",
+                             "delivery_line.length_m=1.05",
+                             "delivery_line.diameter_mm=21",
+                             "delivery_line.wave_speed_m_per_s=1200",
+                             "load.opening_mm2_per_bar=1.05"})
+    expect_change(all, change);
+  expect_change(kCircuits[2].changes, "load.cracking_bar=201");
+  expect_change(kCircuits[3].changes, "load.full_area_mm2=9.1");
+  expect_change(kCircuits[5].changes, "load.flow_l_per_min=90.1");
+}
+
+// ---- Suction line
+// --------------------------------------------------------------------------------
+
+TEST(SuctionLine, AcceleratesByItsInertance) {
+  const Fluid::State tank{101325, 850, 70, 0};
+  const double area = kPi / 4 * 0.04 * 0.04;
+  const SuctionLine plain({2, 0.04, 0, 1e-3}, tank, 0), lossy({2, 0.04, 3, 1e-3}, tank, 0);
+  // dp = rho L/A dq/dt, with m = rho q.
+  EXPECT_NEAR(plain.rate(101325 - 5000, 1.2) * (2 / area), 5000, scaled(1e-9));
+  // Steady: dp = zeta rho v^2/2.
+  const double v = 1.2 / (850 * area);
+  EXPECT_NEAR(lossy.rate(101325 - 3 * 850 * v * v / 2, 1.2), 0, scaled(1e-9));
+  const SuctionLine thick({2, 0.04, 0, 1e-3}, tank, 1e-3);
+  EXPECT_NEAR(thick.rate(101325 - 32 * 1e-3 * 850 * 2 * v / (0.04 * 0.04), 1.2), 0, scaled(1e-9));
+}
+
+TEST(SuctionLine, OscillatesAtItsFrequency) {
+  Case the_case =
+      rated({"suction_line.length_m=1", "suction_line.diameter_mm=40", "suction_line.volume_l=2",
+             "suction_line.loss_coefficient=0", "load.kind=constant_pressure"});
+  the_case.hydraulics->suction = {{0, 1}, {}};
+  const Network network(the_case);
+  const int n = network.size(), s = network.pressures(), m = s + 1;
+  const auto y = network.uniform(0, network.delivery_log_pressure(), 0);
+  std::vector<double> by_state(n * n), by_load(n);
+  network.jacobian(40, y.data(), 0, by_state.data(), by_load.data());
+  const auto entry = [&](int row, int column) { return by_state[column * n + row]; };
+  const double omega = std::sqrt(-entry(s, m) * entry(m, s)) / network.seconds_per_degree();
+  // Spring K/V on the piston's area A, mass rho L A.
+  const double area = kPi / 4 * 0.04 * 0.04;
+  const double modulus = network.fluid().effective_bulk_modulus(0);
+  EXPECT_NEAR(omega / std::sqrt(modulus * area / (network.fluid().density(0) * 1 * 2e-3)), 1,
+              scaled(1e-12));
+}
+
+TEST(SuctionLine, MeanPressureAtThePortIsLessByTheLoss) {
+  const Case the_case =
+      rated({"suction_line.length_m=1", "suction_line.diameter_mm=30", "suction_line.volume_l=5",
+             "suction_line.loss_coefficient=4", "hydraulics.leakage_l_per_min_per_bar=0"});
+  const SteadyState state = steady_state(the_case);
+  const double area = kPi / 4 * 0.03 * 0.03, density = state.summary.density;
+  const double v = state.summary.mass_flow / (density * area);
+  // The flow in the pipe hardly swings with 5 l between it and the pump.
+  EXPECT_NEAR(mean(column(state.table, "p_suction_bar")) * 1e5 / (-4 * density * v * v / 2), 1,
+              scaled(1e-2));
+  EXPECT_GT(v, 2);
+}
+
+TEST(SuctionLine, ShortAndWideIsNone) {
+  const SteadyState with =
+      steady_state(rated({"suction_line.length_m=0.001", "suction_line.diameter_mm=500",
+                          "suction_line.volume_l=100"}));
+  EXPECT_LT(largest_difference(with, steady_state(rated())), scaled(1e-3) * 1e5);
+}
+
+// ---- Hard and bad inputs
+// -------------------------------------------------------------------------
+
+TEST(HardCircuit, EveryRunEndsAndSaysWhy) {
+  const Circuit circuits[] = {
+      {"no valve reaches it", {"load.kind=relief_valve", "load.full_area_mm2=1e-3"}},
+      {"cracks far above", {"load.kind=relief_valve", "load.cracking_bar=9000"}},
+      {"hard valve", {"load.kind=relief_valve", "load.opening_mm2_per_bar=1e6"}},
+      {"next to nothing taken", {"load.kind=flow", "load.flow_l_per_min=0.01"}},
+      {"more than is left", {"load.kind=flow", "load.flow_l_per_min=95.5"}},
+      {"most modes", {"delivery_line.length_m=4", "delivery_line.diameter_mm=20"}},
+      {"starved", {"suction_line.length_m=20", "suction_line.diameter_mm=10"}},
+      {"wide gaps",
+       {"oil.temperature_C=100", "leakage.piston_gap_um=100", "leakage.piston_gap_length_mm=5"}}};
+  for (const Circuit& circuit : circuits) {
+    const auto start = std::chrono::steady_clock::now();
+    try {
+      const SteadyState state = steady_state(rated(circuit.changes));
+      EXPECT_LT(state.convergence.residual, 1e-6) << circuit.name;
+    } catch (const ComputationError& error) {
+      EXPECT_THAT(error.what(), testing::AnyOf(HasSubstr("hydraulics"), HasSubstr("out of reach")))
+          << circuit.name;
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(seconds.count(), 30) << circuit.name;
+  }
+}
+
+std::string refusal(const std::vector<std::string>& changes) {
+  try {
+    Network{rated(changes)};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(BadCircuit, IsRefusedByItsKey) {
+  EXPECT_THAT(refusal({"leakage.piston_gap_um=10", "leakage.piston_gap_length_mm=5"}),
+              HasSubstr("leakage.piston_gap_um=10: needs the table [oil]"));
+  EXPECT_THAT(refusal({"oil.temperature_C=60", "leakage.piston_gap_um=10"}),
+              HasSubstr("[leakage] piston_gap_length_mm: must be > 0"));
+  EXPECT_THAT(refusal({"oil.viscosity_100C_cSt=50"}), HasSubstr("must be below viscosity_40C_cSt"));
+  EXPECT_THAT(refusal({"load.kind=flow"}), HasSubstr("flow_l_per_min"));
+  EXPECT_THAT(refusal({"load.kind=valve"}), HasSubstr("kind"));
+  EXPECT_THAT(refusal({"delivery_line.length_m=1"}), HasSubstr("diameter_mm"));
+  EXPECT_THAT(refusal({"delivery_line.length_m=100", "delivery_line.diameter_mm=20"}),
+              HasSubstr("more than 48: lower it, or length_m"));
+  EXPECT_THAT(refusal({"oil.temperature_C=60", "leakage.eccentricity=1.1"}),
+              HasSubstr("eccentricity"));
+  EXPECT_EQ(refusal({"load.kind=laminar"}), "not refused");
+}
+
+// A case with every table reads back to itself.
+TEST(CaseFile, TheCircuitSurvivesWriting) {
+  Case the_case = rated(kCircuits.back().changes);
+  const std::string text = case_text(the_case);
+  for (const char* table : {"[oil]", "[leakage]", "[suction_line]", "[delivery_line]", "[load]"})
+    EXPECT_THAT(text, HasSubstr(table));
+  EXPECT_EQ(case_text(parse_case(text, "x.toml")), text);
+  EXPECT_NEAR(the_case.hydraulics->suction_line->volume * 2, kPi / 4 * 0.04 * 0.04 * 1, 1e-15);
+}
+
+}  // namespace
+}  // namespace bentaxis::hydraulics
