@@ -91,8 +91,8 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
 ResultTable transient_from_rest(const Case& the_case, double load_size, int revolutions,
                                 int samples = 72, const Progress& progress = {});
 
-/// Puts the computed curve into the case's pressure, where both mechanical models find it; where the
-/// load sets the delivery pressure its mean too, which loads the lands of the port plate.
+/// Puts the computed curve into the case's pressure, where both mechanical models find it; where
+/// the load sets the delivery pressure its mean too, which loads the lands of the port plate.
 void give_to(Case& the_case, const SteadyState& state);
 
 /// The summary as lines: name, value, unit.
