@@ -10,7 +10,7 @@ namespace bentaxis::hydraulics {
 namespace {
 
 // Edges closer than this are one, degrees.
-constexpr double kSameEdge = 1e-9;
+constexpr double kOneEdge = 1e-9;
 
 double wrap(double angle) {
   const double wrapped = angle - 360.0 * std::floor(angle / 360.0);
@@ -175,7 +175,7 @@ std::vector<Bridge> bridges(const PortOpening& suction, const PortOpening& deliv
   edges.insert(edges.end(), delivery.edges_deg().begin(), delivery.edges_deg().end());
   std::sort(edges.begin(), edges.end());
   edges.erase(
-      std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kSameEdge; }),
+      std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kOneEdge; }),
       edges.end());
   if (edges.empty()) edges = {0};
   std::vector<Bridge> all;

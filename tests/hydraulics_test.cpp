@@ -328,7 +328,7 @@ TEST(Report, LinesAreOneAnothersByTheirMeaning) {
       100 * value.at("mean flow to the load") / value.at("ideal flow, displacement x speed"));
   EXPECT_DOUBLE_EQ(value.at("mean torque of that work") * 2 * kPi,
                    value.at("work of the pistons per turn"));
-  EXPECT_DOUBLE_EQ(value.at("load orifice"), state.summary.load_area * 1e6);
+  EXPECT_DOUBLE_EQ(value.at("load orifice"), state.summary.load_size * 1e6);
   for (const char* angle : {"angle of the greatest", "angle of the least"}) {
     EXPECT_GE(value.at(angle), 0);
     EXPECT_LT(value.at(angle), 360);
