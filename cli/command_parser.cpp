@@ -86,7 +86,7 @@ std::string unexpected(const CLI::App& command, const std::string& argument) {
 std::string words_for(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-  const std::string what = error.what();
+  std::string what = error.what();
   const auto is = [&](auto kind) { return dynamic_cast<const decltype(kind)*>(&error) != nullptr; };
   const bool missing = is(CLI::RequiredError(""));
   if (missing || is(CLI::ExtrasError({}))) {

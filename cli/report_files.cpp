@@ -25,7 +25,7 @@ std::vector<std::string> files_of_list(const std::string& list) {
 
 }  // namespace
 
-void add_report(CommandParser command, ReportPlace& place, const std::string& what) {
+void add_report(const CommandParser& command, ReportPlace& place, const std::string& what) {
   add_out(command, place.out, what);
   add_figures(command, place.figures);
 }

@@ -22,7 +22,7 @@ struct ReportPlace {
   std::string figures;  ///< folder for a file of each figure; empty: none
 };
 /// --out and --figures.
-void add_report(CommandParser command, ReportPlace& place, const std::string& what);
+void add_report(const CommandParser& command, ReportPlace& place, const std::string& what);
 /// --figures alone.
 void add_figures(CommandParser command, std::string& folder);
 

@@ -44,6 +44,6 @@ std::string_view trimmed(std::string_view text);
 
 ForeignTable read_text(const std::filesystem::path& file, std::string content);
 ForeignTable read_workbook(const std::filesystem::path& file, const std::string& sheet);
-ForeignTable read_matlab(const std::filesystem::path& file, const std::string& variable);
+ForeignTable read_matlab(const std::filesystem::path& file, const std::string& wanted);
 
 }  // namespace bentaxis::foreign

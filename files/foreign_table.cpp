@@ -423,7 +423,7 @@ std::string unit_in_name(const std::string& name) {
     const auto from = name.rfind(open);
     const auto to = from == std::string::npos ? from : name.find(close, from);
     if (to == std::string::npos) continue;
-    const std::string inner = name.substr(from + 1, to - from - 1);
+    std::string inner = name.substr(from + 1, to - from - 1);
     if (!known_unit(inner).empty()) return inner;
   }
   // Behind the last of these: torque_Nmm, "Kraft in kN", "F / N"

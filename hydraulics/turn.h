@@ -44,8 +44,8 @@ class TurnRecord {
   PressureCurve delivery() const { return {angles_, delivery_}; }
 
  private:
-  // Of a chamber's curve from node `first` to node `last`.
-  void add_pieces(std::size_t first, std::size_t last, int chamber, double error,
+  // Of the curve of chamber k from node `first` to node `last`.
+  void add_pieces(std::size_t first, std::size_t last, int k, double error,
                   std::vector<PeriodicCubic::Piece>& pieces, double& worst) const;
   double s(std::size_t node, int k) const { return s_[node * network_.pressures() + k]; }
   double slope(std::size_t node, int k) const { return slope_[node * network_.pressures() + k]; }
