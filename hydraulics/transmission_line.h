@@ -26,9 +26,9 @@ class TransmissionLine {
  public:
   enum class End { given_flow, given_pressure };
 
-  /// @param reference  state of the oil about which it is linear
+  /// @param oil  the state about which it is linear
   /// @param viscosity  m2/s, kinematic; 0: no friction
-  TransmissionLine(const DeliveryLineData& data, End end, const Fluid::State& reference,
+  TransmissionLine(const DeliveryLineData& data, End end, const Fluid::State& oil,
                    double viscosity);
 
   /// Degree of the polynomials at which waves are right up to the bandwidth.
