@@ -1462,10 +1462,23 @@ Table load_table() {
 
 const Registry& standard_registry() {
   static const Registry registry{
-      {top_level(), pump_table(), gear_table(), bearings_table(), piston_table(), shaft_table(),
-       block_table(), friction_table(), operation_table(), pressure_table(), port_plate_table(),
-       hydraulics_table(), oil_table(), leakage_table(), suction_line_table(),
-       delivery_line_table(), load_table(),
+      {top_level(),
+       pump_table(),
+       gear_table(),
+       bearings_table(),
+       piston_table(),
+       shaft_table(),
+       block_table(),
+       friction_table(),
+       operation_table(),
+       pressure_table(),
+       port_plate_table(),
+       hydraulics_table(),
+       oil_table(),
+       leakage_table(),
+       suction_line_table(),
+       delivery_line_table(),
+       load_table(),
        assumptions_table("analytic", [](const auto& v) { return v.analytic; }),
        assumptions_table("multibody", [](const auto& v) { return v.multibody; }),
        plausibility_table()}};
