@@ -5,6 +5,7 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/lost_digits.h"
+#include "bentaxis/study/pressure_document.h"
 #include "bentaxis/study/run.h"
 #include "commands.h"
 #include "console.h"
@@ -53,6 +54,9 @@ int run(const Options& options) {
     for (auto& text :
          study::multibody_warnings(ready.the_case, assumptions, run_options.scene, lines))
       warnings.push_back(text);
+  if (ready.hydraulics)
+    for (const auto& warning : study::hydraulic_warnings(*ready.hydraulics))
+      warnings.push_back(warning.name + ": " + warning.text);
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
 

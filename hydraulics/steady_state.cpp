@@ -387,6 +387,8 @@ std::vector<Line> lines(const SteadyState& state) {
       load_line(s),
       {"both ports open to a chamber (negative overlap)", s.both_open_deg, "deg per turn"},
       {"both ports closed (positive overlap)", s.both_closed_deg, "deg per turn"},
+      {"chamber below saturation pressure: air comes out", s.below_saturation_deg, "deg per turn"},
+      {"chamber below vapour pressure: oil boils", s.below_vapour_deg, "deg per turn"},
   };
 }
 

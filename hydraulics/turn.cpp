@@ -79,6 +79,13 @@ double ripple(const std::vector<double>& passed) {
   return (greatest - least) / (passed.back() * kPerWindow / static_cast<double>(steps));
 }
 
+// Share of a straight way from a to b that lies below a limit.
+double share_below(double a, double b, double limit) {
+  if (a < limit && b < limit) return 1;
+  if (a >= limit && b >= limit) return 0;
+  return (limit - std::min(a, b)) / std::abs(b - a);
+}
+
 // A piece that stays between its ends where both slopes point from one to the other (Fritsch and
 // Carlson, SIAM J. Numer. Anal. 17 (1980) 238-246).
 bool stays_between(const PeriodicCubic::Piece& p, double to) {
@@ -242,10 +249,19 @@ void TurnRecord::summarize(const Integrals& over_period, Summary& summary) const
       if (p > summary.chamber_greatest)
         summary.chamber_greatest = p, summary.chamber_greatest_deg = angle;
     }
+    for (int k = 0; i > 0 && k < n; ++k) {
+      const double way = x_[i] - x_[i - 1];
+      summary.below_saturation_deg +=
+          way * share_below(s(i - 1, k), s(i, k), fluid.log_pressure(fluid.saturation()));
+      summary.below_vapour_deg +=
+          way * share_below(s(i - 1, k), s(i, k), fluid.log_pressure(fluid.vapour()));
+    }
     const double line = network_.delivery_gauge(&s_[i * network_.pressures()]);
     summary.delivery_least = std::min(summary.delivery_least, line);
     summary.delivery_greatest = std::max(summary.delivery_greatest, line);
   }
+  summary.saturation = fluid.saturation();
+  summary.vapour = fluid.vapour();
   // The end is what the grid reaches but for round-off.
   auto delivered = delivered_, loaded = loaded_;
   delivered.back() = over_period.delivery;

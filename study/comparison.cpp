@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/pressure_document.h"
 #include "bentaxis/study/published_section.h"
 
 namespace bentaxis::study {
@@ -293,6 +294,9 @@ void Maker::hold_to_reference() {
 
 void Maker::warn() {
   ComparisonResult& r = result_;
+  if (r.first.hydraulics)
+    for (auto& warning : hydraulic_warnings(*r.first.hydraulics))
+      r.warnings.push_back(std::move(warning));
   for (const auto& limit : r.limits)
     if (limit.applicable && limit.violated_share > 0)
       r.warnings.push_back(

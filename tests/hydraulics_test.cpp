@@ -319,6 +319,24 @@ TEST(Limit, MeanTorqueIsTheWorkOfPressureOverATurn) {
       1, scaled(1e-10));
 }
 
+// Counted on the curve itself, a hundredth of a degree at a time.
+TEST(Report, DegreesBelowSaturationAndVapourPressure) {
+  Case the_case = rated();
+  the_case.operation.speed_rpm = 3000;  // oil tears
+  the_case.hydraulics->vapour_pressure = pascals(0.02);
+  const SteadyState state = steady_state(the_case);
+  const Summary& s = state.summary;
+  double below_saturation = 0, below_vapour = 0;
+  for (double theta = 0.005; theta < 360; theta += 0.01) {
+    below_saturation += state.computed->gauge(theta) < s.saturation ? 0.01 : 0;
+    below_vapour += state.computed->gauge(theta) < s.vapour ? 0.01 : 0;
+  }
+  EXPECT_NEAR(s.below_saturation_deg, below_saturation, 0.1);
+  EXPECT_NEAR(s.below_vapour_deg, below_vapour, 0.1);
+  EXPECT_GT(below_vapour, 1);
+  EXPECT_GT(below_saturation, below_vapour);
+}
+
 TEST(Report, LinesAreOneAnothersByTheirMeaning) {
   const SteadyState state = steady_state(rated());
   std::map<std::string, double> value;
@@ -362,7 +380,7 @@ TEST(PeriodicState, OpenLineStaysAtAtmosphere) {
 }
 
 TEST(PeriodicState, ErrorIsBelowTheOneStated) {
-  for (const double starved : {false, true}) {
+  for (const bool starved : {false, true}) {
     Case the_case = rated();
     if (starved) the_case.operation.speed_rpm = 3000;  // oil tears
     the_case.operation.samples_per_revolution = 7200;

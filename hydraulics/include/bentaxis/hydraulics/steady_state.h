@@ -36,6 +36,10 @@ struct Summary {
   double mass_in = 0, mass_out = 0;  ///< kg per turn: suction port; delivery port and leakage
   /// Degrees of a turn in which a chamber is open to both ports (negative overlap), or to neither.
   double both_open_deg = 0, both_closed_deg = 0;
+  /// Degrees of a turn in which the pressure of a chamber is below that at which dissolved air
+  /// comes out, and below that at which oil boils, whether or not the oil's law has air and vapour.
+  double below_saturation_deg = 0, below_vapour_deg = 0;
+  double saturation = 0, vapour = 0;  ///< Pa gauge, these two pressures
   LoadKind load = LoadKind::orifice;
   /// Of an orifice its area, m2; of a laminar load its conductance, m3/(s Pa); of a relief valve
   /// its absolute cracking pressure, Pa; 0 for a line held at a pressure and for a given flow.

@@ -8,6 +8,9 @@
 
 namespace bentaxis::study {
 
+/// What an engineer must be told of an operating point: cavitation, ports that are connected.
+std::vector<report::Warning> hydraulic_warnings(const hydraulics::SteadyState& state);
+
 /// One operating point: its hydraulic state, pressures, flows, torque.
 /// @param program  what computed it: names and versions
 report::Document pressure_document(const OperatingPoint& point, const report::Lines& program);
