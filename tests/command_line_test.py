@@ -212,6 +212,12 @@ class UsageTest(ProgramTest):
                 self.assert_mentions(line, *words)
                 self.assertRegex(line, rf"\b{words[1]}\b")
 
+    def test_accuracies_that_are_tried_unless_others_are_named(self):
+        self.run_program("tradeoff", self.case(), "--integrators", "verlet", "--samples", 10, "--max-seconds-per-run", 1e-6, "--out", ".")
+        rows = json.loads((self.folder / "tradeoff.json").read_text())["rows"]
+        tried = [row["accuracy"] for row in rows if row["method"] == "integrated"]
+        self.assertEqual(tried, 2 * [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10])
+
     def test_report_names_the_processor(self):
         names = [line.partition(":")[2].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
                  if line.startswith("model name")]
