@@ -16,6 +16,8 @@
 #include "bentaxis/study/hard_cases.h"
 #include "bentaxis/study/hard_cases_document.h"
 #include "bentaxis/study/inertia.h"
+#include "bentaxis/study/inertia_document.h"
+#include "bentaxis/study/inertia_study.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/tradeoff.h"
@@ -197,6 +199,50 @@ TEST(InertiaStudy, MapGrowsWithSpeedAndMassAndLeavesOutWhatCannotBeAssembled) {
   const auto lengths = study::error_map(shipped_case(), study::MapAxis::length, {1000}, {0.05, 1});
   EXPECT_FALSE(is_computed(lengths.rs[0][0]));
   EXPECT_TRUE(is_computed(lengths.rs[1][0]));
+}
+
+// Figures show the runs that they name, rows each model's own number: one of the multibody tables
+// is twice what it was.
+TEST(InertiaStudy, ReportIsOfTheRunsThatItNames) {
+  study::InertiaOptions options;
+  options.map_size = 2;
+  Case the_case = shipped_case();
+  the_case.operation.samples_per_revolution = 36;
+  study::InertiaStudy study = study::run_inertia_study(the_case, options, study::silent());
+  const auto of = [&](std::vector<InertiaRun>& runs, bool loaded) -> InertiaRun& {
+    return *std::find_if(runs.begin(), runs.end(), [&](const InertiaRun& run) {
+      return run.speed_rpm == 2350 && run.loaded == loaded;
+    });
+  };
+  InertiaRun& bare = of(study.one_piston, false);
+  for (double& value : bare.multibody_lumped.values) value *= 2;
+  const auto published =
+      compare::read_published(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
+                              "published" / "bap63" / "numbers.toml");
+  const study::InertiaReport report = study::inertia_report(study, &published, {});
+
+  std::map<std::string, report::Values> analytic, multibody;
+  for (const auto& [name, values] : report.curves.tables[0].columns) analytic[name] = values;
+  for (const auto& [name, values] : report.curves.tables[1].columns) multibody[name] = values;
+  EXPECT_EQ(analytic.at("Rc_1_x2_N, 2 masses"),
+            report::values_of(bare.analytic_lumped, "Rc_1_x2_N"));
+  EXPECT_EQ(multibody.at("Rc_1_x2_N, 2 masses"),
+            report::values_of(bare.multibody_lumped, "Rc_1_x2_N"));
+  const InertiaRun& full = of(study.full, true);
+  EXPECT_EQ(analytic.at("Td_z1_Nm, 2 masses - real"),
+            report::values_of(study::difference(full.analytic_lumped, full.analytic_real, ""),
+                              "Td_z1_Nm"));
+
+  int rows = 0;
+  for (const auto& row : report.document.published.value().section.rows) {
+    if (row.at.find("2350 rpm") == std::string::npos ||
+        row.at.find("two masses") == std::string::npos || row.at.find("minus") != std::string::npos)
+      continue;
+    ++rows;
+    const double expected = 2 * row.values.at(0)->high;
+    EXPECT_NEAR(row.values.at(1)->high, expected, 1e-6 * expected) << row.at;
+  }
+  EXPECT_EQ(rows, 2);  // Rc and Rs
 }
 
 TEST(InertiaStudy, RefusesStandstillAndPistonsWithoutData) {
