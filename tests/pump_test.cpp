@@ -475,6 +475,23 @@ TEST(Samples, PartsOfARunAreItsRows) {
   EXPECT_TRUE(sample_case(c, pressure, 2, false, {2, 0}).theta_deg.empty());
 }
 
+// More rows than are held at a time; a sink that is given too many ends it.
+TEST(Table, StreamedRowsAreAllOfThemOnce) {
+  Case c = reference_case("bap63_rated");
+  c.operation.samples_per_revolution = 10000;
+  const ChannelLayout layout(c.pump.geometry.pistons);
+  std::vector<double> theta;
+  stream_rows(
+      "streamed", layout, c, PressureTrace(c.pressure),
+      [&](const Instant&, std::vector<double>& row) { row.assign(layout.size(), 1.0); },
+      [&](double theta_deg, const std::vector<double>&) {
+        theta.push_back(theta_deg);
+        if (theta.size() > 10000) throw std::logic_error("too many rows");
+      },
+      {});
+  EXPECT_EQ(theta, sample_case(c, PressureTrace(c.pressure)).theta_deg);
+}
+
 TEST(Samples, ARowNeedsAnAngleAndAPressureForEachPiston) {
   Samples samples;
   samples.pistons = 3;
