@@ -14,7 +14,7 @@ namespace {
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
   utsname name{};
   return uname(&name) == 0 ? name.machine : "unknown";
 }

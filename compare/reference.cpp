@@ -267,7 +267,7 @@ std::vector<Between> points_near(const std::vector<double>& theta, double at, do
     const double step = wrap_degrees(theta[next] - theta[i]);
     for (const double end : {at - half, at + half}) {
       const double past = wrap_degrees(end - theta[i]);
-      if (past <= step && step > 0) points.push_back({i, next, past / step});
+      if (past <= step) points.push_back({i, next, past / step});
     }
     const double past = wrap_degrees(theta[i] - at);
     if (std::min(past, 360 - past) <= half) points.push_back({i, i, 0});

@@ -56,9 +56,9 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     missing = missing.parent_path();
   }
   fs::create_directories(folder_, error);
-  if (error || !fs::is_directory(folder_)) {
+  if (error) {  // of a file in its place too
     created_.clear();
-    fail(folder_, error ? error.message() : "is not a folder");
+    fail(folder_, error.message());
   }
   if (::access(folder_.c_str(), W_OK | X_OK) != 0) fail(folder_, std::strerror(errno));
 }

@@ -44,12 +44,8 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
     return;
   }
   const double half = transition_deg_ / 2;
-  if (half > 0) {
-    for (const double edge : {-half, half, 180 - half, 180 + half})
-      edges_deg_.push_back(wrap_degrees(delivery_start_deg_ + edge));
-  } else {
-    edges_deg_ = {wrap_degrees(delivery_start_deg_), wrap_degrees(delivery_start_deg_ + 180)};
-  }
+  for (const double edge : {-half, half, 180 - half, 180 + half})
+    edges_deg_.push_back(wrap_degrees(delivery_start_deg_ + edge));
   std::sort(edges_deg_.begin(), edges_deg_.end());
   edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end()), edges_deg_.end());
 }

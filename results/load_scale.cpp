@@ -16,10 +16,10 @@ LoadScale load_scale(const Case& the_case, const Samples& samples) {
       std::max(pump.geometry.joint_circle_radius, pump.geometry.bore_circle_radius);
   const double inertia = pump.piston.mass * samples.omega * samples.omega * radius;
   LoadScale scale;
-  scale.force =
-      std::max({pressure * std::max(area, pump.block.bottom_area), pump.block.spring_force,
-                pump.friction.piston_coulomb, inertia,
-                pump.gravity * std::max({pump.shaft.mass, pump.block.mass, pump.piston.mass})});
+  scale.force = std::max(
+      {pressure * std::max(area, pump.block.bottom_area), pump.block.spring_force,
+       pump.friction.piston_coulomb, inertia,
+       std::abs(pump.gravity) * std::max({pump.shaft.mass, pump.block.mass, pump.piston.mass})});
   scale.moment =
       std::max({scale.force * radius, pump.friction.block_viscous * std::abs(samples.omega),
                 pump.friction.shaft_viscous * std::abs(samples.omega)});

@@ -7,6 +7,7 @@
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/rounding.h"
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -554,6 +555,72 @@ TEST(Kinematics, S3IsOrthonormalWhereThePapersFormulaFails) {
   const auto axes = kinematics.s3_in_s1(kinematics.piston(0, 1).axis.value);
   EXPECT_LT((axes.transpose() * axes - Eigen::Matrix3d::Identity()).norm(), 1e-15);
   EXPECT_NEAR(axes.determinant(), 1, 1e-15);
+}
+
+// Where q(u) is a straight line the tilt has its extremes at the ends of the turn: 2 Rd = Ra (1 +
+// cos beta) to the last bit, which takes a cosine that ends in an even bit.
+TEST(Derived, TiltsOfAPistonThatHasNoInnerExtreme) {
+  Geometry g = reference_case("bap63_rated").pump.geometry;
+  int seen = 0;
+  for (int i = 0; i < 20; ++i) {
+    g.tilt = 0.5 + 0.01 * i;
+    g.joint_circle_radius = 1.0 / 32;
+    g.bore_circle_radius = (1 + std::cos(g.tilt)) / 64;
+    g.axis_offset = 0.002;
+    const double difference = g.bore_circle_radius - g.joint_circle_radius;
+    const double projected = g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt);
+    if (difference != -projected) continue;
+    ++seen;
+    const analytic::Kinematics kinematics(g);
+    double smallest = 10, largest = 0;
+    for (int k = 0; k <= 3600; ++k) {
+      const double t = 2 * kPi * k / 3600;
+      const auto axis = kinematics.piston(std::sin(t), std::cos(t)).axis.value;
+      const double tilt = std::atan2(std::hypot(axis.x(), axis.y()), std::abs(axis.z()));
+      smallest = std::min(smallest, tilt);
+      largest = std::max(largest, tilt);
+    }
+    const auto derived = analytic::derived_quantities(g);
+    EXPECT_NEAR(derived.smallest_tilt, smallest, 1e-12);
+    EXPECT_NEAR(derived.largest_tilt, largest, 1e-12);
+  }
+  EXPECT_GT(seen, 3);
+}
+
+TEST(Facts, EquationsAreCounted) {
+  Case the_case = reference_case("bap63_rated");
+  the_case.operation.samples_per_revolution = 4;
+  the_case.pump.geometry.pistons = 7;
+  const ResultTable table = analytic::run(the_case, the_case.analytic, one_turn(the_case));
+  EXPECT_THAT(table.provenance.facts,
+              testing::Contains(testing::Pair(
+                  "equations", "47 (5 per piston, 6 block, 6 shaft), solved body by body")));
+}
+
+TEST(Validity, ShareIsOfTheAnglesThatAreComputed) {
+  Case the_case = reference_case("bap63_rated");
+  the_case.operation.samples_per_revolution = 12;
+  const Samples samples = one_turn(the_case);
+  ResultTable table = analytic::run(the_case, the_case.analytic, samples);
+  const std::size_t column = table.find("Rcs_z4_N");
+  const auto set = [&](std::size_t row, double value) {
+    table.values[row * table.columns() + column] = value;
+  };
+  for (std::size_t row = 0; row < 12; ++row) set(row, 10);
+  set(4, -2);
+  set(5, -3);
+  set(6, 0);
+  set(7, not_computed());
+  set(8, not_computed());
+  const auto flank = [&] {
+    return analytic::check_validity(the_case, the_case.analytic, samples, table).at(0);
+  };
+  EXPECT_EQ(flank().name, "Rcs < 0");
+  EXPECT_DOUBLE_EQ(flank().violated_share, 0.2);
+  EXPECT_EQ(flank().worst, -3);
+  EXPECT_DOUBLE_EQ(flank().theta_deg, 150);
+  for (std::size_t row = 0; row < 12; ++row) set(row, not_computed());
+  EXPECT_FALSE(flank().applicable);
 }
 
 // BAP 63: the figures the paper prints.

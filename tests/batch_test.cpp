@@ -267,6 +267,18 @@ constexpr double kRecompiledTolerance = 1e-14;
 static_assert(!std::is_copy_constructible_v<BatchColumns>);
 static_assert(!std::is_copy_assignable_v<BatchColumns>);
 
+// An odd number of cache lines apart, and no more of them than that takes.
+TEST(Batch, ColumnsDoNotShareCacheSets) {
+  for (const std::size_t rows : {0, 1, 7, 8, 9, 24, 512, 1000, 1024, 65536}) {
+    analytic::BatchColumns columns(2, rows);
+    const auto doubles = static_cast<std::size_t>(columns.column(1) - columns.column(0));
+    EXPECT_EQ(doubles % 8, 0U) << rows;
+    EXPECT_EQ(doubles / 8 % 2, 1U) << rows;
+    EXPECT_GE(doubles, rows);
+    EXPECT_LE(doubles, rows + 16);
+  }
+}
+
 TEST(Batch, ColumnsCanBeMoved) {
   BatchColumns columns(3, 5);
   columns.column(2)[4] = 7;

@@ -10,8 +10,10 @@ import hashlib
 import json
 import os
 import pathlib
+import pty
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -200,6 +202,51 @@ class UsageTest(ProgramTest):
         for command, options in (("run", "--model --out --way --scene --gear --integrator --accuracy"),
                                  ("compare", "--out --tolerance")):
             self.assert_mentions(self.run_program(command, "--help").out, *options.split())
+
+    def test_bounds_of_numbers(self):
+        case = self.case()
+        for arguments, words in (
+            (["hardcases", "--turns", "100001"], ["--turns", "100000"]),
+            (["tradeoff", case, "--samples", "100001"], ["--samples", "100000"]),
+            (["run", case, "--model", "multibody", "--way", "integrated", "--error", "0.1004"], ["--error", "0.1"]),
+        ):
+            with self.subTest(arguments):
+                line = self.refused(*arguments)
+                self.assert_mentions(line, *words)
+                self.assertRegex(line, rf"\b{words[1]}\b")
+
+    def test_accuracies_that_are_tried_unless_others_are_named(self):
+        self.run_program("tradeoff", self.case(), "--integrators", "verlet", "--samples", 10, "--max-seconds-per-run", 1e-6, "--out", ".")
+        rows = json.loads((self.folder / "tradeoff.json").read_text())["rows"]
+        tried = [row["accuracy"] for row in rows if row["method"] == "integrated"]
+        self.assertEqual(tried, 2 * [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10])
+
+    def test_report_names_the_processor(self):
+        names = [line.partition(":")[2].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+                 if line.startswith("model name")]
+        self.run_program("compare", self.case(), "--out", ".")
+        program = dict(json.loads((self.folder / "report.json").read_text())["program"])
+        self.assertEqual(program["processor"], names[0] if names else os.uname().machine)
+
+    def test_progress_is_taken_off_a_terminal(self):
+        case = self.case(**{"operation.samples_per_revolution": 20000})
+        mine, theirs = pty.openpty()
+        process = subprocess.Popen([PROGRAM, "run", case, "--model", "multibody", "--out", "out"], cwd=self.folder,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=theirs)
+        os.close(theirs)
+        shown = b""
+        with open(mine, "rb", buffering=0) as terminal:
+            while True:
+                try:
+                    piece = terminal.read(4096)
+                except OSError:  # its end, on Linux
+                    break
+                if not piece:
+                    break
+                shown += piece
+        self.assertEqual(process.wait(SECONDS), DONE, shown)
+        self.assertRegex(shown, rb"\r[^\r]* [ 0-9]{2}[0-9] %")
+        self.assertEqual(shown.rpartition(b"%")[2].count(b"\r\x1b[K"), 1, shown[-200:])
 
     def test_bad_usage(self):
         case = self.case()
@@ -852,6 +899,15 @@ class OutputTest(ProgramTest):
                                       stdout=full, stderr=subprocess.PIPE, text=True)
                 self.assertEqual(done.returncode, BAD_INPUT)
                 self.assertRegex(PUMP.sub("", done.stderr), r"^bentaxis: standard output cannot be written(: [^\n]+)?\n$")
+        # Of a job that fails anyway, one line says why.
+        shutil.copytree(REPO / "reference_data" / "hard" / "tilt_45", self.folder / "hard" / "tilt_45")
+        shutil.copy(REPO / "reference_data" / "hard" / "catalogue.toml", self.folder / "hard")
+        (self.folder / "hard" / "tilt_45" / "reference.csv").unlink()
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, "hardcases", "--catalogue", "hard", "--filter", "tilt_45", "--out", "out"],
+                                  cwd=self.folder, stdin=subprocess.DEVNULL, stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertRegex(done.stderr, r"^bentaxis: [^\n]*reference\.csv[^\n]*\n$")
 
 
 class InterruptionTest(ProgramTest):

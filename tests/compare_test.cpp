@@ -9,6 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/report/page.h"
+#include "bentaxis/report/text.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -371,6 +372,49 @@ TEST(Page, HoldsTheDataAndNeedsNoNetwork) {
   EXPECT_EQ(page.find("</script><b>x"), std::string::npos);
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "url(http"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+  EXPECT_THAT(page, HasSubstr(R"("title":"\u003cT>")"));
+}
+
+TEST(Json, IsOnePerLineForAReaderAndOneLineForThePage) {
+  report::Document document;
+  document.title = "Größe";
+  EXPECT_THAT(report::json_text(document), HasSubstr("\n \"title\": \"Größe\""));
+  EXPECT_THAT(report::compact_json(document), HasSubstr("\"title\":\"Größe\""));
+  EXPECT_EQ(report::compact_json(document).find('\n'), std::string::npos);
+  EXPECT_EQ(report::compact_json(report::Curves{{0, 1}, {}, {}}).find('\n'), std::string::npos);
+}
+
+TEST(Json, ALimitIsViolatedByTheSmallestShare) {
+  report::Document document;
+  document.validity.emplace();
+  for (const double share : {0.0, 0.01, 1.0})
+    document.validity->push_back({"l", "N", "c", true, share});
+  document.validity->push_back({"l", "N", "c", false, 1});
+  const auto json = nlohmann::json::parse(report::json_text(document));
+  std::vector<bool> violated;
+  for (const auto& row : json["validity"]) violated.push_back(row["violated"]);
+  EXPECT_EQ(violated, (std::vector<bool>{false, true, true, false}));
+}
+
+// Worst first, equals by name, what was not computed last.
+TEST(Text, OrderOfTheGroups) {
+  Comparison comparison;
+  for (const auto& [name, largest] :
+       std::map<std::string, double>{{"A", -1}, {"B", 1e-3}, {"C", 2}, {"D", 1e-3}, {"E", 0}}) {
+    ChannelComparison c;
+    c.channel = channel(name + "_N", name);
+    c.judged = true;
+    c.peak = 1;
+    c.largest = largest;
+    c.verdict = largest < 0 ? Verdict::not_computed : Verdict::agrees;
+    comparison.channels.push_back(c);
+  }
+  const std::string text = report::text_table(comparison);
+  std::vector<std::size_t> places;
+  for (const char* name : {"\nC_N", "\nB_N", "\nD_N", "\nE_N", "\nA_N"})
+    places.push_back(text.find(name));
+  EXPECT_TRUE(std::is_sorted(places.begin(), places.end())) << text;
+  EXPECT_NE(places.back(), std::string::npos);
 }
 
 TEST(Curves, DifferencesAreTakenBeforeRounding) {

@@ -73,6 +73,14 @@ TEST_F(OutputFolderTest, LeavesNothingUnlessCommitted) {
   EXPECT_EQ(std::distance(fs::directory_iterator(target), fs::directory_iterator()), 1);
 }
 
+TEST_F(OutputFolderTest, AFileInItsPlaceIsNoFolder) {
+  file("taken", "1");
+  fs::permissions(folder_ / "taken", fs::perms::all);
+  for (const char* name : {"taken", "taken/", "taken/below"})
+    EXPECT_THROW(OutputFolder{folder_ / name}, InputError) << name;
+  EXPECT_EQ(text("taken"), "1");
+}
+
 TEST_F(OutputFolderTest, NamesThePathItCannotWrite) {
   file("taken", "x");
   EXPECT_THROW(OutputFolder(folder_ / "taken"), InputError);
@@ -140,13 +148,15 @@ TEST_F(OutputFolderTest, WhatIsNotOfTheEarlierSetStays) {
   file("changed.csv", "1");
   fs::create_directory(folder_ / "folder");
   file("outside.csv", "1");
-  write_with("changed.csv\nfolder\n../outside.csv\n..\n\nmissing.csv");
+  file("folder/inside.csv", "1");
+  write_with("changed.csv\nfolder\n../outside.csv\nfolder/inside.csv\n..\n\nmissing.csv");
   // Changed since: somebody else's now.
   fs::last_write_time(folder_ / "changed.csv",
                       fs::last_write_time(folder_ / "report.txt") + std::chrono::seconds(1));
   write_with("");
   EXPECT_THAT(contents(),
               UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.txt"));
+  EXPECT_EQ(text("folder/inside.csv"), "1");
   write_with("report.txt");
   EXPECT_THAT(contents(),
               UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.txt"));

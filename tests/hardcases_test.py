@@ -51,6 +51,9 @@ class CatalogueTest(Temporary):
         with open(self.folder / "hardcases.csv", newline="") as stream:
             self.assertEqual(len(list(csv.DictReader(stream))), 3 * len(report["cases"]))
         self.assertIn("Hard cases", (self.folder / "hardcases.html").read_text())
+        (long_run,) = [run for run in report["runs"] if run["title"] == "20 turns integrated"]
+        self.assertIn("accuracy 1e-06;", long_run["text"])
+        self.assertRegex(result.stdout, r"20 turns integrated, accuracy 1e-06, ")
 
     def test_a_wrong_number_is_noticed(self):
         """The control: one entry of one stored curve off by 1e-9 of itself."""

@@ -11,6 +11,7 @@
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
+#include "bentaxis/results/load_scale.h"
 #include "closed_form/film.h"
 #include "loads/film.h"
 #include "support.h"
@@ -223,6 +224,7 @@ TEST(Pressure, StepTakesItsEdgeWithinRoundOff) {
   EXPECT_DOUBLE_EQ(trace(360 - 1e-8), 2e7);
   EXPECT_DOUBLE_EQ(trace(360), 1e5);
   EXPECT_DOUBLE_EQ(trace(-1e-10), 1e5);
+  EXPECT_EQ(trace.edges_deg(), (std::vector<double>{0, 180}));
 }
 
 TEST(Pressure, SplineIsPeriodicSmoothAndOfFourthOrder) {
@@ -396,6 +398,68 @@ TEST(Table, PeakIsThatOfTheVectorOverAllPistons) {
   EXPECT_DOUBLE_EQ(t.peak("Rs"), 5);
 }
 
+TEST(Channels, HaveTheirUnitInSi) {
+  for (const Channel& channel : ChannelLayout(3).channels()) {
+    const std::map<std::string, double> units = {{"mm", 1e-3}, {"bar", 1e5}};
+    const auto it = units.find(channel.unit);
+    EXPECT_EQ(channel.unit_in_si, it == units.end() ? 1 : it->second) << channel.name;
+  }
+}
+
+// One load after the other on a pump that has none; bore of 20 mm.
+TEST(LoadScale, IsTheLargestLoadApplied) {
+  const auto scale = [](const std::function<void(PumpParameters&, Samples&)>& load) {
+    Case the_case = reference_case("bap63_rated");
+    PumpParameters& pump = the_case.pump;
+    pump.geometry.bore_diameter = 0.02;
+    pump.geometry.joint_circle_radius = 0.03;
+    pump.geometry.bore_circle_radius = 0.04;
+    pump.piston = {};
+    pump.shaft.mass = pump.block.mass = pump.block.spring_force = pump.block.bottom_area = 0;
+    pump.friction = {};
+    pump.gravity = 0;
+    Samples samples;
+    samples.pistons = 1;
+    samples.omega = -200;
+    samples.theta_deg = {0, 120, 240};
+    samples.chamber_pressure = {0, 0, 0};
+    samples.ports = {0, 0};
+    load(pump, samples);
+    return load_scale(the_case, samples);
+  };
+  using P = PumpParameters;
+  const double area = kPi / 4 * 0.02 * 0.02;
+  EXPECT_EQ(scale([](P&, Samples&) {}).force, 0);
+  const auto chamber = scale([](P&, Samples& s) { s.chamber_pressure = {1e6, -2e6, 1e6}; });
+  EXPECT_DOUBLE_EQ(chamber.force, 2e6 * area);
+  EXPECT_DOUBLE_EQ(chamber.moment, 2e6 * area * 0.04);
+  EXPECT_DOUBLE_EQ(scale([](P&, Samples& s) { s.ports.delivery = 3e6; }).force, 3e6 * area);
+  EXPECT_DOUBLE_EQ(scale([](P&, Samples& s) { s.ports.suction = -3e6; }).force, 3e6 * area);
+  for (const double bottom : {1e-4, 1e-3})  // below and above that of the bore
+    EXPECT_DOUBLE_EQ(scale([&](P& p, Samples& s) {
+                       s.ports.delivery = 3e6;
+                       p.block.bottom_area = bottom;
+                     }).force,
+                     3e6 * std::max(area, bottom));
+  EXPECT_EQ(scale([](P& p, Samples&) { p.block.spring_force = 400; }).force, 400);
+  EXPECT_EQ(scale([](P& p, Samples&) { p.friction.piston_coulomb = 30; }).force, 30);
+  EXPECT_DOUBLE_EQ(scale([](P& p, Samples&) { p.piston.mass = 0.1; }).force, 0.1 * 4e4 * 0.04);
+  EXPECT_DOUBLE_EQ(scale([](P& p, Samples&) {
+                     p.piston.mass = 0.1;
+                     p.geometry.joint_circle_radius = 0.05;
+                   }).force,
+                   0.1 * 4e4 * 0.05);
+  for (const double gravity : {9.81, -9.81})
+    EXPECT_DOUBLE_EQ(scale([&](P& p, Samples&) {
+                       p.gravity = gravity;
+                       p.shaft.mass = 3;
+                       p.block.mass = 2;
+                     }).force,
+                     29.43);
+  EXPECT_DOUBLE_EQ(scale([](P& p, Samples&) { p.friction.block_viscous = 0.05; }).moment, 10);
+  EXPECT_DOUBLE_EQ(scale([](P& p, Samples&) { p.friction.shaft_viscous = 0.02; }).moment, 4);
+}
+
 TEST(Samples, PartsOfARunAreItsRows) {
   Case c = reference_case("reversed");
   c.operation.samples_per_revolution = 5;
@@ -409,6 +473,23 @@ TEST(Samples, PartsOfARunAreItsRows) {
   EXPECT_EQ(part.chamber_pressure, std::vector<double>(first, first + 4 * all.pistons));
   EXPECT_EQ(sample_case(c, pressure, 2, false, {8, 100}).theta_deg.size(), 2U);
   EXPECT_TRUE(sample_case(c, pressure, 2, false, {2, 0}).theta_deg.empty());
+}
+
+// More rows than are held at a time; a sink that is given too many ends it.
+TEST(Table, StreamedRowsAreAllOfThemOnce) {
+  Case c = reference_case("bap63_rated");
+  c.operation.samples_per_revolution = 10000;
+  const ChannelLayout layout(c.pump.geometry.pistons);
+  std::vector<double> theta;
+  stream_rows(
+      "streamed", layout, c, PressureTrace(c.pressure),
+      [&](const Instant&, std::vector<double>& row) { row.assign(layout.size(), 1.0); },
+      [&](double theta_deg, const std::vector<double>&) {
+        theta.push_back(theta_deg);
+        if (theta.size() > 10000) throw std::logic_error("too many rows");
+      },
+      {});
+  EXPECT_EQ(theta, sample_case(c, PressureTrace(c.pressure)).theta_deg);
 }
 
 TEST(Samples, ARowNeedsAnAngleAndAPressureForEachPiston) {
@@ -462,6 +543,15 @@ TEST(CaseWriter, NamesAreQuoted) {
   Case the_case = reference_case("zero_tilt");
   the_case.name = "a \"pump\" \\ of\ntwo lines\x01 \xc3\xbc";
   EXPECT_EQ(parse_case(case_text(the_case), "/written.toml").name, the_case.name);
+}
+
+TEST(NumberRange, SlackIsAShareOfTheBound) {
+  NumberRange range{-4, 8};
+  range.slack = 0.25;
+  for (const double within : {-5.0, -4.0, 0.0, 10.0}) EXPECT_TRUE(range.contains(within)) << within;
+  for (const double beyond : {-5.1, 10.1}) EXPECT_FALSE(range.contains(beyond)) << beyond;
+  range.low = 0;  // of nothing it is nothing
+  EXPECT_FALSE(range.contains(-1e-300));
 }
 
 TEST(Words, WhatIsAlikeWasMeant) {

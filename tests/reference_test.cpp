@@ -369,6 +369,27 @@ TEST(Junit, HoldsTextThatIsNoMarkup) {
   EXPECT_EQ(xml.find('\x01'), std::string::npos);
 }
 
+TEST(Junit, SaysHowEachTestEndedAndTheTimesAddUp) {
+  using report::TestOutcome;
+  const std::vector<report::TestCase> cases = {
+      {"fine", "c", 0.25, TestOutcome::passed, "", "its figures"},
+      {"plain", "c", 0, TestOutcome::passed, "", ""},
+      {"off", "c", 0, TestOutcome::failed, "too far", "by 2"},
+      {"broken", "c", 0, TestOutcome::error, "no file", ""},
+      {"left out", "c", 0, TestOutcome::skipped, "not here", ""}};
+  const std::string xml =
+      report::junit_xml("all", {{"first", 0.5, {}, cases}, {"second", 2, {}, {}}});
+  for (const char* part :
+       {"<testsuites name=\"all\" tests=\"5\" failures=\"1\" errors=\"1\" skipped=\"1\" "
+        "time=\"2.500000\">",
+        "<testcase name=\"fine\" classname=\"c\" time=\"0.250000\">\n   <system-out>its "
+        "figures</system-out>",
+        "<testcase name=\"plain\" classname=\"c\" time=\"0.000000\" />",
+        "<failure message=\"too far\" type=\"out of tolerance\">by 2</failure>",
+        "<error message=\"no file\" type=\"error\" />", "<skipped message=\"not here\" />"})
+    EXPECT_THAT(xml, HasSubstr(part));
+}
+
 // ---- Printed numbers
 // -----------------------------------------------------------------------------
 

@@ -11,12 +11,17 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/block_torque.h"
 #include "bentaxis/study/comparison.h"
+#include "bentaxis/study/comparison_document.h"
 #include "bentaxis/study/friction_calibration.h"
 #include "bentaxis/study/hard_cases.h"
+#include "bentaxis/study/hard_cases_document.h"
 #include "bentaxis/study/inertia.h"
+#include "bentaxis/study/inertia_document.h"
+#include "bentaxis/study/inertia_study.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/tradeoff.h"
+#include "bentaxis/study/tradeoff_study.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -196,6 +201,50 @@ TEST(InertiaStudy, MapGrowsWithSpeedAndMassAndLeavesOutWhatCannotBeAssembled) {
   EXPECT_TRUE(is_computed(lengths.rs[1][0]));
 }
 
+// Figures show the runs that they name, rows each model's own number: one of the multibody tables
+// is twice what it was.
+TEST(InertiaStudy, ReportIsOfTheRunsThatItNames) {
+  study::InertiaOptions options;
+  options.map_size = 2;
+  Case the_case = shipped_case();
+  the_case.operation.samples_per_revolution = 36;
+  study::InertiaStudy study = study::run_inertia_study(the_case, options, study::silent());
+  const auto of = [&](std::vector<InertiaRun>& runs, bool loaded) -> InertiaRun& {
+    return *std::find_if(runs.begin(), runs.end(), [&](const InertiaRun& run) {
+      return run.speed_rpm == 2350 && run.loaded == loaded;
+    });
+  };
+  InertiaRun& bare = of(study.one_piston, false);
+  for (double& value : bare.multibody_lumped.values) value *= 2;
+  const auto published =
+      compare::read_published(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
+                              "published" / "bap63" / "numbers.toml");
+  const study::InertiaReport report = study::inertia_report(study, &published, {});
+
+  std::map<std::string, report::Values> analytic, multibody;
+  for (const auto& [name, values] : report.curves.tables[0].columns) analytic[name] = values;
+  for (const auto& [name, values] : report.curves.tables[1].columns) multibody[name] = values;
+  EXPECT_EQ(analytic.at("Rc_1_x2_N, 2 masses"),
+            report::values_of(bare.analytic_lumped, "Rc_1_x2_N"));
+  EXPECT_EQ(multibody.at("Rc_1_x2_N, 2 masses"),
+            report::values_of(bare.multibody_lumped, "Rc_1_x2_N"));
+  const InertiaRun& full = of(study.full, true);
+  EXPECT_EQ(analytic.at("Td_z1_Nm, 2 masses - real"),
+            report::values_of(study::difference(full.analytic_lumped, full.analytic_real, ""),
+                              "Td_z1_Nm"));
+
+  int rows = 0;
+  for (const auto& row : report.document.published.value().section.rows) {
+    if (row.at.find("2350 rpm") == std::string::npos ||
+        row.at.find("two masses") == std::string::npos || row.at.find("minus") != std::string::npos)
+      continue;
+    ++rows;
+    const double expected = 2 * row.values.at(0)->high;
+    EXPECT_NEAR(row.values.at(1)->high, expected, 1e-6 * expected) << row.at;
+  }
+  EXPECT_EQ(rows, 2);  // Rc and Rs
+}
+
 TEST(InertiaStudy, RefusesStandstillAndPistonsWithoutData) {
   Case the_case = shipped_case();
   EXPECT_THROW(study::run_both_pistons(the_case, 0, false, Scene::piston), InputError);
@@ -284,6 +333,42 @@ TEST(LongRun, AGroupThatNothingLoadsIsHeldToTheScaleOfItsUnit) {
   EXPECT_TRUE(std::isnan(study::errors_of_turns(reference, table, scales, 2)[0]));
 }
 
+// ---- hard cases
+// -----------------------------------------------------------------------------------
+
+TEST(HardOutcome, WorstIsTheLargestLossAndNoNumberIsWorse) {
+  study::HardOutcome outcome;
+  EXPECT_EQ(outcome.worst(), nullptr);
+  outcome.groups = {{"a", 1e-6, 1e-6}, {"b", 1e-3, 1e-3}, {"c", 1e-3, 1e-3}, {"d", 1e-4, 1e-4}};
+  EXPECT_EQ(outcome.worst()->group, "b");  // the first of equals
+  outcome.groups.insert(outcome.groups.begin() + 1, {"nan", std::nan(""), 1});
+  EXPECT_EQ(outcome.worst()->group, "nan");
+}
+
+TEST(HardOutcome, WorstRatioIsTheFarthestFromOneOfNoticeableLosses) {
+  study::HardOutcome outcome;
+  outcome.groups = {{"unnoticed", 1e-11, 1e-3}};
+  EXPECT_FALSE(outcome.worst_ratio());
+  for (const auto& [name, measured] : std::map<std::string, double>{
+           {"twice", 2e-6}, {"a tenth", 1e-7}, {"a half", 5e-7}, {"fivefold", 5e-6}})
+    outcome.groups.push_back({name, measured, 1e-6});
+  EXPECT_NEAR(outcome.worst_ratio().value(), 0.1, 1e-12);
+}
+
+TEST(HardCases, TableIsInItsUnits) {
+  study::HardCaseStudy study;
+  study::HardOutcome outcome;
+  outcome.model = "analytic";
+  outcome.verdict = study::HardVerdict::as_predicted;
+  outcome.groups = {{"Rs", 1e-6, 2e-6}};
+  outcome.seconds_per_angle = 12.5e-6;
+  study.runs.push_back({{"one", "group", "why", {}, {}, {}}, outcome});
+  EXPECT_NE(
+      study::hard_cases_csv(study).find("one,analytic,accurate,accurate,Rs,1e-06,2e-06,6.0,12.5\n"),
+      std::string::npos)
+      << study::hard_cases_csv(study);
+}
+
 // ---- One call from a case to a verdict
 
 Case case_named(const std::string& name, int samples) {
@@ -333,6 +418,20 @@ TEST(CompareModels, OneCallOnAHydraulicCase) {
   for (std::size_t row = 0; row < result.analytic.rows(); ++row)
     EXPECT_EQ(result.analytic.at(row, result.analytic.find("p_3_bar")),
               result.multibody.at(row, result.multibody.find("p_3_bar")));
+}
+
+TEST(CompareModels, TheLawOfFrictionIsSaid) {
+  for (const auto& [regularization, law] :
+       std::map<double, std::string>{{0, "Fc sign(v) + cv v"}, {0.02, "Fc tanh(v/v_reg) + cv v"}}) {
+    Case the_case = case_named("bap63_rated.toml", 10);
+    the_case.pump.friction.regularization = regularization;
+    const auto document =
+        study::comparison_document(study::compare_models(the_case, the_case, {}), {});
+    std::vector<std::string> laws;
+    for (const auto& common : document.common.value())
+      if (common.input == "law of piston friction") laws.push_back(common.value);
+    EXPECT_EQ(laws, std::vector<std::string>{law});
+  }
 }
 
 TEST(CompareModels, AWrongInputToOneModelIsNoticed) {
@@ -495,6 +594,57 @@ std::vector<study::TradeoffRun> runs_of_order(double p) {
     runs.push_back(std::move(run));
   }
   return runs;
+}
+
+study::TradeoffRun integrated(double accuracy, double seconds, double error) {
+  study::TradeoffRun run;
+  run.model = "multibody";
+  run.method = "integrated";
+  run.variant = "rk3";
+  run.accuracy = accuracy;
+  run.seconds_per_turn = seconds;
+  run.error.worst = error;
+  run.record.emplace();
+  return run;
+}
+
+TEST(Tradeoff, TheFastestThatIsGoodEnough) {
+  std::vector<study::TradeoffRun> runs = {integrated(1e-3, 1, 1e-2), integrated(1e-4, 4, 1e-4),
+                                          integrated(1e-5, 2, 1e-3), integrated(1e-6, 3, 1e-6)};
+  runs.push_back(integrated(1e-7, 0.1, 1e-9));
+  runs.back().failure = "stopped";
+  runs.push_back(integrated(0, 0.01, 1e-15));
+  runs.back().method = "driven";
+  EXPECT_EQ(study::fastest_within(runs, 1e-2), &runs[0]);
+  EXPECT_EQ(study::fastest_within(runs, 1e-3), &runs[2]);
+  EXPECT_EQ(study::fastest_within(runs, 1e-4), &runs[3]);
+  EXPECT_EQ(study::fastest_within(runs, 1e-8), nullptr);
+}
+
+// Error over time holds every run and the front; over accuracy, the runs that have one.
+TEST(Tradeoff, FiguresHoldTheRunsThatAreDone) {
+  study::TradeoffStudy study{shipped_case(), {}, {{"smooth", {}}}};
+  auto& runs = study.pressures.front().runs;
+  runs = {integrated(1e-3, 1, 1e-2), integrated(1e-5, 2, 1e-3), integrated(1e-7, 9, 0)};
+  runs.back().failure = "stopped";
+  study::TradeoffRun driven;
+  driven.model = "multibody";
+  driven.method = "driven";
+  driven.variant = "full";
+  runs.push_back(driven);
+  const auto document = study::tradeoff_document(study, {});
+  const auto series = [&](std::size_t figure) {
+    std::map<std::string, std::size_t> points;
+    for (const auto& s :
+         std::get<report::ScatterFigure>(document.figures->at(figure).content).series)
+      points[s.name] = s.points.size();
+    return points;
+  };
+  using Points = std::map<std::string, std::size_t>;
+  EXPECT_EQ(
+      series(0),
+      (Points{{"rk3", 2}, {"multibody driven full", 1}, {"front of the integrated runs", 2}}));
+  EXPECT_EQ(series(1), (Points{{"rk3", 2}}));
 }
 
 TEST(Tradeoff, AnOrderOutsideThatOfItsMethodIsMarked) {
