@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/block_torque.h"
+#include "bentaxis/study/calibration.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
 #include "bentaxis/study/friction_calibration.h"
@@ -594,6 +595,18 @@ std::vector<study::TradeoffRun> runs_of_order(double p) {
     runs.push_back(std::move(run));
   }
   return runs;
+}
+
+TEST(Calibration, WhatItChoosesHasHalfTheErrorAskedFor) {
+  const Case the_case = case_named("bap63_rated.toml", 36);
+  const PressureTrace pressure(the_case.pressure);
+  for (const double asked : {1e-3, 1e-7}) {
+    const auto found =
+        study::calibrate(the_case, the_case.multibody, pressure, asked,
+                         {multibody::Integrator::runge_kutta_merson}, study::silent());
+    EXPECT_LE(found.error_in_trial, asked / 2);
+    EXPECT_GT(found.error_in_trial, 0);
+  }
 }
 
 study::TradeoffRun integrated(double accuracy, double seconds, double error) {
