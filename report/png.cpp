@@ -19,7 +19,7 @@ class Librsvg {
   }
   // A function by its name, of the type that the header gives it.
   template <class Function>
-  Function* find(Function&, const char* name) const {
+  Function* find(const char* name) const {
     void* const found = dlsym(library_, name);
     if (found == nullptr) throw std::runtime_error(std::string("librsvg lacks ") + name);
     return reinterpret_cast<Function*>(found);
@@ -28,7 +28,8 @@ class Librsvg {
  private:
   void* library_;
 };
-#define BENTAXIS_OF_LIBRSVG(function) librsvg.find(function, #function)
+// Only the type of the function: a mention of it would need the library at the link.
+#define BENTAXIS_OF_LIBRSVG(function) librsvg.find<decltype(function)>(#function)
 
 }  // namespace
 
