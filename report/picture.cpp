@@ -423,9 +423,9 @@ void draw_band(pugi::xml_node root, const Scale& x, const Scale& y, const Band& 
   if (low.empty()) return;
   std::string points;
   for (const auto& [a, b] : simplified(low)) points += fmt::format("{:.1f},{:.2f} ", a, b);
-  const auto upper = simplified(high);
-  for (auto it = upper.rbegin(); it != upper.rend(); ++it)
-    points += fmt::format("{:.1f},{:.2f} ", (*it)[0], (*it)[1]);
+  auto upper = simplified(high);
+  std::reverse(upper.begin(), upper.end());
+  for (const auto& [a, b] : upper) points += fmt::format("{:.1f},{:.2f} ", a, b);
   points.pop_back();
   add(root, "polygon",
       {{"points", points}, {"fill", band.colour}, {"opacity", "0.18"}, {"class", "band"}});
@@ -762,14 +762,14 @@ Picture picture_of(const ScatterFigure& figure, const Curves&) {
 
 // Light to dark by t in [0, 1]: the order of the values survives a print without colour.
 std::string shade(double t) {
-  constexpr std::array<std::array<double, 3>, 5> shades = {
+  constexpr std::array<std::array<double, 3>, 5> kShades = {
       {{247, 250, 252}, {190, 214, 235}, {107, 164, 207}, {33, 103, 166}, {8, 40, 88}}};
-  const double at = std::clamp(t, 0.0, 1.0) * (shades.size() - 1);
-  const std::size_t k = std::min(static_cast<std::size_t>(at), shades.size() - 2);
+  const double at = std::clamp(t, 0.0, 1.0) * (kShades.size() - 1);
+  const std::size_t k = std::min(static_cast<std::size_t>(at), kShades.size() - 2);
   std::array<int, 3> rgb{};
   for (std::size_t i = 0; i < 3; ++i)
-    rgb[i] = static_cast<int>(std::lround(shades[k][i] + (at - static_cast<double>(k)) *
-                                                             (shades[k + 1][i] - shades[k][i])));
+    rgb[i] = static_cast<int>(std::lround(kShades[k][i] + (at - static_cast<double>(k)) *
+                                                              (kShades[k + 1][i] - kShades[k][i])));
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
 }
 

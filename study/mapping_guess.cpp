@@ -213,7 +213,7 @@ class Guesser {
     std::optional<Found> best;
     for (const AngleMap& choice : choices) {
       take_turn(choice);
-      for (Found found : phases()) {
+      for (const Found& found : phases()) {
         if (!best || found.cost < least) {
           least = found.cost;
           best = found;

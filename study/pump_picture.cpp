@@ -404,7 +404,7 @@ void Picture::draw_piston(double theta, double sign) {
   v.line("thin", a, b);
   v.dot("mass", a, 2.2);
   v.dot("mass", b, 2.2);
-  v.words("A", a, sign > 0 ? -14 : -14, sign > 0 ? -6 : 14);
+  v.words("A", a, -14, sign > 0 ? -6 : 14);
   v.words("B", b, 6, -5);
 }
 

@@ -65,7 +65,8 @@ TEST(Picture, CurveLiesWhereItsValuesAre) {
     ASSERT_EQ(curves.size(), 1U);
     const auto& points = curves[0];
     // Both axes are linear: fixed by two points of the curve, the ends and the extremes.
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const auto low = std::min_element(values.begin(), values.end());
+    const auto high = std::max_element(values.begin(), values.end());
     double top = 1e9, bottom = -1e9;
     for (const auto& p : points) {
       top = std::min(top, p[1]);
