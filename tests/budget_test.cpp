@@ -243,6 +243,18 @@ TEST(Budget, MeanOfPressureIsTheIdealTorque) {
   EXPECT_NEAR(mean_of(table, "Td_inertia_Nm"), 0, scaled(1e-12));
 }
 
+// What brakes the shaft alone does not pass the gear: it has no column of the block's.
+TEST(Budget, OnlyWhatPassesTheGearCarriesTheBlock) {
+  const ResultTable table = budget_table("analytic");
+  for (std::size_t c = 0; c < kCauses; ++c) {
+    const auto cause = static_cast<Cause>(c);
+    const bool shaft_alone = cause == Cause::shaft_friction || cause == Cause::torque_factor;
+    EXPECT_LT(table.find(drive_column(cause)), table.columns());
+    EXPECT_EQ(table.find(carrying_column(cause)) < table.columns(), !shaft_alone)
+        << to_string(cause);
+  }
+}
+
 TEST(Budget, RefusesWhatIsNotFinite) {
   ResultTable table = budget_table("analytic");
   Budget budget;
