@@ -5,6 +5,7 @@ usage: import_test.py BENTAXIS REPO_ROOT [options of unittest]
 BENTAXIS_MAKE_EXPORTS=1 has make_exports.py write the files anew first (packages of the slow group).
 """
 
+import csv
 import os
 import pathlib
 import re
@@ -94,6 +95,39 @@ class ExportTest(ImportTest):
         self.assertIn('sheet = "Results"', self.description())
         self.assert_mentions(self.new(self.exports / "good" / "run.mat", "--sheet", "absent", status=BAD_INPUT).err,
                              "absent", "run", "comment")
+
+
+class OwnRecordTest(ImportTest):
+    """Records made of the program's own curves, so that what a mapping must say is known."""
+
+    def record(self, heading, columns, shift_deg=0):
+        """Writes columns (names with their signs) of the analytic turn, begun shift_deg later."""
+        self.run_program("run", base.REPO / "cases" / "bap63_rated.toml", "--model", "analytic", "--out", "own")
+        with (self.folder / "own" / "analytic.csv").open() as file:
+            rows = list(csv.DictReader(file))
+        first = rows.index(next(r for r in rows if float(r["theta_deg"]) == shift_deg))
+        lines = [",".join(["angle [deg]", *heading])]
+        for i, row in enumerate(rows):
+            at = rows[(first + i) % len(rows)]
+            lines.append(",".join([row["theta_deg"], *(repr(sign * float(at[name])) for name, sign in columns)]))
+        file = self.folder / "record.csv"
+        file.write_text("\n".join(lines) + "\n")
+        return file
+
+    def test_torque_on_the_other_body_has_its_sign(self):
+        file = self.record(["torque [Nm]", "tooth [N]"], [("Td_z1_Nm", -1), ("Rcs_z4_N", 1)])
+        self.new(file, "--accept")
+        signs = dict(re.findall(r'^ours = "(\w+)".*\n(?:.*\n)*?sign = (-?1)', self.description(), re.M))
+        self.assertEqual(signs.get("Td_z1_Nm"), "-1", self.description())
+        self.regress(DONE)
+
+    def test_the_number_behind_the_piston_counts(self):
+        names = [(k, axis) for k in range(1, 6) for axis in "xyz"]
+        file = self.record([f"probe2 piston{k} Rs F{axis.upper()} [N]" for k, axis in names],
+                           [(f"Rs_{k}_{axis}2_N", 1) for k, axis in names], shift_deg=72)
+        self.new(file, "--accept")
+        self.assertRegex(self.description(), r"offset_deg = 72")
+        self.regress(DONE)
 
 
 class RefusalTest(ImportTest):
