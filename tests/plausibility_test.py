@@ -207,6 +207,14 @@ class PictureTest(unittest.TestCase):
         edge = next(p for p in side.iter(SVG + "path") if p.get("class") == "edge")
         self.assertEqual(edge.get("d"), "M0 -24.92L0 24.92")
 
+    def test_short_dimensions_have_no_arrow_heads(self):
+        """Of Ra, Rd and b1: where a line is short they would cover it."""
+        def heads(*changes):
+            _, group = self.drawn(self.picture(*changes), "side")
+            return sum(p.get("class") == "mass" and p.get("d").count("L") == 2 for p in group.iter(SVG + "path"))
+        self.assertEqual(heads(), 6)
+        self.assertEqual(heads("--set", "pump.joint_circle_radius_mm=2", "--set", "pump.bore_circle_radius_mm=2"), 2)
+
     def test_exchanged_radii_are_seen(self):
         """The circle of the bores leaves the ellipse of the joints' circle altogether."""
         def touches(*changes):

@@ -20,6 +20,7 @@
 #include "bentaxis/study/inertia_document.h"
 #include "bentaxis/study/inertia_study.h"
 #include "bentaxis/study/operating_points.h"
+#include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/tradeoff.h"
 #include "bentaxis/study/tradeoff_study.h"
@@ -139,7 +140,21 @@ TEST(InertiaStudy, CausesOfErrorAddUp) {
     EXPECT_GT(causes.centre.peak("Rs"), 1);
     EXPECT_GT(causes.transverse.peak("Rs"), 0.1);
     EXPECT_GT(causes.spin.peak("Rs"), 0.01);
+    // Whose result it is: the multibody scene of one piston has no bearings.
+    const std::size_t bearing = causes.all.find("Rb2_y1_N");
+    EXPECT_EQ(bearing < causes.all.columns() && is_computed(causes.all.at(0, bearing)),
+              by == study::By::analytic);
   }
+}
+
+TEST(Plausibility, OilThatIsNotUsedIsNotDoubted) {
+  Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" /
+                            "bap63_rated_hydraulic.toml");
+  the_case.hydraulics->density = 100;
+  const std::size_t with_oil = study::plausibility(the_case).warnings.size();
+  the_case.pressure.kind = PressureKind::ideal;
+  the_case.pressure.transition_deg = 20;
+  EXPECT_EQ(study::plausibility(the_case).warnings.size() + 1, with_oil);
 }
 
 TEST(InertiaStudy, KeepingTheCentreIsNearlyTheBestLumpingAndThreeMassesAreExact) {
