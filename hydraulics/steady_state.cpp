@@ -2,7 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <utility>
 
@@ -61,6 +63,7 @@ Vector first_guess(const Network& network, const std::optional<Start>& start) {
 // The state that a period repeats, and the derivatives that keep it there.
 struct Found {
   Vector z;
+  Vector next;  // the last one corrected once more: stored energy returns more closely
   Eigen::PartialPivLU<Matrix> chord;
   int iterations = 0;
 };
@@ -76,7 +79,7 @@ void settle(const Network& network, PeriodMap& map, Vector& z, bool line_given) 
 
 Found find(const Network& network, PeriodMap& map, const Vector& guess, bool line_given,
            double tolerance, const std::function<void()>& alive) {
-  Found found{guess, {}, 0};
+  Found found{guess, guess, {}, 0};
   settle(network, map, found.z, line_given);
   Matrix jacobian;
   search(map, found.z, std::max(kCoarse, tolerance), jacobian, found.iterations, alive);
@@ -192,6 +195,7 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   ComputedPressure curve = turn.curve(kInterpolation * the_case.hydraulics->curve_error);
   // What the state still moves by, and everything that an integration ten times coarser misses.
   const Vector left = found.chord.solve(f);
+  found.next = found.z - left;
   double change = 0;
   for (int k = 0; k < network.pistons(); ++k)
     change = std::max(change, std::abs(left[k]) * network.fluid().state(found.z[k]).pressure);
@@ -207,6 +211,7 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   s.load_size = network.fixed_line() ? 0 : map.load_size(found.z);
   s.delivery_mean = map.mean_delivery();
   turn.summarize(integrals, s);
+  result.orders = turn.orders(kOrders);
   summarize(the_case, network, integrals, s);
   result.computed = std::make_shared<ComputedPressure>(std::move(curve));
   PressureSpec as_computed;
@@ -227,6 +232,48 @@ bool improve(const Case& the_case, const Network& network, PeriodMap& map, doubl
   }
   if (finer.computed->error < result.computed->error) result = std::move(finer);
   return true;
+}
+
+// By place, over one period more.
+PowerBudget mean_power(const Network& network, Integrator& integrator, const PeriodMap& map,
+                       const Found& found, double tolerance) {
+  integrator.spend_at_most(integrator.share_of_effort() + kShareForRefinement);
+  PowerBudget energy;
+  integrator.over_period(map.states(found.next), map.load_size(found.next), tolerance, nullptr,
+                         nullptr, {}, &energy);
+  for (int i = 0; i < kPlaces; ++i)
+    energy[static_cast<Place>(i)] /= network.period_deg() * network.seconds_per_degree();
+  return energy;
+}
+
+// Sums f(angle, weight) over a turn, weights in degrees: Gauss points of each piece of the curve,
+// cut to a degree at most.
+template <typename F>
+void over_pieces(const ComputedPressure& curve, const F& f) {
+  using Rule = boost::math::quadrature::gauss<double, 5>;
+  const auto& pieces = curve.log_pressure.pieces();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double from = pieces[i].from_deg;
+    const double way = (i + 1 < pieces.size() ? pieces[i + 1].from_deg : 360) - from;
+    const int cuts = static_cast<int>(std::ceil(way));
+    const double half = way / cuts / 2;
+    for (int cut = 0; cut < cuts; ++cut) {
+      const double middle = from + (2 * cut + 1) * half;
+      for (std::size_t j = 0; j < Rule::abscissa().size(); ++j) {
+        const double off = Rule::abscissa()[j] * half, weight = Rule::weights()[j] * half;
+        f(middle + off, weight);
+        if (off != 0) f(middle - off, weight);
+      }
+    }
+  }
+}
+
+double indicated_work(const Chamber& chamber, const ComputedPressure& curve) {
+  double work = 0;
+  over_pieces(curve, [&](double angle, double weight) {
+    work -= weight * kRadPerDegree * curve.gauge(angle) * chamber.volume(radians(angle)).slope;
+  });
+  return work;
 }
 
 double largest_of_spline(const PressureCurve& points, const ComputedPressure& curve) {
@@ -278,6 +325,9 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
     if (network.load_sought()) refuse_what_is_out_of_reach(network, the_case, alive);
     throw;
   }
+  result.power = mean_power(network, integrator, map, found, result.convergence.tolerance);
+  result.places = network.places();
+  result.indicated_work = indicated_work(network.chamber(), *result.computed);
   result.chamber.theta_deg = result.table.theta_deg;
   for (const double angle : result.chamber.theta_deg)
     result.chamber.pressure.push_back(result.computed->gauge(angle));
@@ -323,6 +373,26 @@ ResultTable transient_from_rest(const Case& the_case, double load_size, int revo
     if (progress) progress(static_cast<double>(period + 1) / static_cast<double>(periods));
   }
   return table;
+}
+
+std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count) {
+  std::vector<std::complex<double>> sums(count);
+  over_pieces(chamber, [&](double angle, double weight) {
+    const double value = weight * chamber.gauge(angle) / 180;
+    for (int i = 0; i < count; ++i) sums[i] += std::polar(value, -radians((i + 1) * angle));
+  });
+  std::vector<double> amplitudes(count);
+  for (int i = 0; i < count; ++i) amplitudes[i] = (i + 1) * std::abs(sums[i]);
+  return amplitudes;
+}
+
+std::vector<double> effective_bulk_modulus(const Case& the_case, const std::vector<double>& gauge) {
+  if (!the_case.hydraulics)
+    throw InputError(the_case.file.string() + ": has no [hydraulics], and so no oil");
+  const Fluid fluid(*the_case.hydraulics);
+  std::vector<double> modulus;
+  for (const double pressure : gauge) modulus.push_back(fluid.effective_bulk_modulus(pressure));
+  return modulus;
 }
 
 void give_to(Case& the_case, const SteadyState& state) {

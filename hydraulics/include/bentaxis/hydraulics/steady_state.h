@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 
@@ -47,6 +48,15 @@ struct Summary {
   double atmosphere = 0;  ///< Pa absolute
 };
 
+/// A harmonic of the shaft's angle, as amplitudes. In the periodic state the outlet has multiples
+/// of N only.
+struct Order {
+  int order = 0;             ///< per turn of the shaft
+  double flow = 0;           ///< kg/s, to the load
+  double delivery = 0;       ///< Pa, in the delivery volume
+  double load_pressure = 0;  ///< Pa, in front of the load: the same without a delivery line
+};
+
 /// How the periodic state was found.
 struct Convergence {
   int iterations = 0;    ///< Newton steps
@@ -64,12 +74,20 @@ struct SteadyState {
   PressureCurve delivery;  ///< of the delivery volume, at the same angles
   ResultTable table;       ///< pressures, flows, volume and openings at the same angles
   Summary summary;
+  PowerBudget power;          ///< W, mean
+  std::vector<Place> places;  ///< that the circuit has
+  /// J per turn of a chamber: area of its p-V diagram, the integral of -p dV, of the curve.
+  double indicated_work = 0;
+  std::vector<Order> orders;  ///< kOrders multiples of N
   Convergence convergence;
   /// Pa, of a spline through the `points` of the case from the computed curve; 0 without.
   double spline_error = 0;
   /// At theta = 0: ln(P/P0) of chambers 1..N and of the delivery volume, then what the lines have.
   std::vector<double> states;
 };
+
+/// Multiples of N.
+constexpr int kOrders = 20;
 
 /// Where the search starts; the answer must not depend on it.
 struct Start {
@@ -98,6 +116,13 @@ ResultTable transient_from_rest(const Case& the_case, double load_size, int revo
 /// Puts the computed curve into the case's pressure, where both mechanical models find it; where
 /// the load sets the delivery pressure its mean too, which loads the lands of the port plate.
 void give_to(Case& the_case, const SteadyState& state);
+
+/// Amplitudes of orders 1..count of dp/dtheta over the turn of a chamber, Pa per rad.
+std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count);
+
+/// Effective bulk modulus of the case's oil, Pa, at gauge pressures, Pa.
+/// @throws InputError if the case has no [hydraulics]
+std::vector<double> effective_bulk_modulus(const Case& the_case, const std::vector<double>& gauge);
 
 /// The summary as lines: name, value, unit.
 struct Line {
