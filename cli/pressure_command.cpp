@@ -68,11 +68,12 @@ int pressure(const Options& options) {
   ReportFolders folders(options.place);
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
-  report::Document document = study::pressure_document(point, versions());
+  const auto power = hydraulics::power_by_place(point.state(), progress_of("power by place"));
+  report::Document document = study::pressure_document(point, power, versions());
   if (published) study::add_published(document, *published, point, progress_of);
   if (second)
     study::add_overlay(document, point, study::run_point(std::move(*second), progress_of));
-  std::vector<TextFile> curves = {{"pressure.csv", to_csv(point.state().table)}};
+  std::vector<TextFile> curves = study::pressure_csv(point, power);
   std::optional<study::TorqueCurve> curve;
   if (!pressures.empty()) {
     curve = study::torque_curve(point.the_case(), pressures, progress_of("torque curve"));
@@ -89,7 +90,7 @@ int pressure(const Options& options) {
   const auto paths = folders.write("pressure", document,
                                    report::curves_of(point.analytic, point.multibody), curves);
 
-  std::printf("%s", study::pressure_text(point).c_str());
+  std::printf("%s", study::pressure_text(point, power).c_str());
   if (published) std::printf("\n%s", study::text_of(document.published->section).c_str());
   if (curve) std::printf("\n%s", to_csv(*curve).c_str());
   std::printf("\n");

@@ -234,18 +234,6 @@ bool improve(const Case& the_case, const Network& network, PeriodMap& map, doubl
   return true;
 }
 
-// By place, over one period more.
-PowerBudget mean_power(const Network& network, Integrator& integrator, const PeriodMap& map,
-                       const Found& found, double tolerance) {
-  integrator.spend_at_most(integrator.share_of_effort() + kShareForRefinement);
-  PowerBudget energy;
-  integrator.over_period(map.states(found.next), map.load_size(found.next), tolerance, nullptr,
-                         nullptr, {}, &energy);
-  for (int i = 0; i < kPlaces; ++i)
-    energy[static_cast<Place>(i)] /= network.period_deg() * network.seconds_per_degree();
-  return energy;
-}
-
 // Sums f(angle, weight) over a turn, weights in degrees: Gauss points of each piece of the curve,
 // cut to a degree at most.
 template <typename F>
@@ -293,7 +281,8 @@ double largest_of_spline(const PressureCurve& points, const ComputedPressure& cu
 SteadyState steady_state(const Case& the_case, const std::optional<Start>& start,
                          const Progress& progress) {
   const Stopwatch stopwatch;
-  const Network network(the_case);
+  const auto equations = std::make_shared<const Network>(the_case);
+  const Network& network = *equations;
   double fraction = 0;
   const auto alive = [&] {
     if (progress) progress(fraction = std::min(0.95, fraction + 0.001));
@@ -325,7 +314,9 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
     if (network.load_sought()) refuse_what_is_out_of_reach(network, the_case, alive);
     throw;
   }
-  result.power = mean_power(network, integrator, map, found, result.convergence.tolerance);
+  result.equations = equations;
+  result.corrected_states = map.states(found.next);
+  result.corrected_load_size = map.load_size(found.next);
   result.places = network.places();
   result.indicated_work = indicated_work(network.chamber(), *result.computed);
   result.chamber.theta_deg = result.table.theta_deg;
@@ -386,13 +377,22 @@ std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count) {
   return amplitudes;
 }
 
-std::vector<double> effective_bulk_modulus(const Case& the_case, const std::vector<double>& gauge) {
-  if (!the_case.hydraulics)
-    throw InputError(the_case.file.string() + ": has no [hydraulics], and so no oil");
-  const Fluid fluid(*the_case.hydraulics);
-  std::vector<double> modulus;
-  for (const double pressure : gauge) modulus.push_back(fluid.effective_bulk_modulus(pressure));
-  return modulus;
+PowerBudget power_by_place(const SteadyState& state, const Progress& progress) {
+  const Network& network = *state.equations;
+  Integrator integrator(network, [&] {
+    if (progress) progress(0.5);
+  });
+  PowerBudget energy;
+  integrator.over_period(state.corrected_states, state.corrected_load_size,
+                         state.convergence.tolerance, nullptr, nullptr, {}, &energy);
+  for (int i = 0; i < kPlaces; ++i)
+    energy[static_cast<Place>(i)] /= network.period_deg() * network.seconds_per_degree();
+  if (progress) progress(1);
+  return energy;
+}
+
+double effective_bulk_modulus(const SteadyState& state, double gauge) {
+  return state.equations->fluid().effective_bulk_modulus(gauge);
 }
 
 void give_to(Case& the_case, const SteadyState& state) {

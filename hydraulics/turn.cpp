@@ -287,23 +287,35 @@ double TurnRecord::difference(const std::vector<std::pair<double, std::vector<do
 std::vector<Order> TurnRecord::orders(int count) const {
   const int n = network_.pistons();
   const std::size_t nodes = x_.size();
-  std::vector<double> delivery(nodes), weight(nodes);
-  for (std::size_t i = 0; i < nodes; ++i) delivery[i] = delivery_gauge(i);
+  std::vector<double> weight(nodes);
   // Every step has its ends and three nodes between: Boole's rule.
   for (std::size_t e = 0; e + 1 < edges_.size(); ++e)
     for (std::size_t i = edges_[e]; i + 1 < edges_[e + 1]; i += 4)
       for (int j = 0; j < 5; ++j)
         weight[i + j] += (x_[i + 4] - x_[i]) * kBoole[j] / network_.period_deg();
+  struct Sums {
+    std::complex<double> flow, delivery, load_pressure;
+  };
+  std::vector<Sums> sums(count);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const double flow = load_flow_[i] - load_flow_[0];
+    const double delivery = delivery_gauge(i) - delivery_gauge(0);
+    const double load_pressure = load_pressure_[i] - load_pressure_[0];
+    const std::complex<double> turned = std::polar(1.0, -radians(n * x_[i]));
+    std::complex<double> wave = 2 * weight[i];
+    for (Sums& sum : sums) {
+      // Written out: the product of complex<double> looks for infinities.
+      wave = {wave.real() * turned.real() - wave.imag() * turned.imag(),
+              wave.real() * turned.imag() + wave.imag() * turned.real()};
+      sum.flow += wave * flow;
+      sum.delivery += wave * delivery;
+      sum.load_pressure += wave * load_pressure;
+    }
+  }
   std::vector<Order> all;
   for (int m = 1; m <= count; ++m) {
-    std::complex<double> flow, pressure, load_pressure;
-    for (std::size_t i = 0; i < nodes; ++i) {
-      const auto wave = std::polar(2 * weight[i], -radians(m * n * x_[i]));
-      flow += wave * (load_flow_[i] - load_flow_[0]);
-      pressure += wave * (delivery[i] - delivery[0]);
-      load_pressure += wave * (load_pressure_[i] - load_pressure_[0]);
-    }
-    all.push_back({m * n, std::abs(flow), std::abs(pressure), std::abs(load_pressure)});
+    const Sums& sum = sums[m - 1];
+    all.push_back({m * n, std::abs(sum.flow), std::abs(sum.delivery), std::abs(sum.load_pressure)});
   }
   return all;
 }

@@ -5,11 +5,13 @@
 #include <algorithm>
 
 #include "bentaxis/compare/comparison.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
+#include "hydraulic_results.h"
 #include "hydraulic_sections.h"
 
 namespace bentaxis::study {
@@ -45,7 +47,9 @@ std::vector<report::Warning> hydraulic_warnings(const hydraulics::SteadyState& s
   return warnings;
 }
 
-report::Document pressure_document(const OperatingPoint& point, const report::Lines& program) {
+report::Document pressure_document(const OperatingPoint& point,
+                                   const hydraulics::PowerBudget& power,
+                                   const report::Lines& program) {
   const Case& the_case = point.the_case();
   report::Document document;
   document.title = the_case.name;
@@ -53,9 +57,13 @@ report::Document pressure_document(const OperatingPoint& point, const report::Li
   describe_case(document, the_case);
   document.derived = derived_section(the_case);
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
-  document.runs = {hydraulic_section(the_case, point.state())};
+  document.runs = {hydraulic_section(the_case, point.state()),
+                   power_section(the_case, point.state(), power),
+                   orders_section(the_case, point.state())};
   document.warnings = hydraulic_warnings(point.state());
   document.figures = hydraulic_figures(the_case, point.state());
+  for (report::Figure& figure : result_figures(the_case, point.state(), power))
+    document.figures->push_back(std::move(figure));
   document.figures->push_back(
       {"td", "Drive torque Td", "Fig. 17", report::ChannelFigure{"Nm", {"Td_z1_Nm"}},
        fmt::format("Mean torque: analytic {:.5g} Nm, multibody {:.5g} Nm.",
@@ -190,12 +198,23 @@ void add_transient(report::Document& document, const ResultTable& transient) {
   document.figures->push_back(std::move(figure));
 }
 
-std::string pressure_text(const OperatingPoint& point) {
+std::vector<std::pair<std::string, std::string>> pressure_csv(
+    const OperatingPoint& point, const hydraulics::PowerBudget& power) {
+  return {{"pressure.csv", bentaxis::to_csv(point.state().table)},
+          {"power.csv", power_csv(point.state(), power)},
+          {"orders.csv", orders_csv(point.the_case(), point.state())}};
+}
+
+std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power) {
   std::string text = point.the_case().name + "\n\n";
   const auto add = [&](const std::string& name, double value, const std::string& unit) {
     text += fmt::format("{:<42} {:>12.6g} {}\n", name, value, unit);
   };
   for (const auto& line : hydraulics::lines(point.state())) add(line.name, line.value, line.unit);
+  for (const hydraulics::Place place : point.state().places)
+    add(fmt::format("power, {}", hydraulics::name_of(place)), power[place], "W");
+  add("power left over, of the pistons' power",
+      hydraulics::left_over(power) / power[hydraulics::Place::pistons], "");
   add("mean drive torque, analytic", mean(point.analytic, "Td_z1_Nm"), "Nm");
   add("mean drive torque, multibody", mean(point.multibody, "Td_z1_Nm"), "Nm");
   for (const report::Warning& warning : hydraulic_warnings(point.state()))

@@ -422,7 +422,7 @@ TEST(Circuit, MassThatEntersLeavesAndTheMeanIsTheOneAskedFor) {
 // Every circuit, every law of the oil, oil that tears, one piston and nine.
 void expect_closed(const Case& the_case, const std::string& name) {
   const SteadyState state = steady_state(the_case);
-  const PowerBudget& power = state.power;
+  const PowerBudget power = power_by_place(state);
   EXPECT_LT(std::abs(left_over(power)), scaled(kEnergyBalance) * power[Place::pistons]) << name;
   // The p-V diagram of the curve, and the work by the integral that goes with it: within the error
   // stated of the curve, which counts once on each way of the piston.
@@ -512,7 +512,7 @@ TEST(Power, EachPlaceIsItsPressureTimesItsFlow) {
     expected[Place::tank] += n * each * lost(suction[i], 3, 0);
     expected[Place::load] += each * lost(load[i], p_load[i], 0);
   }
-  const PowerBudget& power = state.power;
+  const PowerBudget power = power_by_place(state);
   for (const Place place : {Place::suction_port, Place::suction_backflow, Place::delivery_port,
                             Place::delivery_backflow, Place::drain, Place::tank, Place::load}) {
     EXPECT_NEAR(power[place] / expected[place], 1, scaled(5e-3)) << name_of(place);
@@ -544,15 +544,16 @@ TEST(Power, OneLeakAloneTakesAllThatLeakageTakes) {
     std::vector<std::string> changes = oil;
     for (const std::string& change : leak.changes) changes.push_back(change);
     const SteadyState state = steady_state(rated(changes));
+    const PowerBudget power = power_by_place(state);
     double expected = 0;  // p Q, Q of all chambers in the end
     const auto p = column(state.table, "p_1_bar"), q = column(state.table, "Ql_1_l_per_min");
     for (std::size_t i = 0; i < p.size(); ++i)
       expected += 5 * p[i] * 1e5 * q[i] / 6e4 / static_cast<double>(p.size());
-    EXPECT_NEAR(state.power[leak.place] / expected, 1, scaled(0.02)) << name_of(leak.place);
+    EXPECT_NEAR(power[leak.place] / expected, 1, scaled(0.02)) << name_of(leak.place);
     for (const Place other :
          {Place::conductance, Place::piston_gap, Place::plate_gap, Place::ring_slot})
       if (other != leak.place) {
-        EXPECT_EQ(state.power[other], 0) << name_of(leak.place);
+        EXPECT_EQ(power[other], 0) << name_of(leak.place);
       }
   }
 }
@@ -564,14 +565,14 @@ TEST(Power, OrificeAloneTakesPressureTimesFlow) {
     the_case.hydraulics->leakage = 0;
     const SteadyState state = steady_state(the_case);
     const Summary& s = state.summary;
+    const PowerBudget power = power_by_place(state);
     // But for what it is compressed by: the integral of exp(-p/K) dp.
     const double modulus = the_case.hydraulics->bulk_modulus;
     const double energy = -modulus * std::expm1(-s.delivery_mean / modulus);  // per volume at 0 bar
     EXPECT_NEAR(energy / s.delivery_mean, 1, 2e-5);
-    EXPECT_NEAR(state.power[Place::load] / (energy * s.flow), 1, scaled(1e-6)) << load;
-    EXPECT_NEAR(state.power[Place::pistons] / (s.delivery_mean * s.ideal_flow), 1, scaled(1e-3))
-        << load;
-    EXPECT_LT(losses(state.power), 1e-3 * state.power[Place::load]) << load;
+    EXPECT_NEAR(power[Place::load] / (energy * s.flow), 1, scaled(1e-6)) << load;
+    EXPECT_NEAR(power[Place::pistons] / (s.delivery_mean * s.ideal_flow), 1, scaled(1e-3)) << load;
+    EXPECT_LT(losses(power), 1e-3 * power[Place::load]) << load;
   }
 }
 
@@ -581,21 +582,23 @@ TEST(Power, LinesTakeWhatTheirLawsSay) {
       rated({"hydraulics.delivery_volume_l=100", "delivery_line.length_m=2",
              "delivery_line.diameter_mm=15", "oil.temperature_C=40", "load.kind=laminar"});
   const SteadyState by_delivery = steady_state(delivery);
+  const PowerBudget pipe = power_by_place(by_delivery);
   const double density = Fluid(*delivery.hydraulics).density(275e5);
   const double area = kPi / 4 * 0.015 * 0.015;
   const double v = by_delivery.summary.mass_flow / (density * area);
   const double drop = 32 * 46e-6 * density * 2 * v / (0.015 * 0.015);
-  EXPECT_NEAR(by_delivery.power[Place::delivery_line] / (drop * v * area), 1, scaled(1e-3));
-  EXPECT_LT(by_delivery.power[Place::damped_waves], 1e-3 * by_delivery.power[Place::delivery_line]);
+  EXPECT_NEAR(pipe[Place::delivery_line] / (drop * v * area), 1, scaled(1e-3));
+  EXPECT_LT(pipe[Place::damped_waves], 1e-3 * pipe[Place::delivery_line]);
   // 5 l at the port: the flow in the pipe hardly swings.
   const SteadyState by_suction =
       steady_state(rated({"suction_line.length_m=1", "suction_line.diameter_mm=30",
                           "suction_line.volume_l=5", "suction_line.loss_coefficient=4",
                           "oil.temperature_C=40", "hydraulics.leakage_l_per_min_per_bar=0"}));
+  const PowerBudget column_of_oil = power_by_place(by_suction);
   const double bore = kPi / 4 * 0.03 * 0.03, oil = by_suction.summary.density;
   const double u = by_suction.summary.mass_flow / (oil * bore);
   const double loss = 4 * oil * u * u / 2 + 32 * 46e-6 * oil * u / (0.03 * 0.03);
-  EXPECT_NEAR(by_suction.power[Place::suction_line] / (loss * u * bore), 1, scaled(1e-2));
+  EXPECT_NEAR(column_of_oil[Place::suction_line] / (loss * u * bore), 1, scaled(1e-2));
 }
 
 // Whatever the modes: what passes the ends is stored, rubbed off or damped.

@@ -1005,7 +1005,7 @@ class PressureTest(ProgramTest):
     def test_files_and_numbers(self):
         result = self.run_program("pressure", self.hydraulic(), "--out", "out", "--transient", 2)
         self.assertEqual({p.name for p in self.folder.glob("out/*")},
-                         {"pressure.html", "pressure.json", "pressure.csv", "transient.csv"})
+                         {"pressure.html", "pressure.json", "pressure.csv", "power.csv", "orders.csv", "transient.csv"})
         self.assertEqual(len(self.column("out/pressure.csv", "p_1_bar")), 720)
         delivery = [float(v) for v in self.column("out/pressure.csv", "p_delivery_bar")]
         self.assertAlmostEqual(sum(delivery) / len(delivery), 275, delta=0.01)

@@ -13,6 +13,8 @@
 
 namespace bentaxis::hydraulics {
 
+class Network;
+
 /// What an engineer reads off a turn. SI, pressures gauge.
 struct Summary {
   double displacement = 0;           ///< m3 per revolution, N A stroke
@@ -74,7 +76,6 @@ struct SteadyState {
   PressureCurve delivery;  ///< of the delivery volume, at the same angles
   ResultTable table;       ///< pressures, flows, volume and openings at the same angles
   Summary summary;
-  PowerBudget power;          ///< W, mean
   std::vector<Place> places;  ///< that the circuit has
   /// J per turn of a chamber: area of its p-V diagram, the integral of -p dV, of the curve.
   double indicated_work = 0;
@@ -84,6 +85,11 @@ struct SteadyState {
   double spline_error = 0;
   /// At theta = 0: ln(P/P0) of chambers 1..N and of the delivery volume, then what the lines have.
   std::vector<double> states;
+  /// What power_by_place starts from: the equations, and the states and the load's size after one
+  /// correction more, with which stored energy returns more closely.
+  std::shared_ptr<const Network> equations;
+  std::vector<double> corrected_states;
+  double corrected_load_size = 0;
 };
 
 /// Multiples of N.
@@ -117,12 +123,16 @@ ResultTable transient_from_rest(const Case& the_case, double load_size, int revo
 /// the load sets the delivery pressure its mean too, which loads the lands of the port plate.
 void give_to(Case& the_case, const SteadyState& state);
 
+/// Mean power by place, W, with one period more of integration. Sources and the rest are equal to
+/// about 1e-10 of the pistons' power at the default tolerance.
+/// @throws ComputationError
+PowerBudget power_by_place(const SteadyState& state, const Progress& progress = {});
+
 /// Amplitudes of orders 1..count of dp/dtheta over the turn of a chamber, Pa per rad.
 std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count);
 
-/// Effective bulk modulus of the case's oil, Pa, at gauge pressures, Pa.
-/// @throws InputError if the case has no [hydraulics]
-std::vector<double> effective_bulk_modulus(const Case& the_case, const std::vector<double>& gauge);
+/// Effective bulk modulus of the oil, Pa, at a gauge pressure, Pa.
+double effective_bulk_modulus(const SteadyState& state, double gauge);
 
 /// The summary as lines: name, value, unit.
 struct Line {
