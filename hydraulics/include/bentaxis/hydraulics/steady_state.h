@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/hydraulics/timing.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 
@@ -64,6 +65,7 @@ struct SteadyState {
   PressureCurve delivery;  ///< of the delivery volume, at the same angles
   ResultTable table;       ///< pressures, flows, volume and openings at the same angles
   Summary summary;
+  Timing timing;  ///< of the ports
   Convergence convergence;
   /// Pa, of a spline through the `points` of the case from the computed curve; 0 without.
   double spline_error = 0;

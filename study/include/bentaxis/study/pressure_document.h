@@ -5,11 +5,9 @@
 
 #include "bentaxis/report/document.h"
 #include "bentaxis/study/operating_points.h"
+#include "bentaxis/study/timing.h"
 
 namespace bentaxis::study {
-
-/// What an engineer must be told of an operating point: cavitation, ports that are connected.
-std::vector<report::Warning> hydraulic_warnings(const hydraulics::SteadyState& state);
 
 /// One operating point: its hydraulic state, pressures, flows, torque.
 /// @param program  what computed it: names and versions
@@ -31,7 +29,12 @@ std::string text_of(const compare::PublishedSection& section);
 /// Adds pressures from rest (hydraulics::transient_from_rest).
 void add_transient(report::Document& document, const ResultTable& transient);
 
+/// Adds the speed up to which suction follows to the verdicts on timing.
+void add_suction_speed(report::Document& document, const OperatingPoint& point,
+                       const SuctionSpeed& found);
+
 /// The operating point in words, for a terminal.
-std::string pressure_text(const OperatingPoint& point);
+/// @param document  of it
+std::string pressure_text(const OperatingPoint& point, const report::Document& document);
 
 }  // namespace bentaxis::study
