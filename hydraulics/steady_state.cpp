@@ -15,6 +15,7 @@
 #include "integrator.h"
 #include "network.h"
 #include "period_map.h"
+#include "timing_record.h"
 #include "turn.h"
 
 namespace bentaxis::hydraulics {
@@ -189,9 +190,12 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   found.z -= found.chord.solve(f);
   const double finer = std::max(tolerance / 10, kFinest);
   TurnRecord turn(network, map.load_size(found.z), rows_of(the_case));
+  TimingRecord timing(network, map.load_size(found.z));
   Integrals integrals;
-  f = map.residual(found.z, finer, nullptr, &integrals,
-                   [&](const Integrator::Step& step) { turn.see(step); });
+  f = map.residual(found.z, finer, nullptr, &integrals, [&](const Integrator::Step& step) {
+    turn.see(step);
+    timing.see(step);
+  });
   ComputedPressure curve = turn.curve(kInterpolation * the_case.hydraulics->curve_error);
   // What the state still moves by, and everything that an integration ten times coarser misses.
   const Vector left = found.chord.solve(f);
@@ -213,6 +217,7 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   turn.summarize(integrals, s);
   result.orders = turn.orders(kOrders);
   summarize(the_case, network, integrals, s);
+  result.timing = timing.timing(s.delivery_mean);
   result.computed = std::make_shared<ComputedPressure>(std::move(curve));
   PressureSpec as_computed;
   as_computed.kind = PressureKind::hydraulic;

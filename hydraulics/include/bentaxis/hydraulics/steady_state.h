@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bentaxis/hydraulics/power.h"
+#include "bentaxis/hydraulics/timing.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 
@@ -80,6 +81,7 @@ struct SteadyState {
   /// J per turn of a chamber: area of its p-V diagram, the integral of -p dV, of the curve.
   double indicated_work = 0;
   std::vector<Order> orders;  ///< kOrders multiples of N
+  Timing timing;              ///< of the ports
   Convergence convergence;
   /// Pa, of a spline through the `points` of the case from the computed curve; 0 without.
   double spline_error = 0;

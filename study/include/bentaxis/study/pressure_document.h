@@ -7,13 +7,12 @@
 
 #include "bentaxis/report/document.h"
 #include "bentaxis/study/operating_points.h"
+#include "bentaxis/study/timing.h"
 
 namespace bentaxis::study {
 
-/// What an engineer must be told of an operating point: cavitation, ports that are connected.
-std::vector<report::Warning> hydraulic_warnings(const hydraulics::SteadyState& state);
-
-/// One operating point: its hydraulic state, pressures, flows, torque, power by place, orders.
+/// One operating point: its hydraulic state, pressures, flows, torque, timing, power by place,
+/// orders.
 /// @param power    hydraulics::power_by_place of its state
 /// @param program  what computed it: names and versions
 report::Document pressure_document(const OperatingPoint& point,
@@ -40,7 +39,13 @@ void add_transient(report::Document& document, const ResultTable& transient);
 std::vector<std::pair<std::string, std::string>> pressure_csv(const OperatingPoint& point,
                                                               const hydraulics::PowerBudget& power);
 
+/// Adds the speed up to which suction follows to the verdicts on timing.
+void add_suction_speed(report::Document& document, const OperatingPoint& point,
+                       const SuctionSpeed& found);
+
 /// The operating point in words, for a terminal.
-std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power);
+/// @param document  of it
+std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power,
+                          const report::Document& document);
 
 }  // namespace bentaxis::study
