@@ -7,6 +7,7 @@
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
+#include "bentaxis/study/timing.h"
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
@@ -54,6 +55,14 @@ int compare(const Options& options) {
   if (const auto data = shipped_reference_data()) how.published = *data / "published";
   const study::ComparisonResult result =
       study::compare_models(std::move(first), std::move(second), how, progress_of);
+
+  const auto refuse = [&](const study::ReadyCase& ready) {
+    if (ready.hydraulics)
+      options.the_case.refuse(
+          study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics)));
+  };
+  refuse(result.first);
+  if (!options.multibody_case.empty()) refuse(result.second);
 
   const auto wanted = [&](const Channel& channel) { return how.channels.wants(channel); };
   std::vector<TextFile> curves = {

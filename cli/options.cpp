@@ -35,6 +35,15 @@ Case CaseOption::read() const {
   return the_case;
 }
 
+void CaseOption::refuse(const std::vector<report::Warning>& timing) const {
+  if (!strict || timing.empty()) return;
+  for (const report::Warning& warning : timing)
+    std::fprintf(stderr, "bentaxis: error: %s: %s\n", warning.name.c_str(), warning.text.c_str());
+  throw InputError(file +
+                   ": timing of the ports beyond its limits, and --strict; what is meant needs a "
+                   "reason in [plausibility] (docs/hydraulics.md)");
+}
+
 void add_case(CommandParser command, CaseOption& the_case) {
   command.option("case", the_case.file, "case file (TOML)").required().text("CASE");
   command

@@ -8,6 +8,7 @@
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/report/document.h"
 #include "bentaxis/study/channel_choice.h"
 #include "bentaxis/study/run.h"
 #include "command_parser.h"
@@ -23,6 +24,9 @@ struct CaseOption {
   /// The case as if its file said so. Says on standard error what pump it is, and what of it is
   /// doubtful. @throws InputError, with `strict` for doubtful values too
   Case read() const;
+  /// With `strict`, says on standard error what of the timing of the ports is beyond its limit.
+  /// @throws InputError then
+  void refuse(const std::vector<report::Warning>& timing) const;
 };
 /// CASE, --set and --strict.
 void add_case(CommandParser command, CaseOption& the_case);

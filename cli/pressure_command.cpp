@@ -7,6 +7,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/pressure_document.h"
 #include "commands.h"
@@ -23,7 +24,7 @@ constexpr int kMostPoints = 1000;  // of a torque curve
 struct Options {
   CaseOption the_case;
   ReportPlace place;
-  std::string overlay, published, delivery;
+  std::string overlay, published, delivery, suction_speed;
   int transient = 0;
 };
 
@@ -53,6 +54,20 @@ std::vector<double> delivery_pressures(const std::string& text) {
   return pressures;
 }
 
+// saturation, vapour or a pressure in bar.
+double suction_limit(const std::string& text, const HydraulicData& data) {
+  if (text == "saturation") return data.saturation_pressure;
+  if (text == "vapour") return data.vapour_pressure - data.atmosphere;
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || !(pascals(value) > -data.atmosphere))
+    throw InputError(
+        "--suction-speed " + text +
+        ": must be saturation, vapour or a gauge pressure in bar, above absolute zero");
+  return pascals(value);
+}
+
 int pressure(const Options& options) {
   Case read = options.the_case.read();
   study::require_hydraulic(read);
@@ -65,14 +80,23 @@ int pressure(const Options& options) {
   if (!options.published.empty()) published = compare::read_published(options.published);
   std::vector<double> pressures;
   if (!options.delivery.empty()) pressures = delivery_pressures(options.delivery);
+  std::optional<double> limit;
+  if (!options.suction_speed.empty())
+    limit = suction_limit(options.suction_speed, *read.hydraulics);
   ReportFolders folders(options.place);
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
-  report::Document document = study::pressure_document(point, versions());
+  const auto power = hydraulics::power_by_place(point.state(), progress_of("power by place"));
+  report::Document document = study::pressure_document(point, power, versions());
+  if (limit)
+    study::add_suction_speed(
+        document, point,
+        study::suction_speed(point.the_case(), *limit, progress_of("suction speed")));
+  options.the_case.refuse(*document.warnings);
   if (published) study::add_published(document, *published, point, progress_of);
   if (second)
     study::add_overlay(document, point, study::run_point(std::move(*second), progress_of));
-  std::vector<TextFile> curves = {{"pressure.csv", to_csv(point.state().table)}};
+  std::vector<TextFile> curves = study::pressure_csv(point, power);
   std::optional<study::TorqueCurve> curve;
   if (!pressures.empty()) {
     curve = study::torque_curve(point.the_case(), pressures, progress_of("torque curve"));
@@ -89,7 +113,7 @@ int pressure(const Options& options) {
   const auto paths = folders.write("pressure", document,
                                    report::curves_of(point.analytic, point.multibody), curves);
 
-  std::printf("%s", study::pressure_text(point).c_str());
+  std::printf("%s", study::pressure_text(point, power, document).c_str());
   if (published) std::printf("\n%s", study::text_of(document.published->section).c_str());
   if (curve) std::printf("\n%s", to_csv(*curve).c_str());
   std::printf("\n");
@@ -117,6 +141,11 @@ Command add_pressure_command(CommandParser program) {
       .option("--published", options->published,
               "printed numbers to set the results against; a calibrated one outside: exit status 1")
       .text("FILE");
+  command
+      .option("--suction-speed", options->suction_speed,
+              "also the largest speed at which no chamber falls below the pressure at which air "
+              "comes out or oil boils, or below one in bar: 10 to 30 operating points")
+      .text("saturation|vapour|BAR");
   command
       .option("--transient", options->transient, "also the transient from rest over so many turns")
       .integer_in(1, 1000)

@@ -5,8 +5,8 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/lost_digits.h"
-#include "bentaxis/study/pressure_document.h"
 #include "bentaxis/study/run.h"
+#include "bentaxis/study/timing.h"
 #include "commands.h"
 #include "console.h"
 #include "options.h"
@@ -54,9 +54,12 @@ int run(const Options& options) {
     for (auto& text :
          study::multibody_warnings(ready.the_case, assumptions, run_options.scene, lines))
       warnings.push_back(text);
-  if (ready.hydraulics)
-    for (const auto& warning : study::hydraulic_warnings(*ready.hydraulics))
-      warnings.push_back(warning.name + ": " + warning.text);
+  if (ready.hydraulics) {
+    const auto timing =
+        study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics));
+    options.the_case.refuse(timing);
+    for (const auto& warning : timing) warnings.push_back(warning.name + ": " + warning.text);
+  }
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
 

@@ -1,5 +1,7 @@
 #include "fluid.h"
 
+#include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
 namespace bentaxis::hydraulics {
@@ -10,6 +12,13 @@ constexpr double kSaturationWidth = 0.02;
 constexpr double kVapourWidth = 0.002;
 // Beyond as many widths the rounding is below round-off, or exp(t/b) alone is left of it.
 constexpr double kBeyond = 40;
+// Stretches of s over which the bubbles' volume is summed up by 7 points to round-off: none longer
+// than the first, and near vapour pressure, where it grows without bound but for the rounding, in
+// proportion to the distance.
+constexpr double kLongestStretch = 0.05;
+constexpr double kStretchPerDistance = 0.25;
+// ln of the lowest and highest pressure over P0 that sums are kept for; beyond, they go on.
+constexpr double kLowest = -40, kHighest = 12;
 
 // b ln(1 + exp(t/b)) and its derivatives with respect to t.
 struct Ramp {
@@ -46,6 +55,7 @@ Fluid::Fluid(const HydraulicData& data)
     log_saturation_ = std::log(air_at_saturation / (atmosphere_ - vapour));
     released_scale_ = (1 - air_share_) * data.dissolved_air * atmosphere_ / air_at_saturation;
   }
+  if (boils_ || dissolves_) sum_up_bubbles();
 }
 
 Fluid::Smooth Fluid::air_pressure(double s) const {
@@ -111,6 +121,54 @@ double Fluid::gauge(double s) const { return atmosphere_ * std::expm1(s); }
 double Fluid::effective_bulk_modulus(double gauge) const {
   const State at = state(log_pressure(gauge));
   return at.stiffness * at.pressure;
+}
+
+double Fluid::oil_potential(double pressure) const {
+  const double strain = (pressure - atmosphere_) / bulk_modulus_;
+  const double oil = (1 - air_share_) * bulk_modulus_;
+  if (modulus_slope_ == 0) return -oil * std::expm1(-strain);
+  const double grown = std::log1p(modulus_slope_ * strain);
+  const double power = 1 - 1 / modulus_slope_;  // of the integral
+  return oil / modulus_slope_ * (power == 0 ? grown : std::expm1(power * grown) / power);
+}
+
+double Fluid::bubbles_between(double from, double to) const {
+  const auto integrand = [&](double s) {
+    const double pressure = atmosphere_ * std::exp(s);
+    const Volumes v = volumes(s, pressure);
+    return pressure * (v.air.value + v.released.value);
+  };
+  return boost::math::quadrature::gauss<double, 7>::integrate(integrand, from, to);
+}
+
+void Fluid::sum_up_bubbles() {
+  for (double s = boils_ ? log_vapour_ - kBeyond * kVapourWidth : kLowest; s < kHighest;) {
+    places_.push_back(s);
+    const double distance = boils_ ? std::abs(s - log_vapour_) : kHighest;
+    const double next =
+        s + std::clamp(kStretchPerDistance * distance, kVapourWidth / 2, kLongestStretch);
+    s = s < 0 && next > 0 ? 0 : next;  // atmospheric pressure, where the potential is exactly 0
+  }
+  sums_.resize(places_.size());
+  // Downwards: the last stretches above vapour pressure are the largest by far.
+  for (std::size_t i = places_.size() - 1; i > 0; --i)
+    sums_[i - 1] = sums_[i] - bubbles_between(places_[i - 1], places_[i]);
+  const double at_atmosphere = bubble_potential(0);
+  for (double& sum : sums_) sum -= at_atmosphere;
+}
+
+double Fluid::bubble_potential(double s) const {
+  if (places_.empty()) {  // entrained air alone
+    const double power = 1 - inverse_exponent_;
+    return air_share_ * atmosphere_ * (power == 0 ? s : std::expm1(power * s) / power);
+  }
+  const auto after = std::upper_bound(places_.begin() + 1, places_.end() - 1, s);
+  const auto i = static_cast<std::size_t>(after - places_.begin()) - 1;
+  return sums_[i] + bubbles_between(places_[i], s);
+}
+
+double Fluid::potential(double s) const {
+  return (oil_potential(atmosphere_ * std::exp(s)) + bubble_potential(s)) / reference_density_;
 }
 
 double Fluid::released_air(double s) const {

@@ -1,6 +1,8 @@
 // Oil with entrained air, dissolved air and vapour.
 #pragma once
 
+#include <vector>
+
 #include "bentaxis/pump/hydraulic_data.h"
 
 namespace bentaxis::hydraulics {
@@ -45,6 +47,9 @@ class Fluid {
   double density(double gauge) const { return state(log_pressure(gauge)).density; }
   /// Effective bulk modulus K(P) = density dP/d(density) at a gauge pressure, Pa.
   double effective_bulk_modulus(double gauge) const;
+  /// Pressure potential, J/kg: the integral of dP/density from atmospheric pressure. A mass flow m
+  /// carries m x potential, and what it loses between two pressures is m x their difference.
+  double potential(double s) const;
 
   double atmosphere() const { return atmosphere_; }
 
@@ -70,6 +75,12 @@ class Fluid {
     Smooth oil, air, released;  // first: -dv/ds
   };
   Volumes volumes(double s, double pressure) const;
+  double oil_potential(double pressure) const;  // integral of the oil's own v dP
+  // The same of the bubbles where no closed form is: sums up to places in s between which few
+  // points are enough.
+  void sum_up_bubbles();
+  double bubble_potential(double s) const;
+  double bubbles_between(double from, double to) const;
 
   double atmosphere_, bulk_modulus_, modulus_slope_, air_share_, inverse_exponent_,
       reference_density_;
@@ -78,6 +89,7 @@ class Fluid {
   double log_vapour_ = 0, vapour_over_air_ = 0;  // ln(Pv/P0), ln(Pv/(P0 - Pv))
   double log_saturation_ = 0;                    // ln((Ps - Pv)/(P0 - Pv))
   double released_scale_ = 0;                    // (1 - x) y P0/(Ps - Pv)
+  std::vector<double> places_, sums_;            // of the bubbles' potential; rising in s
 };
 
 }  // namespace bentaxis::hydraulics

@@ -43,6 +43,7 @@ struct Problem {
   std::vector<double> by_state, by_load;  // of the sensitivity equations
   double mass_scale = 1;                  // kg/degree: of the integrals, for their error control
   double work_scale = 1;
+  bool energies = false;  // the integrals wanted are those of power by place
 };
 
 int rates(realtype x, N_Vector y, N_Vector dy, void* user) {
@@ -82,6 +83,12 @@ int integral_rates(realtype x, N_Vector y, N_Vector dq, void* user) {
   const Network& network = problem.network;
   network.flows(x, data(y), problem.load_size, problem.flows);
   double* to = data(dq);
+  if (problem.energies) {
+    const PowerBudget power = network.power(x, data(y), problem.flows);
+    const double work = network.seconds_per_degree() / problem.work_scale;
+    for (int i = 0; i < kPlaces; ++i) to[i] = power[static_cast<Place>(i)] * work;
+    return 0;
+  }
   std::fill(to, to + kIntegrals, 0.0);
   const double mass = network.seconds_per_degree() / problem.mass_scale;
   for (int k = 0; k < network.pistons(); ++k) {
@@ -141,9 +148,10 @@ double Integrator::share_of_effort() const { return effort_ / most_effort(networ
 
 std::vector<double> Integrator::over_period(const std::vector<double>& states, double load_size,
                                             double tolerance, std::vector<double>* sensitivity,
-                                            Integrals* integrals, const Watch& watch) {
+                                            Integrals* integrals, const Watch& watch,
+                                            PowerBudget* energy) {
   const int size = network_.size();
-  Problem problem{network_, load_size, {}, {}, {}, 1, 1};
+  Problem problem{network_, load_size, {}, {}, {}, 1, 1, energy != nullptr};
   problem.by_state.resize(static_cast<std::size_t>(size) * size);
   problem.by_load.resize(size);
   // Integrals are scaled to the mass and the work of one piston's stroke at delivery pressure.
@@ -197,9 +205,11 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
     check(CVodeSensSStolerances(cv.memory, sensitivity_tolerance, absolute.data()));
     check(CVodeSetSensErrCon(cv.memory, waves ? SUNTRUE : SUNFALSE));
   }
-  if (integrals != nullptr) {
-    cv.integrals = N_VNew_Serial(kIntegrals, cv.context);
-    cv.sampled_integrals = N_VNew_Serial(kIntegrals, cv.context);
+  const bool integrate = integrals != nullptr || energy != nullptr;
+  if (integrate) {
+    const int count = energy != nullptr ? kPlaces : kIntegrals;
+    cv.integrals = N_VNew_Serial(count, cv.context);
+    cv.sampled_integrals = N_VNew_Serial(count, cv.context);
     if (cv.integrals == nullptr || cv.sampled_integrals == nullptr) throw std::bad_alloc();
     N_VConst(0, cv.integrals);
     check(CVodeQuadInit(cv.memory, integral_rates, cv.integrals));
@@ -249,17 +259,19 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
     work_.evaluations += evaluations;
     work_.factorizations += setups;
     double at = 0;
-    if (integrals != nullptr) check(CVodeGetQuad(cv.memory, &at, cv.integrals));
+    if (integrate) check(CVodeGetQuad(cv.memory, &at, cv.integrals));
     if (sensitivity != nullptr) check(CVodeGetSens(cv.memory, &at, cv.sensitivity));
     if (stop == stops.back()) break;
     // The slopes of the areas jump here: start again at order 1 instead of stepping over it.
     check(CVodeReInit(cv.memory, stop, cv.y));
-    if (integrals != nullptr) check(CVodeQuadReInit(cv.memory, cv.integrals));
+    if (integrate) check(CVodeQuadReInit(cv.memory, cv.integrals));
     if (sensitivity != nullptr) check(CVodeSensReInit(cv.memory, CV_SIMULTANEOUS, cv.sensitivity));
   }
-  if (integrals != nullptr) {
+  if (energy != nullptr)
+    for (int i = 0; i < kPlaces; ++i)
+      (*energy)[static_cast<Place>(i)] = data(cv.integrals)[i] * problem.work_scale;
+  else if (integrals != nullptr)
     *integrals = in_units(problem, data(cv.integrals));
-  }
   if (sensitivity != nullptr) {
     sensitivity->clear();
     for (int j = 0; j < cv.sensitivities; ++j)

@@ -52,12 +52,15 @@ class Integrator {
   ///                     column-major, size() rows; the last column only where it is sought
   /// @param integrals    if not null: receives the integrals, with the same control of error
   /// @param watch        called after every step
+  /// @param energy       if not null: receives the energy that has gone by each place, J, in place
+  ///                     of `integrals`, with the same control of error
   /// @throws StepsEnd naming the angle where the integration fails
   /// @throws ComputationError where all integrations so far have taken more steps than any pump
   ///         needs
   std::vector<double> over_period(const std::vector<double>& states, double load_size,
                                   double tolerance, std::vector<double>* sensitivity = nullptr,
-                                  Integrals* integrals = nullptr, const Watch& watch = {});
+                                  Integrals* integrals = nullptr, const Watch& watch = {},
+                                  PowerBudget* energy = nullptr);
 
   const Work& work() const { return work_; }  ///< of all calls so far
   /// Of the effort after which every call fails, what is gone.

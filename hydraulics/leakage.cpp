@@ -27,15 +27,30 @@ Leakage::Leakage(const Case& the_case, const Fluid& fluid, const Chamber& chambe
     const PortPlate& plate = the_case.pump.port_plate.value();
     double lands = 1 / std::log(plate.r4 / plate.r3);
     if (plate.r1 > 0) lands += 1 / std::log(plate.r2 / plate.r1);
-    fixed_ += radians(h.kidney_width_deg) * cube(gaps.plate_gap) / 12 * lands;
+    plate_ = radians(h.kidney_width_deg) * cube(gaps.plate_gap) / 12 * lands;
   }
   if (gaps.ring_slot_height > 0)
-    fixed_ += gaps.ring_slot_width * cube(gaps.ring_slot_height) / (12 * gaps.ring_slot_length);
+    ring_ = gaps.ring_slot_width * cube(gaps.ring_slot_height) / (12 * gaps.ring_slot_length);
 }
 
-double Leakage::gaps(double volume) const {
-  if (piston_ == 0) return fixed_;
-  return fixed_ + piston_ / (area_ > 0 ? length_ + (largest_volume_ - volume) / area_ : length_);
+double Leakage::piston_gap(double volume) const {
+  if (piston_ == 0) return 0;
+  return piston_ / (area_ > 0 ? length_ + (largest_volume_ - volume) / area_ : length_);
+}
+
+double Leakage::gaps(double volume) const { return plate_ + ring_ + piston_gap(volume); }
+
+Leakage::Parts Leakage::parts(const Fluid::State& chamber, double volume) const {
+  const double density = (chamber.density + case_state_.density) / 2;
+  Parts parts;
+  parts.conductance = constant_ * density * (chamber.pressure - case_state_.pressure);
+  if (!viscosity_) return parts;
+  const double drive = density * viscosity_->drive(chamber.pressure - atmosphere_,
+                                                   case_state_.pressure - atmosphere_);
+  parts.piston_gap = piston_gap(volume) * drive;
+  parts.plate_gap = plate_ * drive;
+  parts.ring_slot = ring_ * drive;
+  return parts;
 }
 
 MassFlow Leakage::flow(const Fluid::State& chamber, double volume) const {

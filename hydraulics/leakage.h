@@ -29,13 +29,24 @@ class Leakage {
   MassFlow flow(const Fluid::State& chamber, double volume) const;
   /// Conductance of all gaps of a chamber of that volume, m3.
   double gaps(double volume) const;
+  /// The same flow by where it goes through, kg/s; what is not there is 0.
+  struct Parts {
+    double conductance = 0, piston_gap = 0, plate_gap = 0, ring_slot = 0;
+  };
+  Parts parts(const Fluid::State& chamber, double volume) const;
+  bool has_conductance() const { return constant_ > 0; }
+  bool has_piston_gap() const { return piston_ > 0; }
+  bool has_plate_gap() const { return plate_ > 0; }
+  bool has_ring_slot() const { return ring_ > 0; }
 
  private:
+  double piston_gap(double volume) const;  // m3
+
   double constant_;  // m3/(s Pa)
   Fluid::State case_state_;
   double atmosphere_;
   std::optional<Viscosity> viscosity_;                 // none: no gaps
-  double fixed_ = 0;                                   // m3, of the gaps that do not change
+  double plate_ = 0, ring_ = 0;                        // m3, of the gaps that do not change
   double piston_ = 0;                                  // m4, of the piston's gap, x length
   double length_ = 0, area_ = 0, largest_volume_ = 0;  // area 0: the length does not change
 };

@@ -74,6 +74,9 @@ Network::Network(const Case& the_case)
       suction_state_(fluid_.state(suction_s_)),
       fixed_state_(fluid_.state(delivery_s_)),
       outside_(fluid_.state(0)),
+      case_potential_(fluid_.potential(fluid_.log_pressure(the_case.hydraulics->case_pressure))),
+      suction_potential_(fluid_.potential(suction_s_)),
+      fixed_potential_(fluid_.potential(delivery_s_)),
       load_(load_of(the_case), orifice_, fluid_, suction_state_.density * load_of(the_case).flow),
       fixed_(fixed_end_ && !the_case.hydraulics->delivery_line),
       sought_(!fixed_end_ && load_.sought()) {
@@ -289,6 +292,79 @@ void Network::flows(double x, const double* y, double load_size, Flows& flows) c
     flows.power -= fluid_.gauge(y[k]) * volume.slope * kRadPerDegree / seconds_per_degree_;
   }
   if (!fixed_) flows.load = to_load(y, line, load_size);
+}
+
+double Network::load_flow(double x, const double* y, double load_size) const {
+  if (!fixed_) return to_load(y, fluid_.state(y[n_]), load_size);
+  double sum = 0;
+  for (int k = 0; k < n_; ++k)
+    sum += orifice_.flow(delivery_.area(angle_deg(x, k)), fluid_.state(y[k]), fixed_state_).value;
+  return sum;
+}
+
+PowerBudget Network::power(double x, const double* y, const Flows& flows) const {
+  PowerBudget power;
+  power[Place::pistons] = flows.power;
+  const double line = fixed_ ? fixed_potential_ : fluid_.potential(y[n_]);
+  const double source = suction_line_ ? fluid_.potential(y[suction_at_]) : suction_potential_;
+  double taken = 0;
+  for (int k = 0; k < n_; ++k) {
+    const Fluid::State at = fluid_.state(y[k]);
+    const double potential = fluid_.potential(y[k]);
+    const double in = flows.suction[k], out = flows.delivery[k];
+    power[in < 0 ? Place::suction_backflow : Place::suction_port] += in * (source - potential);
+    power[out < 0 ? Place::delivery_backflow : Place::delivery_port] += out * (potential - line);
+    const Leakage::Parts parts =
+        leakage_.parts(at, chamber_.volume(radians(angle_deg(x, k))).value);
+    const double drop = potential - case_potential_;
+    power[Place::conductance] += parts.conductance * drop;
+    power[Place::piston_gap] += parts.piston_gap * drop;
+    power[Place::plate_gap] += parts.plate_gap * drop;
+    power[Place::ring_slot] += parts.ring_slot * drop;
+    power[Place::drain] += flows.leakage[k] * case_potential_;
+    taken += in;
+  }
+  // In a line the oil has one density: its potential there is linear in the pressure.
+  if (suction_line_) {
+    taken = y[suction_at_ + 1] * ideal_mass_flow();
+    const double drop = fluid_.state(y[suction_at_]).pressure - suction_state_.pressure;
+    power[Place::suction_line] = suction_line_->lost(taken);
+    power[Place::line_density] +=
+        taken * (suction_potential_ + drop / suction_state_.density - source);
+  }
+  power[Place::tank] = taken * suction_potential_;
+  power[Place::load] = flows.load * line;
+  if (pipe_) {
+    const double* modes = y + pipe_at_;
+    const auto within = [&](double pressure) {
+      return fixed_potential_ + (pressure - fixed_state_.pressure) / fixed_state_.density;
+    };
+    const double end = fixed_end_ ? fixed_state_.pressure : pipe_->end_pressure(modes);
+    power[Place::load] = flows.load * within(end);
+    power[Place::delivery_line] = pipe_->friction_power(modes);
+    power[Place::damped_waves] = pipe_->damped_power(modes);
+    power[Place::line_density] +=
+        pipe_->inflow(modes) * (line - within(fluid_.state(y[n_]).pressure));
+  }
+  return power;
+}
+
+std::vector<Place> Network::places() const {
+  std::vector<Place> all = {Place::pistons, Place::tank, Place::load, Place::drain};
+  if (suction_line_) all.push_back(Place::suction_line);
+  for (const Place port : {Place::suction_port, Place::suction_backflow, Place::delivery_port,
+                           Place::delivery_backflow})
+    all.push_back(port);
+  if (leakage_.has_conductance()) all.push_back(Place::conductance);
+  if (leakage_.has_piston_gap()) all.push_back(Place::piston_gap);
+  if (leakage_.has_plate_gap()) all.push_back(Place::plate_gap);
+  if (leakage_.has_ring_slot()) all.push_back(Place::ring_slot);
+  if (pipe_) {
+    all.push_back(Place::delivery_line);
+    all.push_back(Place::damped_waves);
+  }
+  if (pipe_ || suction_line_) all.push_back(Place::line_density);
+  return all;
 }
 
 }  // namespace bentaxis::hydraulics

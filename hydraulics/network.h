@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/case.h"
 #include "chamber.h"
 #include "fluid.h"
@@ -70,6 +71,14 @@ class Network {
   };
   void flows(double x, const double* y, double load_size, Flows& flows) const;
 
+  /// Mass flow into the load alone, kg/s.
+  double load_flow(double x, const double* y, double load_size) const;
+
+  /// Power by place at one state, W, from its flows.
+  PowerBudget power(double x, const double* y, const Flows& flows) const;
+  /// The places that this circuit has.
+  std::vector<Place> places() const;
+
   const Fluid& fluid() const { return fluid_; }
   const Chamber& chamber() const { return chamber_; }
   const PortOpening& delivery() const { return delivery_; }
@@ -116,6 +125,7 @@ class Network {
   Leakage leakage_;
   double suction_s_, delivery_s_, delivery_pressure_, mean_scale_;
   Fluid::State suction_state_, fixed_state_, outside_;
+  double case_potential_, suction_potential_, fixed_potential_;  // J/kg
   Load load_;
   std::optional<TransmissionLine> pipe_;
   std::optional<SuctionLine> suction_line_;

@@ -95,8 +95,9 @@ void PortOpening::add_geometry(const HydraulicData& data, const PlatePort& port,
   const double rounding = circular ? data.kidney_height / length : data.kidney_rounding_deg;
   // Kidney, port and notches are shorter than a turn, so that one branch of the angle is enough.
   const Frame frame(from - port.notch.length_deg, half);
-  parts_.emplace_back(Overlap{frame, from, to, rounding, length, data.kidney_height,
-                              length * data.kidney_height, circular});
+  add({"kidney", "kidney over the port"},
+      Overlap{frame, from, to, rounding, length, data.kidney_height, length * data.kidney_height,
+              circular});
   for (const double at : {from - half, from - half + rounding, from + half, to - half,
                           to + half - rounding, to + half})
     add_edge(at);
@@ -104,7 +105,9 @@ void PortOpening::add_geometry(const HydraulicData& data, const PlatePort& port,
   const bool quadratic = data.notch_law == NotchLaw::quadratic;
   const auto add_notch = [&](const Notch& notch, double start, double tip, bool trailing) {
     if (notch.length_deg == 0 || notch.area == 0) return;
-    parts_.emplace_back(Wedge{frame, start, notch.length_deg, notch.area, quadratic, trailing});
+    add(trailing ? PartName{"trailing_notch", "notch behind the port"}
+                 : PartName{"notch", "notch before the port"},
+        Wedge{frame, start, notch.length_deg, notch.area, quadratic, trailing});
     add_edge(tip - half);
     add_edge(tip + half);
   };
@@ -113,7 +116,7 @@ void PortOpening::add_geometry(const HydraulicData& data, const PlatePort& port,
 
   if (const ReliefGroove& groove = port.groove; groove.area > 0) {
     const double mouth = groove.width * length;  // per degree
-    parts_.emplace_back(
+    add({"groove", "relief groove"},
         Groove{Frame(groove.from_deg, half), groove.from_deg, groove.to_deg, mouth, groove.area});
     for (const double at : {groove.from_deg, groove.to_deg}) {
       add_edge(at - half);
@@ -128,8 +131,9 @@ void PortOpening::add_geometry(const HydraulicData& data, const PlatePort& port,
   for (const PlateHole& hole : port.holes) {
     if (hole.diameter == 0) continue;
     const double reach = hole.diameter / 2 / length;
-    parts_.emplace_back(Hole{Frame(hole.angle_deg - reach, half), hole.angle_deg, hole.diameter / 2,
-                             length, circular ? data.kidney_height / 2 : 0});
+    add(&hole == port.holes.data() ? PartName{"hole", "hole"} : PartName{"hole_2", "second hole"},
+        Hole{Frame(hole.angle_deg - reach, half), hole.angle_deg, hole.diameter / 2, length,
+             circular ? data.kidney_height / 2 : 0});
     for (const double at : {hole.angle_deg - reach, hole.angle_deg + reach}) {
       add_edge(at - half);
       add_edge(at + half);
@@ -160,13 +164,21 @@ void PortOpening::add_table(const OpeningTable& table) {
     const bool closed_before = table.area[before] == 0, closed_after = table.area[next] == 0;
     if (table.area[i] == 0 && closed_before != closed_after) add_edge(table.theta_deg[i]);
   }
-  parts_.emplace_back(Table{table.theta_deg[0], PeriodicCubic(std::move(pieces))});
+  add({"table", "from a table"}, Table{table.theta_deg[0], PeriodicCubic(std::move(pieces))});
+}
+
+void PortOpening::add(const PartName& name, Part part) {
+  names_.push_back(name);
+  parts_.push_back(std::move(part));
+}
+
+double PortOpening::part_area(std::size_t i, double theta_deg) const {
+  return std::visit([&](const auto& part) { return part.area(theta_deg); }, parts_[i]);
 }
 
 double PortOpening::area(double theta_deg) const {
   double sum = 0;
-  for (const Part& part : parts_)
-    sum += std::visit([&](const auto& p) { return p.area(theta_deg); }, part);
+  for (std::size_t i = 0; i < parts_.size(); ++i) sum += part_area(i, theta_deg);
   return sum;
 }
 

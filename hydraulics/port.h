@@ -27,10 +27,20 @@ namespace bentaxis::hydraulics {
 /// jump.
 class PortOpening {
  public:
+  /// Of a part: for columns and for readers.
+  struct PartName {
+    const char *key, *name;
+  };
+
   PortOpening(const HydraulicData& data, const PlatePort& port, double bore_circle_radius);
 
   /// Area, m2, at the chamber's angle, degrees (any real number). Continuous.
   double area(double theta_deg) const;
+
+  /// The parts that it has, and the area of one of them, which it adds.
+  std::size_t parts() const { return parts_.size(); }
+  const PartName& part(std::size_t i) const { return names_[i]; }
+  double part_area(std::size_t i, double theta_deg) const;
 
   /// Chamber angles in [0, 360) where the slope of the area jumps, or nearly so, and where the port
   /// opens or closes, in rising order.
@@ -87,8 +97,10 @@ class PortOpening {
   void add_geometry(const HydraulicData& data, const PlatePort& port, double length);
   void add_table(const OpeningTable& table);
   void add_edge(double theta_deg);
+  void add(const PartName& name, Part part);
 
   std::vector<Part> parts_;
+  std::vector<PartName> names_;
   std::vector<double> edges_deg_;
 };
 

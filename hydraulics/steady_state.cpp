@@ -2,7 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <utility>
 
@@ -13,6 +15,7 @@
 #include "integrator.h"
 #include "network.h"
 #include "period_map.h"
+#include "timing_record.h"
 #include "turn.h"
 
 namespace bentaxis::hydraulics {
@@ -61,6 +64,7 @@ Vector first_guess(const Network& network, const std::optional<Start>& start) {
 // The state that a period repeats, and the derivatives that keep it there.
 struct Found {
   Vector z;
+  Vector next;  // the last one corrected once more: stored energy returns more closely
   Eigen::PartialPivLU<Matrix> chord;
   int iterations = 0;
 };
@@ -76,7 +80,7 @@ void settle(const Network& network, PeriodMap& map, Vector& z, bool line_given) 
 
 Found find(const Network& network, PeriodMap& map, const Vector& guess, bool line_given,
            double tolerance, const std::function<void()>& alive) {
-  Found found{guess, {}, 0};
+  Found found{guess, guess, {}, 0};
   settle(network, map, found.z, line_given);
   Matrix jacobian;
   search(map, found.z, std::max(kCoarse, tolerance), jacobian, found.iterations, alive);
@@ -186,12 +190,16 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   found.z -= found.chord.solve(f);
   const double finer = std::max(tolerance / 10, kFinest);
   TurnRecord turn(network, map.load_size(found.z), rows_of(the_case));
+  TimingRecord timing(network, map.load_size(found.z));
   Integrals integrals;
-  f = map.residual(found.z, finer, nullptr, &integrals,
-                   [&](const Integrator::Step& step) { turn.see(step); });
+  f = map.residual(found.z, finer, nullptr, &integrals, [&](const Integrator::Step& step) {
+    turn.see(step);
+    timing.see(step);
+  });
   ComputedPressure curve = turn.curve(kInterpolation * the_case.hydraulics->curve_error);
   // What the state still moves by, and everything that an integration ten times coarser misses.
   const Vector left = found.chord.solve(f);
+  found.next = found.z - left;
   double change = 0;
   for (int k = 0; k < network.pistons(); ++k)
     change = std::max(change, std::abs(left[k]) * network.fluid().state(found.z[k]).pressure);
@@ -207,7 +215,9 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   s.load_size = network.fixed_line() ? 0 : map.load_size(found.z);
   s.delivery_mean = map.mean_delivery();
   turn.summarize(integrals, s);
+  result.orders = turn.orders(kOrders);
   summarize(the_case, network, integrals, s);
+  result.timing = timing.timing(s.delivery_mean);
   result.computed = std::make_shared<ComputedPressure>(std::move(curve));
   PressureSpec as_computed;
   as_computed.kind = PressureKind::hydraulic;
@@ -229,6 +239,36 @@ bool improve(const Case& the_case, const Network& network, PeriodMap& map, doubl
   return true;
 }
 
+// Sums f(angle, weight) over a turn, weights in degrees: Gauss points of each piece of the curve,
+// cut to a degree at most.
+template <typename F>
+void over_pieces(const ComputedPressure& curve, const F& f) {
+  using Rule = boost::math::quadrature::gauss<double, 5>;
+  const auto& pieces = curve.log_pressure.pieces();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double from = pieces[i].from_deg;
+    const double way = (i + 1 < pieces.size() ? pieces[i + 1].from_deg : 360) - from;
+    const int cuts = static_cast<int>(std::ceil(way));
+    const double half = way / cuts / 2;
+    for (int cut = 0; cut < cuts; ++cut) {
+      const double middle = from + (2 * cut + 1) * half;
+      for (std::size_t j = 0; j < Rule::abscissa().size(); ++j) {
+        const double off = Rule::abscissa()[j] * half, weight = Rule::weights()[j] * half;
+        f(middle + off, weight);
+        if (off != 0) f(middle - off, weight);
+      }
+    }
+  }
+}
+
+double indicated_work(const Chamber& chamber, const ComputedPressure& curve) {
+  double work = 0;
+  over_pieces(curve, [&](double angle, double weight) {
+    work -= weight * kRadPerDegree * curve.gauge(angle) * chamber.volume(radians(angle)).slope;
+  });
+  return work;
+}
+
 double largest_of_spline(const PressureCurve& points, const ComputedPressure& curve) {
   const PeriodicSpline spline(points.theta_deg, points.pressure);
   const auto& pieces = curve.log_pressure.pieces();
@@ -246,7 +286,8 @@ double largest_of_spline(const PressureCurve& points, const ComputedPressure& cu
 SteadyState steady_state(const Case& the_case, const std::optional<Start>& start,
                          const Progress& progress) {
   const Stopwatch stopwatch;
-  const Network network(the_case);
+  const auto equations = std::make_shared<const Network>(the_case);
+  const Network& network = *equations;
   double fraction = 0;
   const auto alive = [&] {
     if (progress) progress(fraction = std::min(0.95, fraction + 0.001));
@@ -278,6 +319,11 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
     if (network.load_sought()) refuse_what_is_out_of_reach(network, the_case, alive);
     throw;
   }
+  result.equations = equations;
+  result.corrected_states = map.states(found.next);
+  result.corrected_load_size = map.load_size(found.next);
+  result.places = network.places();
+  result.indicated_work = indicated_work(network.chamber(), *result.computed);
   result.chamber.theta_deg = result.table.theta_deg;
   for (const double angle : result.chamber.theta_deg)
     result.chamber.pressure.push_back(result.computed->gauge(angle));
@@ -323,6 +369,35 @@ ResultTable transient_from_rest(const Case& the_case, double load_size, int revo
     if (progress) progress(static_cast<double>(period + 1) / static_cast<double>(periods));
   }
   return table;
+}
+
+std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count) {
+  std::vector<std::complex<double>> sums(count);
+  over_pieces(chamber, [&](double angle, double weight) {
+    const double value = weight * chamber.gauge(angle) / 180;
+    for (int i = 0; i < count; ++i) sums[i] += std::polar(value, -radians((i + 1) * angle));
+  });
+  std::vector<double> amplitudes(count);
+  for (int i = 0; i < count; ++i) amplitudes[i] = (i + 1) * std::abs(sums[i]);
+  return amplitudes;
+}
+
+PowerBudget power_by_place(const SteadyState& state, const Progress& progress) {
+  const Network& network = *state.equations;
+  Integrator integrator(network, [&] {
+    if (progress) progress(0.5);
+  });
+  PowerBudget energy;
+  integrator.over_period(state.corrected_states, state.corrected_load_size,
+                         state.convergence.tolerance, nullptr, nullptr, {}, &energy);
+  for (int i = 0; i < kPlaces; ++i)
+    energy[static_cast<Place>(i)] /= network.period_deg() * network.seconds_per_degree();
+  if (progress) progress(1);
+  return energy;
+}
+
+double effective_bulk_modulus(const SteadyState& state, double gauge) {
+  return state.equations->fluid().effective_bulk_modulus(gauge);
 }
 
 void give_to(Case& the_case, const SteadyState& state) {

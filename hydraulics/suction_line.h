@@ -17,6 +17,7 @@ class SuctionLine {
   /// @param viscosity  m2/s, kinematic; 0: no laminar loss
   SuctionLine(const SuctionLineData& data, const Fluid::State& tank, double viscosity)
       : tank_(tank.pressure),
+        density_(tank.density),
         area_per_length_(area(data) / data.length),
         loss_(data.loss / (2 * tank.density * area(data) * area(data))),
         laminar_(32 * viscosity * data.length / (area(data) * data.diameter * data.diameter)) {}
@@ -25,6 +26,8 @@ class SuctionLine {
   double rate(double port, double m) const {
     return area_per_length_ * (tank_ - port - loss_ * m * std::abs(m) - laminar_ * m);
   }
+  /// Power that the flow m loses in the pipe, W.
+  double lost(double m) const { return m * (loss_ * m * std::abs(m) + laminar_ * m) / density_; }
   double by_port() const { return -area_per_length_; }
   double by_flow(double m) const {
     return -area_per_length_ * (2 * loss_ * std::abs(m) + laminar_);
@@ -34,7 +37,7 @@ class SuctionLine {
   static double area(const SuctionLineData& data) {
     return kPi / 4 * data.diameter * data.diameter;
   }
-  double tank_, area_per_length_, loss_, laminar_;
+  double tank_, density_, area_per_length_, loss_, laminar_;
 };
 
 }  // namespace bentaxis::hydraulics

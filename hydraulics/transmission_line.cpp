@@ -86,7 +86,7 @@ void TransmissionLine::rates(const double* y, double start, double end, double* 
   double p_below[2] = {0, 0}, m_below[2] = {0, 0};
   for (int i = 0; i < flows_; ++i) {
     const int other = 1 - i % 2;
-    const double scale = rate_ * (2 * i + 1) / 2;
+    const double scale = scale_of(i);
     const double damping = damping_of(i);
     if (i < pressures_)
       dy[i] = scale * (sign(i) * inflow - outflow + 2 * m_below[other]) - damping * p[i];
@@ -97,12 +97,27 @@ void TransmissionLine::rates(const double* y, double start, double end, double* 
   }
 }
 
+double TransmissionLine::friction_power(const double* y) const {
+  double sum = 0;
+  for (int i = 0; i < flows_; ++i) sum += y[pressures_ + i] * y[pressures_ + i] / scale_of(i);
+  return power_scale() * friction_ * sum;
+}
+
+double TransmissionLine::damped_power(const double* y) const {
+  double sum = 0;
+  for (int i = 2; i < flows_; ++i) {
+    const double p = i < pressures_ ? y[i] : 0, m = y[pressures_ + i];
+    sum += damping_of(i) * (p * p + m * m) / scale_of(i);
+  }
+  return power_scale() * sum;
+}
+
 double TransmissionLine::by_state(int i, int j) const {
   const bool pressure = i < pressures_, by_pressure = j < pressures_;
   const int row = pressure ? i : i - pressures_, column = by_pressure ? j : j - pressures_;
   if (pressure == by_pressure)
     return row != column ? 0 : -damping_of(row) - (pressure ? 0 : friction_);
-  const double scale = rate_ * (2 * row + 1) / 2;
+  const double scale = scale_of(row);
   const bool flow_given = end_ == End::given_flow;
   double entry = slope_by_value(row, column);
   if (pressure)
@@ -115,14 +130,14 @@ double TransmissionLine::by_state(int i, int j) const {
 double TransmissionLine::by_start(int i) const {
   if (i < pressures_) return 0;
   const int row = i - pressures_;
-  return rate_ * (2 * row + 1) / 2 * sign(row) / reference_;
+  return scale_of(row) * sign(row) / reference_;
 }
 
 double TransmissionLine::by_end(int i) const {
   const bool flow_given = end_ == End::given_flow;
   if (flow_given != (i < pressures_)) return 0;
   const int row = flow_given ? i : i - pressures_;
-  return -rate_ * (2 * row + 1) / 2 / (flow_given ? flow_scale_ : reference_);
+  return -scale_of(row) / (flow_given ? flow_scale_ : reference_);
 }
 
 }  // namespace bentaxis::hydraulics

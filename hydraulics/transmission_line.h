@@ -56,13 +56,21 @@ class TransmissionLine {
   double by_start(int i) const;
   double by_end(int i) const;
 
+  /// Power that friction takes, and that the damping above the bandwidth takes, W: the rates keep
+  /// the sum of them, of the energy of the modes and of what passes the ends, (p - reference) m /
+  /// density, which is what links pressure and power in oil of one density.
+  double friction_power(const double* y) const;
+  double damped_power(const double* y) const;
+
   int pressures() const { return pressures_; }  ///< modes of pressure, the first ones of the state
   double wave_speed() const { return wave_speed_; }
   /// Characteristic impedance c/A, Pa s/kg.
   double impedance() const { return reference_ / flow_scale_; }
 
  private:
-  double damping_of(int i) const;  // 1/s
+  double damping_of(int i) const;                                             // 1/s
+  double scale_of(int i) const { return rate_ * (2 * i + 1) / 2; }            // 1/s
+  double power_scale() const { return reference_ * flow_scale_ / density_; }  // W
 
   End end_;
   double wave_speed_, density_, reference_;

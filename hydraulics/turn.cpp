@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <string>
 
@@ -14,6 +15,7 @@ namespace {
 // which a port opens is none.
 constexpr double kRippleWindow = 0.25;
 constexpr int kPerWindow = 10;
+constexpr double kBoole[] = {7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
 
 Channel channel(const std::string& name, const std::string& meaning, const std::string& unit,
                 double unit_in_si, int piston) {
@@ -57,7 +59,36 @@ std::vector<Channel> turn_channels(const Network& network) {
   if (network.has_delivery_line())
     all.push_back(channel("p_load_bar", "pressure at the end of the delivery line, gauge", "bar",
                           kPascalPerBar, 0));
+  all.push_back(channel("dp_1_bar_per_deg", "rate of the pressure in chamber 1", "bar/deg",
+                        kPascalPerBar, 1));
+  all.push_back(channel("K_1_MPa", "effective bulk modulus in chamber 1", "MPa", 1e6, 1));
+  for (const bool own : {true, false})
+    for (const bool suction : {true, false})
+      all.push_back(
+          channel(std::string(suction ? "Qsb" : "Qdb") + (own ? "_1" : "") + "_l_per_min",
+                  std::string("backflow ") +
+                      (suction ? "into the suction port from " : "of the delivery port into ") +
+                      (own ? "chamber 1" : "all chambers") + ", at suction density",
+                  "l/min", kLitrePerMinute, own ? 1 : 0));
+  for (const auto& [port, key] : {std::pair{&network.suction(), "as"}, {&network.delivery(), "ad"}})
+    for (std::size_t i = 0; i < port->parts(); ++i)
+      all.push_back(channel(std::string(key) + "_1_" + port->part(i).key + "_mm2",
+                            std::string("opening of chamber 1 to the ") +
+                                (key[1] == 's' ? "suction" : "delivery") +
+                                " port: " + port->part(i).name,
+                            "mm2", 1e-6, 1));
+  for (const Place place : network.places())
+    all.push_back(channel(std::string("power_") + key_of(place) + "_W",
+                          std::string("power: ") + name_of(place), "W", 1, 0));
   return all;
+}
+
+// What flows against the direction in which a flow counts.
+double against(double flow) { return std::max(0.0, -flow); }
+double all_against(const std::vector<double>& flows) {
+  double sum = 0;
+  for (const double flow : flows) sum += against(flow);
+  return sum;
 }
 
 double total(const std::vector<double>& v) {
@@ -103,7 +134,10 @@ std::vector<Channel> pressure_channels() {
 }
 
 TurnRecord::TurnRecord(const Network& network, double load_size, int rows)
-    : network_(network), load_size_(load_size), state_(network.size()) {
+    : network_(network),
+      load_size_(load_size),
+      state_(network.size()),
+      power_places_(network.places()) {
   // Row i falls into segment i n / rows, seen by the chamber that starts there.
   const int n = network.pistons();
   const double period = network.period_deg();
@@ -114,7 +148,7 @@ TurnRecord::TurnRecord(const Network& network, double load_size, int rows)
     angles_.push_back(360.0 * i / rows);
   }
   std::stable_sort(places_.begin(), places_.end(),
-                   [](const Place& a, const Place& b) { return a.x < b.x; });
+                   [](const RowPlace& a, const RowPlace& b) { return a.x < b.x; });
   delivery_.resize(rows);
   values_.resize(rows * turn_channels(network).size());
   const auto windows = static_cast<std::size_t>(std::ceil(period / kRippleWindow));
@@ -128,10 +162,12 @@ void TurnRecord::add_node(const Integrator::Step& step, double x) {
   s_.insert(s_.end(), y, y + network_.pressures());
   network_.rates(x, y, load_size_, state_.data());
   slope_.insert(slope_.end(), state_.begin(), state_.begin() + network_.pressures());
+  load_flow_.push_back(network_.load_flow(x, y, load_size_));
+  load_pressure_.push_back(network_.load_gauge(y));
 }
 
 void TurnRecord::add_row(const Integrator::Step& step) {
-  const Place& place = places_[next_place_++];
+  const RowPlace& place = places_[next_place_++];
   const double* y = step.state(place.x);
   const int k = place.chamber;
   network_.flows(place.x, y, load_size_, flows_);
@@ -151,6 +187,18 @@ void TurnRecord::add_row(const Integrator::Step& step) {
   for (const double m : mass) *to++ = m;
   if (network_.has_suction_line()) *to++ = network_.suction_gauge(y);
   if (network_.has_delivery_line()) *to++ = network_.load_gauge(y);
+  const Fluid::State at = network_.fluid().state(y[k]);
+  network_.rates(place.x, y, load_size_, state_.data());
+  *to++ = at.pressure * state_[k];
+  *to++ = at.stiffness * at.pressure;
+  *to++ = against(flows_.suction[k]) / density;
+  *to++ = against(flows_.delivery[k]) / density;
+  *to++ = all_against(flows_.suction) / density;
+  *to++ = all_against(flows_.delivery) / density;
+  for (const auto* port : {&network_.suction(), &network_.delivery()})
+    for (std::size_t i = 0; i < port->parts(); ++i) *to++ = port->part_area(i, angle);
+  const PowerBudget power = network_.power(place.x, y, flows_);
+  for (const Place by : power_places_) *to++ = power[by];
 }
 
 void TurnRecord::see(const Integrator::Step& step) {
@@ -236,6 +284,42 @@ double TurnRecord::difference(const std::vector<std::pair<double, std::vector<do
   return worst;
 }
 
+std::vector<Order> TurnRecord::orders(int count) const {
+  const int n = network_.pistons();
+  const std::size_t nodes = x_.size();
+  std::vector<double> weight(nodes);
+  // Every step has its ends and three nodes between: Boole's rule.
+  for (std::size_t e = 0; e + 1 < edges_.size(); ++e)
+    for (std::size_t i = edges_[e]; i + 1 < edges_[e + 1]; i += 4)
+      for (int j = 0; j < 5; ++j)
+        weight[i + j] += (x_[i + 4] - x_[i]) * kBoole[j] / network_.period_deg();
+  struct Sums {
+    std::complex<double> flow, delivery, load_pressure;
+  };
+  std::vector<Sums> sums(count);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const double flow = load_flow_[i] - load_flow_[0];
+    const double delivery = delivery_gauge(i) - delivery_gauge(0);
+    const double load_pressure = load_pressure_[i] - load_pressure_[0];
+    const std::complex<double> turned = std::polar(1.0, -radians(n * x_[i]));
+    std::complex<double> wave = 2 * weight[i];
+    for (Sums& sum : sums) {
+      // Written out: the product of complex<double> looks for infinities.
+      wave = {wave.real() * turned.real() - wave.imag() * turned.imag(),
+              wave.real() * turned.imag() + wave.imag() * turned.real()};
+      sum.flow += wave * flow;
+      sum.delivery += wave * delivery;
+      sum.load_pressure += wave * load_pressure;
+    }
+  }
+  std::vector<Order> all;
+  for (int m = 1; m <= count; ++m) {
+    const Sums& sum = sums[m - 1];
+    all.push_back({m * n, std::abs(sum.flow), std::abs(sum.delivery), std::abs(sum.load_pressure)});
+  }
+  return all;
+}
+
 void TurnRecord::summarize(const Integrals& over_period, Summary& summary) const {
   const int n = network_.pistons();
   const Fluid& fluid = network_.fluid();
@@ -256,7 +340,7 @@ void TurnRecord::summarize(const Integrals& over_period, Summary& summary) const
       summary.below_vapour_deg +=
           way * share_below(s(i - 1, k), s(i, k), fluid.log_pressure(fluid.vapour()));
     }
-    const double line = network_.delivery_gauge(&s_[i * network_.pressures()]);
+    const double line = delivery_gauge(i);
     summary.delivery_least = std::min(summary.delivery_least, line);
     summary.delivery_greatest = std::max(summary.delivery_greatest, line);
   }

@@ -41,6 +41,9 @@ class TurnRecord {
   /// What is read off states; the rest of the summary is left as it is.
   void summarize(const Integrals& over_period, Summary& summary) const;
 
+  /// Orders N, 2N, .. of the shaft: amplitudes of the harmonics over the period.
+  std::vector<Order> orders(int count) const;
+
   PressureCurve delivery() const { return {angles_, delivery_}; }
 
  private:
@@ -51,17 +54,22 @@ class TurnRecord {
   double slope(std::size_t node, int k) const { return slope_[node * network_.pressures() + k]; }
   void add_node(const Integrator::Step& step, double x);
   void add_row(const Integrator::Step& step);
+  double delivery_gauge(std::size_t node) const {
+    return network_.delivery_gauge(&s_[node * network_.pressures()]);
+  }
 
   const Network& network_;
   double load_size_;
   std::vector<double> x_, s_, slope_, state_;  // of the nodes; s and slope: pressures() each
   std::vector<std::size_t> edges_;             // nodes at which a stretch between edges begins
-  struct Place {
+  struct RowPlace {
     double x;
     int row, chamber;
   };
-  std::vector<Place> places_;  // of the table's rows in the period, rising in x
+  std::vector<RowPlace> places_;  // of the table's rows in the period, rising in x
   std::size_t next_place_ = 0;
+  std::vector<Place> power_places_;
+  std::vector<double> load_flow_, load_pressure_;  // of the nodes
   std::vector<double> angles_, delivery_, values_;
   std::vector<double> delivered_, loaded_;  // mass since the start of the period at equal steps
   Network::Flows flows_;

@@ -71,6 +71,7 @@ Json json_of(const PlausibilitySection&);
 Json json_of(const Warning&);
 Json json_of(const CommonInput&);
 Json json_of(const ValidityRow&);
+Json json_of(const TimingRow&);
 Json json_of(const ModelSection&);
 Json json_of(const compare::Harmonic&);
 Json json_of(const compare::ChannelComparison&);
@@ -305,6 +306,21 @@ Json json_of(const ValidityRow& row) {
           {"consequence", row.consequence}};
 }
 
+Json json_of(const TimingRow& row) {
+  Json angles = Json::array();
+  for (const auto& [from, to] : row.angles) angles.push_back({from, to});
+  return {{"code", row.code},
+          {"quantity", row.quantity},
+          {"value", number_or_null(row.value)},
+          {"unit", row.unit},
+          {"limit", value_or_null(row.limit)},
+          {"flagged", row.flagged},
+          {"theta_deg", value_or_null(row.theta_deg)},
+          {"angles", angles},
+          {"meant", row.meant},
+          {"text", row.text}};
+}
+
 Json json_of(const ModelSection& model) {
   return {{"name", model.name},
           {"assumptions", model.assumptions},
@@ -521,6 +537,7 @@ Json to_json(const Document& document) {
   add(json, "warnings", document.warnings);
   add(json, "common", document.common);
   add(json, "validity", document.validity);
+  add(json, "timing", document.timing);
   add(json, "models", document.models);
   if (document.comparison) {
     json["channels"] = list_of(document.comparison->channels);

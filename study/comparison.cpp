@@ -295,7 +295,7 @@ void Maker::hold_to_reference() {
 void Maker::warn() {
   ComparisonResult& r = result_;
   if (r.first.hydraulics)
-    for (auto& warning : hydraulic_warnings(*r.first.hydraulics))
+    for (auto& warning : timing_warnings(timing_rows(r.first.the_case, *r.first.hydraulics)))
       r.warnings.push_back(std::move(warning));
   for (const auto& limit : r.limits)
     if (limit.applicable && limit.violated_share > 0)

@@ -181,6 +181,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.warnings = r.warnings;
   document.common = common_inputs(the_case);
   document.validity = validity_of(r.limits);
+  if (r.first.hydraulics) document.timing = timing_rows(r.first.the_case, *r.first.hydraulics);
   document.models = {report::model_of(r.analytic, in_words(the_case.analytic)),
                      report::model_of(r.multibody, in_words(r.second.the_case.multibody))};
   document.comparison = r.comparison;

@@ -13,6 +13,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/samples.h"
+#include "bentaxis/study/timing.h"
 
 namespace bentaxis::study {
 namespace {
@@ -1041,6 +1042,11 @@ bool is_code(const std::string& code) {
                      [&](const Check& check) { return check.code == code; });
 }
 
+bool is_timing_code(const std::string& code) {
+  const auto codes = timing_codes();
+  return std::find(codes.begin(), codes.end(), code) != codes.end();
+}
+
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return "";
@@ -1060,9 +1066,10 @@ std::vector<Doubt> stated(const Case& the_case) {
     const std::string code = trimmed(part.substr(0, colon));
     const std::string reason = colon == std::string::npos ? "" : trimmed(part.substr(colon + 1));
     const std::string where = the_case.file.string() + ": [plausibility] meant: ";
-    if (!is_code(code))
+    if (!is_code(code) && !is_timing_code(code))
       throw InputError(where + "\"" + code +
-                       "\" is no check (docs/plausibility.md lists them); must be \"CODE: reason; "
+                       "\" is no check (docs/plausibility.md and docs/hydraulics.md list them); "
+                       "must be \"CODE: reason; "
                        "CODE: reason\"");
     if (reason.empty())
       throw InputError(where + "\"" + code + "\" needs a reason: \"" + code + ": why\"");
@@ -1103,6 +1110,12 @@ Plausibility plausibility(const Case& the_case) {
       result.meant.push_back({check.code, text, reason->reason});
   }
   return result;
+}
+
+std::string stated_reason(const Case& the_case, const std::string& code) {
+  for (const Doubt& doubt : stated(the_case))
+    if (doubt.code == code) return doubt.reason;
+  return "";
 }
 
 std::string plausibility_markdown() {

@@ -5,11 +5,13 @@
 #include <algorithm>
 
 #include "bentaxis/compare/comparison.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
+#include "hydraulic_results.h"
 #include "hydraulic_sections.h"
 
 namespace bentaxis::study {
@@ -23,29 +25,9 @@ double bar(const OperatingPoint& point) {
 
 }  // namespace
 
-std::vector<report::Warning> hydraulic_warnings(const hydraulics::SteadyState& state) {
-  const hydraulics::Summary& s = state.summary;
-  const auto bar = [](double pressure) { return pressure / kPascalPerBar; };
-  std::vector<report::Warning> warnings;
-  if (s.below_saturation_deg > 0)
-    warnings.push_back(
-        {"cavitation",
-         fmt::format(
-             "a chamber is below the saturation pressure ({:.4g} bar gauge), where dissolved "
-             "air comes out, for {:.4g} deg of a turn, and below vapour pressure ({:.4g} bar "
-             "gauge) for {:.4g} deg; least {:.4g} bar at {:.4g} deg.",
-             bar(s.saturation), s.below_saturation_deg, bar(s.vapour), s.below_vapour_deg,
-             bar(s.chamber_least), s.chamber_least_deg)});
-  if (s.both_open_deg > 0)
-    warnings.push_back(
-        {"ports connected",
-         fmt::format("a chamber is open to both ports for {:.4g} deg of a turn: oil flows from the "
-                     "delivery port to the suction port through it.",
-                     s.both_open_deg)});
-  return warnings;
-}
-
-report::Document pressure_document(const OperatingPoint& point, const report::Lines& program) {
+report::Document pressure_document(const OperatingPoint& point,
+                                   const hydraulics::PowerBudget& power,
+                                   const report::Lines& program) {
   const Case& the_case = point.the_case();
   report::Document document;
   document.title = the_case.name;
@@ -53,9 +35,14 @@ report::Document pressure_document(const OperatingPoint& point, const report::Li
   describe_case(document, the_case);
   document.derived = derived_section(the_case);
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
-  document.runs = {hydraulic_section(the_case, point.state())};
-  document.warnings = hydraulic_warnings(point.state());
+  document.runs = {hydraulic_section(the_case, point.state()),
+                   power_section(the_case, point.state(), power),
+                   orders_section(the_case, point.state())};
+  document.timing = timing_rows(the_case, point.state());
+  document.warnings = timing_warnings(*document.timing);
   document.figures = hydraulic_figures(the_case, point.state());
+  for (report::Figure& figure : result_figures(the_case, point.state(), power))
+    document.figures->push_back(std::move(figure));
   document.figures->push_back(
       {"td", "Drive torque Td", "Fig. 17", report::ChannelFigure{"Nm", {"Td_z1_Nm"}},
        fmt::format("Mean torque: analytic {:.5g} Nm, multibody {:.5g} Nm.",
@@ -190,15 +177,34 @@ void add_transient(report::Document& document, const ResultTable& transient) {
   document.figures->push_back(std::move(figure));
 }
 
-std::string pressure_text(const OperatingPoint& point) {
+std::vector<std::pair<std::string, std::string>> pressure_csv(
+    const OperatingPoint& point, const hydraulics::PowerBudget& power) {
+  return {{"pressure.csv", bentaxis::to_csv(point.state().table)},
+          {"power.csv", power_csv(point.state(), power)},
+          {"orders.csv", orders_csv(point.the_case(), point.state())}};
+}
+
+void add_suction_speed(report::Document& document, const OperatingPoint& point,
+                       const SuctionSpeed& found) {
+  document.timing->push_back(suction_speed_row(point.the_case(), found));
+  document.warnings = timing_warnings(*document.timing);
+}
+
+std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power,
+                          const report::Document& document) {
   std::string text = point.the_case().name + "\n\n";
   const auto add = [&](const std::string& name, double value, const std::string& unit) {
     text += fmt::format("{:<42} {:>12.6g} {}\n", name, value, unit);
   };
   for (const auto& line : hydraulics::lines(point.state())) add(line.name, line.value, line.unit);
+  for (const hydraulics::Place place : point.state().places)
+    add(fmt::format("power, {}", hydraulics::name_of(place)), power[place], "W");
+  add("power left over, of the pistons' power",
+      hydraulics::left_over(power) / power[hydraulics::Place::pistons], "");
   add("mean drive torque, analytic", mean(point.analytic, "Td_z1_Nm"), "Nm");
   add("mean drive torque, multibody", mean(point.multibody, "Td_z1_Nm"), "Nm");
-  for (const report::Warning& warning : hydraulic_warnings(point.state()))
+  text += "\n" + timing_text(*document.timing) + "\n";
+  for (const report::Warning& warning : *document.warnings)
     text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
   return text;
 }

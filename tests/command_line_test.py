@@ -1005,7 +1005,7 @@ class PressureTest(ProgramTest):
     def test_files_and_numbers(self):
         result = self.run_program("pressure", self.hydraulic(), "--out", "out", "--transient", 2)
         self.assertEqual({p.name for p in self.folder.glob("out/*")},
-                         {"pressure.html", "pressure.json", "pressure.csv", "transient.csv"})
+                         {"pressure.html", "pressure.json", "pressure.csv", "power.csv", "orders.csv", "transient.csv"})
         self.assertEqual(len(self.column("out/pressure.csv", "p_1_bar")), 720)
         delivery = [float(v) for v in self.column("out/pressure.csv", "p_delivery_bar")]
         self.assertAlmostEqual(sum(delivery) / len(delivery), 275, delta=0.01)
@@ -1014,6 +1014,20 @@ class PressureTest(ProgramTest):
         facts = {row[0]: row[1] for row in report["runs"][0]["table"]["rows"]}
         self.assertAlmostEqual(facts["mean delivery pressure"], 275, delta=1e-4)
         self.assertIn("volumetric efficiency", result.out)
+        power = dict(zip(self.column("out/power.csv", "place"), map(float, self.column("out/power.csv", "power_W"))))
+        what = dict(zip(self.column("out/power.csv", "place"), self.column("out/power.csv", "what")))
+        left = sum(watts if what[place] == "source" else -watts for place, watts in power.items())
+        self.assertLess(abs(left), 1e-9 * power["pistons"])
+        rows = {row[0]: row[2] for row in report["runs"][1]["table"]["rows"]}
+        self.assertEqual(rows["into the load"], power["load"])
+        self.assertEqual(rows["all losses"], sum(watts for place, watts in power.items() if what[place] == "loss"))
+        orders = [int(order) for order in self.column("out/orders.csv", "order")]
+        self.assertEqual(orders, list(range(1, 101)))
+        flow = [float(v) for v in self.column("out/orders.csv", "Qload_l_per_min")]
+        self.assertEqual({order % 5 for order, v in zip(orders, flow) if v != 0}, {0})
+        ids = {figure["id"] for figure in report["figures"]}
+        self.assertLessEqual({"pv", "dp_dtheta", "bulk_modulus", "bulk_modulus_law", "opening_parts", "backflow", "power",
+                              "losses", "orders_flow", "orders_pressure", "orders_rate"}, ids)
         # 72 samples a turn are few, but the means of both models are those of the same samples
         self.assertRegex(result.out, r"mean drive torque, multibody +29\d")
 

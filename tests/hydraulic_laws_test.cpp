@@ -193,6 +193,44 @@ TEST(Cavitation, BulkModulusGrowsWithPressure) {
               scaled(1e-8));
 }
 
+// By Simpson's rule over the law itself, at every pressure.
+TEST(Oil, PotentialIsTheIntegralOfPressureOverDensity) {
+  std::vector<HydraulicData> laws = {*rated().hydraulics};
+  for (const double slope : {1e-3, 1.0, 10.0}) {
+    laws.push_back(laws[0]);
+    laws.back().bulk_modulus_slope = slope;
+  }
+  laws.push_back(laws[0]);
+  laws.back().air_exponent = 1;
+  for (const double vapour : {0.0, 100.0, 5000.0})
+    for (const double saturation : {0.0, pascals(3)}) laws.push_back(oil(0.09, saturation, vapour));
+  laws.push_back(oil(0, 0, 100, 10));
+  laws.back().air_exponent = 1;
+  for (std::size_t law = 0; law < laws.size(); ++law) {
+    const Fluid fluid(laws[law]);
+    EXPECT_EQ(fluid.potential(0), 0) << law;
+    const auto slope = [&](double s) {
+      const auto at = fluid.state(s);
+      return at.pressure / at.density;
+    };
+    const bool boils =
+        laws[law].cavitation == Cavitation::equilibrium && laws[law].vapour_pressure > 0;
+    const double lowest = boils ? std::log(laws[law].vapour_pressure / kAtmosphere) - 0.004 : -12;
+    const double scale = 100e5 / 850, h = 1e-4;
+    for (const double way : {-h, h}) {
+      double sum = 0, worst = 0, before = slope(0);
+      for (double s = 0; s > lowest && s < 7; s += way) {
+        const double after = slope(s + way);
+        sum += way / 6 * (before + 4 * slope(s + way / 2) + after);
+        before = after;
+        worst = std::max(worst, std::abs(fluid.potential(s + way) - sum));
+      }
+      EXPECT_LT(worst, scaled(1e-10) * scale) << law << " " << way;
+      EXPECT_GT(std::abs(sum), 0.1 * kAtmosphere / 850) << law;
+    }
+  }
+}
+
 // Torn oil: without the law the chambers are far below vapour pressure and say nothing of it.
 TEST(Cavitation, StarvedPumpStaysAboveVapourPressure) {
   Case the_case = rated();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/files/case_file.h"
@@ -20,6 +19,9 @@
 namespace bentaxis::hydraulics {
 namespace {
 
+namespace fs = std::filesystem;
+using test::column;
+using test::mean;
 using test::scaled;
 
 // Round-off of formulas of ten or so operations.
@@ -72,17 +74,6 @@ double amplitude(const std::vector<double>& values, int order) {
     s += values[i] * std::sin(angle);
   }
   return 2 * std::hypot(c, s) / n;
-}
-
-std::vector<double> column(const ResultTable& table, const std::string& name) {
-  std::vector<double> values;
-  for (std::size_t row = 0; row < table.rows(); ++row)
-    values.push_back(table.at(row, table.find(name)));
-  return values;
-}
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 // Largest difference of two curves in ln of absolute pressure.
@@ -317,6 +308,98 @@ TEST(Limit, MeanTorqueIsTheWorkOfPressureOverATurn) {
       mean(column(multibody::run_driven(the_case, the_case.multibody, coarse), "Td_z1_Nm")) /
           mean(column(analytic::run(the_case, the_case.analytic, coarse), "Td_z1_Nm")),
       1, scaled(1e-10));
+}
+
+// ---- Results
+// -----------------------------------------------------------------------------------------
+
+TEST(Orders, OfTheKinematicFlow) {
+  Case the_case = incompressible(5);
+  the_case.hydraulics->load = LoadData{};
+  the_case.hydraulics->load->kind = LoadKind::constant_pressure;
+  const SteadyState state = steady_state(the_case);
+  ASSERT_EQ(state.orders.size(), kOrders);
+  for (int m = 1; m <= kOrders; ++m) {
+    const Order& order = state.orders[m - 1];
+    ASSERT_EQ(order.order, 5 * m);
+    // An odd number of pistons: even multiples of N only, 2/(k^2 - 1).
+    const double expected = m % 2 == 1 ? 0 : 2.0 / (25 * m * m - 1);
+    EXPECT_NEAR(order.flow / state.summary.mass_flow, expected, scaled(1e-5)) << m;
+    EXPECT_EQ(order.delivery, 0);
+  }
+}
+
+TEST(Orders, AreTheHarmonicsOfTheTable) {
+  for (const char* line : {"", "delivery_line.length_m=1"}) {
+    std::vector<std::string> changes = {"operation.samples_per_revolution=7200"};
+    if (*line != 0) changes = {changes[0], line, "delivery_line.diameter_mm=20"};
+    const SteadyState state = steady_state(
+        read_case(fs::path(BENTAXIS_SOURCE_DIR) / "cases/bap63_rated_hydraulic.toml", changes));
+    const auto flow = column(state.table, "mload_g_per_s");
+    const auto pressure = column(state.table, "p_delivery_bar");
+    for (const Order& order : state.orders) {
+      // 1440 points of a period: what they mistake for a low harmonic is far up.
+      EXPECT_NEAR(order.flow * 1e3, amplitude(flow, order.order), scaled(1e-6) * mean(flow));
+      EXPECT_NEAR(order.delivery / 1e5, amplitude(pressure, order.order), scaled(1e-6) * 275);
+      const double load =
+          amplitude(*line != 0 ? column(state.table, "p_load_bar") : pressure, order.order);
+      EXPECT_NEAR(order.load_pressure / 1e5, load, scaled(1e-6) * 275);
+    }
+    EXPECT_LT(amplitude(flow, 1) / mean(flow), 1e-6);
+    EXPECT_GT(state.orders[0].flow * 1e3, 1e-3 * mean(flow));
+  }
+}
+
+TEST(Orders, OfTheRateOfPressureAreThoseOfTheCurve) {
+  const SteadyState state = steady_state(rated());
+  std::vector<double> pressure;
+  for (int i = 0; i < 36000; ++i) pressure.push_back(state.computed->gauge(i / 100.0));
+  const auto rate = orders_of_rate(*state.computed, 100);
+  ASSERT_EQ(rate.size(), 100);
+  for (int order = 1; order <= 100; ++order)
+    EXPECT_NEAR(rate[order - 1] / (order * amplitude(pressure, order)), 1, scaled(1e-3)) << order;
+  // Nearly a rectangle: 2 p/pi of order 1.
+  EXPECT_NEAR(rate[0] / (2 * 275e5 / kPi), 1, 0.05);
+}
+
+TEST(Table, ColumnsThatFollowFromOthers) {
+  Case the_case =
+      read_case(fs::path(BENTAXIS_SOURCE_DIR) / "cases/bap63_rated_hydraulic.toml",
+                {"hydraulics.delivery_hole_deg=176", "hydraulics.delivery_hole_diameter_mm=1.5"});
+  const SteadyState state = steady_state(the_case);
+  const auto get = [&](const std::string& name) { return column(state.table, name); };
+  const auto p = get("p_1_bar"), modulus = get("K_1_MPa"), rate = get("dp_1_bar_per_deg"),
+             out = get("Qd_1_l_per_min"), back = get("Qdb_1_l_per_min"), in = get("Qs_1_l_per_min"),
+             back_in = get("Qsb_1_l_per_min");
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double theta = state.table.theta_deg[i];
+    EXPECT_NEAR(modulus[i] * 1e6 / effective_bulk_modulus(state, p[i] * 1e5), 1, scaled(1e-6));
+    const double h = 1e-4;
+    const double slope =
+        (state.computed->gauge(theta + h) - state.computed->gauge(theta - h)) / (2 * h) / 1e5;
+    // Half a degree behind an edge it changes by thousands of bar per degree.
+    EXPECT_NEAR(rate[i], slope, scaled(1e-2) * (1 + std::abs(slope))) << theta;
+    EXPECT_EQ(back[i], std::max(0.0, -out[i]));
+    EXPECT_EQ(back_in[i], std::max(0.0, -in[i]));
+  }
+  EXPECT_NEAR(mean(get("Qdb_l_per_min")), 5 * mean(back), scaled(1e-3) * 5 * mean(back));
+  EXPECT_NEAR(mean(get("Qsb_l_per_min")), 5 * mean(back_in), scaled(1e-3) * 5 * mean(back_in));
+  EXPECT_GT(mean(back), 0.1);
+  for (const std::string port : {"as", "ad"}) {
+    std::vector<double> sum(p.size());
+    int parts = 0;
+    for (const Channel& channel : state.table.channels) {
+      if (channel.name.rfind(port + "_1_", 0) != 0 || channel.name == port + "_1_mm2") continue;
+      ++parts;
+      const auto part = get(channel.name);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+      EXPECT_GT(mean(part), 0) << channel.name;
+    }
+    EXPECT_EQ(parts, port == "ad" ? 3 : 2);
+    const auto whole = get(port + "_1_mm2");
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      EXPECT_NEAR(sum[i], whole[i], scaled(1e-12) * 100) << port;
+  }
 }
 
 // Counted on the curve itself, a hundredth of a degree at a time.

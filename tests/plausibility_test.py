@@ -145,6 +145,43 @@ class SaidTest(unittest.TestCase):
                 self.assertEqual(len(done.stderr.splitlines()), 4)  # pump, two errors, the end
                 self.assertEqual(list(self.folder.iterdir()), [])
 
+    def test_strict_ends_at_timing_beyond_its_limits(self):
+        """Of the computed pressure: after it is there, before anything is written."""
+        case = REPO / "cases" / "bap63_rated_hydraulic.toml"
+        codes = {"below-saturation", "ports-connected", "short-circuit", "backflow"}
+        for command in (["pressure", case], ["compare", case], ["run", case, "--model", "analytic"]):
+            with self.subTest(command=command[0]):
+                done = run(*command, cwd=self.folder)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                said = set(re.findall(r"warning: ([a-z-]+):", done.stderr if command[0] == "run" else done.stdout))
+                self.assertLessEqual(codes, said)
+                done = run(*command, "--strict", "--out", "strict", cwd=self.folder)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stdout, "")
+                self.assertEqual({code for code, _ in ERROR.findall(done.stderr)}, codes)
+                self.assertFalse((self.folder / "strict").exists())
+                meant = "; ".join(f"{code}: so it is" for code in codes)
+                done = run(*command, "--strict", "--set", "plausibility.meant=" + meant, cwd=self.folder)
+                self.assertEqual(done.returncode, 0, done.stderr)
+        rows = {row["code"]: row for row in json.loads((self.folder / "out" / "pressure.json").read_text())["timing"]}
+        self.assertEqual({code for code, row in rows.items() if row["meant"]}, codes)
+
+    def test_suction_speed_is_asked_for(self):
+        case = REPO / "cases" / "bap63_rated_hydraulic.toml"
+        done = run("pressure", case, "--suction-speed", "-0.5", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row = json.loads((self.folder / "out" / "pressure.json").read_text())["timing"][-1]
+        self.assertEqual((row["code"], row["limit"], row["flagged"]), ("suction-speed", 1500, True))
+        # As asked for: the least pressure at the speed found, and a little beyond it.
+        for factor, above in ((0.998, True), (1.002, False)):
+            run("pressure", case, "--set", f"operation.speed_rpm={row['value'] * factor}", "--out", "at", cwd=self.folder)
+            table = json.loads((self.folder / "at" / "pressure.json").read_text())["runs"][0]["table"]["rows"]
+            least = next(value for name, value, _ in table if name == "chamber pressure, least")
+            self.assertEqual(least >= -0.5, above, least)
+        done = run("pressure", case, "--suction-speed", "deep", cwd=self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("saturation, vapour or a gauge pressure in bar", done.stderr)
+
     def test_strict_lets_pass_what_is_not_doubtful(self):
         self.assertEqual(run("show", self.rated, "--strict").returncode, 0)
 

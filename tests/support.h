@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -33,6 +34,18 @@ inline std::vector<std::string> reference_cases() {
 
 inline Case reference_case(const std::string& name) {
   return read_case(reference_folder() / name / "case.toml");
+}
+
+/// One channel's values.
+inline std::vector<double> column(const ResultTable& table, const std::string& name) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    values.push_back(table.at(row, table.find(name)));
+  return values;
+}
+
+inline double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// Scales every tolerance: BENTAXIS_TOLERANCE_SCALE=0 makes all comparisons fail and so print their

@@ -52,7 +52,7 @@ function prepare(report, curves) {
 
 const SECTIONS = [
   ["verdict", "Verdict", verdictBanner], ["pump", "Pump", pumpHead], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
-  ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity],
+  ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity], ["timing", "Timing of the ports", timing],
   ["comparison", "Comparison", comparison], ["budget", "Torque, power and efficiency", budget], ["assumptions", "Assumptions", assumptionSplit],
   ["runs", "Runs", runs], ["published", "Against the published numbers", published],
   ["checks", "Checks of each model", checks],

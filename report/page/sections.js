@@ -69,6 +69,16 @@ const validity = ({ validity }) => !list(validity).length ? null : table([
   { head: "Consequence", cell: r => r.consequence || DASH },
 ], validity, { rowClass: r => (r.violated ? "flag" : "") });
 
+const timing = ({ timing }) => !list(timing).length ? null : table([
+  { head: "Quantity", main: true, cell: r => r.quantity },
+  { head: "State", cell: r => r.limit == null ? DASH : r.meant ? "meant: " + r.meant : chip(r.flagged ? "beyond" : "holds") },
+  { head: "Value", num: true, cell: r => unit(number(r.value), r.unit) },
+  { head: "Limit", num: true, cell: r => r.limit == null ? DASH : number(r.limit) },
+  { head: "Chamber angles", cell: r => list(r.angles).map(([a, b]) => `${number(a)} to ${number(b)}°`).join(", ")
+      || (r.theta_deg == null ? DASH : degrees(r.theta_deg)) },
+  { head: "Details", cell: r => r.text || DASH },
+], timing, { rowClass: r => (r.flagged && !r.meant ? "flag" : "") });
+
 // What the drive torque and power go into. Values are one per model; round-off of the largest is shown as 0.
 function budget({ budget }) {
   if (!budget) return null;

@@ -7,10 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/hydraulics/power.h"
+#include "bentaxis/hydraulics/timing.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::hydraulics {
+
+class Network;
 
 /// What an engineer reads off a turn. SI, pressures gauge.
 struct Summary {
@@ -47,6 +51,15 @@ struct Summary {
   double atmosphere = 0;  ///< Pa absolute
 };
 
+/// A harmonic of the shaft's angle, as amplitudes. In the periodic state the outlet has multiples
+/// of N only.
+struct Order {
+  int order = 0;             ///< per turn of the shaft
+  double flow = 0;           ///< kg/s, to the load
+  double delivery = 0;       ///< Pa, in the delivery volume
+  double load_pressure = 0;  ///< Pa, in front of the load: the same without a delivery line
+};
+
 /// How the periodic state was found.
 struct Convergence {
   int iterations = 0;    ///< Newton steps
@@ -64,12 +77,25 @@ struct SteadyState {
   PressureCurve delivery;  ///< of the delivery volume, at the same angles
   ResultTable table;       ///< pressures, flows, volume and openings at the same angles
   Summary summary;
+  std::vector<Place> places;  ///< that the circuit has
+  /// J per turn of a chamber: area of its p-V diagram, the integral of -p dV, of the curve.
+  double indicated_work = 0;
+  std::vector<Order> orders;  ///< kOrders multiples of N
+  Timing timing;              ///< of the ports
   Convergence convergence;
   /// Pa, of a spline through the `points` of the case from the computed curve; 0 without.
   double spline_error = 0;
   /// At theta = 0: ln(P/P0) of chambers 1..N and of the delivery volume, then what the lines have.
   std::vector<double> states;
+  /// What power_by_place starts from: the equations, and the states and the load's size after one
+  /// correction more, with which stored energy returns more closely.
+  std::shared_ptr<const Network> equations;
+  std::vector<double> corrected_states;
+  double corrected_load_size = 0;
 };
+
+/// Multiples of N.
+constexpr int kOrders = 20;
 
 /// Where the search starts; the answer must not depend on it.
 struct Start {
@@ -98,6 +124,17 @@ ResultTable transient_from_rest(const Case& the_case, double load_size, int revo
 /// Puts the computed curve into the case's pressure, where both mechanical models find it; where
 /// the load sets the delivery pressure its mean too, which loads the lands of the port plate.
 void give_to(Case& the_case, const SteadyState& state);
+
+/// Mean power by place, W, with one period more of integration. Sources and the rest are equal to
+/// about 1e-10 of the pistons' power at the default tolerance.
+/// @throws ComputationError
+PowerBudget power_by_place(const SteadyState& state, const Progress& progress = {});
+
+/// Amplitudes of orders 1..count of dp/dtheta over the turn of a chamber, Pa per rad.
+std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count);
+
+/// Effective bulk modulus of the oil, Pa, at a gauge pressure, Pa.
+double effective_bulk_modulus(const SteadyState& state, double gauge);
 
 /// The summary as lines: name, value, unit.
 struct Line {

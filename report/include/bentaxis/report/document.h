@@ -231,6 +231,19 @@ struct ValidityRow {
   double violated_share = 0, worst = 0, theta_deg = 0;
 };
 
+/// What the timing of the ports does, against its limit.
+struct TimingRow {
+  std::string code, quantity;
+  double value = 0;
+  std::string unit;
+  std::optional<double> limit = std::nullopt;
+  bool flagged = false;                                ///< beyond the limit
+  std::optional<double> theta_deg = std::nullopt;      ///< chamber angle of the value
+  std::vector<std::pair<double, double>> angles = {};  ///< stretches of chamber angles it is about
+  std::string meant = {};  ///< why it is beyond, where the case says so, or ""
+  std::string text = {};
+};
+
 /// How a table was obtained.
 struct ModelSection {
   std::string name;
@@ -333,6 +346,7 @@ struct Document {
   std::optional<std::vector<Warning>> warnings = std::nullopt;
   std::optional<std::vector<CommonInput>> common = std::nullopt;
   std::optional<std::vector<ValidityRow>> validity = std::nullopt;
+  std::optional<std::vector<TimingRow>> timing = std::nullopt;
   std::optional<std::vector<ModelSection>> models = std::nullopt;
   std::optional<compare::Comparison> comparison = std::nullopt;  ///< "channels"
   std::optional<std::vector<compare::Check>> checks = std::nullopt;

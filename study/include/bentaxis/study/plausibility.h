@@ -38,6 +38,11 @@ struct Plausibility {
 /// @throws InputError where `[plausibility] meant` names no check or gives no reason
 Plausibility plausibility(const Case& the_case);
 
+/// The reason that `[plausibility] meant` gives for a check or for a verdict on the timing of the
+/// ports (study/timing.h), or "".
+/// @throws InputError as above
+std::string stated_reason(const Case& the_case, const std::string& code);
+
 /// All checks as a Markdown table: name, and what is held to be doubtful.
 std::string plausibility_markdown();
 /// Names of all checks.

@@ -2,18 +2,22 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bentaxis/report/document.h"
 #include "bentaxis/study/operating_points.h"
+#include "bentaxis/study/timing.h"
 
 namespace bentaxis::study {
 
-/// What an engineer must be told of an operating point: cavitation, ports that are connected.
-std::vector<report::Warning> hydraulic_warnings(const hydraulics::SteadyState& state);
-
-/// One operating point: its hydraulic state, pressures, flows, torque.
+/// One operating point: its hydraulic state, pressures, flows, torque, timing, power by place,
+/// orders.
+/// @param power    hydraulics::power_by_place of its state
 /// @param program  what computed it: names and versions
-report::Document pressure_document(const OperatingPoint& point, const report::Lines& program);
+report::Document pressure_document(const OperatingPoint& point,
+                                   const hydraulics::PowerBudget& power,
+                                   const report::Lines& program);
 
 /// Adds torque and flow against delivery pressure (Fig. 18).
 void add_curve(report::Document& document, const TorqueCurve& curve);
@@ -31,7 +35,17 @@ std::string text_of(const compare::PublishedSection& section);
 /// Adds pressures from rest (hydraulics::transient_from_rest).
 void add_transient(report::Document& document, const ResultTable& transient);
 
+/// The files that go with it, name and content: pressure.csv, power.csv, orders.csv.
+std::vector<std::pair<std::string, std::string>> pressure_csv(const OperatingPoint& point,
+                                                              const hydraulics::PowerBudget& power);
+
+/// Adds the speed up to which suction follows to the verdicts on timing.
+void add_suction_speed(report::Document& document, const OperatingPoint& point,
+                       const SuctionSpeed& found);
+
 /// The operating point in words, for a terminal.
-std::string pressure_text(const OperatingPoint& point);
+/// @param document  of it
+std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power,
+                          const report::Document& document);
 
 }  // namespace bentaxis::study

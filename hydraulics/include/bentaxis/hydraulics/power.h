@@ -1,0 +1,55 @@
+// Where hydraulic power comes from and where it goes.
+#pragma once
+
+#include <array>
+
+namespace bentaxis::hydraulics {
+
+/// Places of the circuit. Oil that flows from one pressure to another loses the mass flow times the
+/// difference of the oil's pressure potential, the integral of dP/density; what it carries over a
+/// border is the mass flow times the potential there, 0 at atmospheric pressure. docs/hydraulics.md
+/// has the equations.
+enum class Place {
+  pistons,            ///< what the pistons do on the oil, gauge pressure
+  tank,               ///< what the oil taken in carries: none at a suction pressure of 0
+  load,               ///< what goes into the load
+  drain,              ///< what leakage carries into the case: none at a case pressure of 0
+  suction_line,       ///< loss of the pipe to the suction port
+  suction_port,       ///< loss of what flows from the suction port into the chambers
+  suction_backflow,   ///< loss of what flows back
+  delivery_port,      ///< loss of what flows from the chambers into the delivery port
+  delivery_backflow,  ///< loss of what flows back
+  conductance,        ///< loss of leakage through the constant conductance
+  piston_gap,         ///< loss of leakage between piston and bore
+  plate_gap,          ///< loss of leakage between block and port plate
+  ring_slot,          ///< loss of leakage through the joint of the piston ring
+  delivery_line,      ///< loss by friction in the delivery line
+  damped_waves,       ///< what the delivery line's model takes out of waves above its bandwidth
+  line_density,       ///< no loss: oil in the lines has one density there, another at their ends
+};
+constexpr int kPlaces = 16;
+
+/// By place, W or J.
+class PowerBudget {
+ public:
+  double& operator[](Place place) { return values_[static_cast<int>(place)]; }
+  double operator[](Place place) const { return values_[static_cast<int>(place)]; }
+
+ private:
+  std::array<double, kPlaces> values_ = {};
+};
+
+/// What a place does with power.
+enum class PowerUse { source, delivered, loss, approximation };
+PowerUse use_of(Place place);
+const char* name_of(PowerUse use);
+/// For readers: "delivery port, backflow"; and as a part of a column's name: "delivery_backflow".
+const char* name_of(Place place);
+const char* key_of(Place place);
+
+/// Sources less everything else: 0 but for what is stored, over a period that repeats itself 0.
+double left_over(const PowerBudget& budget);
+/// Sum of all losses.
+double losses(const PowerBudget& budget);
+
+}  // namespace bentaxis::hydraulics

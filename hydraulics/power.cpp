@@ -1,0 +1,67 @@
+#include "bentaxis/hydraulics/power.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+struct Description {
+  PowerUse use;
+  const char *key, *name;
+};
+
+// In the order of Place.
+constexpr Description kDescriptions[kPlaces] = {
+    {PowerUse::source, "pistons", "pistons on the oil"},
+    {PowerUse::source, "tank", "oil taken in, at suction pressure"},
+    {PowerUse::delivered, "load", "into the load"},
+    {PowerUse::delivered, "drain", "leakage, at case pressure"},
+    {PowerUse::loss, "suction_line", "suction line"},
+    {PowerUse::loss, "suction_port", "suction port, into the chambers"},
+    {PowerUse::loss, "suction_backflow", "suction port, backflow out of the chambers"},
+    {PowerUse::loss, "delivery_port", "delivery port, out of the chambers"},
+    {PowerUse::loss, "delivery_backflow", "delivery port, backflow into the chambers"},
+    {PowerUse::loss, "conductance", "leakage, constant conductance"},
+    {PowerUse::loss, "piston_gap", "leakage, piston gap"},
+    {PowerUse::loss, "plate_gap", "leakage, port plate gap"},
+    {PowerUse::loss, "ring_slot", "leakage, joint of the piston ring"},
+    {PowerUse::loss, "delivery_line", "delivery line, friction"},
+    {PowerUse::loss, "damped_waves", "delivery line, waves above its bandwidth"},
+    {PowerUse::approximation, "line_density", "lines: one density in them, another at their ends"},
+};
+
+const Description& of(Place place) { return kDescriptions[static_cast<int>(place)]; }
+
+double sum_of(const PowerBudget& budget, PowerUse use) {
+  double sum = 0;
+  for (int i = 0; i < kPlaces; ++i)
+    if (kDescriptions[i].use == use) sum += budget[static_cast<Place>(i)];
+  return sum;
+}
+
+}  // namespace
+
+PowerUse use_of(Place place) { return of(place).use; }
+const char* key_of(Place place) { return of(place).key; }
+const char* name_of(Place place) { return of(place).name; }
+
+const char* name_of(PowerUse use) {
+  switch (use) {
+    case PowerUse::source:
+      return "source";
+    case PowerUse::delivered:
+      return "delivered";
+    case PowerUse::loss:
+      return "loss";
+    case PowerUse::approximation:
+      break;
+  }
+  return "approximation";
+}
+
+double left_over(const PowerBudget& budget) {
+  return sum_of(budget, PowerUse::source) - sum_of(budget, PowerUse::delivered) - losses(budget) -
+         sum_of(budget, PowerUse::approximation);
+}
+
+double losses(const PowerBudget& budget) { return sum_of(budget, PowerUse::loss); }
+
+}  // namespace bentaxis::hydraulics

@@ -1,0 +1,162 @@
+#include "bentaxis/hydraulics/timing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/units.h"
+#include "timing_record.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+// Boole's rule, exact for polynomials of degree 5, on every step of the integration.
+constexpr double kWeights[] = {7.0 / 90, 32.0 / 90, 12.0 / 90, 32.0 / 90, 7.0 / 90};
+constexpr std::size_t kNodes = 5;
+// Gaps of a stretch shorter than this are none, degrees.
+constexpr double kNoGap = 1e-6;
+// The largest area of a stretch is looked for at as many angles.
+constexpr int kAreaAngles = 1000;
+
+bool inside(const Stretch& where, double theta_deg) {
+  return theta_deg >= where.from_deg - kNoGap && theta_deg <= where.to_deg + kNoGap;
+}
+// An angle of the turn, or the same a turn later, where that is in the stretch.
+bool met(const Stretch& where, double theta_deg) {
+  return inside(where, theta_deg) || inside(where, theta_deg + 360);
+}
+
+Timing::Connection connection(const Network& network, const Bridge& bridge) {
+  Timing::Connection c{{bridge.from_deg, bridge.to_deg}};
+  for (int i = 0; i <= kAreaAngles; ++i) {
+    const double theta =
+        bridge.from_deg + (bridge.to_deg - bridge.from_deg) * i / double(kAreaAngles);
+    const double s = network.suction().area(theta), d = network.delivery().area(theta);
+    const double area = s > 0 && d > 0 ? s * d / std::hypot(s, d) : 0;
+    if (area > c.largest_area) c.largest_area = area, c.largest_area_deg = wrap_degrees(theta);
+  }
+  return c;
+}
+
+Timing::Trapped trapped(const Network& network, const Bridge& bridge) {
+  Timing::Trapped t{{bridge.from_deg, bridge.to_deg}};
+  double least = 0, greatest = 0;
+  for (int i = 0; i <= kAreaAngles; ++i) {
+    const double theta =
+        bridge.from_deg + (bridge.to_deg - bridge.from_deg) * i / double(kAreaAngles);
+    const double volume = network.chamber().volume(radians(theta)).value;
+    least = i == 0 ? volume : std::min(least, volume);
+    greatest = std::max(greatest, volume);
+  }
+  t.swept = greatest - least;
+  return t;
+}
+
+}  // namespace
+
+std::vector<Stretch> stretches_below(const std::vector<double>& theta_deg,
+                                     const std::vector<double>& values, double limit) {
+  std::vector<Stretch> all;
+  for (std::size_t i = 1; i < theta_deg.size(); ++i) {
+    double from = theta_deg[i - 1], to = theta_deg[i];
+    const double a = values[i - 1] - limit, b = values[i] - limit;
+    if (a >= 0 && b >= 0) continue;
+    const double crossing = from + (to - from) * a / (a - b);  // used where signs differ only
+    if (a >= 0) from = crossing;
+    if (b >= 0) to = crossing;
+    if (!(to > from)) continue;
+    if (!all.empty() && from - all.back().to_deg < kNoGap)
+      all.back().to_deg = to;
+    else
+      all.push_back({from, to});
+  }
+  if (all.empty()) return all;
+  const double start = theta_deg.front(), end = theta_deg.back();
+  const bool over_zero = all.front().from_deg - start < kNoGap && end - all.back().to_deg < kNoGap;
+  if (over_zero && all.size() > 1) {
+    all.back().to_deg = all.front().to_deg + 360;
+    all.erase(all.begin());
+  }
+  return all;
+}
+
+void TimingRecord::see(const Integrator::Step& step) {
+  for (std::size_t i = 0; i < kNodes; ++i) {
+    const double x = step.from + (step.to - step.from) * static_cast<double>(i) / (kNodes - 1);
+    const double* y = step.state(x);
+    network_.flows(x, y, load_size_, flows_);
+    x_.push_back(x);
+    for (int k = 0; k < network_.pistons(); ++k)
+      nodes_.push_back({0, y[k], flows_.delivery[k], flows_.suction[k]});
+  }
+}
+
+std::vector<TimingRecord::Node> TimingRecord::turn() const {
+  const int n = network_.pistons();
+  std::vector<Node> turn;
+  turn.reserve(nodes_.size());
+  for (int segment = 0; segment < n; ++segment)
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      turn.push_back(nodes_[i * n + (n - segment) % n]);
+      turn.back().theta_deg = network_.period_deg() * segment + x_[i];
+    }
+  return turn;
+}
+
+Timing TimingRecord::timing(double delivery_mean) const {
+  Timing result;
+  const Fluid& fluid = network_.fluid();
+  const double density = fluid.state(network_.suction_log_pressure()).density;
+  const std::vector<Node> turn = this->turn();
+  std::vector<double> theta, s, delivered;
+  for (const Node& node : turn) {
+    theta.push_back(node.theta_deg);
+    s.push_back(node.s);
+    delivered.push_back(node.to_delivery);
+  }
+  result.below_saturation = stretches_below(theta, s, fluid.log_pressure(fluid.saturation()));
+  result.below_vapour = stretches_below(theta, s, fluid.log_pressure(fluid.vapour()));
+  result.backflow_where = stretches_below(theta, delivered, 0);
+
+  for (const Bridge& bridge : bridges(network_.suction(), network_.delivery()))
+    if (bridge.both_open)
+      result.connected.push_back(connection(network_, bridge));
+    else
+      result.trapped.push_back(trapped(network_, bridge));
+
+  for (std::size_t i = 0; i + kNodes <= turn.size(); i += kNodes) {
+    const double seconds =
+        (turn[i + kNodes - 1].theta_deg - turn[i].theta_deg) * network_.seconds_per_degree();
+    double back = 0, through = 0;
+    for (std::size_t j = 0; j < kNodes; ++j) {
+      const Node& node = turn[i + j];
+      const double into = std::max(0.0, -node.to_delivery);
+      back += kWeights[j] * into;
+      through += kWeights[j] * std::min(into, std::max(0.0, -node.from_suction));
+      if (into / density > result.largest_backflow) {
+        result.largest_backflow = into / density;
+        result.largest_backflow_deg = wrap_degrees(node.theta_deg);
+      }
+    }
+    result.backflow += back * seconds / density;
+    const double middle = (turn[i].theta_deg + turn[i + kNodes - 1].theta_deg) / 2;
+    for (Timing::Connection& c : result.connected)
+      if (met(c.where, middle)) c.through += through * seconds / density;
+  }
+  for (Timing::Trapped& t : result.trapped) {
+    bool first = true;
+    for (const Node& node : turn) {
+      if (!met(t.where, node.theta_deg)) continue;
+      const double p = fluid.gauge(node.s);
+      if (first || p > t.greatest) t.greatest = p, t.greatest_deg = wrap_degrees(node.theta_deg);
+      if (first || p < t.least) t.least = p, t.least_deg = wrap_degrees(node.theta_deg);
+      first = false;
+    }
+  }
+  double largest = 0;
+  for (int i = 0; i < kAreaAngles; ++i)
+    largest = std::max(largest, network_.chamber().volume(radians(360.0 * i / kAreaAngles)).value);
+  result.filling = largest * (fluid.density(delivery_mean) / density - 1);
+  return result;
+}
+
+}  // namespace bentaxis::hydraulics

@@ -1,0 +1,246 @@
+#include "hydraulic_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "hydraulic_sections.h"
+
+namespace bentaxis::study {
+namespace {
+
+using hydraulics::Place;
+using hydraulics::PowerBudget;
+using hydraulics::PowerUse;
+using hydraulics::SteadyState;
+
+constexpr double kMegapascal = 1e6;
+// Of the law's figure, bar absolute, and how far beyond the chamber's greatest pressure it goes.
+constexpr double kLowestPressure = 0.01, kBeyondGreatest = 1.5;
+constexpr int kLawPoints = 300;
+
+double turns_per_second(const Case& the_case) { return the_case.operation.speed_rpm / 60; }
+
+double per_degree(double per_radian) { return per_radian * kRadPerDegree / kPascalPerBar; }
+
+// Of the pistons' power.
+double share(const PowerBudget& power, double watts) { return watts / power[Place::pistons]; }
+
+// A closed curve of two columns.
+report::XySeries loop(const ResultTable& table, const std::string& label, const std::string& x,
+                      const std::string& y) {
+  report::XySeries series{label, report::values_of(table, x), report::values_of(table, y)};
+  series.x.push_back(series.x.front());
+  series.y.push_back(series.y.front());
+  return series;
+}
+
+report::Figure law_figure(const Case& the_case, const SteadyState& state) {
+  const auto& data = *the_case.hydraulics;
+  const double lowest = std::max(kLowestPressure * kPascalPerBar, 1.1 * data.vapour_pressure);
+  const double highest =
+      kBeyondGreatest * std::max(state.summary.chamber_greatest, 0.0) + 10 * data.atmosphere;
+  report::XySeries law{"effective bulk modulus", {}, {}};
+  for (int i = 0; i < kLawPoints; ++i) {
+    const double pressure = lowest * std::pow(highest / lowest, i / (kLawPoints - 1.0));
+    law.x.push_back(pressure / kPascalPerBar);
+    law.y.push_back(hydraulics::effective_bulk_modulus(state, pressure - data.atmosphere) /
+                    kMegapascal);
+  }
+  return {"bulk_modulus_law", "Effective bulk modulus of the oil over pressure", "",
+          report::XyFigure{{"absolute pressure", "bar", true},
+                           {"effective bulk modulus", "MPa", true},
+                           {std::move(law)}},
+          "Density x dP/d density of oil with its air, as docs/hydraulics.md has it."};
+}
+
+std::vector<report::ScatterPoint> points(const std::vector<hydraulics::Order>& orders,
+                                         double hydraulics::Order::*value, double unit,
+                                         double hertz) {
+  std::vector<report::ScatterPoint> all;
+  for (const auto& order : orders)
+    all.push_back({static_cast<double>(order.order), order.*value / unit,
+                   fmt::format("{:.5g} Hz", order.order * hertz)});
+  return all;
+}
+
+report::Figure orders_figure(const std::string& id, const std::string& title,
+                             const std::string& axis, std::vector<report::ScatterSeries> series,
+                             double hertz) {
+  return {id, title, "",
+          report::ScatterFigure{
+              {"order, per turn of the shaft", ""}, {axis, "", true}, std::move(series)},
+          fmt::format("Amplitudes. Order 1 is {:.5g} Hz.", hertz)};
+}
+
+}  // namespace
+
+report::Section power_section(const Case& the_case, const SteadyState& state,
+                              const PowerBudget& power) {
+  report::Section section;
+  section.title = "Power and losses by place";
+  section.text =
+      "Means over a turn, all chambers. What flows from one pressure to another loses the mass "
+      "flow times the difference of the oil's pressure potential, the integral of dP/density; "
+      "compression gives back what it takes. Sources less everything else is what is left over.";
+  const double indicated =
+      state.indicated_work * the_case.pump.geometry.pistons * turns_per_second(the_case);
+  section.facts = {
+      {"left over, of the pistons' power",
+       fmt::format("{:.1e}", share(power, hydraulics::left_over(power)))},
+      {"efficiency: load less oil taken in, over the pistons",
+       fmt::format("{:.4g} %", 100 * share(power, power[Place::load] - power[Place::tank]))},
+      {"indicated work of a chamber per turn, area of its p-V diagram",
+       fmt::format("{:.6g} J", state.indicated_work)},
+      {"that of all chambers x speed over the pistons' power, less 1",
+       fmt::format("{:.1e}", share(power, indicated) - 1)}};
+  section.table.columns = {"place", "what", "mean power, W", "of the pistons' power, %"};
+  const auto add = [&](const std::string& place, const std::string& what, double watts) {
+    section.table.rows.push_back({place, what, watts, 100 * share(power, watts)});
+  };
+  for (const Place place : state.places)
+    add(hydraulics::name_of(place), hydraulics::name_of(hydraulics::use_of(place)), power[place]);
+  add("all losses", "sum", hydraulics::losses(power));
+  add("left over", "sum", hydraulics::left_over(power));
+  return section;
+}
+
+report::Section orders_section(const Case& the_case, const SteadyState& state) {
+  report::Section section;
+  section.title = "Orders";
+  section.text =
+      "Amplitudes of harmonics of the shaft's angle. The outlet has multiples of the number of "
+      "pistons only; dp/dtheta of a chamber has all, which orders.csv lists.";
+  section.table.columns = {"order",
+                           "frequency, Hz",
+                           "flow to the load, l/min",
+                           "of its mean, %",
+                           "delivery pressure, bar",
+                           "pressure in front of the load, bar",
+                           "dp/dtheta of a chamber, bar/deg"};
+  const auto rate = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
+  const auto& s = state.summary;
+  for (const auto& order : state.orders)
+    section.table.rows.push_back(
+        {static_cast<long>(order.order), order.order * turns_per_second(the_case),
+         order.flow / s.density / kLitrePerMinute, 100 * order.flow / s.mass_flow,
+         order.delivery / kPascalPerBar, order.load_pressure / kPascalPerBar,
+         per_degree(rate[order.order - 1])});
+  return section;
+}
+
+std::vector<report::Figure> result_figures(const Case& the_case, const SteadyState& state,
+                                           const PowerBudget& power) {
+  const ResultTable& table = state.table;
+  std::vector<report::Figure> figures;
+  const auto angle = [&](const std::string& id, const std::string& title, const std::string& unit,
+                         const std::string& note) {
+    figures.push_back(angle_figure(id, title, "", unit, table.theta_deg));
+    figures.back().note = note;
+  };
+  const auto series = [&](const std::string& label, const std::string& name) {
+    add_series(figures.back(), label, report::values_of(table, name));
+  };
+
+  figures.push_back({"pv", "p-V diagram of chamber 1", "",
+                     report::XyFigure{{"volume", "cm3"},
+                                      {"pressure", "bar"},
+                                      {loop(table, "chamber 1", "V_1_cm3", "p_1_bar")}},
+                     fmt::format("Its area is the work of a piston on the oil, {:.6g} J per turn.",
+                                 state.indicated_work)});
+  angle("dp_dtheta", "Rate of the pressure in chamber 1", "bar/deg", "");
+  series("dp/dtheta", "dp_1_bar_per_deg");
+  angle("bulk_modulus", "Effective bulk modulus of the oil in chamber 1", "MPa", "");
+  series("chamber 1", "K_1_MPa");
+  figures.push_back(law_figure(the_case, state));
+
+  angle("opening_parts", "Openings of chamber 1 by part", "mm2",
+        "Each port's opening is the sum of its parts.");
+  for (const auto& [prefix, port] :
+       {std::pair<std::string, std::string>{"as_1_", "suction"}, {"ad_1_", "delivery"}})
+    for (const Channel& channel : table.channels)
+      if (channel.name.rfind(prefix, 0) == 0 && channel.name != prefix + "mm2")
+        series(port + channel.meaning.substr(channel.meaning.find(": ")), channel.name);
+
+  angle("backflow", "Backflow", "l/min",
+        "What flows from the delivery port into a chamber, and from a chamber into the suction "
+        "port.");
+  series("delivery port, all chambers", "Qdb_l_per_min");
+  series("suction port, all chambers", "Qsb_l_per_min");
+  series("delivery port into chamber 1", "Qdb_1_l_per_min");
+  series("chamber 1 into suction port", "Qsb_1_l_per_min");
+
+  angle("power", "Power of the pistons and into the load", "W", "");
+  for (const Place place : {Place::pistons, Place::load})
+    series(hydraulics::name_of(place), fmt::format("power_{}_W", hydraulics::key_of(place)));
+  angle("losses", "Losses by place, all chambers", "W",
+        fmt::format("Means: {:.5g} W of {:.5g} W in all.", hydraulics::losses(power),
+                    power[Place::pistons]));
+  for (const Place place : state.places)
+    if (hydraulics::use_of(place) == PowerUse::loss)
+      series(hydraulics::name_of(place), fmt::format("power_{}_W", hydraulics::key_of(place)));
+
+  const double hertz = turns_per_second(the_case);
+  using hydraulics::Order;
+  figures.push_back(orders_figure(
+      "orders_flow", "Orders of the flow to the load", "amplitude (l/min)",
+      {{"flow to the load", 0, false, false,
+        points(state.orders, &Order::flow, state.summary.density * kLitrePerMinute, hertz)}},
+      hertz));
+  std::vector<report::ScatterSeries> pressure = {
+      {"delivery volume", 0, false, false,
+       points(state.orders, &Order::delivery, kPascalPerBar, hertz)}};
+  if (the_case.hydraulics->delivery_line)
+    pressure.push_back({"in front of the load", 1, false, false,
+                        points(state.orders, &Order::load_pressure, kPascalPerBar, hertz)});
+  figures.push_back(orders_figure("orders_pressure", "Orders of the delivery pressure",
+                                  "amplitude (bar)", std::move(pressure), hertz));
+  report::ScatterSeries rate{"chamber", 0, false, false, {}};
+  const auto rates = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const auto order = static_cast<double>(i + 1);
+    rate.points.push_back({order, per_degree(rates[i]), fmt::format("{:.5g} Hz", order * hertz)});
+  }
+  figures.push_back(orders_figure("orders_rate", "Orders of dp/dtheta of a chamber",
+                                  "amplitude (bar/deg)", {std::move(rate)}, hertz));
+  return figures;
+}
+
+std::string power_csv(const SteadyState& state, const PowerBudget& power) {
+  std::string text = "place,what,power_W\n";
+  for (const Place place : state.places) {
+    text += fmt::format("{},{},", hydraulics::key_of(place),
+                        hydraulics::name_of(hydraulics::use_of(place)));
+    append_number(text, power[place]);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string orders_csv(const Case& the_case, const SteadyState& state) {
+  std::string text =
+      "order,frequency_Hz,Qload_l_per_min,p_delivery_bar,p_load_bar,dp_1_bar_per_deg\n";
+  const auto rates = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
+  const int n = the_case.pump.geometry.pistons;
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    const hydraulics::Order order =
+        number % n == 0 ? state.orders[number / n - 1] : hydraulics::Order{};
+    text += std::to_string(number);
+    for (const double value :
+         {number * turns_per_second(the_case), order.flow / state.summary.density / kLitrePerMinute,
+          order.delivery / kPascalPerBar, order.load_pressure / kPascalPerBar,
+          per_degree(rates[i])}) {
+      text += ',';
+      append_number(text, value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace bentaxis::study
