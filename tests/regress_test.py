@@ -74,6 +74,10 @@ class ShippedDataTest(RegressTest):
                 self.assertGreaterEqual(len(passed), 1 if kind == "published" else 18, name)
         self.assertEqual(before, {p: p.read_bytes() for p in before})
 
+    def test_published_numbers_are_mentioned_where_there_are_any(self):
+        self.assertIn("published numbers were read", self.regress())
+        self.assertNotIn("published", self.regress(base.REPO / "reference_data" / "golden"))
+
     def test_worst_first(self):
         lines = [line for line in self.regress().splitlines() if line.startswith("agrees")]
         worst = []
