@@ -1,8 +1,7 @@
 #include "bentaxis/pump/time_signal.h"
 
 #include <algorithm>
-#include <boost/math/interpolators/pchip.hpp>
-#include <utility>
+#include <functional>
 
 #include "bentaxis/pump/error.h"
 
@@ -13,10 +12,18 @@ TimeSignal::TimeSignal(const TimeCurve& curve) : time_(curve.time), value_(curve
   if (time_.size() < kFewest || time_.size() != value_.size() ||
       std::adjacent_find(time_.begin(), time_.end(), std::greater_equal<>()) != time_.end())
     throw InputError(curve.file.string() + ": needs at least 4 points at rising times");
-  std::vector<double> times = time_, values = value_;
-  const boost::math::interpolators::pchip<std::vector<double>> shape(std::move(times),
-                                                                     std::move(values));
-  for (const double t : time_) slope_.push_back(shape.prime(t));
+  const auto chord = [&](std::size_t i) {
+    return (value_[i + 1] - value_[i]) / (time_[i + 1] - time_[i]);
+  };
+  slope_.push_back(chord(0));
+  for (std::size_t i = 1; i + 1 < time_.size(); ++i) {
+    // Weighted harmonic mean of the slopes to both sides; level where the points turn back.
+    const double before = chord(i - 1), after = chord(i);
+    const double span = time_[i + 1] - time_[i - 1];
+    const double weight = (span + time_[i + 1] - time_[i]) / (3 * span);
+    slope_.push_back(before * after > 0 ? 1 / (weight / before + (1 - weight) / after) : 0);
+  }
+  slope_.push_back(chord(time_.size() - 2));
   area_.push_back(0);
   for (std::size_t i = 1; i < time_.size(); ++i) {
     const double h = time_[i] - time_[i - 1];
