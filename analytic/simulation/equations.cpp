@@ -130,6 +130,7 @@ State Equations::scales() const {
   }
   scale[kWorkOfLoads] = scale[kWorkOfDrive] = torque_scale_;
   scale[kImpulse] = tooth_scale_ * 1e-3;
+  for (double& size : scale) size = std::exp2(std::round(std::log2(size)));  // exact to divide by
   return scale;
 }
 

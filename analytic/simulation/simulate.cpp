@@ -26,7 +26,7 @@ constexpr double kFirstStep = 1e-3;           // of the duration, at most
 constexpr long kMostEvaluations = 100000000;  // of the closed form: some minutes
 constexpr int kMostEventsAtOnce = 64;         // without a step between them
 constexpr double kOnTouch = 1e-15;            // m: as good as touching
-constexpr double kOnEdge = 4e-16;             // of the angle and a turn
+constexpr double kOnEdge = 1e-15;             // of the angle and a turn
 
 // One extrapolated step of scaled states; `h` becomes what the method would take next.
 class Stepper {
@@ -340,7 +340,10 @@ class Simulation {
     if (equations_.compliant() && equations_.teeth.pressing == 0) apart_ += taken;
     time_ = taken == stop - time_ ? stop : time_ + taken;
     y_ = out;
-    at_once_ = 0;
+    if (taken > kSmallestStep * equations_.drive().duration)
+      at_once_ = 0;
+    else
+      count_at_once();
     if (event < after.count) handle(event);
   }
 
@@ -350,10 +353,14 @@ class Simulation {
       fail("the motion changes faster there than steps above round-off can follow");
   }
 
-  // What changes at an event.
-  void handle(std::size_t guard) {
+  void count_at_once() {
     if (++at_once_ > kMostEventsAtOnce)
       fail("teeth and edges of the pressure are passed again and again without any motion");
+  }
+
+  // What changes at an event.
+  void handle(std::size_t guard) {
+    count_at_once();
     if (guard < 2) {
       edge_ += guard == 0 ? 1 : -1;
       set_piece();
