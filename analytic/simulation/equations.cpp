@@ -97,6 +97,11 @@ State Equations::start(const SimulationOptions& options) {
   State y = {};
   if (drive_.kind != DriveKind::speed) y[kTurnRate] = options.start_speed;
   if (law_) y[kLag] = options.start_lag;
+  if (options.disturbance != 0) {
+    const State scale = scales();
+    if (law_) y[kLag] += options.disturbance * scale[kLag];
+    if (drive_.kind != DriveKind::speed) y[kTurnRate] += options.disturbance * scale[kTurnRate];
+  }
   if (drive_.kind == DriveKind::motor && start_speed_ != 0)
     y[kTwist] = drive_.torque / drive_.motor->coupling_stiffness;
   return y;

@@ -135,9 +135,9 @@ class Simulation {
     if (equations_.teeth.pressing != 0) contact_changes(0, equations_.teeth.pressing);
     kinetic_ = equations_.kinetic_energy(0, y_);
     potential_ = equations_.potential_energy(y_);
-    std::vector<double> stops = trajectory_times(drive);
+    const std::vector<double> stops =
+        options_.times.empty() ? trajectory_times(drive) : options_.times;
     const std::size_t rows = stops.size();
-    std::vector<bool> is_row(rows, true);
     next_ = drive.duration * kFirstStep;
     for (const double knot : equations_.knots()) knots_.push_back(knot);
     for (std::size_t row = 0; row < rows; ++row) {

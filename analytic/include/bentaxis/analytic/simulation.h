@@ -1,6 +1,8 @@
 // Motion of shaft and block in time, from the closed form.
 #pragma once
 
+#include <vector>
+
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/results/trajectory.h"
@@ -8,6 +10,10 @@
 namespace bentaxis::analytic {
 
 struct SimulationOptions : bentaxis::SimulationOptions {
+  /// Moves the start by this share of what each state is measured by: so that a load changes by
+  /// about this share of its peak. For seeing how much a trajectory makes of it.
+  double disturbance = 0;
+  std::vector<double> times;  ///< of the rows, s, rising; empty: those of [drive]
   double start_lag = 0;    ///< theta - psi at the start, rad, of compliant teeth
   double start_speed = 0;  ///< rad/s, added to the speeds of all bodies at the start; not of a
                            ///< shaft whose speed is given
