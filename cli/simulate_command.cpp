@@ -28,8 +28,9 @@ int simulate(const Options& options, const CommandParser& command) {
   if (options.model == "multibody") choice.only = study::Model::multibody;
   for (const char* option : {"--integrator", "--accuracy"})
     if (command.given(option) && choice.only == study::Model::analytic)
-      throw InputError(std::string(option) + ": changes nothing: only the multibody model is "
-                                             "integrated by Simbody");
+      throw InputError(std::string(option) +
+                       ": changes nothing: only the multibody model is "
+                       "integrated by Simbody");
   Case read = options.the_case.read();
   drive_of(read);
   ReportFolders folders(options.place);
@@ -40,9 +41,8 @@ int simulate(const Options& options, const CommandParser& command) {
     curves.emplace_back("simulation_analytic.csv", to_csv(result.analytic->table));
   if (result.multibody)
     curves.emplace_back("simulation_multibody.csv", to_csv(result.multibody->table));
-  const auto paths = folders.write(
-      "report", study::simulation_document(result, versions()), study::simulation_curves(result),
-      curves);
+  const auto paths = folders.write("report", study::simulation_document(result, versions()),
+                                   study::simulation_curves(result), curves);
   std::printf("%s\n", study::simulation_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return result.agrees() ? kDone : kOutOfTolerance;

@@ -496,10 +496,14 @@ void add_marks(Panel& panel, const std::vector<Curves::Mark>& marks) {
                                                        const Scale& y) {
     constexpr double kHeight = 6, kGap = 2;
     for (const Curves::Mark& mark : marks) {
-      const double foot = y.from - (mark.upper ? kHeight + kGap : 0);
+      const double foot = y.first - (mark.upper ? kHeight + kGap : 0);
       add(root, "line",
-          {{"x1", px(x.place(mark.x))}, {"x2", px(x.place(mark.x))}, {"y1", px(foot)},
-           {"y2", px(foot - kHeight)}, {"stroke", "#555"}, {"stroke-width", "0.8"}});
+          {{"x1", px(x.place(mark.x))},
+           {"x2", px(x.place(mark.x))},
+           {"y1", px(foot)},
+           {"y2", px(foot - kHeight)},
+           {"stroke", "#555"},
+           {"stroke-width", "0.8"}});
     }
     curves(root, x, y);
   };

@@ -42,8 +42,7 @@ void for_each_difference(const Trajectory& a, const Trajectory& b,
     const Channel& channel = table.channels[c];
     if (channel.kind != ChannelKind::reaction) continue;
     const double peak = peaks.at(channel.group);
-    if (peak > 0)
-      use(channel, std::abs(table.at(row, c) - b.table.results.at(row, c)) / peak);
+    if (peak > 0) use(channel, std::abs(table.at(row, c) - b.table.results.at(row, c)) / peak);
   }
 }
 
@@ -97,13 +96,12 @@ class Study {
     const Trajectory beside = analytic(disturbed, "sensitivity");
     double growth = 1;
     for (std::size_t row = 0; row < r_.analytic->lag.size(); ++row) {
-      growth = std::max(
-          growth, largest_difference(*r_.analytic, beside, peaks_, row) / kDisturbance);
+      growth =
+          std::max(growth, largest_difference(*r_.analytic, beside, peaks_, row) / kDisturbance);
       r_.growth.push_back(growth);
     }
     const std::size_t judged = judged_rows();
-    r_.judged_until_s =
-        judged == 0 ? 0 : r_.analytic->table.state(judged - 1, 0);
+    r_.judged_until_s = judged == 0 ? 0 : r_.analytic->table.state(judged - 1, 0);
     if (r_.analytic->record.seconds > kCheap) {
       add_effort(Model::analytic, options.error, *r_.analytic, not_computed());
       return;
@@ -126,10 +124,9 @@ class Study {
     options.accuracy = accuracy;
     multibody::SimulationMethod method;
     method.integrator = r_.choice.integrator;
-    return multibody::simulate(r_.ready.the_case, r_.ready.assumptions(Model::multibody),
-                               r_.ready.pressure, options,
-                               progress_of_(fmt::format("multibody, accuracy {:g}", accuracy)),
-                               method);
+    return multibody::simulate(
+        r_.ready.the_case, r_.ready.assumptions(Model::multibody), r_.ready.pressure, options,
+        progress_of_(fmt::format("multibody, accuracy {:g}", accuracy)), method);
   }
 
   void run_multibody() {
@@ -141,27 +138,29 @@ class Study {
       add_multibody(*r_.choice.accuracy, *r_.multibody);
       return;
     }
-    // Tightened until a step of ten in the accuracy changes nothing that counts any more.
-    constexpr int kMostTries = 4;
-    constexpr double kStep = 10;
-    double accuracy = kStep * multibody::accuracy_for(r_.choice.error);
-    std::optional<Trajectory> before;
-    double change = 0;
-    for (int tries = 0; tries < kMostTries; ++tries) {
-      r_.multibody = multibody(accuracy);
-      add_multibody(accuracy, *r_.multibody);
-      if (before) {
-        change = change_of(*before, *r_.multibody);
-        if (change <= 1) break;
-      }
-      before = std::move(r_.multibody);
-      r_.multibody.reset();
-      accuracy /= kStep;
+    // Two runs, ten times apart in accuracy, tell how the error falls; where it is not small enough
+    // yet a third goes to the accuracy at which it should be, and tells again.
+    constexpr int kMostRuns = 5;
+    constexpr double kStep = 10, kMargin = 0.3, kUsualPower = 0.75, kTightest = 1e-12;
+    double loose = kStep * multibody::accuracy_for(r_.choice.error);
+    double tight = loose / kStep;
+    Trajectory before = multibody(loose);
+    add_multibody(loose, before);
+    double left = 0;  // error of the tighter run, of what is allowed
+    for (int runs = 2;; ++runs) {
+      r_.multibody = multibody(tight);
+      add_multibody(tight, *r_.multibody);
+      const double change = change_of(before, *r_.multibody);
+      left = change / (std::pow(loose / tight, kUsualPower) - 1);
+      if (left <= kMargin || runs == kMostRuns || tight <= kTightest) break;
+      const double next = tight * std::pow(kMargin / left, 1 / kUsualPower);
+      loose = tight;
+      tight = std::clamp(next, std::max(kTightest, tight * 1e-4), tight / kStep);
+      before = std::move(*r_.multibody);
     }
-    if (!r_.multibody) r_.multibody = std::move(before), accuracy *= kStep;
     r_.multibody_choice = fmt::format(
-        "{}, accuracy {:g}: ten times looser changes the reactions by {:.1e} of what is allowed",
-        name, accuracy, change);
+        "{}, accuracy {:.2g}: by what a looser run changes its error is {:.1e} of what is allowed",
+        name, tight, left);
   }
 
   // Of what is allowed; without the analytic model of the wanted error.
@@ -237,8 +236,8 @@ class Study {
       const double time = a.table.state(row, 0);
       const double spacing = r_.ready.the_case.drive->duration / r_.ready.the_case.drive->samples;
       const double earliest = options.times.empty() ? 0.0 : options.times.back();
-      options.times.push_back(std::max(
-          earliest, std::abs(late) < spacing / 4 ? time + late : time));
+      options.times.push_back(
+          std::max(earliest, std::abs(late) < spacing / 4 ? time + late : time));
     }
     return analytic(options, "analytic, over the angle");
   }
@@ -283,13 +282,12 @@ class Study {
   }
 
   void check() {
-    for (const auto& [model, run] : {std::pair{Model::analytic, &r_.analytic},
-                                     std::pair{Model::multibody, &r_.multibody}}) {
+    for (const auto& [model, run] :
+         {std::pair{Model::analytic, &r_.analytic}, std::pair{Model::multibody, &r_.multibody}}) {
       if (!*run) continue;
       const Trajectory& t = **run;
       const TrajectoryRecord& record = t.record;
-      const double work = std::max({std::abs(record.work_of_loads),
-                                    std::abs(record.work_of_drives),
+      const double work = std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
                                     std::abs(record.kinetic_energy_gained)});
       // Simbody's work is integrated with its motion, to the same error.
       const double tolerance = model == Model::analytic
@@ -345,18 +343,19 @@ std::string SimulationResult::headline() const {
   const std::string sensitive =
       judged_until_s < ready.the_case.drive->duration
           ? fmt::format(
-                ". Later than {:.4g} s nothing is judged: disturbances grow {:.0e} times by the end",
+                ". Later than {:.4g} s nothing is judged: disturbances grow {:.0e} times by the "
+                "end",
                 judged_until_s, growth.back())
           : fmt::format("; disturbances of the start grow {:.3g} times", growth.back());
-  std::string text =
-      fmt::format("{}: largest difference {:.1e} of peak ({}, at {:.4g} s), {:.2g} of what is "
-                  "allowed ({:g} of peak, grown as disturbances grow){}",
-                  agrees() ? "Both models move alike" : "The models differ", w.in_time, w.group,
-                  w.time_s, w.of_allowed, choice.error, sensitive);
+  std::string text = fmt::format(
+      "{}: largest difference {:.1e} of peak ({}, at {:.4g} s), {:.2g} of what is "
+      "allowed ({:g} of peak, grown as disturbances grow){}",
+      agrees() ? "Both models move alike" : "The models differ", w.in_time, w.group, w.time_s,
+      w.of_allowed, choice.error, sensitive);
   for (const compare::Check& check : checks)
     if (!check.holds())
-      text += fmt::format("; {}: {} is {:.1e} of its scale", check.table, check.name,
-                          check.relative());
+      text +=
+          fmt::format("; {}: {} is {:.1e} of its scale", check.table, check.name, check.relative());
   return text;
 }
 

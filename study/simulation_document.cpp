@@ -59,8 +59,7 @@ std::vector<Figure> figures_of(const SimulationResult& r) {
   if (r.ready.the_case.drive->kind == DriveKind::motor) speeds.emplace_back("motor_rpm");
   add("speed", "Speeds of shaft and block", "rpm", speeds);
   if (compliant(r)) add("lag", "Lag of the block, theta - psi", "mrad", {"lag"});
-  add("rcs", "Gear tooth force Rcs on the block, by the shaft, at O4, along z4", "N",
-      {"Rcs_z4_N"});
+  add("rcs", "Gear tooth force Rcs on the block, by the shaft, at O4, along z4", "N", {"Rcs_z4_N"});
   add("td", "Drive torque Td", "Nm", {"Td_z1_Nm"});
   add("pressure", "Chamber pressure of piston 1, which both models take at the block's angle",
       "bar", {"p_1_bar"});
@@ -96,18 +95,17 @@ Figure difference_figure(const SimulationResult& r) {
       {"of the models, largest of any reaction", times, positive(r.difference)},
       {"allowed: wanted error, grown", times, allowed},
       {fmt::format("after a disturbance of {:g} at the start", r.disturbance), times, disturbed}};
-  return {"difference", "Difference of the models, and how disturbances grow", "",
-          std::move(content),
-          "Impacts make every error grow. What a disturbance of the start comes to says how much of "
-          "a difference is the motion's own doing."};
+  return {
+      "difference", "Difference of the models, and how disturbances grow", "", std::move(content),
+      "Impacts make every error grow. What a disturbance of the start comes to says how much of "
+      "a difference is the motion's own doing."};
 }
 
 std::optional<Figure> effort_figure(const SimulationResult& r) {
-  report::ScatterFigure content{{"time of the run", "s", true},
-                                {"largest error of any reaction, of peak", "", true},
-                                {}};
+  report::ScatterFigure content{
+      {"time of the run", "s", true}, {"largest error of any reaction, of peak", "", true}, {}};
   for (const Model model : kModels) {
-    report::ScatterSeries series{to_string(model), static_cast<int>(model), true};
+    report::ScatterSeries series{to_string(model), static_cast<int>(model), true, false, {}};
     for (const Effort& effort : r.effort)
       if (effort.model == model && is_computed(effort.error) && effort.error > 0)
         series.points.push_back(
@@ -134,8 +132,13 @@ report::Section difference_section(const SimulationResult& r) {
       {"lag theta - psi", fmt::format("{:.1e} rad", r.lag_difference)},
       {"judged until", fmt::format("{:.6g} s", r.judged_until_s)},
       {"growth of a disturbance until the end", fmt::format("{:.3g}", r.growth.back())}};
-  section.table.columns = {"group", "unit", "peak", "in time, of peak", "at, s",
-                           "over the angle, of peak", "of what is allowed"};
+  section.table.columns = {"group",
+                           "unit",
+                           "peak",
+                           "in time, of peak",
+                           "at, s",
+                           "over the angle, of peak",
+                           "of what is allowed"};
   for (const GroupDifference& g : r.groups)
     section.table.rows.push_back(
         {g.group, g.unit, g.peak, g.in_time, g.time_s, g.over_angle, g.of_allowed});
@@ -159,9 +162,12 @@ report::Section work_section(const SimulationResult& r) {
   for (const auto& [name, run] : runs_of(r)) {
     section.table.columns.push_back(name);
     const TrajectoryRecord& t = run->record;
-    const double values[] = {t.work_of_loads,           t.work_of_drives,
-                             t.kinetic_energy_gained,   t.potential_energy_gained,
-                             t.work_residual,           t.worst_work_residual,
+    const double values[] = {t.work_of_loads,
+                             t.work_of_drives,
+                             t.kinetic_energy_gained,
+                             t.potential_energy_gained,
+                             t.work_residual,
+                             t.worst_work_residual,
                              t.drift};
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].emplace_back(values[i]);
   }
@@ -173,9 +179,8 @@ report::Section teeth_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Teeth: touches and impulses";
   for (const auto& [name, run] : runs_of(r))
-    section.facts.emplace_back(
-        name + ": share of the time out of contact",
-        fmt::format("{:.4g} %", 100 * run->record.share_out_of_contact));
+    section.facts.emplace_back(name + ": share of the time out of contact",
+                               fmt::format("{:.4g} %", 100 * run->record.share_out_of_contact));
   if (r.analytic && r.multibody) {
     const EventMatch& e = r.events;
     section.facts.emplace_back(
@@ -190,20 +195,20 @@ report::Section teeth_section(const SimulationResult& r) {
         fmt::format("analytic {:.4g}, {:.4g} Ns; multibody {:.4g}, {:.4g} Ns", e.mean_impulse[0],
                     e.largest_impulse[0], e.mean_impulse[1], e.largest_impulse[1]));
   }
-  const auto& [name, run] = runs_of(r).front();
+  const auto [name, run] = runs_of(r).front();
   section.text = fmt::format(
-      "Touches of the {} model with the speeds before them and the impulse until the flanks leave{}.",
+      "Touches of the {} model with the speeds before them and the impulse until the flanks "
+      "leave{}.",
       name,
       run->record.events.size() > 2 * kMostTouches
           ? fmt::format("; the first {} of them", kMostTouches)
           : "");
-  section.table.columns = {"time, s", "flank", "shaft, rad/s", "block, rad/s", "approach, m/s",
-                           "impulse, Ns"};
+  section.table.columns = {"time, s",      "flank",         "shaft, rad/s",
+                           "block, rad/s", "approach, m/s", "impulse, Ns"};
   for (const ToothEvent& event : run->record.events) {
     if (!event.touch) continue;
     if (section.table.rows.size() == kMostTouches) break;
-    section.table.rows.push_back({event.time_s,
-                                  std::string(event.flank > 0 ? "driving" : "other"),
+    section.table.rows.push_back({event.time_s, std::string(event.flank > 0 ? "driving" : "other"),
                                   event.shaft_speed, event.block_speed, event.approach_speed,
                                   event.impulse});
   }
@@ -220,8 +225,8 @@ report::Section effort_section(const SimulationResult& r) {
     section.facts.emplace_back(name + ": chosen", run->record.choice);
   if (!r.multibody_choice.empty())
     section.facts.emplace_back("accuracy of Simbody", r.multibody_choice);
-  section.table.columns = {"model", "method",   "error or accuracy asked", "error",
-                           "s",     "steps", "evaluations"};
+  section.table.columns = {"model", "method",     "error or accuracy asked", "error", "s",
+                           "steps", "evaluations"};
   for (const Effort& e : r.effort)
     section.table.rows.push_back(
         {to_string(e.model), e.method, e.asked, e.error, e.seconds, e.steps, e.evaluations});

@@ -66,7 +66,7 @@ function plot(box, data, lines, bands, yLabel) {
         canvas.fillStyle = band.colour + "2e";
         canvas.fill();
       }
-      canvas.fillStyle = variable("--muted");
+      canvas.fillStyle = variable("--axis");
       for (const mark of list(data.marks))  // two rows of ticks at the lower edge
         canvas.fillRect(graph.toDomXCoord(mark.x), area.y + area.h - (mark.upper ? 14 : 6), 1, 6);
       canvas.restore();

@@ -14,9 +14,9 @@ struct SimulationOptions : bentaxis::SimulationOptions {
   /// about this share of its peak. For seeing how much a trajectory makes of it.
   double disturbance = 0;
   std::vector<double> times;  ///< of the rows, s, rising; empty: those of [drive]
-  double start_lag = 0;    ///< theta - psi at the start, rad, of compliant teeth
-  double start_speed = 0;  ///< rad/s, added to the speeds of all bodies at the start; not of a
-                           ///< shaft whose speed is given
+  double start_lag = 0;       ///< theta - psi at the start, rad, of compliant teeth
+  double start_speed = 0;     ///< rad/s, added to the speeds of all bodies at the start; not of a
+                              ///< shaft whose speed is given
 };
 
 /// Integrates the motion of a case's [drive] and evaluates all channels along it.

@@ -13,9 +13,9 @@
 namespace bentaxis::study {
 
 struct SimulationChoice {
-  std::optional<Model> only;        ///< none: both, compared
-  double error = 1e-6;              ///< of every reaction, of its peak: wanted and tolerated
-  std::optional<double> accuracy;   ///< of Simbody's steps instead of one found for `error`
+  std::optional<Model> only;       ///< none: both, compared
+  double error = 1e-6;             ///< of every reaction, of its peak: wanted and tolerated
+  std::optional<double> accuracy;  ///< of Simbody's steps instead of one found for `error`
   multibody::Integrator integrator = multibody::Integrator::runge_kutta_merson;
 };
 
@@ -32,8 +32,8 @@ struct GroupDifference {
 struct EventMatch {
   std::size_t touches[2] = {0, 0};  ///< of each model
   std::size_t matched = 0;
-  double time_s = 0;           ///< largest difference in time of matched ones
-  double impulse = 0;          ///< likewise of their impulse, over the largest impulse
+  double time_s = 0;   ///< largest difference in time of matched ones
+  double impulse = 0;  ///< likewise of their impulse, over the largest impulse
   double mean_impulse[2] = {0, 0}, largest_impulse[2] = {0, 0};  ///< Ns per touch
 };
 
@@ -41,8 +41,8 @@ struct EventMatch {
 struct Effort {
   Model model;
   std::string method;
-  double asked = 0;   ///< error asked of the analytic model; accuracy per step of Simbody
-  double error = 0;   ///< largest of any reaction, of peak, within the judged time
+  double asked = 0;  ///< error asked of the analytic model; accuracy per step of Simbody
+  double error = 0;  ///< largest of any reaction, of peak, within the judged time
   double seconds = 0;
   long steps = 0, evaluations = 0;
 };
