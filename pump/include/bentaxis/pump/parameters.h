@@ -56,7 +56,7 @@ struct Gear {
   double pressure_angle = 0;  ///< alpha_p, rad
   ToothContact contact = ToothContact::rigid;
   Flanks flanks = Flanks::one;
-  std::optional<ToothCompliance> compliance;  ///< there where the contact is compliant
+  std::optional<ToothCompliance> compliance = {};  ///< there where the contact is compliant
 };
 
 /// Bearing centres on the shaft axis, z1 in m.
