@@ -7,6 +7,7 @@
 #include <cstring>
 #include <iterator>
 #include <limits>
+#include <type_traits>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -14,6 +15,7 @@
 #include "closed_form/reactions.h"
 #include "kinematics.h"
 #include "prepared.h"
+#include "turning.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -24,14 +26,31 @@ Vector3d to_eigen(const closed_form::Vec3<double>& v) { return {v.x, v.y, v.z}; 
 
 }  // namespace
 
+namespace {
+
 // A piston's motion and forces at an instant.
-struct Model::PistonState {
+struct PistonState {
   closed_form::PistonMotion<double> motion;
   double ring_velocity, friction;
   closed_form::PistonForces<double> forces;
 };
 
-namespace {
+template <class State>
+PistonState piston_state(const PreparedPump& pump, const State& state, double pressure, int k) {
+  const closed_form::Pump<double>& p = pump.numbers;
+  const double phase_sin = pump.phase_sin[k];
+  const double phase_cos = pump.phase_cos[k];
+  PistonState piston;
+  piston.motion = closed_form::piston_motion(p.frame, p.piston, state,
+                                             state.sine * phase_cos - state.cosine * phase_sin,
+                                             state.cosine * phase_cos + state.sine * phase_sin);
+  piston.ring_velocity = piston.motion.ring_velocity(state.rate());
+  piston.friction =
+      closed_form::friction_force(pump.friction, p.friction, piston.ring_velocity, state.omega);
+  piston.forces = closed_form::piston_forces(p.piston, piston.motion, state.rate(),
+                                             state.rate_dot(), piston.friction, pressure);
+  return piston;
+}
 
 // What is read and written without a further look.
 template <class Real>
@@ -55,25 +74,6 @@ Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Uncheck
       layout_(pump.geometry.pistons),
       prepared_(std::make_shared<const PreparedPump>(prepare(pump, assumptions))) {}
 
-Model::PistonState Model::piston_state(const Instant& instant, double sin_theta, double cos_theta,
-                                       int k) const {
-  const double phase_sin = prepared_->phase_sin[k];
-  const double phase_cos = prepared_->phase_cos[k];
-  const closed_form::Pump<double>& p = prepared_->numbers;
-  const double omega = instant.shaft.speed;
-  PistonState state;
-  state.motion =
-      closed_form::piston_motion(p.frame, p.piston, sin_theta * phase_cos - cos_theta * phase_sin,
-                                 cos_theta * phase_cos + sin_theta * phase_sin);
-  state.ring_velocity = state.motion.ring_velocity(omega);
-  state.friction =
-      closed_form::friction_force(prepared_->friction, p.friction, state.ring_velocity, omega);
-  state.forces =
-      closed_form::piston_forces(p.piston, state.motion, omega, instant.shaft.acceleration,
-                                 state.friction, instant.chamber_pressure[k]);
-  return state;
-}
-
 namespace {
 
 // A pump's numbers in another type: Pump is an array of numbers with names.
@@ -92,67 +92,78 @@ closed_form::Pump<long double> extended(const closed_form::Pump<double>& pump) {
 template <class Real>
 void all_reactions(const closed_form::Common& common, const closed_form::Pump<Real>& pump,
                    const Instant& instant, Real* results) {
-  const Real theta = instant.shaft.angle;
-  const closed_form::State<Real> state = {std::sin(theta),
-                                          std::cos(theta),
-                                          Real(instant.shaft.speed),
-                                          Real(instant.shaft.acceleration),
-                                          Real(instant.ports.suction),
-                                          Real(instant.ports.delivery)};
-  closed_form::reactions(
-      common, pump, state, true,
-      [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
-      [results](int index, Real value) { results[index] = value; });
+  with_state<Real>(instant, [&](const auto& state) {
+    closed_form::reactions<Real>(
+        common, pump, state, true,
+        [pressure = instant.chamber_pressure.data()](int k) { return Real(pressure[k]); },
+        [results](int index, Real value) { results[index] = value; });
+  });
 }
 
 }  // namespace
 
 void Model::reactions(const Instant& instant, std::vector<double>& values) const {
-  require_locked(instant, "analytic");
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
 }
 
 void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
-  require_locked(instant, "analytic");
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), extended(prepared_->numbers), instant, values.data());
 }
 
-void Model::evaluate(const Instant& instant, std::vector<double>& values) const {
-  require_sizes(instant, values, layout_.pistons(), layout_.size());
-  reactions(instant, values);
-  const ChannelLayout& at = layout_;
-  const double fh = values[at.Fh()];
-  values[at.xh()] = fh == 0 ? not_computed() : -values[at.Th(1)] / fh;  // (53)
-  values[at.yh()] = fh == 0 ? not_computed() : values[at.Th(0)] / fh;
+namespace {
 
-  const closed_form::Pump<double>& numbers = prepared_->numbers;
+// What follows from reactions that are found, and the checks. Sums of power are per unit of the
+// motion's parameter (closed_form/state.h): over omega where the block is locked to the shaft.
+template <class State>
+MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
+                   const ChannelLayout& at, const Instant& instant, const State& state,
+                   std::vector<double>& values) {
+  constexpr bool kLocked = std::is_same_v<State, closed_form::State<double>>;
+  const closed_form::Pump<double>& numbers = pump.numbers;
   const closed_form::PistonNumbers<double>& p = numbers.piston;
-  const Kinematics kinematics(pump_.geometry);
-  const double omega = instant.shaft.speed;
-  const double sin_theta = std::sin(instant.shaft.angle);
-  const double cos_theta = std::cos(instant.shaft.angle);
+  const Kinematics kinematics(parameters.geometry);
+  const Friction& friction = parameters.friction;
+  const AxisMotion& shaft = instant.shaft;
+  const AxisMotion& block = instant.block;
+  const double rate = state.rate();
   const Vector3d gravity(0, p.gravity_y, p.gravity_z);
-  const double length = pump_.geometry.piston_length;
+  const double length = parameters.geometry.piston_length;
   const double share_of_centre = p.mass > 0 ? p.static_moment / p.mass : 0;     // sG / b1
   const double inertia_centre = p.inertia - p.static_moment * share_of_centre;  // It / b1^2
-  double carry = numbers.block.viscous * omega + numbers.block.inertia * instant.shaft.acceleration;
-  // Virtual work per radian: every term of the power balance divided by omega.
-  double work = pump_.friction.shaft_torque_factor * values[at.Td()] -
-                (numbers.shaft.viscous + numbers.block.viscous) * omega -
-                (numbers.shaft.inertia + numbers.block.inertia) * instant.shaft.acceleration;
+  const bool off_the_ring = numbers.block.contact != 1;
+  double carry = numbers.block.viscous * block.speed + numbers.block.inertia * block.acceleration;
+  double work = 0;
+  if (kLocked) {
+    work = friction.shaft_torque_factor * values[at.Td()] -
+           (numbers.shaft.viscous + numbers.block.viscous) * shaft.speed -
+           (numbers.shaft.inertia + numbers.block.inertia) * shaft.acceleration;
+  } else {
+    work = (friction.shaft_torque_factor * values[at.Td()] - numbers.shaft.viscous * shaft.speed -
+            numbers.shaft.inertia * shaft.acceleration) *
+               shaft.speed -
+           carry * block.speed;
+    if (!pump.imposed) {
+      const double tooth =
+          closed_form::Math<double>::direction(shaft.speed) * values[at.Rcs()];  // towards +psi
+      work +=
+          closed_form::tooth_on_block(numbers.gear, tooth).moment.z * (block.speed - shaft.speed);
+    }
+  }
+  double ring_work = 0;
   for (int k = 0; k < at.pistons(); ++k) {
-    const PistonState state = piston_state(instant, sin_theta, cos_theta, k);
-    const double axial = state.forces.axial;
-    const Vector3d joint_path = to_eigen(state.motion.joint_first);
-    const Vector3d axis = to_eigen(state.motion.axis);
-    const Vector3d axis_path = to_eigen(state.motion.axis_first);
-    const Vector3d ring = to_eigen(state.motion.joint) + axis;
-    const Vector3d joint_acceleration = to_eigen(state.forces.joint_acceleration);
-    const Vector3d axis_acceleration = to_eigen(state.forces.axis_acceleration);
+    const PistonState piston = piston_state(pump, state, instant.chamber_pressure[k], k);
+    const double axial = piston.forces.axial;
+    const Vector3d joint_path = to_eigen(piston.motion.joint_first);
+    const Vector3d axis = to_eigen(piston.motion.axis);
+    const Vector3d axis_path = to_eigen(piston.motion.axis_first);
+    const Vector3d ring = to_eigen(piston.motion.joint) + axis;
+    const Vector3d contact = to_eigen(closed_form::contact_point(numbers.block, piston.motion));
+    const Vector3d joint_acceleration = to_eigen(piston.forces.joint_acceleration);
+    const Vector3d axis_acceleration = to_eigen(piston.forces.axis_acceleration);
     const Vector3d rs(values[at.Rs(k, 0)], values[at.Rs(k, 1)], values[at.Rs(k, 2)]);
     const Vector3d rc(values[at.Rc(k, 0)], values[at.Rc(k, 1)], 0);
 
@@ -160,7 +171,7 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
     values[at.zB(k)] = ring.z();
     const Vector3d rs3 = kinematics.s3_in_s1(axis).transpose() * kinematics.to_s1(rs);
     for (int i = 0; i < 3; ++i) values[at.Rs3(k, i)] = rs3[i];
-    const double share = ring.y() * rc.x() - ring.x() * rc.y();
+    const double share = contact.y() * rc.x() - contact.x() * rc.y();
     values[at.Tc(k)] = share;
     carry -= share;
 
@@ -169,18 +180,52 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values) const 
     work += axial * (joint_path.z() + axis_path.z()) +
             p.mass * (gravity - centre_acceleration).dot(centre_path) -
             inertia_centre * axis_acceleration.dot(axis_path);
+    if (off_the_ring) {
+      // The play of the piston in its bore: C on the piston against the block's point there.
+      const double block_path = kLocked ? 1 : block.speed;
+      const Vector3d play = joint_path + numbers.block.contact * axis_path -
+                            block_path * Vector3d::UnitZ().cross(contact);
+      ring_work += rc.dot(play);
+    }
 
     // Moments of everything on the piston about A, from the forces found; (32) was solved for x2
     // and y2 only, so the part about the piston's own axis is a check.
-    const Vector3d moment = axis.cross(rc + Vector3d(0, 0, axial)) +
+    const Vector3d moment = axis.cross(numbers.block.contact * rc + Vector3d(0, 0, axial)) +
                             axis.cross(p.static_moment * (gravity - joint_acceleration) -
                                        p.inertia * axis_acceleration) -
-                            p.spin_momentum * omega * axis_path;
+                            p.spin_momentum * rate * axis_path;
     values[at.axis_moment(k)] = axis.dot(moment) / length;
   }
   values[at.Tcs()] = carry;
+  work += ring_work;
   // The gear passes power on; an imposed block speed brings in power of its own.
-  values[at.power_residual()] = prepared_->imposed ? work + carry : work;
+  if (pump.imposed) work = kLocked ? work + carry : work + carry * block.speed;
+  if (kLocked)
+    values[at.power_residual()] = work;
+  else
+    values[at.power_residual()] = shaft.speed == 0 ? not_computed() : work / shaft.speed;
+  return {pump.tooth_law
+              ? pump.tooth_law->force(shaft.angle - block.angle, shaft.speed - block.speed)
+              : not_computed(),
+          ring_work * rate, work * rate};
+}
+
+}  // namespace
+
+void Model::evaluate(const Instant& instant, std::vector<double>& values,
+                     MotionChecks* checks) const {
+  require_sizes(instant, values, layout_.pistons(), layout_.size());
+  reactions(instant, values);
+  const ChannelLayout& at = layout_;
+  const double fh = values[at.Fh()];
+  values[at.xh()] = fh == 0 ? not_computed() : -values[at.Th(1)] / fh;  // (53)
+  values[at.yh()] = fh == 0 ? not_computed() : values[at.Th(0)] / fh;
+
+  MotionChecks found;
+  with_state<double>(instant, [&](const auto& state) {
+    found = judge(*prepared_, pump_, at, instant, state, values);
+  });
+  if (checks != nullptr) *checks = found;
 }
 
 Model::FlankChange Model::other_flank(double tooth_force) const {
@@ -196,22 +241,40 @@ Model::FlankChange Model::other_flank(double tooth_force) const {
 }
 
 Model::FrictionPower Model::friction_power(const Instant& instant, double drive_torque) const {
-  require_locked(instant, "analytic");
   require_sizes(instant, std::vector<double>(), layout_.pistons(), 0);
   const Friction& friction = pump_.friction;
   const double omega = instant.shaft.speed;
   FrictionPower power;
-  power.block = -friction.block_viscous * omega * omega;
+  power.block = -friction.block_viscous * instant.block.speed * instant.block.speed;
   power.shaft_viscous = -friction.shaft_viscous * omega * omega;
   power.shaft_proportional = -(1 - friction.shaft_torque_factor) * drive_torque * omega;
   power.pistons = -std::numeric_limits<double>::infinity();
-  for (int k = 0; k < layout_.pistons(); ++k) {
-    const PistonState state =
-        piston_state(instant, std::sin(instant.shaft.angle), std::cos(instant.shaft.angle), k);
-    power.pistons = std::max(power.pistons, state.friction * state.ring_velocity);
-  }
+  with_state<double>(instant, [&](const auto& state) {
+    for (int k = 0; k < layout_.pistons(); ++k) {
+      const PistonState piston = piston_state(*prepared_, state, instant.chamber_pressure[k], k);
+      power.pistons = std::max(power.pistons, piston.friction * piston.ring_velocity);
+    }
+  });
   return power;
 }
+
+namespace {
+
+// How a table was made.
+void note(Provenance& provenance, std::chrono::steady_clock::time_point start, int n,
+          const std::string& kinematics) {
+  provenance.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  provenance.facts = {
+      {"method",
+       "closed form: equilibrium of pistons (31)-(33), block (56), (57), shaft (42), (43)"},
+      {"bodies", std::to_string(n + 2) + " (shaft, block, " + std::to_string(n) + " pistons)"},
+      {"equations",
+       std::to_string(5 * n + 12) + " (5 per piston, 6 block, 6 shaft), solved body by body"},
+      {"kinematics", kinematics}};
+}
+
+}  // namespace
 
 ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                 const Progress& progress) {
@@ -221,16 +284,24 @@ ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samp
       "analytic", model.layout(), samples,
       [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
       progress);
-  const int n = the_case.pump.geometry.pistons;
-  table.provenance.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  table.provenance.facts = {
-      {"method",
-       "closed form: equilibrium of pistons (31)-(33), block (56), (57), shaft (42), (43)"},
-      {"bodies", std::to_string(n + 2) + " (shaft, block, " + std::to_string(n) + " pistons)"},
-      {"equations",
-       std::to_string(5 * n + 12) + " (5 per piston, 6 block, 6 shaft), solved body by body"},
-      {"kinematics", "exact derivatives with respect to theta (9)-(23)"}};
+  note(table.provenance, start, model.layout().pistons(),
+       "exact derivatives with respect to theta (9)-(23)");
+  return table;
+}
+
+MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
+                       const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const Model model(validate(the_case).pump, assumptions);
+  MotionTable table = tabulate_states(
+      "analytic", model.layout(), states,
+      [&](const Instant& instant, std::vector<double>& row, MotionChecks& checks) {
+        model.evaluate(instant, row, &checks);
+      },
+      progress);
+  note(table.results.provenance, start, model.layout().pistons(),
+       "exact total derivatives with respect to time of (9)-(12), shaft and block each at its own "
+       "angle");
   return table;
 }
 

@@ -17,6 +17,7 @@ PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions)
   closed_form::prepare(pump, p.film);
   closed_form::prepare(pump, p.gear);
   closed_form::prepare(pump, p.frame, p.shaft);
+  result.tooth_law = closed_form::tooth_law(pump.gear);
   result.imposed = assumptions.gear == BlockDrive::imposed;
   for (int k = 0; k < pump.geometry.pistons; ++k) {
     result.phase_sin.push_back(std::sin(2 * kPi * k / pump.geometry.pistons));

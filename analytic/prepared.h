@@ -1,6 +1,7 @@
 // A pump prepared for the closed form. Internal.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "bentaxis/pump/parameters.h"
@@ -13,7 +14,8 @@ struct PreparedPump {
   closed_form::Pump<double> numbers;
   bool imposed = false;
   closed_form::FrictionLaw friction;
-  std::vector<double> phase_sin, phase_cos;  // of 2 pi k / N
+  std::optional<closed_form::ToothLaw> tooth_law;  // of flanks that give way
+  std::vector<double> phase_sin, phase_cos;        // of 2 pi k / N
 
   closed_form::Common common() const {
     return {static_cast<int>(phase_sin.size()), phase_sin.data(), phase_cos.data(), imposed,

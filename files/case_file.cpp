@@ -144,6 +144,11 @@ class CaseReader {
       *field.opening(view()) = read_opening_table(file);
       return;
     }
+    if (field.drive != nullptr) {
+      DriveSpec& drive = *field.drive(view());
+      drive.curve = read_drive_curve(file, drive.kind);
+      return;
+    }
     result_.pressure.curve = read_pressure_curve(file);
     PressureTrace{result_.pressure};  // refuses a curve that cannot be a periodic spline
   }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "bentaxis/files/foreign_table.h"
@@ -16,6 +17,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/pump/words.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis {
@@ -180,6 +182,17 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file) {
   return curve;
 }
 
+namespace {
+
+[[noreturn]] void refuse_value(const std::filesystem::path& file, const NumericTable& table,
+                               std::size_t row, std::size_t column, const std::string& range) {
+  throw InputError(file.string() + ":" + std::to_string(table.lines[row]) + ": " +
+                   table.header[column] + " = " + number_text(table.rows[row][column]) +
+                   ": must be " + range);
+}
+
+}  // namespace
+
 OpeningTable read_opening_table(const std::filesystem::path& file) {
   const NumericTable table = read_numeric_csv(file);
   if (table.header != std::vector<std::string>{"theta_deg", "area_mm2"})
@@ -187,9 +200,7 @@ OpeningTable read_opening_table(const std::filesystem::path& file) {
   OpeningTable opening{file, {}, {}};
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto refuse = [&](std::size_t column, const std::string& range) {
-      throw InputError(file.string() + ":" + std::to_string(table.lines[i]) + ": " +
-                       table.header[column] + " = " + number_text(table.rows[i][column]) +
-                       ": must be " + range);
+      refuse_value(file, table, i, column, range);
     };
     const double theta = table.rows[i][0];
     if (i > 0 && !(theta > opening.theta_deg.back()))
@@ -208,6 +219,112 @@ OpeningTable read_opening_table(const std::filesystem::path& file) {
   if (*std::max_element(opening.area.begin(), opening.area.end()) == 0)
     throw InputError(file.string() + ": area_mm2 is 0 at every angle: must be > 0 somewhere");
   return opening;
+}
+
+TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind) {
+  const NumericTable table = read_numeric_csv(file);
+  const bool speed = kind == DriveKind::speed;
+  const std::string name = speed ? "speed_rpm" : "torque_Nm";
+  if (table.header != std::vector<std::string>{"time_s", name})
+    throw InputError(file.string() + ":1: header must be time_s," + name);
+  TimeCurve curve{file, {}, {}};
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const double time = table.rows[i][0];
+    if (i == 0 && time > 0) refuse_value(file, table, i, 0, "<= 0 (a simulation starts at 0)");
+    if (i > 0 && !(time > curve.time.back()))
+      refuse_value(file, table, i, 0,
+                   "> " + number_text(curve.time.back()) + " (times increase strictly)");
+    curve.time.push_back(time);
+    curve.value.push_back(speed ? rad_per_second(table.rows[i][1]) : table.rows[i][1]);
+  }
+  constexpr std::size_t kFewestPoints = 4;
+  if (curve.time.size() < kFewestPoints)
+    throw InputError(file.string() + ": has " + std::to_string(curve.time.size()) +
+                     " points, must be at least 4");
+  return curve;
+}
+
+// The columns that say how shaft and block move, in the order of their use.
+constexpr const char* kMotionColumns[] = {"theta_deg", "psi_deg",          "theta_rpm",
+                                          "psi_rpm",   "theta_rad_per_s2", "psi_rad_per_s2"};
+
+States read_states(const std::filesystem::path& file, const Case& the_case,
+                   const PressureTrace& pressure) {
+  const NumericTable table = read_numeric_csv(file);
+  const int pistons = the_case.pump.geometry.pistons;
+  std::map<std::string, std::size_t> columns;
+  std::set<std::string> known(std::begin(kMotionColumns), std::end(kMotionColumns));
+  known.insert({"time_s", "suction_bar", "delivery_bar"});
+  const auto chamber = [](int k) { return "p_" + std::to_string(k + 1) + "_bar"; };
+  for (int k = 0; k < pistons; ++k) known.insert(chamber(k));
+  for (std::size_t c = 0; c < table.header.size(); ++c) {
+    const std::string& name = table.header[c];
+    if (known.count(name) == 0)
+      throw InputError(file.string() + ":1: unknown column \"" + name + "\"" +
+                       suggestion(name, known));
+    if (!columns.emplace(name, c).second)
+      throw InputError(file.string() + ":1: column \"" + name + "\" stands there twice");
+  }
+  const auto has = [&](const std::string& name) { return columns.count(name) > 0; };
+  const auto require = [&](const std::string& name) {
+    if (!has(name)) throw InputError(file.string() + ":1: column \"" + name + "\" is missing");
+  };
+  for (const char* const name : kMotionColumns) require(name);
+  const bool pressures = has(chamber(0));
+  for (int k = 0; k < pistons; ++k)
+    if (has(chamber(k)) || pressures) {
+      require(chamber(0));
+      require(chamber(k));
+    }
+  if (table.rows.empty()) throw InputError(file.string() + ": has no states");
+
+  States states;
+  states.pistons = pistons;
+  states.header = table.header;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const std::vector<double>& row = table.rows[i];
+    const auto at = [&](const std::string& name) { return row[columns.at(name)]; };
+    states.given.insert(states.given.end(), row.begin(), row.end());
+    if (has("time_s")) {
+      if (i > 0 && at("time_s") < states.time.back())
+        refuse_value(file, table, i, columns.at("time_s"),
+                     ">= " + number_text(states.time.back()) + " (time does not run back)");
+      states.time.push_back(at("time_s"));
+    }
+    MotionState state;
+    state.theta_deg = at("theta_deg");
+    state.psi_deg = at("psi_deg");
+    state.shaft_speed = rad_per_second(at("theta_rpm"));
+    state.block_speed = rad_per_second(at("psi_rpm"));
+    state.shaft_acceleration = at("theta_rad_per_s2");
+    state.block_acceleration = at("psi_rad_per_s2");
+    state.ports = the_case.pressure.ports;
+    if (has("suction_bar")) state.ports.suction = pascals(at("suction_bar"));
+    if (has("delivery_bar")) state.ports.delivery = pascals(at("delivery_bar"));
+    states.motion.push_back(state);
+    for (int k = 0; k < pistons; ++k)
+      states.chamber_pressure.push_back(
+          pressures ? pascals(at(chamber(k)))
+                    : pressure(piston_angle_deg(state.psi_deg, k + 1, pistons)));
+  }
+  return states;
+}
+
+std::string to_csv(const MotionTable& table) {
+  std::string text;
+  for (const std::string& name : table.state_names) text += name + ",";
+  for (const Channel& channel : table.results.channels) text += channel.name + ",";
+  text.back() = '\n';
+  const std::size_t states = table.state_names.size();
+  std::vector<double> line(states + table.results.columns());
+  for (std::size_t row = 0; row < table.results.rows(); ++row) {
+    const auto first = table.states.begin() + static_cast<std::ptrdiff_t>(row * states);
+    std::copy(first, first + static_cast<std::ptrdiff_t>(states), line.begin());
+    for (std::size_t c = 0; c < table.results.columns(); ++c)
+      line[states + c] = table.results.at(row, c);
+    append_csv_row(text, line[0], line.data() + 1, line.size() - 1);
+  }
+  return text;
 }
 
 std::string csv_header(const std::vector<Channel>& channels) {

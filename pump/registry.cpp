@@ -116,6 +116,7 @@ AnyView whole_view(AnyCase& the_case) {
   view.operation = &the_case.operation;
   view.pressure = &the_case.pressure;
   view.hydraulics = &the_case.hydraulics;
+  view.drive = &the_case.drive;
   view.analytic = &the_case.analytic;
   view.multibody = &the_case.multibody;
   view.meant = &the_case.meant;
@@ -147,6 +148,7 @@ ConstView as_const(const View& v) {
   view.operation = v.operation;
   view.pressure = v.pressure;
   view.hydraulics = v.hydraulics;
+  view.drive = v.drive;
   view.analytic = v.analytic;
   view.multibody = v.multibody;
   view.meant = v.meant;

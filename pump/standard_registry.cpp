@@ -36,6 +36,7 @@ constexpr Unit kMegapascals{"MPa", [](double x) { return x * 1e6; }};
 constexpr Unit kPercent{"percent", [](double x) { return x / 100; }};
 constexpr Unit kCubicCentimetres{"cm3", [](double x) { return x / 1e6; }};
 constexpr Unit kMicrometres{"um", [](double x) { return x / 1e6; }};
+constexpr Unit kStiffness{"N/um", [](double x) { return x * 1e6; }};
 constexpr Unit kMetres{"m"};
 constexpr Unit kCentistokes{"cSt", [](double x) { return x / 1e6; }};
 constexpr Unit kPerGigapascal{"per GPa", [](double x) { return x / 1e9; }};
@@ -53,10 +54,29 @@ const When kCurve{"pressure", "kind", {"curve"}};
 const When kHydraulic{"pressure", "kind", {"hydraulic"}};
 const When kReliefValve{"load", "kind", {"relief_valve"}};
 const When kGivenFlow{"load", "kind", {"flow"}};
+const When kCompliant{"gear", "contact", {"compliant"}};
+const When kMotor{"drive", "kind", {"motor"}};
+const When kGivenTorque{"drive", "kind", {"torque", "motor"}};
 
 const Part kRealPiston{{"piston", "inertia", {"real", "dynamically_equivalent"}},
                        [](const ConstView& v) { return v.real_piston() != nullptr; },
                        [](const View& v) { v.pump->piston.real = PistonMass::Real(); }};
+// A single key without which something else is meant.
+const Part kRingContact{{},
+                        [](const ConstView& v) { return v.ring_contact() != nullptr; },
+                        [](const View& v) { v.pump->piston.contact.emplace(); }};
+const Part kStartSpeed{{},
+                       [](const ConstView& v) { return v.start_speed() != nullptr; },
+                       [](const View& v) { v.drive_spec()->start_speed.emplace(); }};
+const Part kCompliance{kCompliant, [](const ConstView& v) { return v.compliance() != nullptr; },
+                       [](const View& v) { v.pump->gear.compliance.emplace(); }};
+const Part kDrive{{},
+                  [](const ConstView& v) { return v.drive_spec() != nullptr; },
+                  [](const View& v) {
+                    if (v.drive != nullptr) v.drive->emplace();
+                  }};
+const Part kMotorData{kMotor, [](const ConstView& v) { return v.motor() != nullptr; },
+                      [](const View& v) { v.drive_spec()->motor.emplace(); }};
 const Part kPortPlate{{},
                       [](const ConstView& v) { return v.port_plate() != nullptr; },
                       [](const View& v) { v.pump->port_plate.emplace(); }};
@@ -542,23 +562,97 @@ Table pump_table() {
 }
 
 Table gear_table() {
-  return {.name = "gear",
-          .meaning = "bevel gear pair that carries the block round",
-          .parameters = {
-              {.key = "pitch_diameter_mm",
-               .field = number_at([](const auto& v) { return &v.pump->gear.pitch_diameter; }),
-               .path = {"gear.pitch_diameter"},
-               .symbol = "d = m Z",
-               .unit = kMillimetres,
-               .range = kPositive,
-               .meaning = "pitch cone diameter at the contact point O4"},
-              {.key = "pressure_angle_deg",
-               .field = number_at([](const auto& v) { return &v.pump->gear.pressure_angle; }),
-               .path = {"gear.pressure_angle"},
-               .symbol = "alpha_p (ap)",
-               .unit = kAngle,
-               .range = {0, 60},
-               .meaning = "pressure angle; the pitch cone angle is 90 deg - alpha/2"}}};
+  return {
+      .name = "gear",
+      .meaning = "bevel gear pair that carries the block round",
+      .parameters =
+          {{.key = "pitch_diameter_mm",
+            .field = number_at([](const auto& v) { return &v.pump->gear.pitch_diameter; }),
+            .path = {"gear.pitch_diameter"},
+            .symbol = "d = m Z",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .meaning = "pitch cone diameter at the contact point O4"},
+           {.key = "pressure_angle_deg",
+            .field = number_at([](const auto& v) { return &v.pump->gear.pressure_angle; }),
+            .path = {"gear.pressure_angle"},
+            .symbol = "alpha_p (ap)",
+            .unit = kAngle,
+            .range = {0, 60},
+            .meaning = "pressure angle; the pitch cone angle is 90 deg - alpha/2"},
+           {.key = "contact",
+            .field = choice_at([](const auto& v) { return &v.pump->gear.contact; }),
+            .words = {"rigid", "compliant"},
+            .fallback = {std::string("rigid")},
+            .meaning = "rigid: block and shaft turn alike in motion; compliant: the flanks give "
+                       "way, with backlash between them (motion.md)"},
+           {.key = "flanks",
+            .field = choice_at([](const auto& v) { return &v.pump->gear.flanks; }),
+            .words = {"one", "two"},
+            .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                           const bool compliant = v.pump->gear.contact == ToothContact::compliant;
+                           return std::string(compliant ? "two" : "one");
+                         },
+                         .words = "one; two where `contact` is compliant"},
+            .meaning = "one: as the paper prints, one line of action for either sign of the "
+                       "force; two: the flank that is pushed carries, and the separating part "
+                       "of its force always pushes the gears apart"},
+           {.key = "stiffness_N_per_um",
+            .field = number_at(
+                [](const auto& v) { return in(v.compliance(), &ToothCompliance::stiffness); }),
+            .path = {"gear.compliance.stiffness"},
+            .symbol = "k",
+            .unit = kStiffness,
+            .range = kPositive,
+            .meaning = "force of a flank at an approach of 1 um",
+            .part = &kCompliance},
+           {.key = "stiffness_exponent",
+            .field = number_at(
+                [](const auto& v) { return in(v.compliance(), &ToothCompliance::exponent); }),
+            .path = {"gear.compliance.exponent"},
+            .symbol = "e",
+            .range = {1, 3},
+            .fallback = {1.0},
+            .meaning = "power of the approach with which the force grows",
+            .practice = "lines 1, points 1.5, ADAMS' default 2.2",
+            .part = &kCompliance},
+           {.key = "dissipation_s_per_m",
+            .field = number_at(
+                [](const auto& v) { return in(v.compliance(), &ToothCompliance::dissipation); }),
+            .path = {"gear.compliance.dissipation"},
+            .symbol = "c",
+            .unit = {"s/m"},
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "growth of the force with the speed of approach",
+            .part = &kCompliance},
+           {.key = "backlash_um",
+            .field = number_at(
+                [](const auto& v) { return in(v.compliance(), &ToothCompliance::backlash); }),
+            .path = {"gear.compliance.backlash"},
+            .symbol = "j",
+            .unit = kMicrometres,
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "along the line of action; rigid teeth have none",
+            .part = &kCompliance}},
+      .rules = {{.key = "flanks",
+                 .after = "flanks",
+                 .broken =
+                     [](const ConstView& v) {
+                       const Gear& gear = v.pump->gear;
+                       return gear.contact == ToothContact::compliant && gear.flanks == Flanks::one
+                                  ? std::string(
+                                        "compliant teeth have two flanks: must be \"two\" "
+                                        "beside contact = \"compliant\"")
+                                  : std::string();
+                     }},
+                {.key = "contact", .after = "", .broken = [](const ConstView& v) {
+                   return v.pump->gear.contact == ToothContact::compliant &&
+                                  v.compliance() == nullptr
+                              ? std::string("needs stiffness_N_per_um")
+                              : std::string();
+                 }}}};
 }
 
 Table bearings_table() {
@@ -607,6 +701,16 @@ Table piston_table() {
             .range = {0, 1},
             .fallback = {0.5},
             .meaning = "lumped: share of the mass at A; mA = chi m, mB = (1 - chi) m"},
+           {.key = "contact_mm",
+            .field = number_at([](const auto& v) { return v.ring_contact(); }),
+            .path = {"piston.contact"},
+            .symbol = "s_C",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .fallback = {.words = "`piston_length_mm`"},
+            .meaning = "from A along the piston's axis to C, where the bore force Rc acts (32); "
+                       "pressure and friction stay at B",
+            .part = &kRingContact},
            {.key = "centre_of_mass_mm",
             .field = number_at([](const auto& v) {
               return in(v.real_piston(), &PistonMass::Real::centre_of_mass);
@@ -1458,6 +1562,99 @@ Table load_table() {
            .active = kGivenFlow}}};
 }
 
+std::string curve_refusal(const ConstView& v) {
+  const DriveSpec& drive = *v.drive_spec();
+  if (drive.curve.time.empty()) return "";
+  if (drive.kind == DriveKind::motor)
+    return "must be empty: a motor's torque follows from its speed";
+  return drive.curve.time.size() >= 4 && drive.curve.time.size() == drive.curve.value.size()
+             ? ""
+             : "must have at least 4 points";
+}
+
+Table drive_table() {
+  CurveField curve = curve_at(
+      [](const auto& v) { return in(in(v.drive_spec(), &DriveSpec::curve), &TimeCurve::file); });
+  curve.drive = [](const View& v) { return v.drive_spec(); };
+  return {
+      .name = "drive",
+      .meaning =
+          "what turns the shaft in `bentaxis simulate`, and for how long; other commands "
+          "leave it aside",
+      .part = &kDrive,
+      .parameters =
+          {{.key = "kind",
+            .field = choice_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::kind); }),
+            .words = {"speed", "torque", "motor"},
+            .fallback = {std::string("speed")},
+            .meaning = "the shaft's speed is given; a torque turns it; or a rotor turns it through "
+                       "a coupling, Td = K (phi - theta) + D (phi' - theta')"},
+           {.key = "torque_Nm",
+            .field =
+                number_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::torque); }),
+            .symbol = "Td, T0",
+            .unit = {"Nm"},
+            .meaning = "of the drive, or of a motor at the speed of `[operation]`; unused beside a "
+                       "`file`",
+            .active = kGivenTorque},
+           {.key = "torque_slope_Nm_s_per_rad",
+            .field =
+                number_at([](const auto& v) { return in(v.motor(), &MotorData::torque_slope); }),
+            .symbol = "s",
+            .unit = {"Nm s/rad"},
+            .fallback = {0.0},
+            .meaning = "the motor's torque is T0 - s (phi' - omega)",
+            .part = &kMotorData},
+           {.key = "rotor_inertia_kg_m2",
+            .field =
+                number_at([](const auto& v) { return in(v.motor(), &MotorData::rotor_inertia); }),
+            .symbol = "J_m",
+            .unit = {"kg m2"},
+            .range = kPositive,
+            .meaning = "of the rotor, at the angle phi",
+            .part = &kMotorData},
+           {.key = "coupling_stiffness_Nm_per_rad",
+            .field = number_at(
+                [](const auto& v) { return in(v.motor(), &MotorData::coupling_stiffness); }),
+            .symbol = "K",
+            .unit = {"Nm/rad"},
+            .range = kPositive,
+            .meaning = "of the coupling",
+            .part = &kMotorData},
+           {.key = "coupling_damping_Nm_s_per_rad",
+            .field = number_at(
+                [](const auto& v) { return in(v.motor(), &MotorData::coupling_damping); }),
+            .symbol = "D",
+            .unit = {"Nm s/rad"},
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "of the coupling",
+            .part = &kMotorData},
+           {.key = "start_rpm",
+            .field = number_at([](const auto& v) { return v.start_speed(); }),
+            .unit = kRotation,
+            .fallback = {.words = "`speed_rpm`"},
+            .meaning = "speed of every body at the start; from 0 the coupling is unwound",
+            .part = &kStartSpeed},
+           {.key = "file",
+            .field = curve,
+            .fallback = {std::string()},
+            .meaning = "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case "
+                       "file: the speed or the torque over time instead; empty: none"},
+           {.key = "duration_s",
+            .field =
+                number_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::duration); }),
+            .unit = {"s"},
+            .range = kPositive,
+            .meaning = "simulated time"},
+           {.key = "samples",
+            .field =
+                integer_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::samples); }),
+            .range = kCount,
+            .meaning = "rows at 0, duration/samples, .., duration"}},
+      .rules = {{.key = "file", .after = "file", .broken = curve_refusal}}};
+}
+
 }  // namespace
 
 const Registry& standard_registry() {
@@ -1471,6 +1668,7 @@ const Registry& standard_registry() {
        block_table(),
        friction_table(),
        operation_table(),
+       drive_table(),
        pressure_table(),
        port_plate_table(),
        hydraulics_table(),

@@ -68,36 +68,31 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
   FreeBody shaft;
   double worst = 0;
   for (int k = 0; k < g.pistons; ++k) {
-    const double angle = t.shaft.angle - 2 * kPi * k / g.pistons;
-    const double s = std::sin(angle);
-    const double c = std::cos(angle);
-    const Jet js(s, c, -s);
-    const Jet jc(c, -s, -c);
+    const double phase = 2 * kPi * k / g.pistons;
+    const Jet js = sine(t.shaft.angle - phase, t.shaft);
+    const Jet jc = cosine(t.shaft.angle - phase, t.shaft);
     // A in S1; A and B in S2.
     const Jet a1[3] = {Jet(-g.joint_circle_radius) * js, Jet(g.joint_circle_radius) * jc, Jet(0)};
     const Jet az = Jet(-g.axis_offset);
     const Jet ct(std::cos(g.tilt));
     const Jet st(std::sin(g.tilt));
     const Jet a2[3] = {a1[0], ct * a1[1] - st * az, st * a1[1] + ct * az};
-    const Jet bx = Jet(-g.bore_circle_radius) * js;
-    const Jet by = Jet(g.bore_circle_radius) * jc;
+    const Jet bx = Jet(-g.bore_circle_radius) * sine(t.block.angle - phase, t.block);
+    const Jet by = Jet(g.bore_circle_radius) * cosine(t.block.angle - phase, t.block);
     const Jet dx = bx - a2[0];
     const Jet dy = by - a2[1];
     const Jet h = sqrt(Jet(g.piston_length * g.piston_length) - dx * dx - dy * dy);
     const Jet axis[3] = {dx, dy, h};
     const auto part = [](const Jet* j, double Jet::*m) { return V(j[0].*m, j[1].*m, j[2].*m); };
-    const auto rate2 = [&](const Jet* j) -> V {
-      return part(j, &Jet::dd) * t.shaft.speed * t.shaft.speed +
-             part(j, &Jet::d) * t.shaft.acceleration;
-    };
     const V a = part(a1, &Jet::v);
     const V ab = r12 * part(axis, &Jet::v);
     const V b = a + ab;
-    const V acc_a = rate2(a1);
-    const V acc_ab = r12 * rate2(axis);
+    const V ac = p.piston.contact.value_or(g.piston_length) / g.piston_length * ab;
+    const V acc_a = part(a1, &Jet::dd);
+    const V acc_ab = r12 * part(axis, &Jet::dd);
     const V rs = r12 * V(values[at.Rs(k, 0)], values[at.Rs(k, 1)], values[at.Rs(k, 2)]);
     const V rc = r12 * V(values[at.Rc(k, 0)], values[at.Rc(k, 1)], 0);
-    const double v = (a2[2].d + h.d) * t.shaft.speed;
+    const double v = a2[2].d + h.d;
     const double friction =
         assumptions.piston_friction
             ? ring_friction(p.friction, v, 1e-12 * std::abs(t.shaft.speed) * g.joint_circle_radius)
@@ -105,7 +100,7 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
     // Moments about A: the lever of what acts at A is exactly 0.
     FreeBody piston;
     piston.force(V::Zero(), rs);
-    piston.force(ab, rc);
+    piston.force(ac, rc);
     piston.force(ab, (friction - area * t.chamber_pressure[k]) * z2);
     const auto mass_at = [&](double mass, double share) {
       piston.force(share * ab, weight(mass) - mass * (acc_a + share * acc_ab));
@@ -117,7 +112,7 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
       const auto& real = *p.piston.real;
       const double length = g.piston_length;
       mass_at(p.piston.mass, real.centre_of_mass / length);
-      const V e_rate = r12 * part(axis, &Jet::d) * t.shaft.speed / length;
+      const V e_rate = r12 * part(axis, &Jet::d) / length;
       piston.moment(-real.transverse_inertia / (length * length) * ab.cross(acc_ab));
       // Point masses on the axis do not spin.
       if (assumptions.inertia == PistonInertia::real)
@@ -125,7 +120,7 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
     }
     worst = std::max(worst, piston.residual());
 
-    block.force(b - o2, -rc);
+    block.force(a + ac - o2, -rc);
     block.force(b - o2, -friction * z2);
     block.force(b - o2, p.block.bottom_area * t.chamber_pressure[k] * z2);
     shaft.force(a, -rs);
@@ -135,17 +130,19 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
   const V o4(0, p.gear.pitch_diameter / 2,
              g.axis_offset - p.gear.pitch_diameter / 2 * std::tan(g.tilt / 2));
   const double ap = p.gear.pressure_angle;
-  const V k4 = (t.shaft.speed < 0 ? -1 : 1) *
-               V(-std::cos(ap), std::sin(ap) * std::cos(delta), std::sin(ap) * std::sin(delta));
-  block.force(o4 - o2, values[at.Rcs()] * k4);
-  shaft.force(o4, -values[at.Rcs()] * k4);
+  const double towards_psi = (t.shaft.speed < 0 ? -1 : 1) * values[at.Rcs()];
+  const double apart = p.gear.flanks == Flanks::two ? std::abs(towards_psi) : towards_psi;
+  const V tooth(-std::cos(ap) * towards_psi, std::sin(ap) * std::cos(delta) * apart,
+                std::sin(ap) * std::sin(delta) * apart);
+  block.force(o4 - o2, tooth);
+  shaft.force(o4, -tooth);
 
   block.force(V::Zero(), (p.block.spring_force + values[at.Fh()]) * z2);
   block.moment(r12 * V(values[at.Th(0)], values[at.Th(1)], 0));
   block.force(p.block.pin_z * z2, r12 * V(values[at.Rcn(0)], values[at.Rcn(1)], 0));
   block.force(p.block.centre_of_mass_z * z2, weight(p.block.mass));
   block.moment(
-      -(p.friction.block_viscous * t.shaft.speed + p.block.axial_inertia * t.shaft.acceleration) *
+      -(p.friction.block_viscous * t.block.speed + p.block.axial_inertia * t.block.acceleration) *
       z2);
   if (p.port_plate) {
     V force = V::Zero();

@@ -1,5 +1,6 @@
-// The paper's model written a second time, for tests: positions only, everything else from
-// second-order jets of them, and every body a dense system of force and moment equations as printed
+// The paper's model written a second time, for tests, shaft and block each at its own angle:
+// positions only, everything else from second-order jets of them, and every body a dense system of
+// force and moment equations as printed
 // ((33), (44), (57)). Slow and plain on purpose; shares no code with analytic/.
 #pragma once
 
@@ -14,7 +15,7 @@
 
 namespace bentaxis::test {
 
-/// Value with first and second derivative with respect to theta.
+/// Value with first and second derivative with respect to time.
 struct Jet {
   double v = 0, d = 0, dd = 0;
   Jet(double value = 0, double first = 0, double second = 0) : v(value), d(first), dd(second) {}
@@ -29,6 +30,14 @@ inline Jet sqrt(Jet a) {
   const double d = a.d / (2 * r);
   return {r, d, (a.dd - 2 * d * d) / (2 * r)};
 }
+
+/// Sine and cosine of an angle that turns.
+inline Jet sine(double angle, const AxisMotion& m) {
+  const double s = std::sin(angle);
+  const double c = std::cos(angle);
+  return {s, c * m.speed, c * m.acceleration - s * m.speed * m.speed};
+}
+inline Jet cosine(double angle, const AxisMotion& m) { return sine(angle + kPi / 2, m); }
 
 /// Unknowns of all bodies at an instant, ordered by ChannelLayout (reactions only).
 class PrintedModel {
@@ -49,14 +58,12 @@ class PrintedModel {
     const double area = kPi * std::pow(g.bore_diameter / 2, 2);
     const double sign = t.shaft.speed < 0 ? -1 : 1;
 
-    std::vector<V> joint1, joint2, ring2, rs, rc;
+    std::vector<V> joint1, ring2, contact2, rs, rc;
     std::vector<double> friction;
     for (int k = 0; k < g.pistons; ++k) {
-      const double angle = t.shaft.angle - 2 * kPi * k / g.pistons;
-      const double s = std::sin(angle);
-      const double c = std::cos(angle);
-      const Jet js(s, c, -s);
-      const Jet jc(c, -s, -c);
+      const double phase = 2 * kPi * k / g.pistons;
+      const Jet js = sine(t.shaft.angle - phase, t.shaft);
+      const Jet jc = cosine(t.shaft.angle - phase, t.shaft);
       const auto lift = [](double x) { return Jet(x); };
       // A in S1 (9), then in S2; B in S2 (11) with the positive root of (12).
       const Jet ax1 = lift(-g.joint_circle_radius) * js;
@@ -65,23 +72,21 @@ class PrintedModel {
       const double ct = std::cos(g.tilt);
       const double st = std::sin(g.tilt);
       const Jet a2[3] = {ax1, lift(ct) * ay1 - lift(st) * az1, lift(st) * ay1 + lift(ct) * az1};
-      const Jet bx = lift(-g.bore_circle_radius) * js;
-      const Jet by = lift(g.bore_circle_radius) * jc;
+      const Jet bx = lift(-g.bore_circle_radius) * sine(t.block.angle - phase, t.block);
+      const Jet by = lift(g.bore_circle_radius) * cosine(t.block.angle - phase, t.block);
       const Jet dx = bx - a2[0];
       const Jet dy = by - a2[1];
       const Jet bz = a2[2] + sqrt(lift(g.piston_length * g.piston_length) - dx * dx - dy * dy);
       const Jet b2[3] = {bx, by, bz};
       const auto value = [](const Jet* j) { return V(j[0].v, j[1].v, j[2].v); };
       const auto rate = [](const Jet* j) { return V(j[0].d, j[1].d, j[2].d); };
-      const auto acceleration = [&](const Jet* j) -> V {
-        return V(j[0].dd, j[1].dd, j[2].dd) * t.shaft.speed * t.shaft.speed +
-               V(j[0].d, j[1].d, j[2].d) * t.shaft.acceleration;
-      };
+      const auto acceleration = [&](const Jet* j) { return V(j[0].dd, j[1].dd, j[2].dd); };
       const V a = value(a2);
       const V b = value(b2);
       const V acc_a = acceleration(a2);
       const V acc_b = acceleration(b2);
-      const double vb = bz.d * t.shaft.speed;
+      const double vb = bz.d;
+      const V c = a + p_.piston.contact.value_or(g.piston_length) / g.piston_length * (b - a);
       double fpf = 0;
       if (a_.piston_friction)
         fpf = -(p_.friction.piston_coulomb *
@@ -109,7 +114,7 @@ class PrintedModel {
         const V centre = a + share * (b - a);
         const V fg = p_.piston.mass * (gravity2 - acc_a - share * (acc_b - acc_a));
         const V e = (b - a) / g.piston_length;
-        const V e_rate = (rate(b2) - rate(a2)) / g.piston_length * t.shaft.speed;
+        const V e_rate = (rate(b2) - rate(a2)) / g.piston_length;
         const V e_acc = (acc_b - acc_a) / g.piston_length;
         force += fg;
         moment += centre.cross(fg) - real.transverse_inertia * e.cross(e_acc) -
@@ -123,7 +128,7 @@ class PrintedModel {
       }
       for (int i = 0; i < 2; ++i) {
         m(i, 3 + i) = 1;
-        m.block<3, 1>(3, 3 + i) = b.cross(V::Unit(i)) / g.piston_length;
+        m.block<3, 1>(3, 3 + i) = c.cross(V::Unit(i)) / g.piston_length;
       }
       Eigen::Matrix<double, 6, 1> right;
       right << -force, -moment / g.piston_length;
@@ -132,8 +137,9 @@ class PrintedModel {
       for (int i = 0; i < 2; ++i) out[at.Rc(k, i)] = x[3 + i];
       rs.emplace_back(x[0], x[1], x[2]);
       rc.emplace_back(x[3], x[4], 0);
-      joint1.emplace_back(-g.joint_circle_radius * s, g.joint_circle_radius * c, 0);
+      joint1.emplace_back(ax1.v, ay1.v, 0);
       ring2.push_back(b);
+      contact2.push_back(c);
       friction.push_back(fpf);
     }
 
@@ -142,19 +148,18 @@ class PrintedModel {
     const V o4(0, p_.gear.pitch_diameter / 2,
                -p_.gear.pitch_diameter / 2 / std::tan(cone) + g.axis_offset);
     const double ap = p_.gear.pressure_angle;
-    const V k4 =
-        sign * V(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
+    V k4 = sign * V(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
 
     // Block (56), (57): unknown Fh, Thx, Thy, Rcnx, Rcny, Rcs.
     {
       V force(0, 0, p_.block.spring_force);
       V moment = V(0, 0,
-                   -p_.friction.block_viscous * t.shaft.speed -
-                       p_.block.axial_inertia * t.shaft.acceleration);
+                   -p_.friction.block_viscous * t.block.speed -
+                       p_.block.axial_inertia * t.block.acceleration);
       for (int k = 0; k < g.pistons; ++k) {
-        const V on = -rc[k] + V(0, 0, p_.block.bottom_area * t.chamber_pressure[k] - friction[k]);
-        force += on;
-        moment += ring2[k].cross(on);
+        const V push(0, 0, p_.block.bottom_area * t.chamber_pressure[k] - friction[k]);
+        force += push - rc[k];
+        moment += ring2[k].cross(push) - contact2[k].cross(rc[k]);
       }
       const V weight = p_.block.mass * gravity2;
       force += weight;
@@ -167,12 +172,24 @@ class PrintedModel {
         m(i, 3 + i) = 1;
         m.block<3, 1>(3, 3 + i) = V(0, 0, p_.block.pin_z).cross(V::Unit(i));
       }
-      const V line = r12.transpose() * k4;
-      m.block<3, 1>(0, 5) = line;
-      m.block<3, 1>(3, 5) = to_s2(o4).cross(line);
       Eigen::Matrix<double, 6, 1> right;
       right << -force, -moment;
-      const Eigen::Matrix<double, 6, 1> x = m.partialPivLu().solve(right);
+      const auto solve = [&]() -> Eigen::Matrix<double, 6, 1> {
+        const V line = r12.transpose() * k4;
+        m.block<3, 1>(0, 5) = line;
+        m.block<3, 1>(3, 5) = to_s2(o4).cross(line);
+        return m.partialPivLu().solve(right);
+      };
+      Eigen::Matrix<double, 6, 1> x = solve();
+      // Each flank has a line of its own, on which it only pushes. The column is positive where the
+      // shaft pushes the block in the direction of rotation.
+      if (p_.gear.flanks == Flanks::two) {
+        const double pushes = x[5] < 0 ? -sign : sign;  // the block towards +psi
+        k4 =
+            sign * pushes *
+            V(-pushes * std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
+        x = solve();
+      }
       out[at.Fh()] = x[0];
       out[at.Th(0)] = x[1];
       out[at.Th(1)] = x[2];

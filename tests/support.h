@@ -147,6 +147,20 @@ class RandomPump {
     return i;
   }
 
+  /// That pump with the bore force beside B and a second flank, now and then.
+  PumpParameters free(PumpParameters p) {
+    if (in(0, 1) < 0.7) p.piston.contact = in(0.5, 1.3) * p.geometry.piston_length;
+    if (in(0, 1) < 0.7) p.gear.flanks = Flanks::two;
+    return p;
+  }
+
+  /// An instant at which the block moves on its own, `lead` rad and less from the shaft.
+  Instant free_instant(const PumpParameters& p, double lead) {
+    Instant i = instant(p, true);
+    i.block = {i.shaft.angle + in(-lead, lead), in(-300, 300), in(-9000, 9000)};
+    return i;
+  }
+
   Assumptions assumptions(const PumpParameters& p) {
     return {in(0, 1) < 0.7, p.piston.inertia, BlockDrive::mesh};
   }

@@ -99,6 +99,7 @@ void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout&
   BatchJob::Column pressures[kMostPistons];
   for (int k = 0; k < layout.pistons(); ++k) pressures[k] = column(instants.chamber_pressure[k]);
   const auto bodies = outputs.begin() + static_cast<std::ptrdiff_t>(layout.Fh());
+  const BlockMotion block = instants.block.value_or(BlockMotion{});
   BatchJob job = {pump.common(),
                   streams(instants, outputs),
                   std::any_of(bodies, outputs.end(), [](const double* p) { return p != nullptr; }),
@@ -110,6 +111,10 @@ void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout&
                   column(instants.omega_dot),
                   column(instants.suction),
                   column(instants.delivery),
+                  instants.block.has_value(),
+                  column(block.psi),
+                  column(block.omega),
+                  column(block.omega_dot),
                   pressures,
                   outputs.data()};
   if (pump.imposed && outputs[layout.Rcs()] != nullptr)

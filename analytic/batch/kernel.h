@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 #include "batch/job.h"
 #include "batch/lanes.h"
@@ -16,6 +17,8 @@ namespace bentaxis::analytic {
 
 constexpr std::size_t kDoublesPerLine = 64 / sizeof(double);
 constexpr std::size_t kMostReactions = 5 * kMostPistons + 12;
+template <template <class> class Turning>
+inline constexpr bool kFree = std::is_same_v<Turning<double>, closed_form::FreeState<double>>;
 
 template <class Real>
 struct Lanes {
@@ -42,18 +45,27 @@ struct Lanes {
   }
 };
 
-// `used` lanes from instant `at` on; results to put(column, value).
-template <class Real, class Par, class Put>
+// `used` lanes from instant `at` on; results to put(column, value). Turning: State of one lane, or
+// FreeState where the block moves on its own.
+template <class Real, template <class> class Turning, class Par, class Put>
 BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump<Par>& pump,
                                     std::size_t at, std::size_t used, const Put& put) {
   using L = Lanes<Real>;
-  closed_form::State<Real> state;
+  Turning<Real> state;
   Register<Real>::sine_cosine(L::load(job.theta, at, used), state.sine, state.cosine);
   state.omega = L::load(job.omega, at, used);
   state.omega_dot = L::load(job.omega_dot, at, used);
   state.suction = L::load(job.suction, at, used);
   state.delivery = L::load(job.delivery, at, used);
-  closed_form::reactions(
+  if constexpr (kFree<Turning>) {
+    Real half_sine, half_cosine;
+    Register<Real>::sine_cosine((L::load(job.psi, at, used) - L::load(job.theta, at, used)) * 0.5,
+                                half_sine, half_cosine);
+    state.lead(half_sine, half_cosine);
+    state.block_omega = L::load(job.block_omega, at, used);
+    state.block_omega_dot = L::load(job.block_omega_dot, at, used);
+  }
+  closed_form::reactions<Real>(
       job.common, pump, state, job.bodies,
       [&](int k) { return L::load(job.chamber_pressure[k], at, used); }, put);
 }
@@ -83,20 +95,21 @@ struct Store {
   }
 };
 
-template <class Real>
+template <class Real, template <class> class Turning>
 BENTAXIS_INLINE void store_lanes(const BatchJob& job, std::size_t at, std::size_t end) {
   constexpr std::size_t kLanes = Register<Real>::kLanes;
   if (job.pumps == nullptr) {
     const closed_form::Pump<double> pump = *job.pump;  // a copy: results cannot overlap it
     for (; at + kLanes <= end; at += kLanes)
-      evaluate_lanes<Real>(job, pump, at, kLanes, Store<Real>{job, at, kLanes});
-    if (at < end) evaluate_lanes<Real>(job, pump, at, end - at, Store<Real>{job, at, end - at});
+      evaluate_lanes<Real, Turning>(job, pump, at, kLanes, Store<Real>{job, at, kLanes});
+    if (at < end)
+      evaluate_lanes<Real, Turning>(job, pump, at, end - at, Store<Real>{job, at, end - at});
     return;
   }
   for (; at < end; at += kLanes) {
     const std::size_t used = end - at < kLanes ? end - at : kLanes;
-    evaluate_lanes<Real>(job, load_pumps<Real>(job, at, used), at, used,
-                         Store<Real>{job, at, used});
+    evaluate_lanes<Real, Turning>(job, load_pumps<Real>(job, at, used), at, used,
+                                  Store<Real>{job, at, used});
   }
 }
 
@@ -123,7 +136,7 @@ struct Collect {
 
 // Instants from `at` on past the caches, as many whole lines as there are before `end`; where it
 // ended.
-template <class Real>
+template <class Real, template <class> class Turning>
 BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, std::size_t end) {
   constexpr std::size_t kLanes = Register<Real>::kLanes;
   const auto pump_at = [&](std::size_t first) { return load_pumps<Real>(job, first, kLanes); };
@@ -132,9 +145,9 @@ BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, st
   if constexpr (kLanes == kDoublesPerLine) {
     for (; at + kLanes <= end; at += kLanes) {
       if (job.pumps == nullptr)
-        evaluate_lanes<Real>(job, one, at, kLanes, Stream<Real>{job, at});
+        evaluate_lanes<Real, Turning>(job, one, at, kLanes, Stream<Real>{job, at});
       else
-        evaluate_lanes<Real>(job, pump_at(at), at, kLanes, Stream<Real>{job, at});
+        evaluate_lanes<Real, Turning>(job, pump_at(at), at, kLanes, Stream<Real>{job, at});
     }
   } else {
     const int reactions = kReactionsEnd.per_piston * job.common.pistons + kReactionsEnd.single;
@@ -145,9 +158,9 @@ BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, st
       for (std::size_t part = 0; part < kDoublesPerLine; part += kLanes) {
         const Collect<Real> collect = {lines, part};
         if (job.pumps == nullptr)
-          evaluate_lanes<Real>(job, one, at + part, kLanes, collect);
+          evaluate_lanes<Real, Turning>(job, one, at + part, kLanes, collect);
         else
-          evaluate_lanes<Real>(job, pump_at(at + part), at + part, kLanes, collect);
+          evaluate_lanes<Real, Turning>(job, pump_at(at + part), at + part, kLanes, collect);
       }
       for (int c = 0; c < reactions; ++c) {
         double* const column = job.outputs[c];
@@ -160,15 +173,24 @@ BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, st
   return at;
 }
 
-template <class Real>
-void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
+// Apart from each other: what one kind of motion needs costs the other no register.
+template <class Real, template <class> class Turning>
+[[gnu::noinline]] void run_turning(const BatchJob& job, std::size_t begin, std::size_t end) {
   if constexpr (Register<Real>::kStreams) {
     if (job.stream) {
-      begin = stream_lines<Real>(job, begin, end);
+      begin = stream_lines<Real, Turning>(job, begin, end);
       Register<Real>::stream_done();
     }
   }
-  store_lanes<Real>(job, begin, end);
+  store_lanes<Real, Turning>(job, begin, end);
+}
+
+template <class Real>
+void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
+  if (job.free)
+    run_turning<Real, closed_form::FreeState>(job, begin, end);
+  else
+    run_turning<Real, closed_form::State>(job, begin, end);
 }
 
 }  // namespace bentaxis::analytic

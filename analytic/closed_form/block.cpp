@@ -12,6 +12,7 @@ void prepare(const PumpParameters& pump, const PistonNumbers<double>& piston,
   p.inertia = block.axial_inertia;
   p.viscous = pump.friction.block_viscous;
   p.pin_z = block.pin_z;
+  p.contact = ring_contact(pump) / pump.geometry.piston_length;
 }
 
 }  // namespace bentaxis::analytic::closed_form

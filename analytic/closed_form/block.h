@@ -12,10 +12,17 @@ struct BlockNumbers {
   T bottom_area;
   T force_y, force_z, moment_x;  // weight and spring, about O2, in S2
   T inertia, viscous, pin_z;
+  T contact;  // s_C / b1
 };
 
 void prepare(const PumpParameters& pump, const PistonNumbers<double>& piston,
              BlockNumbers<double>& p);
+
+/// C, the point of a piston's axis where the bore force acts (32), from O2.
+template <class Par, class Real>
+BENTAXIS_INLINE Vec3<Real> contact_point(const BlockNumbers<Par>& p, const PistonMotion<Real>& m) {
+  return m.joint + p.contact * m.axis;
+}
 
 /// Sums over the pistons.
 template <class Real>
@@ -29,20 +36,21 @@ BENTAXIS_INLINE void add_piston(const BlockNumbers<Par>& p, const PistonMotion<R
                                 const PistonForces<Real>& f, const Real& friction,
                                 const Real& pressure, BlockLoad<Real>& load) {
   const Vec3<Real> ring = m.joint + m.axis;
+  const Vec3<Real> contact = contact_point(p, m);
   const Real push = p.bottom_area * pressure - friction;
   load.bore_x = load.bore_x + f.rc_x;
   load.bore_y = load.bore_y + f.rc_y;
   load.axial = load.axial + push;
-  load.moment.x = load.moment.x + (ring.z * f.rc_y + ring.y * push);
-  load.moment.y = load.moment.y - (ring.z * f.rc_x + ring.x * push);
-  load.moment.z = load.moment.z + (ring.y * f.rc_x - ring.x * f.rc_y);
+  load.moment.x = load.moment.x + (contact.z * f.rc_y + ring.y * push);
+  load.moment.y = load.moment.y - (contact.z * f.rc_x + ring.x * push);
+  load.moment.z = load.moment.z + (contact.y * f.rc_x - contact.x * f.rc_y);
 }
 
-/// Torque about z2 that must carry the block round (57).
+/// Torque about z2 that must carry the block round (57), at its speed and acceleration.
 template <class Par, class Real>
 BENTAXIS_INLINE Real carrying_torque(const BlockNumbers<Par>& p, const BlockLoad<Real>& load,
-                                     const Real& omega, const Real& omega_dot) {
-  return p.inertia * omega_dot + p.viscous * omega - load.moment.z;
+                                     const Real& speed, const Real& acceleration) {
+  return p.inertia * acceleration + p.viscous * speed - load.moment.z;
 }
 
 /// Force on the block and moment about x2 and y2 at O2.

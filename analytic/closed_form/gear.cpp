@@ -1,5 +1,6 @@
 #include "closed_form/gear.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bentaxis::analytic::closed_form {
@@ -19,6 +20,20 @@ void prepare(const PumpParameters& pump, GearNumbers<double>& p) {
   p.line_y2 = -p.line_y1;
   p.line_z2 = p.line_z1;
   p.inverse_arm = 1 / (radius * cos_p);
+  p.two_flanks = pump.gear.flanks == Flanks::two ? 1 : 0;
+}
+
+double ToothLaw::flank(double approach, double speed) const {
+  if (!(approach > 0)) return 0;
+  const double spring = stiffness * kToothApproach * std::pow(approach / kToothApproach, exponent);
+  return std::max(0.0, spring * (1 + dissipation * speed));
+}
+
+std::optional<ToothLaw> tooth_law(const Gear& gear) {
+  if (!gear.compliance) return {};
+  const ToothCompliance& c = *gear.compliance;
+  return ToothLaw{gear.pitch_diameter / 2 * std::cos(gear.pressure_angle), c.backlash / 2,
+                  c.stiffness, c.exponent, c.dissipation};
 }
 
 }  // namespace bentaxis::analytic::closed_form

@@ -16,6 +16,7 @@ void prepare(const Geometry& g, const FrameNumbers<double>& frame, PistonNumbers
   // Rd - Ra cos(alpha), without the cancellation that cos(alpha) next to 1 brings.
   const double half = std::sin(g.tilt / 2);
   p.projected = p.difference + 2 * g.joint_circle_radius * half * half;
+  p.bore_radius = g.bore_circle_radius;
   p.length_squared = g.piston_length * g.piston_length;
   p.area = kPi / 4 * g.bore_diameter * g.bore_diameter;
 }
@@ -27,6 +28,7 @@ void prepare(const PumpParameters& pump, PistonInertia inertia, const FrameNumbe
   p.gravity_y = -pump.gravity * frame.cos_tilt;
   p.gravity_z = -pump.gravity * frame.sin_tilt;
   p.mass = pump.piston.mass;
+  p.inverse_lever = pump.geometry.piston_length / ring_contact(pump);
   p.spin_momentum = 0;
   const double length = pump.geometry.piston_length;
   if (inertia == PistonInertia::lumped) {

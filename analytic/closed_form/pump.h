@@ -8,6 +8,7 @@
 #include "closed_form/gear.h"
 #include "closed_form/piston.h"
 #include "closed_form/shaft.h"
+#include "closed_form/state.h"
 
 namespace bentaxis::analytic::closed_form {
 
@@ -31,14 +32,6 @@ struct Common {
   const double* phase_cos = nullptr;
   bool imposed = false;  ///< block speed imposed: no tooth force
   FrictionLaw friction;
-};
-
-/// Instant without the chamber pressures.
-template <class Real>
-struct State {
-  Real sine, cosine;  // of theta
-  Real omega, omega_dot;
-  Real suction, delivery;
 };
 
 }  // namespace bentaxis::analytic::closed_form

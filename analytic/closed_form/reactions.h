@@ -28,8 +28,9 @@ BENTAXIS_INLINE void put_all(const Put& put, int pistons, int piston, const Real
 /// @param put       put(column, value): result, in the columns of ChannelLayout; Rcs is not put
 ///                  where the block speed is imposed
 /// @param bodies    false: pistons only
-template <class Par, class Real, class Pressure, class Put>
-BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const State<Real>& t,
+/// @param t         State, or FreeState of a block that moves on its own
+template <class Real, class Par, class Turning, class Pressure, class Put>
+BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const Turning& t,
                                bool bodies, const Pressure& pressure, const Put& put) {
   using Q = Quantity;
   const int n = common.pistons;
@@ -42,11 +43,11 @@ BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const S
     const Real s = t.sine * pc - t.cosine * ps;
     const Real c = t.cosine * pc + t.sine * ps;
     const Real chamber = pressure(k);
-    const PistonMotion<Real> m = piston_motion(p.frame, p.piston, s, c);
+    const PistonMotion<Real> m = piston_motion(p.frame, p.piston, t, s, c);
     const Real friction =
-        friction_force(common.friction, p.friction, m.ring_velocity(t.omega), t.omega);
+        friction_force(common.friction, p.friction, m.ring_velocity(t.rate()), t.omega);
     const PistonForces<Real> f =
-        piston_forces(p.piston, m, t.omega, t.omega_dot, friction, chamber);
+        piston_forces(p.piston, m, t.rate(), t.rate_dot(), friction, chamber);
     put_all<Q::Rs>(put, n, k, f.rs.x, f.rs.y, f.rs.z);
     put_all<Q::Rc>(put, n, k, f.rc_x, f.rc_y);
     if (!bodies) continue;
@@ -57,9 +58,10 @@ BENTAXIS_INLINE void reactions(const Common& common, const Pump<Par>& p, const S
 
   BlockBalance<Real> balance = block_balance(p.block, on_block);
   add_lands(p.film, t.delivery, t.suction, balance);
-  Real tooth = zero;  // along k4 for omega >= 0, on the block
+  Real tooth = zero;  // on the block, positive towards +psi
   if (!common.imposed) {
-    tooth = carrying_torque(p.block, on_block, t.omega, t.omega_dot) * p.gear.inverse_arm;
+    tooth = carrying_torque(p.block, on_block, t.block_speed(), t.block_acceleration()) *
+            p.gear.inverse_arm;
     put_all<Q::Rcs>(put, n, 0, Math<Real>::direction(t.omega) * tooth);
     const ToothForce<Real> carried = tooth_on_block(p.gear, tooth);
     balance.force = balance.force + carried.force;

@@ -9,6 +9,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/worst.h"
+#include "integration/integrators.h"
 #include "placement/placement.h"
 #include "reactions/channels.h"
 #include "reactions/solver_guard.h"
@@ -22,36 +23,6 @@ namespace {
 // Within a segment between edges the pressure is evaluated at least this far inside, degrees:
 // beyond the tolerance within which an angle counts as on an edge.
 constexpr double kInsideEdge = 2e-9;
-
-std::unique_ptr<SimTK::Integrator> make_integrator(const SimTK::MultibodySystem& system,
-                                                   const IntegrationOptions& options) {
-  std::unique_ptr<SimTK::Integrator> integrator;
-  switch (options.integrator) {
-    case Integrator::runge_kutta_merson:
-      integrator = std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system);
-      break;
-    case Integrator::runge_kutta_feldberg:
-      integrator = std::make_unique<SimTK::RungeKuttaFeldbergIntegrator>(system);
-      break;
-    case Integrator::runge_kutta_3:
-      integrator = std::make_unique<SimTK::RungeKutta3Integrator>(system);
-      break;
-    case Integrator::verlet:
-      integrator = std::make_unique<SimTK::VerletIntegrator>(system);
-      break;
-    case Integrator::semi_explicit_euler:
-      integrator = std::make_unique<SimTK::SemiExplicitEuler2Integrator>(system);
-      break;
-    case Integrator::cpodes:
-      integrator = std::make_unique<SimTK::CPodesIntegrator>(system, SimTK::CPodes::BDF);
-      break;
-  }
-  integrator->setAccuracy(options.accuracy);
-  integrator->setConstraintTolerance(options.accuracy / 10);
-  // Reports between steps would be interpolated, at the cost of far larger errors.
-  integrator->setAllowInterpolation(false);
-  return integrator;
-}
 
 // Distances |theta| at which the loads have an edge: pressure edges of every piston, and its dead
 // centres where dry friction changes sign without a transition.
@@ -77,12 +48,6 @@ std::vector<double> edge_distances(const Case& the_case, const Assumptions& assu
 
 }  // namespace
 
-std::pair<int, int> method_orders(Integrator kind) {
-  const SimTK::MultibodySystem nothing;
-  const auto integrator = make_integrator(nothing, {kind});
-  return {integrator->getMethodMinOrder(), integrator->getMethodMaxOrder()};
-}
-
 TimeRun::TimeRun(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                  const PressureTrace& pressure, const IntegrationOptions& options, Drive drive)
     : samples_(samples),
@@ -99,7 +64,8 @@ TimeRun::TimeRun(const Case& the_case, const Assumptions& assumptions, const Sam
   edges_ = edge_distances(the_case, assumptions, pressure, end);
   system_.require_piston_inertia();
   Placement placement(system_);
-  placement.assemble(0, samples.omega);
+  const AxisMotion start{0, samples.omega, 0};
+  placement.assemble(start, start);
   placement.copy_assembly_to_dynamics();
   start_ = system_.dynamics().getTime();
   enter_segment(0);
@@ -143,11 +109,15 @@ void TimeRun::read(std::size_t row, const ChannelLayout& layout, std::vector<dou
   state.updQ() = integrator_->getState().getQ();
   state.updU() = integrator_->getState().getU();
   auto in_segment = std::move(system_.inputs().chamber_pressure);
-  system_.inputs().chamber_pressure = [&](double, std::vector<double>& p) { p = pressure; };
-  system_.system().realize(state, Stage::Acceleration);
+  system_.inputs().chamber_pressure = [&](double, double, std::vector<double>& p) { p = pressure; };
+  realize_with_flank(system_, state);
   system_.inputs().chamber_pressure = std::move(in_segment);
   require_accurate_forces(estimated_force_error(system_, state), radians(samples_.theta_deg[row]));
-  read_channels(system_, state, {state, samples_.omega}, 0, pressure, layout, values);
+  // The block is locked to the shaft; how far it drifts is told apart.
+  const AxisMotion turning{0, state.getU()[system_.bodies().shaft.getFirstUIndex(state) + 2], 0};
+  read_channels(system_, state, {state, samples_.omega}, {turning, turning}, pressure, layout,
+                values);
+  if (system_.has_gear()) system_.gear().setting().negative = false;
 }
 
 void TimeRun::advance_to(double distance) {
@@ -180,7 +150,7 @@ void TimeRun::enter_segment(double from) {
   low_ = from + kInsideEdge;
   while (next_edge_ < edges_.size() && edges_[next_edge_] <= from + kInsideEdge) ++next_edge_;
   high_ = (next_edge_ < edges_.size() ? edges_[next_edge_] : from + 360.0) - kInsideEdge;
-  system_.inputs().chamber_pressure = [this](double theta, std::vector<double>& p) {
+  system_.inputs().chamber_pressure = [this](double theta, double, std::vector<double>& p) {
     const double angle = angle_in_segment(theta);
     for (int k = 1; k <= samples_.pistons; ++k)
       p[k - 1] = pressure_(piston_angle_deg(angle, k, samples_.pistons));

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,13 +37,19 @@ struct Varying {
   double all = 0;                ///< used where `each` is null
 };
 
-/// Instants of a batch; SI, as in an Instant whose block is locked to the shaft. Pressures are
-/// inputs: whoever calls has evaluated them.
+/// How a block turns that moves on its own.
+struct BlockMotion {
+  Varying psi, omega, omega_dot;
+};
+
+/// Instants of a batch; SI, as in an Instant. Pressures are inputs: whoever calls has evaluated
+/// them.
 struct BatchInstants {
   std::size_t count = 0;
   Varying theta, omega, omega_dot;
   std::span<const Varying> chamber_pressure;  ///< one per piston
   Varying suction, delivery;                  ///< port pressures
+  std::optional<BlockMotion> block = {};      ///< none: it is locked to the shaft
 };
 
 /// Where results go: one pointer per reaction in the order of ChannelLayout, to `count` doubles, or

@@ -11,6 +11,7 @@
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::analytic {
@@ -30,12 +31,13 @@ class Model {
   /// All reactions and the drive torque at an instant, by force and moment equilibrium of pistons
   /// (31)-(33), block (56), (57) and shaft (42), (43).
   ///
-  /// @param instant  motion of the shaft, to which the block is locked, and pressures; one pressure
-  ///                 per piston
+  /// @param instant  motion of shaft and block, and pressures; one pressure per piston. A block
+  ///                 that turns exactly as the shaft does takes the shorter algebra of (9)-(23).
   /// @param values   at least layout().reactions() long; SI, ordered by layout(). Rcs is
   ///                 not_computed() where the block speed is imposed.
   /// @throws InputError where the sizes are others
-  /// Allocates nothing. Many instants, or many pumps, at a time: batch.h.
+  /// Rcs follows from the block's balance, whatever a contact law would give. Allocates nothing.
+  /// Many instants, or many pumps, at a time: batch.h.
   void reactions(const Instant& instant, std::vector<double>& values) const;
 
   /// The same algebra with `long double` (64 bits of mantissa on x86): what reactions() loses to
@@ -43,7 +45,10 @@ class Model {
   void reactions(const Instant& instant, std::vector<long double>& values) const;
 
   /// Like reactions(), and the derived, input and check channels too: layout().size() values.
-  void evaluate(const Instant& instant, std::vector<double>& values) const;
+  /// power_residual is not_computed() where the block moves on its own and the shaft is at rest.
+  /// @param checks  where not null: what general motion is judged by
+  void evaluate(const Instant& instant, std::vector<double>& values,
+                MotionChecks* checks = nullptr) const;
 
   /// What would change if the other tooth flank carried where the model's separating force pulls
   /// the gears together: the part of the tooth force that pushes the gears apart is turned round.
@@ -69,10 +74,6 @@ class Model {
   struct Unchecked {};
   Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked);
 
-  struct PistonState;
-
-  PistonState piston_state(const Instant& instant, double sin_theta, double cos_theta, int k) const;
-
   PumpParameters pump_;
   ChannelLayout layout_;
   std::shared_ptr<const PreparedPump> prepared_;
@@ -82,5 +83,10 @@ class Model {
 /// @throws ComputationError where a value is not finite.
 ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                 const Progress& progress = {});
+
+/// Reactions at given states of a case's pump, as a table.
+/// @throws ComputationError where a value is not finite.
+MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
+                       const Progress& progress = {});
 
 }  // namespace bentaxis::analytic

@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/case.h"
+#include "bentaxis/pump/drive_spec.h"
 #include "bentaxis/pump/hydraulic_data.h"
 #include "bentaxis/pump/pressure.h"
+#include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis {
@@ -33,6 +36,22 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file);
 /// Reads the opening of a port: CSV with the header theta_deg,area_mm2, over the chamber's angle.
 /// @throws InputError naming file and line.
 OpeningTable read_opening_table(const std::filesystem::path& file);
+
+/// Reads what drives a shaft over time: CSV with the header time_s,speed_rpm or, for a torque,
+/// time_s,torque_Nm.
+/// @throws InputError naming file and line.
+TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind);
+
+/// Reads the motion of another simulator or a rig: CSV with theta_deg, psi_deg, theta_rpm, psi_rpm,
+/// theta_rad_per_s2, psi_rad_per_s2 and where there are any time_s, p_1_bar .. p_N_bar,
+/// suction_bar, delivery_bar, in any order. Pressures that it does not give are the case's, those
+/// of the chambers at the block's angle.
+/// @throws InputError naming file, line, column and value.
+States read_states(const std::filesystem::path& file, const Case& the_case,
+                   const PressureTrace& pressure);
+
+/// A table along a motion as CSV text: its states, then its channels.
+std::string to_csv(const MotionTable& table);
 
 /// The table as CSV text: theta_deg, then one column per channel; shortest text that reads back to
 /// the same double; not computed = empty.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/drive_spec.h"
 #include "bentaxis/pump/hydraulic_data.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/pump/pressure.h"
@@ -34,6 +35,7 @@ struct Case {
   Operation operation;
   PressureSpec pressure;
   std::optional<HydraulicData> hydraulics;  ///< present where pressure.kind is hydraulic
+  std::optional<DriveSpec> drive;           ///< what turns the shaft in time, of a simulation
   Assumptions analytic;                     ///< what the analytic model assumes in this case
   Assumptions multibody;                    ///< what the multibody model assumes
   std::string meant;                ///< reasons for doubtful values: "CODE: reason; CODE: reason"

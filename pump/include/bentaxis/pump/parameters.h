@@ -26,10 +26,37 @@ struct Geometry {
   double bore_diameter = 0;        ///< D_pi, m
 };
 
+/// Which flanks of the teeth carry.
+enum class Flanks {
+  one,  ///< one line of action for either sign of the force, as the paper prints it
+  two,  ///< that which is pushed: the separating part always pushes the gears apart
+};
+
+/// What lies between the teeth.
+enum class ToothContact {
+  rigid,      ///< nothing: in motion the block turns as the shaft does
+  compliant,  ///< flanks that give way, with backlash between them
+};
+
+/// Approach x0, m, at which the force of a compliant flank is stated.
+inline constexpr double kToothApproach = 1e-6;
+
+/// The contact law of compliant flanks: F = k x0 (x/x0)^e (1 + c x') while x > 0, never negative,
+/// with x the approach along the line of action (Hunt and Crossley 1975).
+struct ToothCompliance {
+  double stiffness = 0;    ///< k, N/m, at the approach x0
+  double exponent = 1;     ///< e
+  double dissipation = 0;  ///< c, s/m
+  double backlash = 0;     ///< j, m, along the line of action
+};
+
 /// Bevel gear pair with equal tooth counts that carries the block round (19)-(23).
 struct Gear {
   double pitch_diameter = 0;  ///< d = m Z, m
   double pressure_angle = 0;  ///< alpha_p, rad
+  ToothContact contact = ToothContact::rigid;
+  Flanks flanks = Flanks::one;
+  std::optional<ToothCompliance> compliance = {};  ///< there where the contact is compliant
 };
 
 /// Bearing centres on the shaft axis, z1 in m.
@@ -62,6 +89,7 @@ struct PistonMass {
   PistonInertia inertia = PistonInertia::lumped;
   double mass = 0;                   ///< m_pi, kg
   double joint_mass_fraction = 0.5;  ///< chi, share of the mass at A
+  std::optional<double> contact;     ///< s_C, m, from A to where the bore force acts; none: at B
   std::optional<Real> real;
 };
 

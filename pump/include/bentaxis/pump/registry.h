@@ -33,6 +33,7 @@ struct BasicView {
   Pointer<Operation> operation = nullptr;
   Pointer<PressureSpec> pressure = nullptr;
   Pointer<std::optional<HydraulicData>> hydraulics = nullptr;
+  Pointer<std::optional<DriveSpec>> drive = nullptr;
   Pointer<Assumptions> analytic = nullptr, multibody = nullptr;
   Pointer<std::string> meant = nullptr;
 
@@ -41,6 +42,15 @@ struct BasicView {
   Pointer<PortPlate> port_plate() const { return address(pump->port_plate); }
   Pointer<HydraulicData> hydraulic_data() const {
     return hydraulics == nullptr ? nullptr : address(*hydraulics);
+  }
+  Pointer<ToothCompliance> compliance() const { return address(pump->gear.compliance); }
+  Pointer<double> ring_contact() const { return address(pump->piston.contact); }
+  Pointer<DriveSpec> drive_spec() const { return drive == nullptr ? nullptr : address(*drive); }
+  Pointer<MotorData> motor() const {
+    return drive_spec() == nullptr ? nullptr : address(drive_spec()->motor);
+  }
+  Pointer<double> start_speed() const {
+    return drive_spec() == nullptr ? nullptr : address(drive_spec()->start_speed);
   }
 
  private:
@@ -101,11 +111,12 @@ struct ChoiceField {
 struct PairField {
   Access<double> first, second;
 };
-/// A CSV file with the points of a curve, relative to the case file: the opening of a port, or
-/// where `opening` is null the chamber pressure. An empty name: none.
+/// A CSV file with the points of a curve, relative to the case file: the opening of a port, what
+/// drives the shaft over time, or where both are null the chamber pressure. An empty name: none.
 struct CurveField {
   Access<std::filesystem::path> file;
   OpeningTable* (*opening)(const View&) = nullptr;
+  DriveSpec* (*drive)(const View&) = nullptr;
 };
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;
