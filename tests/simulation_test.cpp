@@ -374,6 +374,21 @@ TEST(Simulation, WhatCannotBeSimulatedIsRefusedByName) {
   EXPECT_NE(refusal(the_case).find("imposed"), std::string::npos);
 }
 
+// Keys of a motor beside a torque, and of compliant teeth beside rigid ones, are read and unused.
+TEST(Simulation, DataOfOtherKindsAreUnused) {
+  Case the_case = motion_case("constant_torque");
+  the_case.drive->duration = 0.01;
+  const Trajectory plain = run(the_case);
+  const Case other = motion_case("motor_driven");
+  the_case.drive->motor = other.drive->motor;
+  the_case.pump.gear.compliance = other.pump.gear.compliance;
+  const Trajectory with = run(the_case);
+  EXPECT_EQ(with.table.states, plain.table.states);
+  EXPECT_EQ(with.record.kinetic_energy_gained, plain.record.kinetic_energy_gained);
+  EXPECT_EQ(with.record.worst_work_residual, plain.record.worst_work_residual);
+  EXPECT_FALSE(is_computed(with.table.results.at(0, with.table.results.find("Rcs_law_N"))));
+}
+
 // ---- any pump ----------------------------------------------------------------------------------
 
 TEST(Simulation, AnyPumpBalancesItsWork) {

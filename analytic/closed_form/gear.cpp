@@ -30,7 +30,7 @@ double ToothLaw::flank(double approach, double speed) const {
 }
 
 std::optional<ToothLaw> tooth_law(const Gear& gear) {
-  if (!gear.compliance) return {};
+  if (gear.contact != ToothContact::compliant || !gear.compliance) return {};
   const ToothCompliance& c = *gear.compliance;
   return ToothLaw{gear.pitch_diameter / 2 * std::cos(gear.pressure_angle), c.backlash / 2,
                   c.stiffness, c.exponent, c.dissipation};

@@ -126,7 +126,7 @@ State Equations::scales() const {
     scale[kLag] = std::min(kAngle, tooth_scale_ * arm_ / stiffness);
     scale[kLagRate] = scale[kLag] * std::sqrt(stiffness / reduced);
   }
-  if (drive_.motor) {
+  if (drive_.kind == DriveKind::motor) {
     const MotorData& motor = *drive_.motor;
     const double stiffness = motor.coupling_stiffness;
     scale[kTwist] = std::min(kAngle, torque_scale_ / stiffness);
@@ -254,7 +254,7 @@ void Equations::rates(double time, const State& y, State& dy) {
     }
     dy[kImpulse] = std::abs(m.tooth_force);
   }
-  if (drive_.motor) {
+  if (drive_.kind == DriveKind::motor) {
     const MotorData& motor = *drive_.motor;
     const double rotor_speed = shaft_speed + y[kTwistRate];
     const double torque = drive_.torque - motor.torque_slope * (rotor_speed - omega_);
@@ -282,7 +282,7 @@ double Equations::kinetic_energy(double time, const State& y) {
   const double psi = instant_.block.speed;
   double energy =
       (shaft * theta * theta + 2 * mixed * theta * psi + block * psi * psi) / 2 / probe_;
-  if (drive_.motor) energy += drive_.motor->rotor_inertia * std::pow(theta + y[kTwistRate], 2) / 2;
+  if (drive_.kind == DriveKind::motor) energy += drive_.motor->rotor_inertia * std::pow(theta + y[kTwistRate], 2) / 2;
   return energy;
 }
 
@@ -293,7 +293,7 @@ double Equations::potential_energy(const State& y) const {
       const double x = approach(y, flank);
       if (x > 0) energy += spring_force(x) * x / (law_->exponent + 1);
     }
-  if (drive_.motor) energy += drive_.motor->coupling_stiffness * y[kTwist] * y[kTwist] / 2;
+  if (drive_.kind == DriveKind::motor) energy += drive_.motor->coupling_stiffness * y[kTwist] * y[kTwist] / 2;
   return energy;
 }
 
