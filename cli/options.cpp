@@ -64,7 +64,7 @@ void RunChoice::add_to(CommandParser command, bool several) {
                  "integrated (in time, over the case's revolutions)");
   command.choice("--scene", scene.scene, multibody::scene_names(),
                  "multibody, driven: what is built; what a scene does not compute stays empty");
-  command.choice("--reactions", scene.method, multibody::method_names(),
+  command.choice("--reactions", method_, multibody::method_names(),
                  "multibody, driven: by forward dynamics and its multipliers, or by inverse "
                  "dynamics (faster; serves massless pistons too)");
   command
@@ -126,6 +126,7 @@ multibody::SceneChoice RunChoice::scene_for(const Case& the_case) const {
   const ChannelLayout layout(the_case.pump.geometry.pistons);
   const study::ChannelChoice wanted = channels();
   multibody::SceneChoice choice = scene;
+  if (given("--reactions")) choice.method = method_;
   if (way == study::Way::integrated) {
     wanted.of(layout);  // refuses unknown names
     return choice;

@@ -59,6 +59,7 @@ class RunChoice {
 
   std::optional<CommandParser> command_;
   std::vector<std::string> channels_;
+  multibody::Method method_ = multibody::Method::multipliers;  // of --reactions
   double error_ = 0;
 };
 

@@ -48,7 +48,8 @@ bool one_stands_for_all(const Samples& samples) {
 }  // namespace
 
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
-                       const Progress& progress, Scene scene, Method method, ResultTable* budget) {
+                       const Progress& progress, Scene scene, std::optional<Method> method,
+                       ResultTable* budget) {
   validate(the_case);
   if (samples.pistons != the_case.pump.geometry.pistons)
     throw InputError("driven run: samples of " + std::to_string(samples.pistons) +

@@ -10,6 +10,7 @@
 #include "bentaxis/results/worst.h"
 #include "integration/time_run.h"
 #include "reactions/solver_guard.h"
+#include "scene_facts.h"
 
 namespace bentaxis::multibody {
 
@@ -20,6 +21,7 @@ void check(const Case& the_case, const Samples& samples) {
   if (samples.pistons != the_case.pump.geometry.pistons)
     throw InputError("integrated run: samples of " + std::to_string(samples.pistons) +
                      " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
+  refuse_ring_off_b(the_case.pump);
   if (the_case.operation.speed_rpm == 0)
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = 0: an integrated run needs a speed other than 0 "

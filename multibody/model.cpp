@@ -14,6 +14,7 @@
 #include "reactions/budget.h"
 #include "reactions/channels.h"
 #include "reactions/inverse_dynamics.h"
+#include "reactions/motion_checks.h"
 #include "reactions/reactions.h"
 #include "reactions/solver_guard.h"
 #include "scene/pump_system.h"
@@ -23,30 +24,40 @@ namespace bentaxis::multibody {
 
 using SimTK::Stage;
 
+namespace {
+
+// The one-piston scene turned so that its piston stands where piston k + 1 of n does.
+AxisMotion turned_back(const AxisMotion& motion, int k, int n) {
+  return {motion.angle - 2 * kPi * k / n, motion.speed, motion.acceleration};
+}
+
+}  // namespace
+
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
-                 Scene the_scene, Method the_method)
+                 Scene the_scene, std::optional<Method> asked)
       : layout(validate(pump).geometry.pistons),
         scene(the_scene),
-        method(the_method),
+        method(method_for(pump, asked)),
+        method_is_given(asked.has_value()),
         parameters(pump),
         system(built_pump(pump, the_scene), assumptions, omega_sign, drive_of(the_scene)),
         placement(system),
-        inverse_dynamics(system, placement),
-        sign(omega_sign < 0 ? -1 : 1) {
+        inverse_dynamics(system, placement) {
     system.inputs().chamber_pressure = [this](double, std::vector<double>& p) { p = pressure; };
     if (method == Method::multipliers) system.require_piston_inertia();
   }
 
   void check(const Instant& instant) const;
   void require_sizes(const Instant& instant, const std::vector<double>& values) const;
-  void evaluate(const Instant& instant, std::vector<double>& values);
-  void place_and_solve(double theta, const Instant& instant);
+  void evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks);
+  void place_and_solve(const AxisMotion& shaft, const AxisMotion& block, const Instant& instant);
   void check_rank();
 
   ChannelLayout layout;
   Scene scene;
   Method method;
+  bool method_is_given;
   PumpParameters parameters;
   PumpSystem system;
   Placement placement;
@@ -54,14 +65,14 @@ struct Model::Implementation {
   Reactions reactions;
   Reactions by_inverse_dynamics;  // what the multipliers are held to
   std::vector<double> pressure;
+  SimTK::Vector accelerations;
   Rank rank;
   long placements = 0;
   double worst_difference = 0;  // of multipliers from inverse dynamics, of the largest force
-  double sign;
 };
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
-             Scene scene, Method method) {
+             Scene scene, std::optional<Method> method) {
   translate_simbody_errors([&] {
     implementation_ =
         std::make_unique<Implementation>(pump, assumptions, omega_sign, scene, method);
@@ -74,12 +85,12 @@ Model& Model::operator=(Model&&) noexcept = default;
 const ChannelLayout& Model::layout() const { return implementation_->layout; }
 
 void Model::Implementation::check(const Instant& instant) const {
-  require_locked(instant, "multibody");
   if (scene != Scene::full) return;
-  if (instant.shaft.speed * sign < 0)
-    throw InputError("multibody model: built for the other direction of rotation");
-  if (instant.shaft.acceleration != 0 &&
-      !(system.pump().shaft.axial_inertia > 0 && system.pump().block.axial_inertia > 0))
+  const auto lacks = [](double acceleration, double inertia) {
+    return acceleration != 0 && !(inertia > 0);
+  };
+  if (lacks(instant.shaft.acceleration, system.pump().shaft.axial_inertia) ||
+      lacks(instant.block.acceleration, system.pump().block.axial_inertia))
     throw InputError("multibody model: changing speed needs axial inertias above 0");
 }
 
@@ -102,25 +113,30 @@ void Model::Implementation::check_rank() {
                            ": reactions cannot be told apart");
 }
 
-// Finds the reactions at an angle under the pressures in `pressure`.
-void Model::Implementation::place_and_solve(double theta, const Instant& instant) {
+// Finds the reactions at a motion of shaft and block under the pressures in `pressure`.
+void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisMotion& block,
+                                            const Instant& instant) {
   system.inputs().ports = instant.ports;
   // At standstill the pistons' velocities are round-off of the projection, with any sign.
-  system.inputs().rest_speed = instant.shaft.speed == 0
+  system.inputs().rest_speed = shaft.speed == 0 && block.speed == 0
                                    ? std::numeric_limits<double>::infinity()
-                                   : rest_speed_at(system.pump().geometry, instant.shaft.speed);
+                                   : rest_speed_at(system.pump().geometry, shaft.speed);
   ++placements;
-  placement.place(theta, instant.shaft.speed, instant.shaft.acceleration);
+  placement.place(shaft, block);
   SimTK::State& state = system.dynamics();
   if (method == Method::multipliers) {
-    if (scene == Scene::full) system.drive().set_acceleration(state, instant.shaft.acceleration);
-    system.system().realize(state, Stage::Acceleration);
+    if (scene == Scene::full) {
+      system.drive().set_acceleration(state, shaft.acceleration);
+      if (system.has_gear())
+        system.gear().setting().relative_acceleration = block.acceleration - shaft.acceleration;
+    }
+    realize_with_flank(system, state);
     check_rank();
     reactions_from_multipliers(system, state, reactions);
     inverse_dynamics.solve(by_inverse_dynamics);
     const double difference = force_difference(system, reactions, by_inverse_dynamics);
     require_agreement(
-        difference, [&] { return estimated_force_error(system, state); }, theta);
+        difference, [&] { return estimated_force_error(system, state); }, shaft.angle);
     keep_worst(worst_difference, difference);
   } else {
     inverse_dynamics.solve(reactions);
@@ -128,34 +144,46 @@ void Model::Implementation::place_and_solve(double theta, const Instant& instant
   }
 }
 
-void Model::Implementation::evaluate(const Instant& instant, std::vector<double>& values) {
+void Model::Implementation::evaluate(const Instant& instant, std::vector<double>& values,
+                                     MotionChecks* checks) {
   check(instant);
   const int n = layout.pistons();
   if (scene == Scene::piston) {
     for (int k = 0; k < n; ++k) {
       pressure.assign(1, instant.chamber_pressure[k]);
-      place_and_solve(instant.shaft.angle - 2 * kPi * k / n, instant);
+      place_and_solve(turned_back(instant.shaft, k, n), turned_back(instant.block, k, n), instant);
       read_piston_channels(system, reactions, 0, k, instant.chamber_pressure[k], layout, values);
     }
     return;
   }
   pressure = instant.chamber_pressure;
-  place_and_solve(instant.shaft.angle, instant);
+  place_and_solve(instant.shaft, instant.block, instant);
   const SimTK::State& state = system.dynamics();
   for (int k = 0; k < n; ++k)
     read_piston_channels(system, reactions, k, k, instant.chamber_pressure[k], layout, values);
   if (scene != Scene::full) return;
   // At standstill the power balance is taken with a virtual turn of 1 rad/s.
-  if (instant.shaft.speed == 0) placement.assemble(instant.shaft.angle, 1);
-  const WorkRate rate = instant.shaft.speed == 0 ? WorkRate{system.assembly(), 1}
-                                                 : WorkRate{state, instant.shaft.speed};
-  read_pump_channels(system, state, reactions, rate, instant.shaft.acceleration, pressure, layout,
-                     values);
+  const bool stands = instant.locked() && instant.shaft.speed == 0;
+  if (stands) placement.assemble({instant.shaft.angle, 1, 0}, {instant.block.angle, 1, 0});
+  const WorkRate rate =
+      stands ? WorkRate{system.assembly(), 1} : WorkRate{state, instant.shaft.speed};
+  read_pump_channels(system, state, reactions, rate, {instant.shaft, instant.block}, pressure,
+                     layout, values);
+  if (instant.locked() && checks == nullptr) return;
+  system.system().realize(state, Stage::Dynamics);
+  placement.constrained_accelerations(accelerations);
+  const MotionChecks found = motion_checks(system, state, reactions, accelerations,
+                                           instant.shaft.angle - instant.block.angle);
+  if (checks != nullptr) *checks = found;
+  if (!instant.locked())
+    values[layout.power_residual()] =
+        instant.shaft.speed == 0 ? not_computed() : found.power_balance / instant.shaft.speed;
 }
 
-void Model::evaluate(const Instant& instant, std::vector<double>& values) {
+void Model::evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks) {
   implementation_->require_sizes(instant, values);
-  translate_simbody_errors([&] { implementation_->evaluate(instant, values); });
+  if (checks != nullptr) *checks = {not_computed(), not_computed(), not_computed()};
+  translate_simbody_errors([&] { implementation_->evaluate(instant, values, checks); });
 }
 
 void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
@@ -166,7 +194,7 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   translate_simbody_errors([&] {
     self.check(instant);
     self.pressure.assign(1, instant.chamber_pressure[0]);
-    self.place_and_solve(instant.shaft.angle, instant);
+    self.place_and_solve(instant.shaft, instant.block, instant);
     read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
                          self.layout, values);
   });
@@ -194,6 +222,11 @@ Provenance Model::provenance() const {
                            ? "accelerations and reactions solved together"
                            : "accelerations too, reactions by inverse dynamics") +
            ", no time integration"});
+  if (!self.system.contact_at_b())
+    facts.emplace_back("bore forces",
+                       "act off B and do work on the play between pistons and bores, as no ideal "
+                       "constraint can: found by inverse dynamics" +
+                           std::string(self.method_is_given ? "" : ", chosen for that"));
   facts.emplace_back("mobilities", std::to_string(self.rank.mobilities));
   facts.emplace_back("constraint equations", std::to_string(self.rank.equations));
   facts.emplace_back("rank of the constraint matrix", std::to_string(self.rank.rank));

@@ -4,6 +4,8 @@
 
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/multibody/versions.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
 #include "scene/pump_system.h"
 
@@ -22,6 +24,36 @@ PumpParameters built_pump(const PumpParameters& pump, Scene scene) {
 const std::vector<std::string>& scene_names() {
   static const std::vector<std::string> names = {"full", "pistons", "piston"};
   return names;
+}
+
+bool has_ring_off_b(const PumpParameters& pump) {
+  return pump.piston.contact && *pump.piston.contact != pump.geometry.piston_length;
+}
+
+namespace {
+
+std::string ring_contact_text(const PumpParameters& pump) {
+  const auto mm = [](double metres) { return number_text(metres * 1e3); };
+  return "multibody model: [piston] contact_mm = " + mm(*pump.piston.contact) +
+         " is not piston_length_mm = " + mm(pump.geometry.piston_length) +
+         ": the bores' forces do work, which Simbody's ideal constraints cannot; ";
+}
+
+}  // namespace
+
+void refuse_ring_off_b(const PumpParameters& pump) {
+  if (has_ring_off_b(pump))
+    throw InputError(ring_contact_text(pump) +
+                     "it is not integrated in time, only evaluated at given motion (run --way "
+                     "driven, run --states), or use the analytic model");
+}
+
+Method method_for(const PumpParameters& pump, std::optional<Method> asked) {
+  if (!has_ring_off_b(pump)) return asked.value_or(Method::multipliers);
+  if (asked == Method::multipliers)
+    throw InputError(ring_contact_text(pump) +
+                     "no multipliers are such forces: use --reactions residual");
+  return Method::residual;
 }
 
 const std::vector<std::string>& method_names() {

@@ -10,6 +10,9 @@ namespace bentaxis::multibody {
 /// What turns the shaft in a scene that is evaluated at instants.
 Drive drive_of(Scene scene);
 
+/// @throws InputError where the bores' forces act off B: no integration serves such a pump.
+void refuse_ring_off_b(const PumpParameters& pump);
+
 /// The pump that is built: the one-piston scene is the scene of a pump with one piston.
 PumpParameters built_pump(const PumpParameters& pump, Scene scene);
 

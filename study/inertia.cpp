@@ -123,7 +123,7 @@ InertiaRun run_both_pistons(const Case& the_case, double speed_rpm, bool loaded,
     if (!by_multipliers) run.by_inverse_dynamics.push_back(inertia);
     return multibody::run_driven(
         at, with(at.analytic, inertia), samples, progress, scene,
-        by_multipliers ? multibody::Method::multipliers : multibody::Method::residual);
+        by_multipliers ? std::nullopt : std::optional(multibody::Method::residual));
   };
   run.analytic_lumped = analytic::run(at, with(at.analytic, PistonInertia::lumped), samples);
   run.analytic_real = analytic::run(at, with(at.analytic, PistonInertia::real), samples);
@@ -350,7 +350,8 @@ std::vector<SceneCost> scene_costs(const Case& the_case) {
       const auto scene = static_cast<multibody::Scene>(s);
       const auto method = static_cast<multibody::Method>(m);
       if (method == multibody::Method::multipliers &&
-          !multibody::has_equation_of_motion(the_case.pump, PistonInertia::real))
+          (multibody::has_ring_off_b(the_case.pump) ||
+           !multibody::has_equation_of_motion(the_case.pump, PistonInertia::real)))
         continue;
       multibody::Model model(the_case.pump, assumptions, samples.omega, scene, method);
       std::vector<double> values(model.layout().size());

@@ -88,7 +88,7 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
       "the multibody model's reactions are known to these shares of their peaks only: {} (what "
       "moving every input by one unit in the last place changes); {}",
       groups,
-      scene.method == multibody::Method::multipliers
+      multibody::method_for(the_case.pump, scene.method) == multibody::Method::multipliers
           ? "Simbody's constraint multipliers may be the cause: try --reactions residual"
           : "the analytic model loses less")};
 }

@@ -25,7 +25,7 @@ void check(const RunOptions& options) {
   if (options.target && !integrated)
     throw InputError("only an integrated run of the multibody model has an error to choose");
   if (integrated && (options.scene.scene != multibody::Scene::full ||
-                     options.scene.method != multibody::Method::multipliers))
+                     options.scene.method == multibody::Method::residual))
     throw InputError(
         "scenes and ways to find reactions are for driven runs: an integrated run is of the full "
         "pump, by its equations of motion");

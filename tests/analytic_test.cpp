@@ -85,7 +85,8 @@ TEST(PrintedTwin, AgreesOnRandomPumpsAndChangingSpeed) {
 PumpParameters plain_pump(int pistons) {
   PumpParameters p;
   p.geometry = {pistons, radians(30), 0.03, 0.027, 0.0, 0.05, 0.02};
-  p.gear = {0.1, radians(20)};
+  p.gear.pitch_diameter = 0.1;
+  p.gear.pressure_angle = radians(20);
   p.bearings = {-0.03, -0.08};
   p.gravity = 0;
   return p;

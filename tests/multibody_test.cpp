@@ -93,25 +93,6 @@ TEST(DrivenModel, DoesNotDependOnTheOrderOfCalls) {
     EXPECT_NEAR(a[c], b[c], scaled(1e-8)) << fresh.layout().channels()[c].name;  // N of 1e4
 }
 
-TEST(DrivenModel, RefusesABlockThatMovesOnItsOwn) {
-  const Case the_case = reference_case("bap63_rated");
-  const auto refused =
-      testing::ThrowsMessage<InputError>(testing::HasSubstr("the block moves on its own"));
-  for (const auto scene : {multibody::Scene::full, multibody::Scene::piston}) {
-    multibody::Model model(the_case.pump, the_case.multibody, 1, scene);
-    std::vector<double> values(model.layout().size());
-    for (const auto part : {&AxisMotion::angle, &AxisMotion::speed, &AxisMotion::acceleration}) {
-      Instant i;
-      i.chamber_pressure.assign(5, 1e7);
-      i.turn(0.5, 150);
-      i.block.*part += 1e-3;
-      EXPECT_THAT([&] { model.evaluate(i, values); }, refused);
-      if (scene == multibody::Scene::full) continue;
-      EXPECT_THAT([&] { model.evaluate_one(i, values); }, refused);
-    }
-  }
-}
-
 TEST(DrivenModel, AxialInertiasDoNotActAtConstantSpeed) {
   Case the_case = reference_case("bap63_rated");
   const Samples samples = one_turn(the_case);

@@ -141,7 +141,7 @@ TEST(GearMesh, CarriesTheLoadOfTheDrivenWheelAndNoMore) {
   const Vec3 point(0, radius, -radius / std::tan(cone));
   const UnitVec3 line(Vec3(-std::cos(pressure_angle), std::sin(pressure_angle) * std::cos(cone),
                            std::sin(pressure_angle) * std::sin(cone)));
-  GearMesh gear(w.matter, shaft, block, point, line, frame);
+  GearMesh gear(w.matter, shaft, block, point, {Vec3(line), Vec3(line)}, frame);
   Constraint::ConstantSpeed drive(shaft, 100.0);
   Force::MobilityConstantForce(w.forces, block, -8.0);
   State state = w.system.realizeTopology();

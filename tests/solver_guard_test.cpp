@@ -34,7 +34,7 @@ struct Solved {
     pump.inputs().chamber_pressure = [pressure](double, std::vector<double>& p) {
       p.assign(p.size(), pressure);
     };
-    placement.place(0.3, 150, 0);
+    placement.place({0.3, 150, 0}, {0.3, 150, 0});
     pump.system().realize(pump.dynamics(), SimTK::Stage::Acceleration);
     reactions_from_multipliers(pump, pump.dynamics(), multipliers);
     inverse.solve(residual);

@@ -99,7 +99,8 @@ TimeRun::TimeRun(const Case& the_case, const Assumptions& assumptions, const Sam
   edges_ = edge_distances(the_case, assumptions, pressure, end);
   system_.require_piston_inertia();
   Placement placement(system_);
-  placement.assemble(0, samples.omega);
+  const AxisMotion start{0, samples.omega, 0};
+  placement.assemble(start, start);
   placement.copy_assembly_to_dynamics();
   start_ = system_.dynamics().getTime();
   enter_segment(0);
@@ -144,10 +145,14 @@ void TimeRun::read(std::size_t row, const ChannelLayout& layout, std::vector<dou
   state.updU() = integrator_->getState().getU();
   auto in_segment = std::move(system_.inputs().chamber_pressure);
   system_.inputs().chamber_pressure = [&](double, std::vector<double>& p) { p = pressure; };
-  system_.system().realize(state, Stage::Acceleration);
+  realize_with_flank(system_, state);
   system_.inputs().chamber_pressure = std::move(in_segment);
   require_accurate_forces(estimated_force_error(system_, state), radians(samples_.theta_deg[row]));
-  read_channels(system_, state, {state, samples_.omega}, 0, pressure, layout, values);
+  // The block is locked to the shaft; how far it drifts is told apart.
+  const AxisMotion turning{0, state.getU()[system_.bodies().shaft.getFirstUIndex(state) + 2], 0};
+  read_channels(system_, state, {state, samples_.omega}, {turning, turning}, pressure, layout,
+                values);
+  if (system_.has_gear()) system_.gear().setting().negative = false;
 }
 
 void TimeRun::advance_to(double distance) {

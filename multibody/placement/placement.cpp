@@ -25,9 +25,18 @@ constexpr double kPositionRoundOff = 5e-17;
 // move by a fraction of the bore's radius. A guess follows where it fails.
 constexpr double kNearby = 0.2;
 
-ComputationError no_assembly(double theta) {
-  return ComputationError("multibody model: no assembly found at theta = " +
-                          std::to_string(theta / kRadPerDegree) + " deg");
+std::string where(double theta, double psi) {
+  const std::string at = " at theta = " + std::to_string(theta / kRadPerDegree) + " deg";
+  return psi == theta ? at : at + ", psi = " + std::to_string(psi / kRadPerDegree) + " deg";
+}
+
+ComputationError no_assembly(const AxisMotion& shaft, const AxisMotion& block) {
+  return ComputationError("multibody model: no assembly found" + where(shaft.angle, block.angle));
+}
+
+// The speeds that constraint equations are held to follow the faster body.
+double speed_scale(const AxisMotion& shaft, const AxisMotion& block) {
+  return std::max({1.0, std::abs(shaft.speed), std::abs(block.speed)});
 }
 
 }  // namespace
@@ -39,25 +48,32 @@ Placement::Placement(PumpSystem& pump)
       bodies_(pump.bodies()),
       assembly_(pump.assembly()),
       dynamics_(pump.dynamics()),
-      turning_(pump.turning()),
       solver_(system_, matter_, bodies_.shaft, bodies_.block, bodies_.pistons, pump.bores(),
               pump.pump().geometry.piston_length,
               pump.pistons_free_to_spin() ? pump.pump().piston.real->spin : 0, dynamics_) {}
 
 void Placement::guess_pistons() {
   // Parallel to the block axis: Newton's method then climbs to the positive root of (12).
-  const Rotation shaft_to_block = ~Rotation(turning_.theta, SimTK::ZAxis) * bodies_.block_frame;
+  const Rotation shaft_to_block =
+      ~Rotation(pump_.shaft_turning().theta, SimTK::ZAxis) * bodies_.block_frame;
   for (const auto& piston : bodies_.pistons) piston.setQToFitRotation(assembly_, shaft_to_block);
 }
 
-void Placement::assemble(double theta, double omega) {
-  turning_.theta = theta;
-  turning_.omega = omega;
-  // Time only tells Simbody that the prescribed angle has changed.
-  turning_.start = assembly_.getTime() + 1;
-  assembly_.setTime(turning_.start);
-  const bool nearby = assembled_theta_ && std::abs(theta - *assembled_theta_) < kNearby;
-  assembled_theta_.reset();
+void Placement::set_turning(const AxisMotion& shaft, const AxisMotion& block, double time) {
+  const auto set = [time](Turning& turning, const AxisMotion& motion) {
+    turning = {motion.angle, time, motion.speed, motion.acceleration};
+  };
+  set(pump_.shaft_turning(), shaft);
+  set(pump_.block_turning(), block);
+}
+
+void Placement::assemble(const AxisMotion& shaft, const AxisMotion& block) {
+  // Time only tells Simbody that the prescribed angles have changed.
+  assembly_.setTime(assembly_.getTime() + 1);
+  set_turning(shaft, block, assembly_.getTime());
+  const bool nearby = assembled_ && std::abs(shaft.angle - assembled_->shaft) < kNearby &&
+                      std::abs(block.angle - assembled_->block) < kNearby;
+  assembled_.reset();
 
   SimTK::ProjectOptions options(kAssemblyGoal);
   options.setOption(SimTK::ProjectOptions::DontThrow);
@@ -90,16 +106,16 @@ void Placement::assemble(double theta, double omega) {
     for (const auto& piston : bodies_.pistons)
       done = done && SimTK::dot(z2, Vec3(piston.getBodyRotation(assembly_).z())) > 0;
   }
-  if (!done) throw no_assembly(theta);
+  if (!done) throw no_assembly(shaft, block);
 
   system_.prescribeU(assembly_);
   system_.realize(assembly_, SimTK::Stage::Velocity);
-  options.setRequiredAccuracy(kAssemblyTolerance * std::max(1.0, std::abs(omega)));
+  options.setRequiredAccuracy(kAssemblyTolerance * speed_scale(shaft, block));
   results = SimTK::ProjectResults();
   system_.projectU(assembly_, no_estimate, options, results);
   system_.realize(assembly_, SimTK::Stage::Velocity);
   if (pump_.pistons_free_to_spin()) set_piston_spins();
-  assembled_theta_ = theta;
+  assembled_ = Angles{shaft.angle, block.angle};
 }
 
 // The inline joint leaves a piston's spin free; projection would leave some value of its own. The
@@ -130,10 +146,10 @@ void Placement::copy_assembly_to_dynamics() {
 bool Placement::solve_placement() {
   Vector& q = dynamics_.updQ();
   const int shaft = bodies_.shaft.getFirstQIndex(dynamics_);
-  q[shaft] = std::cos(placed_theta_ / 2);
+  q[shaft] = std::cos(placed_shaft_.angle / 2);
   q[shaft + 1] = q[shaft + 2] = 0;
-  q[shaft + 3] = std::sin(placed_theta_ / 2);
-  q[bodies_.block.getFirstQIndex(dynamics_)] = placed_theta_;
+  q[shaft + 3] = std::sin(placed_shaft_.angle / 2);
+  q[bodies_.block.getFirstQIndex(dynamics_)] = placed_block_.angle;
   if (!(solver_.solve_positions(dynamics_) <= kAssemblyTolerance)) return false;
   const Vec3 z2(bodies_.block_frame.z());
   for (const auto& piston : bodies_.pistons)
@@ -144,9 +160,9 @@ bool Placement::solve_placement() {
 // A's distance from its bore's axis fixes the piston's direction across that axis, its length the
 // rest; of the two roots the one along z2. A guess: Simbody's own equations judge it, and where
 // they do not hold to round-off its placement goes on from there.
-bool Placement::guess_placement(double theta) {
-  const Rotation shaft(theta, SimTK::ZAxis);
-  const Rotation block = bodies_.block_frame * Rotation(theta, SimTK::ZAxis);
+bool Placement::guess_placement() {
+  const Rotation shaft(placed_shaft_.angle, SimTK::ZAxis);
+  const Rotation block = bodies_.block_frame * Rotation(placed_block_.angle, SimTK::ZAxis);
   const Rotation to_block(~block * shaft);
   const Vec3 origin = ~block * bodies_.block_origin;
   const Pistons& pistons = pump_.pistons();
@@ -167,36 +183,31 @@ bool Placement::guess_placement(double theta) {
   return true;
 }
 
-void Placement::place(double theta, double omega, double omega_dot) {
-  placed_theta_ = theta;
-  placed_omega_dot_ = omega_dot;
-  if (!(guess_placement(theta) && solve_placement())) {
-    assemble(theta, omega);
+void Placement::place(const AxisMotion& shaft, const AxisMotion& block) {
+  placed_shaft_ = shaft;
+  placed_block_ = block;
+  if (!(guess_placement() && solve_placement())) {
+    assemble(shaft, block);
     copy_assembly_to_dynamics();
-    if (!solve_placement()) throw no_assembly(theta);
+    if (!solve_placement()) throw no_assembly(shaft, block);
   }
   // What is prescribed in this state (both bodies, or an imposed block) moves with the rest.
-  turning_.theta = theta;
-  turning_.start = dynamics_.getTime();
-  turning_.omega = omega;
-  turning_.omega_dot = omega_dot;
+  set_turning(shaft, block, dynamics_.getTime());
   Vector& u = dynamics_.updU();
   u = 0;
-  u[bodies_.shaft.getFirstUIndex(dynamics_) + 2] = omega;
-  u[bodies_.block.getFirstUIndex(dynamics_)] = omega;
+  u[bodies_.shaft.getFirstUIndex(dynamics_) + 2] = shaft.speed;
+  u[bodies_.block.getFirstUIndex(dynamics_)] = block.speed;
   const double rate_error = solver_.solve_speeds(dynamics_);
-  if (!(rate_error <= kAssemblyTolerance * std::max(1.0, std::abs(omega))))
-    throw ComputationError(
-        "multibody model: no speeds found that keep the pistons in their bores at "
-        "theta = " +
-        std::to_string(theta / kRadPerDegree) + " deg");
+  if (!(rate_error <= kAssemblyTolerance * speed_scale(shaft, block)))
+    throw ComputationError("multibody model: no speeds found that keep the pistons in their bores" +
+                           where(shaft.angle, block.angle));
 }
 
 void Placement::constrained_accelerations(Vector& udot) {
   udot.resize(dynamics_.getNU());
   udot = 0;
-  udot[bodies_.shaft.getFirstUIndex(dynamics_) + 2] = placed_omega_dot_;
-  udot[bodies_.block.getFirstUIndex(dynamics_)] = placed_omega_dot_;
+  udot[bodies_.shaft.getFirstUIndex(dynamics_) + 2] = placed_shaft_.acceleration;
+  udot[bodies_.block.getFirstUIndex(dynamics_)] = placed_block_.acceleration;
   solver_.solve_accelerations(dynamics_, udot);
 }
 

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "bentaxis/results/instant.h"
 #include "placement/piston_solver.h"
 #include "scene/pump_system.h"
 
@@ -21,19 +22,19 @@ class Placement {
   /// @param pump  must outlive the placement
   explicit Placement(PumpSystem& pump);
 
-  /// Assembles positions and velocities for the given angle and speed in the assembly state, by
+  /// Assembles positions and velocities for given angles and speeds in the assembly state, by
   /// Simbody's own projection from any start.
   /// @throws ComputationError where no assembly is found.
-  void assemble(double theta, double omega);
+  void assemble(const AxisMotion& shaft, const AxisMotion& block);
 
   /// Copies positions and velocities of the assembly to the dynamics state at the same time.
   void copy_assembly_to_dynamics();
 
-  /// Puts the dynamics state at the given angle, speed and rate of speed: positions and speeds,
-  /// guessed, then brought to where the constraint equations hold to round-off. Leaves it realized
-  /// to Velocity.
+  /// Puts the dynamics state at a given motion of shaft and block: positions and speeds, guessed,
+  /// then brought to where the constraint equations hold to round-off. Leaves it realized to
+  /// Velocity.
   /// @throws ComputationError where no assembly is found.
-  void place(double theta, double omega, double omega_dot);
+  void place(const AxisMotion& shaft, const AxisMotion& block);
 
   /// Accelerations of all mobilities as the constraint equations have them at the last placement.
   void constrained_accelerations(SimTK::Vector& udot);
@@ -43,19 +44,22 @@ class Placement {
  private:
   void guess_pistons();
   void set_piston_spins();
-  bool guess_placement(double theta);
+  void set_turning(const AxisMotion& shaft, const AxisMotion& block, double time);
+  bool guess_placement();
   bool solve_placement();
 
-  const PumpSystem& pump_;
+  PumpSystem& pump_;
   const SimTK::MultibodySystem& system_;
   const SimTK::SimbodyMatterSubsystem& matter_;
   const PumpBodies& bodies_;
   SimTK::State& assembly_;
   SimTK::State& dynamics_;
-  Turning& turning_;
   PistonSolver solver_;
-  std::optional<double> assembled_theta_;
-  double placed_theta_ = 0, placed_omega_dot_ = 0;
+  struct Angles {
+    double shaft = 0, block = 0;
+  };
+  std::optional<Angles> assembled_;
+  AxisMotion placed_shaft_, placed_block_;
 };
 
 }  // namespace bentaxis::multibody

@@ -98,8 +98,8 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
   if (pump.has_gear()) {
     const GearMesh& gear = pump.gear();
     budget.carrying_torque =
-        reactions.tooth * dot(z2, (gear.point() - bodies.block_origin) % gear.line());
-    budget.pressing += reactions.tooth * dot(z2, gear.line());
+        reactions.tooth * dot(z2, (gear.point() - bodies.block_origin) % reactions.tooth_line);
+    budget.pressing += reactions.tooth * dot(z2, reactions.tooth_line);
   } else {
     budget.carrying_torque = reactions.imposed;
   }

@@ -1,6 +1,7 @@
 #include "reactions/channels.h"
 
 #include "bentaxis/results/result_table.h"
+#include "reactions/motion_checks.h"
 #include "scene/piston.h"
 
 namespace bentaxis::multibody {
@@ -25,11 +26,14 @@ void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, st
   for (int axis = 0; axis < 2; ++axis) values[layout.Rc(channel, axis)] = rc[axis];
 
   const Vec3 k3(on.place.z());
-  const Vec3 ring =
-      ~s2 * Vec3(on.place.p() + pump.pump().geometry.piston_length * k3 - bodies.block_origin);
+  const auto on_axis = [&](double length) {
+    return Vec3(~s2 * Vec3(on.place.p() + length * k3 - bodies.block_origin));
+  };
+  const Vec3 ring = on_axis(pump.pump().geometry.piston_length);
+  const Vec3 contact = on_axis(pump.contact_length());
   values[layout.pressure(channel)] = pressure;
   values[layout.zB(channel)] = ring[2];
-  values[layout.Tc(channel)] = ring[1] * rc[0] - ring[0] * rc[1];
+  values[layout.Tc(channel)] = contact[1] * rc[0] - contact[0] * rc[1];
 
   // S3 with j3 in the plane of y1 and z1 (15).
   const UnitVec3 j3(Vec3(0, k3[2], -k3[1]));
@@ -40,13 +44,13 @@ void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, st
 }
 
 void read_pump_channels(const PumpSystem& pump, const State& state, const Reactions& reactions,
-                        const WorkRate& rate, double omega_dot, const std::vector<double>& pressure,
-                        const ChannelLayout& layout, std::vector<double>& values) {
+                        const WorkRate& rate, const AxisMotions& motion,
+                        const std::vector<double>& pressure, const ChannelLayout& layout,
+                        std::vector<double>& values) {
   const PumpBodies& bodies = pump.bodies();
   const PumpParameters& p = pump.pump();
   const Rotation& s2 = bodies.block_frame;
   const Vec3 z2(s2.z());
-  const double omega = state.getU()[bodies.shaft.getFirstUIndex(state) + 2];
   double carry = 0;
   double work = 0;
   for (int k = 0; k < layout.pistons(); ++k) {
@@ -75,9 +79,9 @@ void read_pump_channels(const PumpSystem& pump, const State& state, const Reacti
   values[layout.xh()] = force[2] == 0 ? not_computed() : -values[layout.Th(1)] / force[2];
   values[layout.yh()] = force[2] == 0 ? not_computed() : values[layout.Th(0)] / force[2];
   if (pump.has_gear()) {
-    values[layout.Rcs()] = reactions.tooth;
-    values[layout.Tcs()] =
-        carry + p.friction.block_viscous * omega + p.block.axial_inertia * omega_dot;
+    values[layout.Rcs()] = tooth_force_column(pump, reactions.tooth, motion.shaft.speed);
+    values[layout.Tcs()] = carry + p.friction.block_viscous * motion.block.speed +
+                           p.block.axial_inertia * motion.block.acceleration;
   } else {
     values[layout.Rcs()] = not_computed();
     values[layout.Tcs()] = reactions.imposed;
@@ -87,20 +91,22 @@ void read_pump_channels(const PumpSystem& pump, const State& state, const Reacti
   // The drive gives the torque that is left after the proportional loss (38).
   values[layout.Td()] = reactions.drive / p.friction.shaft_torque_factor;
 
+  if (!motion.locked()) return;
+  work += ring_power(pump, reactions, rate.state);
   values[layout.power_residual()] =
-      reactions.drive - (p.friction.shaft_viscous + p.friction.block_viscous) * omega -
-      (p.shaft.axial_inertia + p.block.axial_inertia) * omega_dot + work / rate.omega +
-      (pump.has_gear() ? 0 : values[layout.Tcs()]);
+      reactions.drive - (p.friction.shaft_viscous + p.friction.block_viscous) * motion.shaft.speed -
+      (p.shaft.axial_inertia + p.block.axial_inertia) * motion.shaft.acceleration +
+      work / rate.omega + (pump.has_gear() ? 0 : values[layout.Tcs()]);
 }
 
 void read_channels(const PumpSystem& pump, const State& state, const WorkRate& rate,
-                   double omega_dot, const std::vector<double>& pressure,
+                   const AxisMotions& motion, const std::vector<double>& pressure,
                    const ChannelLayout& layout, std::vector<double>& values) {
   Reactions reactions;
   reactions_from_multipliers(pump, state, reactions);
   for (int k = 0; k < layout.pistons(); ++k)
     read_piston_channels(pump, reactions, k, k, pressure[k], layout, values);
-  read_pump_channels(pump, state, reactions, rate, omega_dot, pressure, layout, values);
+  read_pump_channels(pump, state, reactions, rate, motion, pressure, layout, values);
 }
 
 }  // namespace bentaxis::multibody

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bentaxis/results/channels.h"
+#include "bentaxis/results/instant.h"
 #include "reactions/reactions.h"
 
 namespace bentaxis::multibody {
@@ -24,16 +25,23 @@ void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, st
                           int channel, double pressure, const ChannelLayout& layout,
                           std::vector<double>& values);
 
-/// Fills the channels of block and shaft and the power balance. Channels of the pistons first.
+/// How shaft and block turn at an instant.
+struct AxisMotions {
+  AxisMotion shaft, block;
+  bool locked() const { return shaft == block; }
+};
+
+/// Fills the channels of block and shaft and, where the block is locked to the shaft, the power
+/// balance. Channels of the pistons first.
 /// @param pressure  chamber pressures in force, Pa
 void read_pump_channels(const PumpSystem& pump, const SimTK::State& state,
-                        const Reactions& reactions, const WorkRate& rate, double omega_dot,
+                        const Reactions& reactions, const WorkRate& rate, const AxisMotions& motion,
                         const std::vector<double>& pressure, const ChannelLayout& layout,
                         std::vector<double>& values);
 
 /// All channels of a full pump from a dynamics state realized to Acceleration.
 void read_channels(const PumpSystem& pump, const SimTK::State& state, const WorkRate& rate,
-                   double omega_dot, const std::vector<double>& pressure,
+                   const AxisMotions& motion, const std::vector<double>& pressure,
                    const ChannelLayout& layout, std::vector<double>& values);
 
 }  // namespace bentaxis::multibody

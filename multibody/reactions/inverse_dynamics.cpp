@@ -31,16 +31,18 @@ void InverseDynamics::solve(Reactions& reactions) {
   placement_.piston_solver().solve_forces(residual_, bore_);
 
   const Rotation& block = bodies.block.getBodyRotation(state);
+  // The piston turns about A: what a force at B would do, one at C does by its own lever.
+  const double lever = pump_.pump().geometry.piston_length / pump_.contact_length();
   reactions.pistons.resize(bodies.pistons.size());
   for (std::size_t k = 0; k < bodies.pistons.size(); ++k) {
     const MobilizedBody& piston = bodies.pistons[k];
     Reactions::OnPiston& on = reactions.pistons[k];
     on.acceleration = accelerations_[piston.getMobilizedBodyIndex()];
     on.place = piston.getBodyTransform(state);
-    on.bore = block * pump_.bores()[k].force_in_base(bore_[k][0], bore_[k][1]);
+    on.bore = block * pump_.bores()[k].force_in_base(lever * bore_[k][0], lever * bore_[k][1]);
     const SpatialVec total = needed(piston, loads);
     on.joint = total[1] - on.bore;
-    // B is on the axis through A: the bore force has no moment about it.
+    // The bore's force acts on the axis through A: it has no moment about it.
     on.axis_moment = dot(total[0], Vec3(on.place.z()));
   }
   if (!pump_.is_prescribed()) solve_block_and_shaft(reactions, loads);
@@ -62,15 +64,16 @@ void InverseDynamics::solve_block_and_shaft(Reactions& reactions, const Loads& l
   on_shaft[0] += (bodies.shaft.getBodyOriginLocation(state) - c1) % on_shaft[1];
   for (std::size_t k = 0; k < bodies.pistons.size(); ++k) {
     const Reactions::OnPiston& on = reactions.pistons[k];
-    const Vec3 ring = on.place.p() + pump_.pump().geometry.piston_length * Vec3(on.place.z());
-    hold += SpatialVec((ring - o2) % on.bore, on.bore);
+    const Vec3 contact = on.place.p() + pump_.contact_length() * Vec3(on.place.z());
+    hold += SpatialVec((contact - o2) % on.bore, on.bore);
     on_shaft += SpatialVec((on.place.p() - c1) % on.joint, on.joint);
   }
   if (pump_.has_gear()) {
-    const Vec3& line = pump_.gear().line();
-    const Vec3 on_block = (pump_.gear().point() - o2) % line;
+    // The arm about z2 is that of either flank; the sign tells which of them pushes.
+    const Vec3 on_block = (pump_.gear().point() - o2) % pump_.gear().line_for(0);
     reactions.tooth = dot(hold[0], z2) / dot(on_block, z2);
-    const Vec3 tooth = reactions.tooth * line;
+    reactions.tooth_line = pump_.gear().line_for(reactions.tooth);
+    const Vec3 tooth = reactions.tooth * reactions.tooth_line;
     hold -= SpatialVec((pump_.gear().point() - o2) % tooth, tooth);
     on_shaft += SpatialVec((pump_.gear().point() - c1) % tooth, tooth);
   } else {

@@ -9,6 +9,19 @@ using SimTK::SpatialVec;
 using SimTK::State;
 using SimTK::Vec3;
 
+void realize_with_flank(const PumpSystem& pump, State& state) {
+  const auto realize = [&](bool negative) {
+    if (pump.has_gear() && pump.gear().setting().negative != negative) {
+      pump.gear().setting().negative = negative;
+      state.invalidateAllCacheAtOrAbove(SimTK::Stage::Velocity);
+    }
+    pump.system().realize(state, SimTK::Stage::Acceleration);
+  };
+  realize(false);
+  if (!pump.has_gear() || !pump.gear().has_two_flanks()) return;
+  if (pump.gear().tooth_force(state) < 0) realize(true);
+}
+
 void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reactions& reactions) {
   const PumpBodies& bodies = pump.bodies();
   SimTK::Vector_<SpatialVec> joints;
@@ -34,10 +47,12 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
   reactions.tapered = joints[bodies.shaft.getMobilizedBodyIndex()][1];
   reactions.cylindrical = pump.cylindrical_bearing().force_in_base(state);
   reactions.drive = pump.drive().torque(state);
-  if (pump.has_gear())
+  if (pump.has_gear()) {
     reactions.tooth = pump.gear().tooth_force(state);
-  else
+    reactions.tooth_line = pump.gear().line();
+  } else {
     reactions.imposed = pump.imposed_block_torque(state);
+  }
 }
 
 }  // namespace bentaxis::multibody

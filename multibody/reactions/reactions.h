@@ -13,7 +13,7 @@ namespace bentaxis::multibody {
 struct Reactions {
   struct OnPiston {
     SimTK::Vec3 joint;       ///< by the shaft, at A
-    SimTK::Vec3 bore;        ///< by the block, at B
+    SimTK::Vec3 bore;        ///< by the block, at B or at the ring's contact point
     double axis_moment = 0;  ///< about its own axis, that would have to be supplied: must vanish
     SimTK::SpatialVec acceleration;  ///< of the body at A: angular, linear
     SimTK::Transform place;          ///< of the body: A and its axes
@@ -23,9 +23,14 @@ struct Reactions {
   SimTK::SpatialVec block_hold;      ///< by film and pin together, about O2: moment, force
   SimTK::Vec3 tapered, cylindrical;  ///< on the shaft by its bearings
   double drive = 0;                  ///< torque about z1 on the shaft after proportional losses, Nm
-  double tooth = 0;                  ///< tooth force on the block along the line of action, N
+  double tooth = 0;                  ///< tooth force on the block along tooth_line, N
+  SimTK::Vec3 tooth_line;            ///< of the flank that carries it
   double imposed = 0;  ///< torque about z2 that an imposed motion applies to the block
 };
+
+/// Realizes a dynamics state to Acceleration with that flank of the gear in mesh that can carry the
+/// tooth force found: a flank pushes and does not pull.
+void realize_with_flank(const PumpSystem& pump, SimTK::State& state);
 
 /// From a dynamics state realized to Acceleration: Simbody's multipliers and joint reactions.
 void reactions_from_multipliers(const PumpSystem& pump, const SimTK::State& state,

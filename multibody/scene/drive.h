@@ -13,7 +13,7 @@ enum class Drive {
   prescribed,          ///< shaft and block prescribed: only pistons are solved for
 };
 
-/// Prescribed rotation of shaft and block: angle, speed and rate as a function of time.
+/// Prescribed rotation of shaft or block: angle, speed and rate as a function of time.
 struct Turning {
   double theta = 0;      ///< rad at time start
   double start = 0;      ///< s

@@ -1,6 +1,7 @@
 #include "scene/gear_mesh.h"
 
 #include <cmath>
+#include <utility>
 
 #include "bentaxis/pump/units.h"
 
@@ -18,17 +19,26 @@ using SimTK::Vec3;
 
 namespace {
 
+// Moment arm of the lines about the block's axis, signed.
+double arm_of(const SimTK::MobilizedBody& block, const Vec3& point, const ToothLines& lines,
+              const Rotation& block_frame) {
+  const Vec3 from_axis = point - block.getDefaultInboardFrame().p();
+  return SimTK::dot(block_frame.z() % from_axis, lines.positive);
+}
+
 class GearMeshImplementation : public SimTK::Constraint::Custom::Implementation {
  public:
   GearMeshImplementation(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& shaft,
-                         SimTK::MobilizedBody& block, const Vec3& point, const Vec3& line,
-                         const Rotation& block_frame)
-      : Implementation(matter, 1, 0, 0), point_(point), line_(line), block_frame_(block_frame) {
+                         SimTK::MobilizedBody& block, const Vec3& point, const ToothLines& lines,
+                         const Rotation& block_frame, std::shared_ptr<const GearSetting> setting)
+      : Implementation(matter, 1, 0, 0),
+        point_(point),
+        lines_(lines),
+        block_frame_(block_frame),
+        setting_(std::move(setting)) {
     shaft_ = addConstrainedBody(shaft);
     block_ = addConstrainedBody(block);
-    // Moment arm of the line about the block's axis, signed: rate of the error per unit of speed.
-    const Vec3 from_axis = point - block.getDefaultInboardFrame().p();
-    arm_ = SimTK::dot(block_frame.z() % from_axis, line);
+    arm_ = arm_of(block, point, lines, block_frame);  // rate of the error per unit of speed
   }
 
   Implementation* clone() const override { return new GearMeshImplementation(*this); }
@@ -45,22 +55,23 @@ class GearMeshImplementation : public SimTK::Constraint::Custom::Implementation 
                              const Array_<SpatialVec, ConstrainedBodyIndex>& velocities,
                              const Array_<Real, ConstrainedQIndex>&,
                              Array_<Real>& error) const override {
-    error[0] = SimTK::dot(line_, velocity(state, velocities[block_], block_) -
-                                     velocity(state, velocities[shaft_], shaft_));
+    error[0] = SimTK::dot(line(), velocity(state, velocities[block_], block_) -
+                                      velocity(state, velocities[shaft_], shaft_));
   }
 
   void calcPositionDotDotErrors(const State& state,
                                 const Array_<SpatialVec, ConstrainedBodyIndex>& accelerations,
                                 const Array_<Real, ConstrainedQIndex>&,
                                 Array_<Real>& error) const override {
-    error[0] = SimTK::dot(line_, velocity_rate(state, accelerations[block_], block_) -
-                                     velocity_rate(state, accelerations[shaft_], shaft_));
+    error[0] = SimTK::dot(line(), velocity_rate(state, accelerations[block_], block_) -
+                                      velocity_rate(state, accelerations[shaft_], shaft_)) -
+               arm_ * setting_->relative_acceleration;
   }
 
   void addInPositionConstraintForces(const State& state, const Array_<Real>& multipliers,
                                      Array_<SpatialVec, ConstrainedBodyIndex>& forces,
                                      Array_<Real, ConstrainedQIndex>&) const override {
-    const Vec3 force = multipliers[0] * line_;
+    const Vec3 force = multipliers[0] * line();
     forces[block_] += SpatialVec(lever(state, block_) % force, force);
     forces[shaft_] -= SpatialVec(lever(state, shaft_) % force, force);
   }
@@ -80,10 +91,14 @@ class GearMeshImplementation : public SimTK::Constraint::Custom::Implementation 
     return body[1] + body[0] % lever(state, index) - v[0] % v[1];
   }
 
-  Vec3 point_, line_;
+  const Vec3& line() const { return setting_->negative ? lines_.negative : lines_.positive; }
+
+  Vec3 point_;
+  ToothLines lines_;
   Rotation block_frame_, shaft_frame_;
   double arm_ = 0;
   ConstrainedBodyIndex shaft_, block_;
+  std::shared_ptr<const GearSetting> setting_;
 };
 
 }  // namespace
@@ -101,23 +116,44 @@ double turn_angle(const Rotation& body_in_ground, const Rotation& frame) {
 }
 
 GearMesh::GearMesh(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& shaft,
-                   SimTK::MobilizedBody& block, const Vec3& point, const SimTK::UnitVec3& line,
+                   SimTK::MobilizedBody& block, const Vec3& point, const ToothLines& lines,
                    const Rotation& block_frame)
-    : Custom(new GearMeshImplementation(matter, shaft, block, point, Vec3(line), block_frame)),
+    : GearMesh(matter, shaft, block, point, lines, block_frame, std::make_shared<GearSetting>()) {}
+
+GearMesh::GearMesh(SimTK::SimbodyMatterSubsystem& matter, SimTK::MobilizedBody& shaft,
+                   SimTK::MobilizedBody& block, const Vec3& point, const ToothLines& lines,
+                   const Rotation& block_frame, const std::shared_ptr<GearSetting>& setting)
+    : Custom(new GearMeshImplementation(matter, shaft, block, point, lines, block_frame, setting)),
       point_(point),
-      line_(line) {}
+      lines_(lines),
+      arm_(arm_of(block, point, lines, block_frame)),
+      setting_(setting) {}
+
+Vec3 mesh_point_of(const PumpParameters& pump) {
+  const double radius = pump.gear.pitch_diameter / 2;
+  const double cone = kPi / 2 - pump.geometry.tilt / 2;
+  return {0, radius, -radius / std::tan(cone) + pump.geometry.axis_offset};
+}
+
+ToothLines tooth_lines_of(const PumpParameters& pump, double omega) {
+  const double cone = kPi / 2 - pump.geometry.tilt / 2;
+  const double sign = omega < 0 ? -1 : 1;
+  const double ap = pump.gear.pressure_angle;
+  const Vec3 across(-std::cos(ap), 0, 0);
+  const Vec3 apart(0, std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
+  // A flank pushes: the part of its force that lies across turns the block, the other part pushes
+  // the gears apart, whichever flank it is.
+  const Vec3 towards_psi(SimTK::UnitVec3(sign * (across + apart)));
+  if (pump.gear.flanks == Flanks::one) return {towards_psi, towards_psi};
+  const Vec3 against_psi(SimTK::UnitVec3(sign * (across - apart)));
+  return omega < 0 ? ToothLines{against_psi, towards_psi} : ToothLines{towards_psi, against_psi};
+}
 
 std::unique_ptr<GearMesh> gear_of(const PumpParameters& pump, SimTK::SimbodyMatterSubsystem& matter,
                                   SimTK::MobilizedBody& shaft, SimTK::MobilizedBody& block,
                                   const Rotation& frame, double omega) {
-  const double radius = pump.gear.pitch_diameter / 2;
-  const double cone = kPi / 2 - pump.geometry.tilt / 2;
-  const double sign = omega < 0 ? -1 : 1;
-  const double ap = pump.gear.pressure_angle;
-  const Vec3 mesh_point(0, radius, -radius / std::tan(cone) + pump.geometry.axis_offset);
-  const Vec3 line =
-      sign * Vec3(-std::cos(ap), std::sin(ap) * std::cos(cone), std::sin(ap) * std::sin(cone));
-  return std::make_unique<GearMesh>(matter, shaft, block, mesh_point, SimTK::UnitVec3(line), frame);
+  return std::make_unique<GearMesh>(matter, shaft, block, mesh_point_of(pump),
+                                    tooth_lines_of(pump, omega), frame);
 }
 
 double GearMesh::tooth_force(const State& state) const {

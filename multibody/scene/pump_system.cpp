@@ -49,8 +49,8 @@ void PumpSystem::add_shaft_and_block(double omega) {
   block_ = block_on_pin(matter_, pump_, frame);
   bodies_.shaft = shaft_;
   bodies_.block = block_;
-  shaft_motion_ = turning_motion(shaft_, turning_, true);
-  block_motion_ = turning_motion(block_, turning_, false);
+  shaft_motion_ = turning_motion(shaft_, shaft_turning_, true);
+  block_motion_ = turning_motion(block_, block_turning_, false);
   if (!is_prescribed()) cylindrical_ = multibody::cylindrical_bearing(matter_, shaft_, pump_);
   shaft_drive_.emplace(drive_, shaft_, omega);
   if (has_gear()) gear_ = gear_of(pump_, matter_, shaft_, block_, bodies_.block_frame, omega);

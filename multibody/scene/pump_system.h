@@ -57,7 +57,8 @@ class PumpSystem {
   const SimTK::Force& loads() const { return *loads_; }
   const LoadInputs& inputs() const { return inputs_; }
   /// How shaft and block turn where they are prescribed.
-  Turning& turning() { return turning_; }
+  Turning& shaft_turning() { return shaft_turning_; }
+  Turning& block_turning() { return block_turning_; }
 
   const std::vector<InlineJoint>& bores() const { return pistons_.bores; }
   const InlineJoint& cylindrical_bearing() const { return cylindrical_; }
@@ -65,6 +66,15 @@ class PumpSystem {
   const ShaftDrive& drive() const { return *shaft_drive_; }
   bool has_gear() const { return !is_prescribed() && assumptions_.gear == BlockDrive::mesh; }
   bool is_prescribed() const { return drive_ == Drive::prescribed; }
+
+  /// From A along a piston's axis to where the bore's force acts, m: to B unless the pump has a
+  /// contact point of its own.
+  double contact_length() const {
+    return pump_.piston.contact.value_or(pump_.geometry.piston_length);
+  }
+  /// Whether the bore's force acts at B, where the bore guides the piston. Elsewhere it does work,
+  /// which no ideal constraint can.
+  bool contact_at_b() const { return contact_length() == pump_.geometry.piston_length; }
 
   /// Whether the pistons are rigid bodies that can turn about their own axis.
   bool pistons_free_to_spin() const { return piston_.free_to_spin; }
@@ -88,7 +98,7 @@ class PumpSystem {
   Drive drive_;
   PistonBody piston_;
   LoadInputs inputs_;
-  Turning turning_;
+  Turning shaft_turning_, block_turning_;
 
   SimTK::MultibodySystem system_;
   SimTK::SimbodyMatterSubsystem matter_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,22 +13,26 @@
 #include "bentaxis/results/budget.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::multibody {
 
-/// A pump in Simbody. At each instant shaft and block are set to their angle, Simbody's constraint
-/// equations give the pistons, and reactions follow by the chosen method. Not thread-safe: use one
+/// A pump in Simbody. At each instant shaft and block are set to their motion, Simbody's constraint
+/// equations give the pistons, and reactions follow by the chosen method. The block may move on its
+/// own: its acceleration is given, and the tooth force is what that takes. Not thread-safe: use one
 /// object per thread.
 class Model {
  public:
-  /// @param omega_sign  sign of the speed the model will be evaluated at: the gear's line of action
-  ///                    depends on it (22); 0 counts as positive
-  /// @throws InputError if real pistons are asked for and the pump has no data of them
+  /// @param omega_sign  sign of the speed that the gear's line of action is laid out for (22); the
+  ///                    sign of the tooth force follows the speed of each instant
+  /// @param method      none: method_for() the pump
+  /// @throws InputError if real pistons are asked for and the pump has no data of them, or if the
+  ///                    method cannot serve the pump
   /// @throws ComputationError if a piston has no inertia about its joint and the method is not
   ///                          Method::residual
   Model(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
-        Scene scene = Scene::full, Method method = Method::multipliers);
+        Scene scene = Scene::full, std::optional<Method> method = {});
   ~Model();
   Model(Model&&) noexcept;
   Model& operator=(Model&&) noexcept;
@@ -36,8 +41,10 @@ class Model {
 
   /// All channels that the scene computes at an instant, SI, ordered by layout(); the others are
   /// left as they are. In the one-piston scene the pistons take their turns: N evaluations.
+  /// @param checks  if not null, what is found beside them; of the full pump
   /// @throws ComputationError where the pump cannot be assembled or constraints are redundant.
-  void evaluate(const Instant& instant, std::vector<double>& values);
+  void evaluate(const Instant& instant, std::vector<double>& values,
+                MotionChecks* checks = nullptr);
 
   /// Drive torque by cause, and the block's balance, at the instant of the last evaluate(); of the
   /// full pump.
@@ -77,6 +84,11 @@ SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions,
 /// @param budget  if not null, becomes the budget_table() of the run; of the full pump
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress = {}, Scene scene = Scene::full,
-                       Method method = Method::multipliers, ResultTable* budget = nullptr);
+                       std::optional<Method> method = {}, ResultTable* budget = nullptr);
+
+/// Reactions at given states of shaft and block, with the torque that their motion needs.
+/// @throws InputError, ComputationError
+MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
+                       const Progress& progress = {}, std::optional<Method> method = {});
 
 }  // namespace bentaxis::multibody

@@ -1,9 +1,11 @@
 // What the multibody model builds, and how it finds reactions.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/parameters.h"
 #include "bentaxis/results/channels.h"
 
 namespace bentaxis::multibody {
@@ -25,8 +27,17 @@ enum class Method {
 /// What to build and how to find reactions there.
 struct SceneChoice {
   Scene scene = Scene::full;
-  Method method = Method::multipliers;
+  std::optional<Method> method;  ///< none: method_for() the pump
 };
+
+/// Whether the bores' forces act elsewhere than at B: then they do work on the play between piston
+/// and bore. Simbody's constraints are ideal and do none, so only Method::residual serves.
+bool has_ring_off_b(const PumpParameters& pump);
+
+/// The method asked for, or where none is the one that serves the pump: Method::multipliers, and
+/// Method::residual where the bores' forces do not act at B.
+/// @throws InputError where multipliers are asked for and cannot serve
+Method method_for(const PumpParameters& pump, std::optional<Method> asked);
 
 /// Whether a scene computes a channel: those of the pistons need neither bearings nor gear.
 bool computes(Scene scene, const Channel& channel);

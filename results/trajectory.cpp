@@ -1,0 +1,68 @@
+#include "bentaxis/results/trajectory.h"
+
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis {
+
+std::vector<std::string> trajectory_columns(const DriveSpec& drive) {
+  std::vector<std::string> names = {"time_s", "theta_deg", "psi_deg", "shaft_rpm", "block_rpm"};
+  if (drive.kind == DriveKind::motor) names.emplace_back("motor_rpm");
+  return names;
+}
+
+std::vector<double> trajectory_times(const DriveSpec& drive) {
+  std::vector<double> times;
+  for (int i = 0; i <= drive.samples; ++i) times.push_back(drive.duration * i / drive.samples);
+  return times;
+}
+
+MotionTable trajectory_table(const std::string& model, const ChannelLayout& layout,
+                             const DriveSpec& drive) {
+  MotionTable table;
+  table.state_names = trajectory_columns(drive);
+  table.results.name = model;
+  table.results.channels = layout.channels();
+  for (Channel& channel : motion_channels()) table.results.channels.push_back(std::move(channel));
+  return table;
+}
+
+void append_trajectory_row(MotionTable& table, const std::vector<double>& state,
+                           const std::vector<double>& row, const MotionChecks& checks) {
+  ResultTable& results = table.results;
+  table.states.insert(table.states.end(), state.begin(), state.end());
+  results.theta_deg.push_back(state[1]);
+  const std::size_t first = results.values.size();
+  results.values.insert(results.values.end(), row.begin(), row.end());
+  results.values.insert(results.values.end(),
+                        {checks.tooth_law, checks.ring_power, checks.power_balance});
+  for (std::size_t c = 0; c < results.columns(); ++c) {
+    double& value = results.values[first + c];
+    if (std::isinf(value) || is_stray_nan(value))
+      throw ComputationError(results.name + " model: " + results.channels[c].name +
+                             " is not finite at " + number_text(state[0]) + " s");
+    value /= results.channels[c].unit_in_si;
+  }
+}
+
+const DriveSpec& drive_of(const Case& the_case) {
+  if (!the_case.drive)
+    throw InputError("case \"" + the_case.name +
+                     "\" has no [drive]: a simulation needs what turns the shaft, and duration_s");
+  const DriveSpec& drive = *the_case.drive;
+  if (drive.start_speed && drive.kind == DriveKind::speed)
+    throw InputError(
+        "[drive] start_rpm: must be left out beside kind = \"speed\", which says how "
+        "the shaft turns from the start");
+  if (drive.kind != DriveKind::speed && the_case.pump.friction.piston_coulomb > 0 &&
+      the_case.pump.friction.regularization == 0)
+    throw InputError(
+        "[friction] regularization_m_per_s = 0: must be > 0 where the shaft may come "
+        "to rest, which [drive] kind = \"" +
+        std::string(drive.kind == DriveKind::torque ? "torque" : "motor") + "\" allows");
+  return drive;
+}
+
+}  // namespace bentaxis
