@@ -295,6 +295,75 @@ class UsageTest(ProgramTest):
         self.run_program("reference", "golden", self.case(), *settings, "--out", "golden")
         self.run_program("regress", "golden")
 
+    def states(self, lines, name="states.csv"):
+        file = self.folder / name
+        file.write_text("\n".join(lines) + "\n")
+        return file
+
+    MOTION = "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2"
+
+    def test_states_of_constant_speed_are_a_turn(self):
+        case = self.case()
+        for model in ("analytic", "multibody"):
+            self.run_program("run", case, "--model", model, "--out", "turn")
+            angles = self.column(f"turn/{model}.csv", "theta_deg")
+            states = self.states([self.MOTION, *(f"{a},{a},1500,1500,0,0" for a in angles)])
+            self.run_program("run", case, "--model", model, "--states", states, "--out", "states")
+            header = (self.folder / f"states/{model}.csv").read_text().splitlines()[0]
+            self.assertTrue(header.startswith(self.MOTION + ",Rs_1_x2_N"), header)
+            self.assertTrue(header.endswith("Rcs_law_N,ring_power_W,power_balance_W"), header)
+            for column in (self.folder / f"turn/{model}.csv").read_text().splitlines()[0].split(","):
+                with self.subTest(model=model, column=column):
+                    self.assertEqual(*[self.column(f"{out}/{model}.csv", column) for out in ("turn", "states")])
+
+    def test_states_give_reactions_with_their_own_pressures_and_columns(self):
+        case = self.case()
+        pressures = ",".join(f"p_{k}_bar" for k in range(1, 6))
+        own = self.states([f"time_s,{self.MOTION},{pressures},suction_bar,delivery_bar",
+                           "0,10,9.5,1500,1490,100,-200,275,275,0,0,0,1,270", "0.001,19,18.7,1510,1492,90,-150,275,275,0,0,0,1,270"])
+        case_s = self.states([self.MOTION, "10,9.5,1500,1490,100,-200"], "plain.csv")
+        torque = {}
+        for model in ("analytic", "multibody"):
+            self.run_program("run", case, "--model", model, "--states", own, "--channels", "p,Td,Rcs_law", "--out", "own")
+            with open(self.folder / f"own/{model}.csv") as file:
+                rows = list(csv.DictReader(file))
+            self.assertEqual([row["time_s"] for row in rows], ["0", "0.001"])
+            self.assertEqual([row["p_1_bar"] for row in rows], ["275", "275"])
+            self.assertEqual({row["Rcs_law_N"] for row in rows}, {""})
+            self.assertNotIn("Rs_1_x2_N", rows[0])
+            self.run_program("run", case, "--model", model, "--states", case_s, "--out", "plain")
+            torque[model] = float(rows[0]["Td_z1_Nm"])
+            # Other pressures, another torque.
+            self.assertNotAlmostEqual(torque[model], float(self.column(f"plain/{model}.csv", "Td_z1_Nm")[0]), 3)
+        self.assertAlmostEqual(torque["analytic"], torque["multibody"], delta=1e-9 * abs(torque["analytic"]))
+
+    def test_bad_states(self):
+        case = self.case()
+        good = "10,9.5,1500,1490,100,-200"
+        for lines, words in (
+            ([self.MOTION], ["no states"]),
+            ([], ["states.csv"]),
+            ([self.MOTION.replace("psi_rpm", "psi_rmp"), good], ["states.csv:1", "psi_rmp", 'did you mean "psi_rpm"']),
+            ([self.MOTION[:-len(",psi_rad_per_s2")], good[:-5]], ["states.csv:1", "psi_rad_per_s2", "missing"]),
+            ([self.MOTION + ",psi_deg", good + ",1"], ["states.csv:1", "psi_deg", "twice"]),
+            ([self.MOTION + ",p_2_bar", good + ",1"], ["states.csv:1", "p_1_bar", "missing"]),
+            ([self.MOTION, good, good.replace("9.5", "9,5")], ["states.csv:3"]),
+            ([self.MOTION, good, good.replace("9.5", "east")], ["states.csv:3", "psi_deg", "east"]),
+            ([self.MOTION, good.replace("9.5", "nan")], ["states.csv:2", "psi_deg", "nan"]),
+            (["time_s," + self.MOTION, "1," + good, "0.5," + good], ["states.csv:3", "time_s = 0.5", ">= 1"]),
+            ([self.MOTION, good, "10,190,1500,1490,0,0"],
+             ["states.csv:3", "psi_deg = 190", "closer to theta_deg = 10", "piston 5", "longer than"]),
+        ):
+            with self.subTest(words):
+                self.assert_mentions(self.refused("run", case, "--model", "analytic", "--states", self.states(lines),
+                                                  "--out", "out"), *words)
+        self.assert_mentions(self.refused("run", case, "--model", "analytic", "--states", "absent.csv"), "absent.csv")
+        states = self.states([self.MOTION, good])
+        for option, word in ((["--way", "integrated"], "--way"), (["--scene", "piston"], "--scene"),
+                             (["--channels", "Rcs_lew"], "Rcs_law"), (["--accuracy", "1e-4"], "--accuracy")):
+            with self.subTest(option):
+                self.assert_mentions(self.refused("run", case, "--model", "multibody", "--states", states, *option), word)
+
     def test_every_command_that_reads_a_case_takes_changes(self):
         case = self.case()
         hydraulic = REPO / "cases" / "bap63_rated_hydraulic.toml"
