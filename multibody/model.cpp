@@ -44,7 +44,9 @@ struct Model::Implementation {
         system(built_pump(pump, the_scene), assumptions, omega_sign, drive_of(the_scene)),
         placement(system),
         inverse_dynamics(system, placement) {
-    system.inputs().chamber_pressure = [this](double, std::vector<double>& p) { p = pressure; };
+    system.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
+      p = pressure;
+    };
     if (method == Method::multipliers) system.require_piston_inertia();
   }
 

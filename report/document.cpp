@@ -555,6 +555,11 @@ Json to_json(const Curves& curves) {
              return Json{{"name", table.name}, {"columns", columns(table.columns, kPlotDigits)}};
            })},
       {"difference", columns(curves.difference, kDifferenceDigits)}};
+  if (!curves.axis.empty()) json["axis"] = curves.axis;
+  if (!curves.marks.empty())
+    json["marks"] = list_of(curves.marks, [](const Curves::Mark& mark) {
+      return Json{{"x", mark.x}, {"upper", mark.upper}};
+    });
   if (!curves.reference) return json;
   Json held = Json::object();
   for (const Curves::Held& one : curves.reference->held) {

@@ -40,7 +40,8 @@ std::string beside(const std::vector<std::pair<std::string, const Values*>>& col
 
 std::string channels_csv(const std::vector<std::string>& channels, const Curves& curves,
                          const std::vector<Series>& extra) {
-  std::vector<std::pair<std::string, const Values*>> columns = {{"theta_deg", &curves.theta_deg}};
+  std::vector<std::pair<std::string, const Values*>> columns = {
+      {curves.axis.empty() ? "theta_deg" : curves.axis, &curves.theta_deg}};
   for (const std::string& channel : channels) {
     for (const auto& table : curves.tables)
       if (const Values* values = find(table.columns, channel))

@@ -490,6 +490,25 @@ bool any(const Values* values) {
 
 const Axis kAngle{"shaft angle", "deg"};
 
+// Ticks at the lower edge of a panel, in two rows.
+void add_marks(Panel& panel, const std::vector<Curves::Mark>& marks) {
+  panel.draw = [marks, curves = std::move(panel.draw)](pugi::xml_node root, const Scale& x,
+                                                       const Scale& y) {
+    constexpr double kHeight = 6, kGap = 2;
+    for (const Curves::Mark& mark : marks) {
+      const double foot = y.first - (mark.upper ? kHeight + kGap : 0);
+      add(root, "line",
+          {{"x1", px(x.place(mark.x))},
+           {"x2", px(x.place(mark.x))},
+           {"y1", px(foot)},
+           {"y2", px(foot - kHeight)},
+           {"stroke", "#555"},
+           {"stroke-width", "0.8"}});
+    }
+    curves(root, x, y);
+  };
+}
+
 // What a curve may be, widened by what is allowed; around the curve or its zero line.
 Band band_of(const Values& theta, const Curves::Held& held, bool around_zero,
              const std::string& colour) {
@@ -506,6 +525,7 @@ Band band_of(const Values& theta, const Curves::Held& held, bool around_zero,
 Picture picture_of(const ChannelFigure& figure, const Curves& page) {
   const Curves& curves = figure.curves ? *figure.curves : page;
   const Values& theta = curves.theta_deg;
+  const Axis axis = curves.axis.empty() ? kAngle : Axis{curves.axis};
   Picture picture;
   Keys channels, tables;
   std::vector<Curve> lines, differences, from_reference;
@@ -558,26 +578,27 @@ Picture picture_of(const ChannelFigure& figure, const Curves& page) {
   if (lines.empty() || theta.size() < 2) return picture;  // one angle makes no curve
   picture.legend = {channels, tables};
   const bool three = !from_reference.empty();
-  picture.panels.push_back(curve_panel(kAngle, {"value", figure.unit}, three ? 135 : 185,
+  picture.panels.push_back(curve_panel(axis, {"value", figure.unit}, three ? 135 : 185,
                                        std::move(lines), std::move(bands)));
+  if (!curves.marks.empty()) add_marks(picture.panels.back(), curves.marks);
   const bool exact = std::all_of(differences.begin(), differences.end(), [](const Curve& curve) {
     return std::all_of(curve.y.begin(), curve.y.end(), [](double v) { return !(v < 0 || v > 0); });
   });
   if (!exact) {
     picture.panels.push_back(
-        curve_panel(kAngle, {"difference", figure.unit}, three ? 50 : 95, std::move(differences)));
+        curve_panel(axis, {"difference", figure.unit}, three ? 50 : 95, std::move(differences)));
     picture.panels.back().title =
         fmt::format("Difference: {} minus {}", curves.tables[1].name, curves.tables[0].name);
   }
   if (three) {
-    picture.panels.push_back(curve_panel(kAngle, {"difference", figure.unit}, 78,
+    picture.panels.push_back(curve_panel(axis, {"difference", figure.unit}, 78,
                                          std::move(from_reference), std::move(zero_bands)));
     picture.panels.back().title =
         fmt::format("Difference: each model minus {}", curves.reference->name);
   }
   for (Panel& panel : picture.panels) {
     panel.xs.include(theta);
-    whole_turns(panel, theta);
+    if (curves.axis.empty()) whole_turns(panel, theta);
   }
   for (std::size_t i = 0; i + 1 < picture.panels.size(); ++i) picture.panels[i].x = {};
   return picture;

@@ -51,6 +51,8 @@ class SchemaTest(unittest.TestCase):
             "tradeoff": cls.report("tradeoff.json", "tradeoff", rated, "--integrators", "rk-merson", "--accuracies", "1e-3"),
             "hardcases": cls.report("hardcases.json", "hardcases", "--filter", "speed", "--catalogue",
                                     REPO / "reference_data" / "hard"),
+            "simulate": cls.report("report.json", "simulate", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
+                                   "drive.duration_s=0.001", "--set", "drive.samples=10", "--error", "1e-4"),
         }
         cls.reports["regress"] = cls.page_of_a_regression()
 

@@ -31,7 +31,7 @@ struct Solved {
       : pump(the_case.pump, the_case.multibody, 1, Drive::given_acceleration),
         placement(pump),
         inverse(pump, placement) {
-    pump.inputs().chamber_pressure = [pressure](double, std::vector<double>& p) {
+    pump.inputs().chamber_pressure = [pressure](double, double, std::vector<double>& p) {
       p.assign(p.size(), pressure);
     };
     placement.place({0.3, 150, 0}, {0.3, 150, 0});

@@ -9,6 +9,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/worst.h"
+#include "integration/integrators.h"
 #include "placement/placement.h"
 #include "reactions/channels.h"
 #include "reactions/solver_guard.h"
@@ -22,36 +23,6 @@ namespace {
 // Within a segment between edges the pressure is evaluated at least this far inside, degrees:
 // beyond the tolerance within which an angle counts as on an edge.
 constexpr double kInsideEdge = 2e-9;
-
-std::unique_ptr<SimTK::Integrator> make_integrator(const SimTK::MultibodySystem& system,
-                                                   const IntegrationOptions& options) {
-  std::unique_ptr<SimTK::Integrator> integrator;
-  switch (options.integrator) {
-    case Integrator::runge_kutta_merson:
-      integrator = std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system);
-      break;
-    case Integrator::runge_kutta_feldberg:
-      integrator = std::make_unique<SimTK::RungeKuttaFeldbergIntegrator>(system);
-      break;
-    case Integrator::runge_kutta_3:
-      integrator = std::make_unique<SimTK::RungeKutta3Integrator>(system);
-      break;
-    case Integrator::verlet:
-      integrator = std::make_unique<SimTK::VerletIntegrator>(system);
-      break;
-    case Integrator::semi_explicit_euler:
-      integrator = std::make_unique<SimTK::SemiExplicitEuler2Integrator>(system);
-      break;
-    case Integrator::cpodes:
-      integrator = std::make_unique<SimTK::CPodesIntegrator>(system, SimTK::CPodes::BDF);
-      break;
-  }
-  integrator->setAccuracy(options.accuracy);
-  integrator->setConstraintTolerance(options.accuracy / 10);
-  // Reports between steps would be interpolated, at the cost of far larger errors.
-  integrator->setAllowInterpolation(false);
-  return integrator;
-}
 
 // Distances |theta| at which the loads have an edge: pressure edges of every piston, and its dead
 // centres where dry friction changes sign without a transition.
@@ -76,12 +47,6 @@ std::vector<double> edge_distances(const Case& the_case, const Assumptions& assu
 }
 
 }  // namespace
-
-std::pair<int, int> method_orders(Integrator kind) {
-  const SimTK::MultibodySystem nothing;
-  const auto integrator = make_integrator(nothing, {kind});
-  return {integrator->getMethodMinOrder(), integrator->getMethodMaxOrder()};
-}
 
 TimeRun::TimeRun(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                  const PressureTrace& pressure, const IntegrationOptions& options, Drive drive)
@@ -144,7 +109,7 @@ void TimeRun::read(std::size_t row, const ChannelLayout& layout, std::vector<dou
   state.updQ() = integrator_->getState().getQ();
   state.updU() = integrator_->getState().getU();
   auto in_segment = std::move(system_.inputs().chamber_pressure);
-  system_.inputs().chamber_pressure = [&](double, std::vector<double>& p) { p = pressure; };
+  system_.inputs().chamber_pressure = [&](double, double, std::vector<double>& p) { p = pressure; };
   realize_with_flank(system_, state);
   system_.inputs().chamber_pressure = std::move(in_segment);
   require_accurate_forces(estimated_force_error(system_, state), radians(samples_.theta_deg[row]));
@@ -185,7 +150,7 @@ void TimeRun::enter_segment(double from) {
   low_ = from + kInsideEdge;
   while (next_edge_ < edges_.size() && edges_[next_edge_] <= from + kInsideEdge) ++next_edge_;
   high_ = (next_edge_ < edges_.size() ? edges_[next_edge_] : from + 360.0) - kInsideEdge;
-  system_.inputs().chamber_pressure = [this](double theta, std::vector<double>& p) {
+  system_.inputs().chamber_pressure = [this](double theta, double, std::vector<double>& p) {
     const double angle = angle_in_segment(theta);
     for (int k = 1; k <= samples_.pistons; ++k)
       p[k - 1] = pressure_(piston_angle_deg(angle, k, samples_.pistons));

@@ -4,9 +4,11 @@
 
 namespace bentaxis::multibody {
 
-double piston_friction(const Friction& friction, double velocity, double rest_speed) {
+double piston_friction(const Friction& friction, double velocity, double rest_speed,
+                       double direction) {
   const double viscous = friction.piston_viscous * velocity;
   const bool jumps = friction.regularization == 0;
+  if (jumps && direction != 0) return -(friction.piston_coulomb * direction + viscous);
   if (jumps && std::abs(velocity) <= rest_speed) return -viscous;
   const double share =
       jumps ? std::copysign(1.0, velocity) : std::tanh(velocity / friction.regularization);

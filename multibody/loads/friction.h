@@ -11,7 +11,9 @@ namespace bentaxis::multibody {
 /// tanh of the speed over it; without, it jumps with the direction.
 /// @param velocity    of B along z2, m/s
 /// @param rest_speed  m/s: a piston this slow is at rest where dry friction jumps, and has none
-double piston_friction(const Friction& friction, double velocity, double rest_speed);
+/// @param direction   0, or the way the piston is taken to move where dry friction jumps
+double piston_friction(const Friction& friction, double velocity, double rest_speed,
+                       double direction = 0);
 
 /// The share of the speed of the joint circle, |omega| Ra, up to which a piston is at rest. At a
 /// dead centre the velocity of B is what is left of terms as large as the joints' own speed: some

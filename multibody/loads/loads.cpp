@@ -12,12 +12,12 @@ using SimTK::State;
 using SimTK::Vec3;
 
 AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions, double pressure,
-                     double velocity, double rest_speed) {
+                     double velocity, double rest_speed, double direction) {
   AxialLoad load;
   const double radius = pump.geometry.bore_diameter / 2;
   load.pressure = -pressure * kPi * radius * radius;
   if (assumptions.piston_friction)
-    load.friction = piston_friction(pump.friction, velocity, rest_speed);
+    load.friction = piston_friction(pump.friction, velocity, rest_speed, direction);
   return load;
 }
 
@@ -46,14 +46,15 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
     const Vec3& shaft_origin = shaft.getBodyOriginLocation(state);
 
     const double theta = turn_angle(shaft.getBodyRotation(state), SimTK::Rotation());
-    inputs_.chamber_pressure(theta, pressure_);
+    inputs_.chamber_pressure(theta, block.getOneQ(state, 0), pressure_);
     for (std::size_t k = 0; k < bodies_.pistons.size(); ++k) {
       const auto& piston = bodies_.pistons[k];
       const SimTK::Transform& place = piston.getBodyTransform(state);
       const SpatialVec& rate = piston.getBodyVelocity(state);
       const Vec3 ring = pump_.geometry.piston_length * Vec3(place.z());  // B from A
       const double velocity = SimTK::dot(z2, rate[1] + rate[0] % ring);
-      AxialLoad load = axial_load(pump_, assumptions_, pressure_[k], velocity, inputs_.rest_speed);
+      AxialLoad load = axial_load(pump_, assumptions_, pressure_[k], velocity, inputs_.rest_speed,
+                                  inputs_.held_direction.empty() ? 0 : inputs_.held_direction[k]);
       double bottom = pump_.block.bottom_area * pressure_[k];
       if (!acts(LoadSource::pressure)) load.pressure = bottom = 0;
       if (!acts(LoadSource::piston_friction)) load.friction = 0;

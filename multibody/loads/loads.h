@@ -18,13 +18,17 @@ enum class LoadSource { pressure, piston_friction, block_friction, shaft_frictio
 /// What the loads depend on besides the state. Changed by whoever runs the pump, between
 /// realizations; the pump's force element reads it.
 struct LoadInputs {
-  /// Chamber pressures (Pa gauge) at shaft angle theta, rad in (-pi, pi].
-  std::function<void(double theta, std::vector<double>& pressure)> chamber_pressure;
+  /// Chamber pressures (Pa gauge) at a shaft angle theta, rad in (-pi, pi], and a block angle psi,
+  /// rad, which does not wrap.
+  std::function<void(double theta, double psi, std::vector<double>& pressure)> chamber_pressure;
   PortPressures ports;
   /// Torque about z1 on the shaft at angle theta where the shaft runs free; empty where driven.
   std::function<double(double theta)> shaft_torque;
   double rest_speed =
       0;  ///< m/s, below which a piston counts as at rest in the sign law of friction
+  /// Way each piston is taken to move, +1 or -1, where dry friction jumps with it; empty: as it
+  /// moves.
+  std::vector<double> held_direction;
   /// The one source that acts; empty: all of them.
   std::optional<LoadSource> only;
 };
@@ -57,7 +61,8 @@ struct AxialLoad {
   double pressure = 0;
   double friction = 0;
 };
+/// @param direction  0, or the way the piston is taken to move where dry friction jumps
 AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions, double pressure,
-                     double velocity, double rest_speed);
+                     double velocity, double rest_speed, double direction = 0);
 
 }  // namespace bentaxis::multibody

@@ -64,10 +64,12 @@ double power_balance(const PumpSystem& pump, const State& state, const Reactions
                                matter.getGyroscopicForce(state, i);
     sum += power(loads[i] - inertia, body.getBodyVelocity(state));
   }
-  sum += reactions.drive * bodies.shaft.getBodyAngularVelocity(state)[2];
-  if (pump.has_gear())
+  // What is no applied force.
+  if (pump.drive().has_equation())
+    sum += reactions.drive * bodies.shaft.getBodyAngularVelocity(state)[2];
+  if (pump.has_rigid_gear())
     sum -= reactions.tooth * dot(reactions.tooth_line, sliding_at_mesh(pump, state));
-  else
+  else if (!pump.has_gear())
     sum += reactions.imposed * bodies.block.getOneU(state, 0);
   return sum + ring_power(pump, reactions, state);
 }

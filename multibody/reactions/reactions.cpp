@@ -18,7 +18,7 @@ void realize_with_flank(const PumpSystem& pump, State& state) {
     pump.system().realize(state, SimTK::Stage::Acceleration);
   };
   realize(false);
-  if (!pump.has_gear() || !pump.gear().has_two_flanks()) return;
+  if (!pump.has_rigid_gear() || !pump.gear().has_two_flanks()) return;
   if (pump.gear().tooth_force(state) < 0) realize(true);
 }
 
@@ -46,10 +46,11 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
   reactions.block_hold = joints[bodies.block.getMobilizedBodyIndex()];
   reactions.tapered = joints[bodies.shaft.getMobilizedBodyIndex()][1];
   reactions.cylindrical = pump.cylindrical_bearing().force_in_base(state);
-  reactions.drive = pump.drive().torque(state);
+  reactions.drive = pump.torque_on_shaft(state);
   if (pump.has_gear()) {
-    reactions.tooth = pump.gear().tooth_force(state);
-    reactions.tooth_line = pump.gear().line();
+    reactions.tooth = pump.tooth_force(state);
+    reactions.tooth_line =
+        pump.has_rigid_gear() ? pump.gear().line() : pump.gear().line_for(reactions.tooth);
   } else {
     reactions.imposed = pump.imposed_block_torque(state);
   }

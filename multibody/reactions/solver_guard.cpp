@@ -82,7 +82,9 @@ double estimated_force_error(const PumpSystem& pump, const SimTK::State& state) 
   SimTK::FactorQTZ(g, kPivot).solve(error, acceleration);
   matter.multiplyByM(state, acceleration, inertia_force);
   SimTK::FactorQTZ(transposed, kPivot).solve(inertia_force, multipliers);
-  const double arm = pump.drive().has_equation() ? 1 / pump.pump().geometry.joint_circle_radius : 1;
+  const double arm = pump.drive().has_torque_as_last_multiplier()
+                         ? 1 / pump.pump().geometry.joint_circle_radius
+                         : 1;
   const double off = largest_force(multipliers, arm);
   const double scale = largest_force(state.getMultipliers(), arm);
   return off == 0 ? 0 : off / scale;

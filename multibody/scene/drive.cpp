@@ -1,8 +1,10 @@
 #include "scene/drive.h"
 
 #include <cmath>
+#include <utility>
 
 #include "conventions.h"
+#include "scene/gear_mesh.h"
 
 namespace bentaxis::multibody {
 
@@ -10,6 +12,9 @@ using SimTK::Real;
 using SimTK::State;
 
 namespace {
+
+template <class T>
+using Bodies = SimTK::Array_<T, SimTK::ConstrainedBodyIndex>;
 
 class TurningMotion : public SimTK::Motion::Custom::Implementation {
  public:
@@ -57,16 +62,61 @@ class TurningMotion : public SimTK::Motion::Custom::Implementation {
   bool is_ball_;
 };
 
+// Holds the shaft's angle: the arc at a radius, so that its multiplier is a force and its error a
+// length, like those of the other equations.
+class GivenTurning : public SimTK::Constraint::Custom::Implementation {
+ public:
+  GivenTurning(SimTK::MobilizedBody& shaft, TurningInTime turning, double radius)
+      : Implementation(shaft.updMatterSubsystem(), 1, 0, 0),
+        turning_(std::move(turning)),
+        radius_(radius) {
+    addConstrainedBody(shaft.updMatterSubsystem().updGround());
+    shaft_ = addConstrainedBody(shaft);
+  }
+  Implementation* clone() const override { return new GivenTurning(*this); }
+
+  void calcPositionErrors(const State& state, const Bodies<SimTK::Transform>& bodies,
+                          const SimTK::Array_<Real, SimTK::ConstrainedQIndex>&,
+                          SimTK::Array_<Real>& error) const override {
+    const double angle = turn_angle(bodies[shaft_].R(), SimTK::Rotation());
+    error[0] = radius_ * std::remainder(angle - turning_(state.getTime()).angle, 2 * SimTK::Pi);
+  }
+  void calcPositionDotErrors(const State& state, const Bodies<SimTK::SpatialVec>& velocities,
+                             const SimTK::Array_<Real, SimTK::ConstrainedQIndex>&,
+                             SimTK::Array_<Real>& error) const override {
+    error[0] = radius_ * (velocities[shaft_][0][2] - turning_(state.getTime()).speed);
+  }
+  void calcPositionDotDotErrors(const State& state, const Bodies<SimTK::SpatialVec>& accelerations,
+                                const SimTK::Array_<Real, SimTK::ConstrainedQIndex>&,
+                                SimTK::Array_<Real>& error) const override {
+    error[0] = radius_ * (accelerations[shaft_][0][2] - turning_(state.getTime()).acceleration);
+  }
+  void addInPositionConstraintForces(
+      const State&, const SimTK::Array_<Real>& multipliers, Bodies<SimTK::SpatialVec>& forces,
+      SimTK::Array_<Real, SimTK::ConstrainedQIndex>&) const override {
+    forces[shaft_][0][2] += radius_ * multipliers[0];
+  }
+
+ private:
+  TurningInTime turning_;
+  double radius_;
+  SimTK::ConstrainedBodyIndex shaft_;
+};
+
 }  // namespace
 
 SimTK::Motion turning_motion(SimTK::MobilizedBody& body, const Turning& turning, bool is_ball) {
   return SimTK::Motion::Custom(body, new TurningMotion(turning, is_ball));
 }
 
-ShaftDrive::ShaftDrive(Drive drive, SimTK::MobilizedBody& shaft, double omega) : drive_(drive) {
+ShaftDrive::ShaftDrive(Drive drive, SimTK::MobilizedBody& shaft, double omega,
+                       const TurningInTime& turning, double radius)
+    : drive_(drive), radius_(radius) {
   constexpr int kAboutZ = 2;
   if (drive == Drive::constant_speed)
     speed_ = SimTK::Constraint::ConstantSpeed(shaft, SimTK::MobilizerUIndex(kAboutZ), omega);
+  if (drive == Drive::given_turning)
+    turning_ = SimTK::Constraint::Custom(new GivenTurning(shaft, turning, radius));
   if (drive == Drive::given_acceleration)
     acceleration_ =
         SimTK::Constraint::ConstantAcceleration(shaft, SimTK::MobilizerUIndex(kAboutZ), 0);
@@ -74,6 +124,7 @@ ShaftDrive::ShaftDrive(Drive drive, SimTK::MobilizedBody& shaft, double omega) :
 
 void ShaftDrive::disable(State& state) const {
   if (drive_ == Drive::constant_speed) speed_.disable(state);
+  if (drive_ == Drive::given_turning) turning_.disable(state);
   if (drive_ == Drive::given_acceleration) acceleration_.disable(state);
 }
 
@@ -88,6 +139,8 @@ double ShaftDrive::torque(const State& state) const {
       return applied_generalized_force(state, speed_);
     case Drive::given_acceleration:
       return applied_generalized_force(state, acceleration_);
+    case Drive::given_turning:
+      return -radius_ * turning_.getMultipliersAsVector(state)[0];
     case Drive::torque:
     case Drive::prescribed:
       break;

@@ -14,8 +14,24 @@ namespace bentaxis::multibody {
 using SimTK::State;
 using SimTK::Vec3;
 
+namespace {
+
+// Work of ordinary size, J: that of a simulation is held to its accuracy times that.
+constexpr double kUnitWork = 1000;
+
+}  // namespace
+
 PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega,
                        Drive drive)
+    : PumpSystem(pump, assumptions, omega, drive, nullptr) {}
+
+PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumptions,
+                       const DriveInTime& drive)
+    : PumpSystem(pump, assumptions, 1, drive.torque ? Drive::torque : Drive::given_turning,
+                 &drive) {}
+
+PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega,
+                       Drive drive, const DriveInTime* in_time)
     : pump_(pump),
       assumptions_(assumptions),
       drive_(drive),
@@ -25,22 +41,28 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   if (drive == Drive::torque && !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
     throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
   inputs_.rest_speed = rest_speed_at(pump.geometry, omega);
-  inputs_.chamber_pressure = [](double, std::vector<double>& p) {
+  inputs_.chamber_pressure = [](double, double, std::vector<double>& p) {
     std::fill(p.begin(), p.end(), 0.0);
   };
-  add_shaft_and_block(omega);
+  add_shaft_and_block(omega, in_time);
   weight_.emplace(forces_, matter_, Vec3(0, -pump_.gravity, 0));
   pistons_ = add_pistons(pump_.geometry, piston_, shaft_, block_);
   bodies_.pistons = pistons_.bodies;
   loads_.emplace(forces_, pump_, assumptions_, bodies_, inputs_,
                  is_prescribed() ? LoadedBodies::pistons : LoadedBodies::all);
-  if (drive_ == Drive::constant_speed || drive_ == Drive::torque)
-    work_.emplace(system_, matter_, forces_,
-                  [this](const State& state) { return power_of_drives(state); });
+  if (in_time != nullptr) {
+    if (in_time->torque) drive_torque_.emplace(matter_, forces_, *in_time->torque, shaft_);
+    if (pump_.gear.contact == ToothContact::compliant && has_gear())
+      teeth_.emplace(forces_, *pump_.gear.compliance, *gear_, shaft_, block_, tooth_branch_);
+  }
+  if (drive_ == Drive::constant_speed || drive_ == Drive::torque || drive_ == Drive::given_turning)
+    work_.emplace(
+        system_, matter_, forces_, [this](const State& state) { return power_of_drives(state); },
+        in_time != nullptr ? kUnitWork : 1);
   make_states();
 }
 
-void PumpSystem::add_shaft_and_block(double omega) {
+void PumpSystem::add_shaft_and_block(double omega, const DriveInTime* in_time) {
   const SimTK::Transform frame = block_frame(pump_.geometry);
   bodies_.block_frame = frame.R();
   bodies_.block_origin = frame.p();
@@ -52,7 +74,9 @@ void PumpSystem::add_shaft_and_block(double omega) {
   shaft_motion_ = turning_motion(shaft_, shaft_turning_, true);
   block_motion_ = turning_motion(block_, block_turning_, false);
   if (!is_prescribed()) cylindrical_ = multibody::cylindrical_bearing(matter_, shaft_, pump_);
-  shaft_drive_.emplace(drive_, shaft_, omega);
+  shaft_drive_.emplace(drive_, shaft_, omega,
+                       in_time != nullptr ? in_time->turning : TurningInTime(),
+                       pump_.geometry.joint_circle_radius);
   if (has_gear()) gear_ = gear_of(pump_, matter_, shaft_, block_, bodies_.block_frame, omega);
 }
 
@@ -68,6 +92,7 @@ void PumpSystem::make_states() {
     // Dynamics: joints and constraints hold them; an imposed block keeps its motion.
     shaft_motion_.disable(dynamics_);
     if (has_gear()) block_motion_.disable(dynamics_);
+    if (teeth_) gear_->disable(dynamics_);
   }
   system_.realize(assembly_, SimTK::Stage::Instance);
   system_.realize(dynamics_, SimTK::Stage::Instance);
@@ -84,8 +109,18 @@ double PumpSystem::power_of_drives(const State& state) const {
   double power = 0;
   if (shaft_drive_->has_equation())
     power += shaft_drive_->torque(state) * shaft_.getBodyAngularVelocity(state)[2];
+  if (drive_torque_) power += drive_torque_->power(state);
   if (!has_gear()) power += imposed_block_torque(state) * block_.getOneU(state, 0);
   return power;
+}
+
+double PumpSystem::torque_on_shaft(const State& state) const {
+  return drive_torque_ ? pump_.friction.shaft_torque_factor * drive_torque_->torque(state)
+                       : shaft_drive_->torque(state);
+}
+
+double PumpSystem::tooth_force(const State& state) const {
+  return teeth_ ? teeth_->force(state) : gear_->tooth_force(state);
 }
 
 double PumpSystem::imposed_block_torque(const State& state) const {

@@ -20,11 +20,19 @@
 #include "bentaxis/pump/parameters.h"
 #include "loads/loads.h"
 #include "scene/drive.h"
+#include "scene/drive_torque.h"
 #include "scene/gear_mesh.h"
 #include "scene/piston.h"
+#include "scene/tooth_contact.h"
 #include "scene/work_meter.h"
 
 namespace bentaxis::multibody {
+
+/// What turns the shaft of a pump that is simulated: one of the two.
+struct DriveInTime {
+  TurningInTime turning;
+  std::optional<TorqueInTime> torque;
+};
 
 /// A pump ready for Simbody's solvers. Two states serve two purposes: in `assembly` shaft and block
 /// are prescribed and Simbody's projection finds the pistons from any start; in `dynamics`
@@ -33,6 +41,8 @@ namespace bentaxis::multibody {
 class PumpSystem {
  public:
   PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega, Drive drive);
+  /// A pump that is simulated: compliant teeth give way.
+  PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, const DriveInTime& drive);
   PumpSystem(const PumpSystem&) = delete;
   PumpSystem& operator=(const PumpSystem&) = delete;
 
@@ -65,6 +75,13 @@ class PumpSystem {
   const GearMesh& gear() const { return *gear_; }
   const ShaftDrive& drive() const { return *shaft_drive_; }
   bool has_gear() const { return !is_prescribed() && assumptions_.gear == BlockDrive::mesh; }
+  /// Whether the gear is a constraint; compliant teeth of a pump that is simulated are not.
+  bool has_rigid_gear() const { return has_gear() && !teeth_; }
+  /// Compliant teeth of a pump that is simulated; else null.
+  const CompliantTeeth* teeth() const { return teeth_ ? &*teeth_ : nullptr; }
+  ToothBranch& tooth_branch() { return tooth_branch_; }
+  /// What turns a shaft that runs free in a simulation; else null.
+  const DriveTorque* drive_torque() const { return drive_torque_ ? &*drive_torque_ : nullptr; }
   bool is_prescribed() const { return drive_ == Drive::prescribed; }
 
   /// From A along a piston's axis to where the bore's force acts, m: to B unless the pump has a
@@ -79,6 +96,12 @@ class PumpSystem {
   /// Whether the pistons are rigid bodies that can turn about their own axis.
   bool pistons_free_to_spin() const { return piston_.free_to_spin; }
 
+  /// Torque about z1 that turns the shaft, after proportional losses, Nm.
+  /// @param state  realized to Acceleration
+  double torque_on_shaft(const SimTK::State& state) const;
+  /// Tooth force along GearMesh::line_for() it, N. @param state  realized to Acceleration
+  double tooth_force(const SimTK::State& state) const;
+
   /// Torque about z2 that the imposed motion applies to the block, Nm.
   double imposed_block_torque(const SimTK::State& state) const;
 
@@ -89,7 +112,9 @@ class PumpSystem {
   double gear_phase(const SimTK::State& state) const;
 
  private:
-  void add_shaft_and_block(double omega);
+  PumpSystem(const PumpParameters& pump, const Assumptions& assumptions, double omega, Drive drive,
+             const DriveInTime* in_time);
+  void add_shaft_and_block(double omega, const DriveInTime* in_time);
   void make_states();
   double power_of_drives(const SimTK::State& state) const;
 
@@ -113,6 +138,9 @@ class PumpSystem {
   Pistons pistons_;
   std::optional<SimTK::Force::UniformGravity> weight_;
   std::optional<PumpLoads> loads_;
+  std::optional<DriveTorque> drive_torque_;
+  ToothBranch tooth_branch_;
+  std::optional<CompliantTeeth> teeth_;
   std::optional<WorkMeter> work_;
   SimTK::State assembly_, dynamics_;
 };

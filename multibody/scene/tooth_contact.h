@@ -1,7 +1,10 @@
-// What compliant teeth do to each other.
+// What compliant teeth do to each other: the contact law, and the force element it makes.
 #pragma once
 
+#include <SimTKsimbody.h>
+
 #include "bentaxis/pump/parameters.h"
+#include "scene/gear_mesh.h"
 
 namespace bentaxis::multibody {
 
@@ -18,5 +21,48 @@ double flank_force(const ToothCompliance& teeth, double approach, double rate);
 ///                 pushes the block towards +psi, m, from the middle of the gap
 /// @param rate     of the advance, m/s
 double tooth_force(const ToothCompliance& teeth, double advance, double rate);
+
+/// Which branch of the contact law holds. Within one the force is smooth; an integration lands
+/// where it changes.
+struct ToothBranch {
+  int flank = 0;  ///< +1: the shaft pushes the block towards +psi, -1: towards -psi, 0: none
+  bool released = false;  ///< so fast apart that the flank, still pressed in, follows no more
+};
+
+/// Compliant teeth between shaft and block, as a force element.
+///
+/// How far the shaft's teeth are ahead is a variable of its own, the integral of the bodies'
+/// sliding past each other at the mesh point along the line of action: the difference of two angles
+/// that grow would lose its digits.
+class CompliantTeeth {
+ public:
+  /// @param gear    where and along which lines; outlives the system, like the other arguments
+  /// @param branch  read at every evaluation
+  CompliantTeeth(SimTK::GeneralForceSubsystem& forces, const ToothCompliance& teeth,
+                 const GearMesh& gear, const SimTK::MobilizedBody& shaft,
+                 const SimTK::MobilizedBody& block, const ToothBranch& branch);
+
+  /// Of the shaft's teeth before the block's, m, from the middle of the gap; and its rate, m/s.
+  /// @param state  realized to Velocity, of the rate
+  double advance(const SimTK::State& state) const;
+  double rate(const SimTK::State& state) const;
+  /// How far a flank is pressed in, m, and how fast.
+  double approach(const SimTK::State& state, int flank) const;
+  double approach_rate(const SimTK::State& state, int flank) const;
+  /// Force of the branch that holds, N, signed towards +psi.
+  double force(const SimTK::State& state) const;
+  /// Energy that a spring of this law holds, J.
+  double elastic_energy(const SimTK::State& state) const;
+  /// Impulse of the teeth since time 0, whichever flank carries, Ns.
+  double impulse(const SimTK::State& state) const;
+  /// Scale of the approach, m: that at `kUnitForce`.
+  double unit() const { return unit_; }
+
+ private:
+  class Element;
+  ToothCompliance teeth_;
+  double unit_;
+  Element* element_;  // owned by its force subsystem
+};
 
 }  // namespace bentaxis::multibody

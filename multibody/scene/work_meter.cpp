@@ -14,8 +14,12 @@ class WorkMeter::Implementation : public SimTK::Force::Custom::Implementation {
  public:
   Implementation(const SimTK::MultibodySystem& system, const SimTK::SimbodyMatterSubsystem& matter,
                  const SimTK::GeneralForceSubsystem& forces,
-                 std::function<double(const State&)> drives)
-      : system_(system), matter_(matter), forces_(forces), drives_(std::move(drives)) {}
+                 std::function<double(const State&)> drives, double unit)
+      : system_(system),
+        matter_(matter),
+        forces_(forces),
+        drives_(std::move(drives)),
+        unit_(unit) {}
 
   void calcForce(const State&, SimTK::Vector_<SpatialVec>&, SimTK::Vector_<SimTK::Vec3>&,
                  Vector&) const override {}
@@ -31,24 +35,27 @@ class WorkMeter::Implementation : public SimTK::Force::Custom::Implementation {
       loads += SimTK::dot(forces[i][0], v[0]) + SimTK::dot(forces[i][1], v[1]);
     }
     Vector& rate = forces_.updZDot(state);
-    rate[first_] = loads;
-    rate[first_ + 1] = drives_(state);
+    rate[first_] = loads / unit_;
+    rate[first_ + 1] = drives_(state) / unit_;
   }
-  double value(const State& state, int which) const { return forces_.getZ(state)[first_ + which]; }
+  double value(const State& state, int which) const {
+    return unit_ * forces_.getZ(state)[first_ + which];
+  }
 
  private:
   const SimTK::MultibodySystem& system_;
   const SimTK::SimbodyMatterSubsystem& matter_;
   const SimTK::GeneralForceSubsystem& forces_;
   std::function<double(const State&)> drives_;
+  double unit_;
   mutable SimTK::ZIndex first_;
 };
 
 WorkMeter::WorkMeter(const SimTK::MultibodySystem& system,
                      const SimTK::SimbodyMatterSubsystem& matter,
                      SimTK::GeneralForceSubsystem& forces,
-                     std::function<double(const State&)> drives)
-    : implementation_(new Implementation(system, matter, forces, std::move(drives))) {
+                     std::function<double(const State&)> drives, double unit)
+    : implementation_(new Implementation(system, matter, forces, std::move(drives), unit)) {
   SimTK::Force::Custom(forces, implementation_);
 }
 

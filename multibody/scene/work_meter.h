@@ -12,10 +12,12 @@ namespace bentaxis::multibody {
 class WorkMeter {
  public:
   /// @param matter  must outlive the system, like `forces`
+  /// @param unit    J, of the two variables: an integrator holds their errors to its accuracy times
+  /// that
   /// @param drives  power of all drives, W, in a state realized to Acceleration
   WorkMeter(const SimTK::MultibodySystem& system, const SimTK::SimbodyMatterSubsystem& matter,
-            SimTK::GeneralForceSubsystem& forces,
-            std::function<double(const SimTK::State&)> drives);
+            SimTK::GeneralForceSubsystem& forces, std::function<double(const SimTK::State&)> drives,
+            double unit = 1);
 
   /// Work since time 0, J.
   double of_loads(const SimTK::State& state) const;

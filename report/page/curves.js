@@ -66,6 +66,9 @@ function plot(box, data, lines, bands, yLabel) {
         canvas.fillStyle = band.colour + "2e";
         canvas.fill();
       }
+      canvas.fillStyle = variable("--axis");
+      for (const mark of list(data.marks))  // two rows of ticks at the lower edge
+        canvas.fillRect(graph.toDomXCoord(mark.x), area.y + area.h - (mark.upper ? 14 : 6), 1, 6);
       canvas.restore();
       canvas.fillStyle = variable("--axis");
       canvas.fillRect(area.x, Math.round(graph.toDomYCoord(0)), area.w, 1);
@@ -104,7 +107,7 @@ function lineOf(values, colour, t, alone) {
 // A figure may bring its own axis and curves: {x: {label, angle, values}, series: [{label, values}]}. It is
 // then drawn from these alone; `angle` says that the axis is one of shaft angles.
 const withOwnAxis = (figure, data) => (!figure.x ? data : {
-  ...data, tables: [], difference: {}, reference: null, axis: { label: figure.x.label, angle: !!figure.x.angle },
+  ...data, tables: [], difference: {}, reference: null, marks: [], axis: { label: figure.x.label, angle: !!figure.x.angle },
   ...orderOf(list(figure.x.values), !!figure.x.angle) });
 
 // What a curve may be that is held to another: around that curve, or around zero for the difference from it.
@@ -153,7 +156,7 @@ function curvesFigure(figure, page) {
   const exact = differences.length > 0 && differences.every(d => d.values.every(v => !v));
   const plots = [{ node: box("", `curves over ${data.axis.label}`), lines: [...edgesOf(bands), ...lines, ...extras], bands, label: "value" }];
   if (differences.length && !exact)
-    plots.push({ node: box(".low", "difference over the shaft angle"), lines: differences, bands: [], label: "difference",
+    plots.push({ node: box(".low", `difference over ${data.axis.label}`), lines: differences, bands: [], label: "difference",
                  title: `Difference: ${data.pair[1]} minus ${data.pair[0]}` });
   if (exact) notes.push("The difference is exactly zero wherever both were computed.");
   if (fromReference.length)

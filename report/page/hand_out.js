@@ -7,7 +7,7 @@ const axisName = axis => axis.label + (axis.unit ? ` (${axis.unit})` : "");
 function columnsOf(figure, data) {
   if (figure.kind === "own_axis")
     return [[figure.x.label, figure.x.values], ...figure.series.map(s => [s.label, s.values])];
-  const columns = [["theta_deg", data.theta]];
+  const columns = [[data.axis.angle ? "theta_deg" : data.axis.label, data.theta]];
   for (const name of figure.channels) {
     for (const t of data.tables) if (t.columns[name]) columns.push([`${name} ${t.name}`, t.columns[name]]);
     if (data.difference[name]) columns.push([`${name} ${data.pair[1]} minus ${data.pair[0]}`, data.difference[name]]);

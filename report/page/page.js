@@ -42,7 +42,8 @@ function prepare(report, curves) {
   const usual = ["analytic", "multibody"];
   const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
   return {
-    ...orderOf(list(curves.theta_deg), true), axis: { label: "shaft angle (deg)", angle: true }, tables, pair,
+    ...orderOf(list(curves.theta_deg), !curves.axis), marks: list(curves.marks),
+    axis: { label: curves.axis || "shaft angle (deg)", angle: !curves.axis }, tables, pair,
     difference: curves.difference || {}, reference: curves.reference || null, mounts: [],
     ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
     meaning: name => phrases(about(name).meaning, about(name).on_body && "on " + about(name).on_body),
@@ -62,7 +63,7 @@ const SECTIONS = [
 
 function header(report, data) {
   const { theta, tables } = data, n = theta.length;
-  const angles = n === 0 ? null : n === 1 ? "1 angle, " + degrees(theta[0])
+  const angles = n === 0 ? null : !data.axis.angle ? `${n} rows, ${data.axis.label} ${number(theta[0])} to ${number(theta[n - 1])}` : n === 1 ? "1 angle, " + degrees(theta[0])
     : `${n} angles from ${degrees(theta[0])} to ${degrees(theta[n - 1])}`;
   const parts = [report.case && report.case.file, tables.map(t => t.name).join(" and "), angles,
                  list(list(report.program)[0]).join(" ")];

@@ -47,7 +47,7 @@ struct Curves {
     std::string name;  ///< of the model
     std::vector<std::pair<std::string, Values>> columns;
   };
-  Values theta_deg;
+  Values theta_deg;  ///< or what `axis` names
   std::vector<Table> tables;
   std::vector<std::pair<std::string, Values>> difference;  ///< second minus first table
 
@@ -65,6 +65,15 @@ struct Curves {
     std::vector<Held> held;
   };
   std::optional<Reference> reference = std::nullopt;
+
+  std::string axis = {};  ///< where it is no shaft angle: "time (ms)"
+  /// Something that happens at a place of the axis: a tick below the curves, those of `upper` in a
+  /// row above the others.
+  struct Mark {
+    double x;
+    bool upper;
+  };
+  std::vector<Mark> marks = {};
 };
 
 /// A curve that a figure brings itself.

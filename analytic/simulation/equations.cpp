@@ -1,0 +1,300 @@
+#include "simulation/equations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::analytic::simulation {
+namespace {
+
+PumpParameters with_ideal_rings(PumpParameters pump) {
+  pump.piston.contact.reset();
+  return pump;
+}
+
+double start_speed_of(const Case& the_case, const std::optional<TimeSignal>& curve) {
+  const DriveSpec& drive = *the_case.drive;
+  if (drive.kind == DriveKind::speed && curve) return curve->value(0);
+  return drive.start_speed.value_or(rad_per_second(the_case.operation.speed_rpm));
+}
+
+std::optional<TimeSignal> curve_of(const DriveSpec& drive) {
+  if (drive.curve.time.empty()) return {};
+  return TimeSignal(drive.curve);
+}
+
+}  // namespace
+
+Equations::Equations(const Case& the_case, const Assumptions& assumptions,
+                     const PressureTrace& pressure)
+    : drive_(drive_of(the_case)),
+      pressure_(pressure),
+      omega_(rad_per_second(the_case.operation.speed_rpm)),
+      torque_factor_(the_case.pump.friction.shaft_torque_factor),
+      model_(the_case.pump, assumptions),
+      ideal_(with_ideal_rings(the_case.pump), assumptions),
+      loads_(the_case.pump, assumptions),
+      ring_off_(the_case.pump.piston.contact.has_value()),
+      law_(closed_form::tooth_law(the_case.pump.gear)),
+      arm_(the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle)),
+      curve_(curve_of(drive_)) {
+  if (assumptions.gear == BlockDrive::imposed)
+    throw InputError(
+        "gear = \"imposed\": must be \"mesh\" in a simulation, where the shaft moves the "
+        "block");
+  if (the_case.pump.gear.contact == ToothContact::rigid) law_.reset();
+  start_speed_ = start_speed_of(the_case, curve_);
+  values_.resize(model_.layout().size());
+  instant_.chamber_pressure.resize(model_.layout().pistons());
+  instant_.ports = the_case.pressure.ports;
+
+  // Sizes of what acts, over a turn without acceleration.
+  constexpr int kAngles = 36;
+  for (int i = 0; i < kAngles; ++i) {
+    const double angle = 2 * kPi * i / kAngles;
+    instant_.turn(angle, start_speed_);
+    for (int k = 0; k < model_.layout().pistons(); ++k)
+      instant_.chamber_pressure[k] =
+          pressure_(piston_angle_deg(angle / kRadPerDegree, k + 1, model_.layout().pistons()));
+    const Response r = respond(model_, 0, 0);
+    torque_scale_ = std::max(torque_scale_, std::abs(r.drive_torque));
+    tooth_scale_ = std::max(tooth_scale_, std::abs(r.tooth_force));
+  }
+  torque_scale_ = std::max({torque_scale_, std::abs(drive_.torque), 1e-6});
+  for (const double value : drive_.curve.value)
+    if (drive_.kind != DriveKind::speed) torque_scale_ = std::max(torque_scale_, std::abs(value));
+  tooth_scale_ = std::max(tooth_scale_, 0.1 * torque_scale_ / arm_);
+  const Response still = respond(model_, 0, 0);
+  shaft_inertia_ = std::abs(respond(model_, 1e5, 1e5).drive_torque - still.drive_torque) / 1e5;
+  block_inertia_ = std::abs(respond(model_, 0, 1e5).tooth_force - still.tooth_force) * arm_ / 1e5;
+  probe_ = torque_scale_ / shaft_inertia_;
+}
+
+Equations::Response Equations::respond(const Model& model, double shaft_acceleration,
+                                       double block_acceleration) {
+  ++evaluations_;
+  instant_.shaft.acceleration = shaft_acceleration;
+  instant_.block.acceleration = block_acceleration;
+  model.reactions(instant_, values_);
+  const double tooth = values_[model.layout().Rcs()];
+  return {values_[model.layout().Td()], instant_.shaft.speed < 0 ? -tooth : tooth};
+}
+
+AxisMotion Equations::shaft(double time, const State& y) const {
+  if (drive_.kind != DriveKind::speed)
+    return {start_speed_ * time + y[kTurn], start_speed_ + y[kTurnRate], 0};
+  if (curve_) return {curve_->integral(time), curve_->value(time), curve_->slope(time)};
+  return {omega_ * time, omega_, 0};
+}
+
+double Equations::block_angle(double time, const State& y) const {
+  return shaft(time, y).angle - y[kLag];
+}
+
+State Equations::start(const SimulationOptions& options) {
+  State y = {};
+  if (drive_.kind != DriveKind::speed) y[kTurnRate] = options.start_speed;
+  if (law_) y[kLag] = options.start_lag;
+  if (options.disturbance != 0) {
+    const State scale = scales();
+    if (law_) y[kLag] += options.disturbance * scale[kLag];
+    if (drive_.kind != DriveKind::speed) y[kTurnRate] += options.disturbance * scale[kTurnRate];
+  }
+  if (drive_.kind == DriveKind::motor && start_speed_ != 0)
+    y[kTwist] = drive_.torque / drive_.motor->coupling_stiffness;
+  return y;
+}
+
+State Equations::scales() const {
+  // Pressure changes over some tenths of a radian; speeds by the energy that a load feeds there.
+  constexpr double kAngle = 0.1;
+  State scale;
+  scale.fill(1);
+  scale[kTurn] = kAngle;
+  scale[kTurnRate] = kAngle * std::max({std::abs(omega_), std::abs(start_speed_),
+                                        std::sqrt(torque_scale_ * kAngle / shaft_inertia_)});
+  if (law_) {
+    const double approach =
+        kToothApproach *
+        std::pow(tooth_scale_ / (law_->stiffness * kToothApproach), 1 / law_->exponent);
+    const double stiffness = law_->exponent * tooth_scale_ / approach * arm_ * arm_;
+    const double reduced = drive_.kind == DriveKind::speed
+                               ? block_inertia_
+                               : block_inertia_ * (1 - block_inertia_ / (2 * shaft_inertia_));
+    scale[kLag] = std::min(kAngle, tooth_scale_ * arm_ / stiffness);
+    scale[kLagRate] = scale[kLag] * std::sqrt(stiffness / reduced);
+  }
+  if (drive_.motor) {
+    const MotorData& motor = *drive_.motor;
+    const double stiffness = motor.coupling_stiffness;
+    scale[kTwist] = std::min(kAngle, torque_scale_ / stiffness);
+    scale[kTwistRate] =
+        scale[kTwist] * std::sqrt(stiffness * (1 / motor.rotor_inertia + 1 / shaft_inertia_));
+  }
+  scale[kWorkOfLoads] = scale[kWorkOfDrive] = torque_scale_;
+  scale[kImpulse] = tooth_scale_ * 1e-3;
+  for (double& size : scale) size = std::exp2(std::round(std::log2(size)));  // exact to divide by
+  return scale;
+}
+
+std::vector<double> Equations::knots() const {
+  return curve_ ? curve_->knots() : std::vector<double>();
+}
+
+void Equations::set_speeds(double time, const State& y) {
+  instant_.shaft = shaft(time, y);
+  instant_.block = instant_.shaft;
+  instant_.block.angle -= y[kLag];
+  instant_.block.speed -= y[kLagRate];
+}
+
+void Equations::set_pressures(double block_angle) {
+  const int pistons = model_.layout().pistons();
+  const double psi_deg = block_angle / kRadPerDegree;
+  for (int k = 0; k < pistons; ++k)
+    instant_.chamber_pressure[k] = pressure_(piston_angle_deg(psi_deg, k + 1, pistons));
+}
+
+void Equations::at_own_angle(double time, const State& y) { set_pressures(block_angle(time, y)); }
+
+double Equations::spring_force(double approach) const {
+  const double share = approach / kToothApproach;
+  return law_->stiffness * kToothApproach *
+         (law_->exponent == 1 ? share
+                              : std::copysign(std::pow(std::abs(share), law_->exponent), share));
+}
+
+// Of a flank that presses: the law goes on beyond the end of contact, where rates() is asked on the
+// way to an event.
+double Equations::flank_force(double approach, double rate) const {
+  return spring_force(approach) * (1 + law_->dissipation * rate);
+}
+
+Motion Equations::motion(double time, const State& y) {
+  set_speeds(time, y);
+  // A hair within: at an edge the pressure is that of this side.
+  constexpr double kHair = 1e-10;
+  set_pressures(std::clamp(instant_.block.angle, from_angle + kHair,
+                           std::max(to_angle - kHair, from_angle + kHair)));
+
+  Motion m;
+  const bool speed_given = drive_.kind == DriveKind::speed;
+  const double given = instant_.shaft.acceleration;
+  if (!speed_given)
+    m.drive_torque = drive_.kind == DriveKind::torque
+                         ? (curve_ ? curve_->value(time) : drive_.torque)
+                         : drive_.motor->coupling_stiffness * y[kTwist] +
+                               drive_.motor->coupling_damping * y[kTwistRate];
+  double shaft = given, block = given;
+  if (!law_) {
+    if (!speed_given) {
+      const Response still = respond(model_, 0, 0);
+      const Response moved = respond(model_, probe_, probe_);
+      shaft = block = (m.drive_torque - still.drive_torque) /
+                      (moved.drive_torque - still.drive_torque) * probe_;
+    }
+    m.tooth_force = 0;
+  } else {
+    if (teeth.pressing != 0)
+      m.tooth_force = teeth.pressing *
+                      flank_force(approach(y, teeth.pressing), approach_rate(y, teeth.pressing));
+    const Response still = respond(model_, given, 0);
+    const Response by_block = respond(model_, given, probe_);
+    const double block_force = by_block.tooth_force - still.tooth_force;
+    const double block_torque = by_block.drive_torque - still.drive_torque;
+    const double force = m.tooth_force - still.tooth_force;
+    if (speed_given) {
+      block = force / block_force;  // in probes
+    } else {
+      const Response by_shaft = respond(model_, probe_, 0);
+      const double shaft_force = by_shaft.tooth_force - still.tooth_force;
+      const double shaft_torque = by_shaft.drive_torque - still.drive_torque;
+      const double torque = m.drive_torque - still.drive_torque;
+      const double determinant = shaft_torque * block_force - block_torque * shaft_force;
+      shaft = (torque * block_force - block_torque * force) / determinant * probe_;
+      block = (shaft_torque * force - torque * shaft_force) / determinant;
+    }
+    if (speed_given) m.drive_torque = still.drive_torque + block * block_torque;
+    block *= probe_;
+  }
+  instant_.shaft.acceleration = shaft;
+  instant_.block.acceleration = block;
+  if (speed_given && !law_) m.drive_torque = respond(model_, shaft, block).drive_torque;
+  m.shaft = instant_.shaft;
+  m.block = instant_.block;
+  return m;
+}
+
+void Equations::rates(double time, const State& y, State& dy) {
+  const Motion m = motion(time, y);
+  dy.fill(0);
+  const double shaft_speed = m.shaft.speed;
+  double loads = loads_.power(instant_, m.drive_torque);
+  if (ring_off_) {
+    MotionChecks checks{};
+    model_.evaluate(instant_, values_, &checks);
+    loads += checks.ring_power;
+  }
+  double drive = m.drive_torque * shaft_speed;
+  if (drive_.kind != DriveKind::speed) {
+    dy[kTurn] = y[kTurnRate];
+    dy[kTurnRate] = m.shaft.acceleration;
+  }
+  if (law_) {
+    dy[kLag] = y[kLagRate];
+    dy[kLagRate] = m.shaft.acceleration - m.block.acceleration;
+    // What the flanks take in beyond what their springs hold.
+    for (const int flank : {1, -1}) {
+      const double x = approach(y, flank);
+      if (x > 0)
+        loads -= (teeth.pressing == flank ? flank * m.tooth_force : 0.0) * approach_rate(y, flank) -
+                 spring_force(x) * approach_rate(y, flank);
+    }
+    dy[kImpulse] = std::abs(m.tooth_force);
+  }
+  if (drive_.motor) {
+    const MotorData& motor = *drive_.motor;
+    const double rotor_speed = shaft_speed + y[kTwistRate];
+    const double torque = drive_.torque - motor.torque_slope * (rotor_speed - omega_);
+    const double rotor = (torque - m.drive_torque) / motor.rotor_inertia;
+    dy[kTwist] = y[kTwistRate];
+    dy[kTwistRate] = rotor - m.shaft.acceleration;
+    loads -= motor.coupling_damping * y[kTwistRate] * y[kTwistRate];
+    drive = torque * rotor_speed;
+  }
+  dy[kWorkOfLoads] = loads;
+  dy[kWorkOfDrive] = drive;
+}
+
+double Equations::kinetic_energy(double time, const State& y) {
+  set_speeds(time, y);
+  const Response still = respond(ideal_, 0, 0);
+  const Response by_shaft = respond(ideal_, probe_, 0);
+  const Response by_block = respond(ideal_, 0, probe_);
+  // The mass matrix is what the torques on shaft and block gain by accelerations: the gear's acts
+  // on both.
+  const double mixed = arm_ * (by_shaft.tooth_force - still.tooth_force);
+  const double block = arm_ * (by_block.tooth_force - still.tooth_force);
+  const double shaft = torque_factor_ * (by_shaft.drive_torque - still.drive_torque) - mixed;
+  const double theta = instant_.shaft.speed;
+  const double psi = instant_.block.speed;
+  double energy =
+      (shaft * theta * theta + 2 * mixed * theta * psi + block * psi * psi) / 2 / probe_;
+  if (drive_.motor) energy += drive_.motor->rotor_inertia * std::pow(theta + y[kTwistRate], 2) / 2;
+  return energy;
+}
+
+double Equations::potential_energy(const State& y) const {
+  double energy = 0;
+  if (law_)
+    for (const int flank : {1, -1}) {
+      const double x = approach(y, flank);
+      if (x > 0) energy += spring_force(x) * x / (law_->exponent + 1);
+    }
+  if (drive_.motor) energy += drive_.motor->coupling_stiffness * y[kTwist] * y[kTwist] / 2;
+  return energy;
+}
+
+}  // namespace bentaxis::analytic::simulation

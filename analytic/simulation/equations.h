@@ -1,0 +1,115 @@
+// Equations of motion of shaft, block and rotor. Internal.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/simulation.h"
+#include "bentaxis/pump/time_signal.h"
+#include "closed_form/gear.h"
+#include "simulation/loads.h"
+
+namespace bentaxis::analytic::simulation {
+
+/// What is integrated. Angles and rates that a case does not have stay 0.
+enum : std::size_t {
+  kTurn,         ///< theta less the start's speed times time, rad
+  kTurnRate,     ///< rad/s
+  kLag,          ///< theta - psi, rad
+  kLagRate,      ///< rad/s
+  kTwist,        ///< of the coupling, phi - theta, rad
+  kTwistRate,    ///< rad/s
+  kWorkOfLoads,  ///< J
+  kWorkOfDrive,  ///< J
+  kImpulse,      ///< Ns, of the flank that presses
+  kStates
+};
+using State = std::array<double, kStates>;
+
+/// How the teeth stand: which flank presses, if any.
+struct Teeth {
+  int pressing = 0;  ///< +1 or -1; 0: none
+  /// A flank that is within the other but leaves faster than the law's damping lets it push.
+  int idle = 0;
+};
+
+/// What one state of motion gives.
+struct Motion {
+  AxisMotion shaft, block;
+  double drive_torque = 0;  ///< Td, Nm
+  double tooth_force = 0;   ///< of the contact law, towards +psi, N
+};
+
+class Equations {
+ public:
+  /// @throws InputError
+  Equations(const Case& the_case, const Assumptions& assumptions, const PressureTrace& pressure);
+
+  const Model& model() const { return model_; }
+  const DriveSpec& drive() const { return drive_; }
+  bool compliant() const { return law_.has_value(); }
+  const closed_form::ToothLaw& law() const { return *law_; }
+  long evaluations() const { return evaluations_; }
+
+  State start(const SimulationOptions& options);
+  /// What each state is measured by: an error of one part in this scale changes reactions by the
+  /// same part of their peak, or so.
+  State scales() const;
+  /// Times at which what drives the shaft changes its law, s.
+  std::vector<double> knots() const;
+
+  // The piece of the motion that rates() follows.
+  Teeth teeth;
+  double from_angle = 0, to_angle = 0;  ///< rad, of psi: pressures are those of this interval
+
+  /// Approach of a flank, m, and its rate.
+  double approach(const State& y, int flank) const {
+    return flank * law_->arm * y[kLag] - law_->half_backlash;
+  }
+  double approach_rate(const State& y, int flank) const { return flank * law_->arm * y[kLagRate]; }
+  double block_angle(double time, const State& y) const;
+  double speed(double time, const State& y) const { return shaft(time, y).speed; }
+
+  void rates(double time, const State& y, State& dy);
+  /// Everything at an instant; `instant()` then is the model's argument there.
+  Motion motion(double time, const State& y);
+  const Instant& instant() const { return instant_; }
+  /// Pressures at the block's angle itself instead of those of the interval.
+  void at_own_angle(double time, const State& y);
+
+  /// Of all bodies and of the rotor, J; of the teeth and the coupling, J.
+  double kinetic_energy(double time, const State& y);
+  double potential_energy(const State& y) const;
+
+ private:
+  struct Response {
+    double drive_torque, tooth_force;  // both as the motion needs them
+  };
+  Response respond(const Model& model, double shaft_acceleration, double block_acceleration);
+  AxisMotion shaft(double time, const State& y) const;
+  void set_speeds(double time, const State& y);
+  void set_pressures(double block_angle);
+  double spring_force(double approach) const;
+  double flank_force(double approach, double rate) const;
+
+  const DriveSpec& drive_;
+  const PressureTrace& pressure_;
+  double omega_, start_speed_;
+  double torque_factor_;
+  Model model_;
+  Model ideal_;  // contact of the rings at B: what the mass matrix is found from
+  Loads loads_;
+  bool ring_off_;  // rings act off B, and do work on the play of their pistons
+  std::optional<closed_form::ToothLaw> law_;
+  double arm_;
+  std::optional<TimeSignal> curve_;
+  double probe_ = 1;  // rad/s2, for differences of responses
+  double torque_scale_ = 0, tooth_scale_ = 0, shaft_inertia_ = 0, block_inertia_ = 0;
+  Instant instant_;
+  std::vector<double> values_;
+  long evaluations_ = 0;
+};
+
+}  // namespace bentaxis::analytic::simulation

@@ -1,0 +1,464 @@
+// Steps through the motion: to every event, to every row.
+#include <algorithm>
+#include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
+#include <cmath>
+#include <functional>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/stopwatch.h"
+#include "bentaxis/results/worst.h"
+#include "simulation/equations.h"
+
+namespace bentaxis::analytic {
+namespace simulation {
+namespace {
+
+// Tolerance of a step, of the scales of the states, for a wanted error of the reactions: what
+// remains is for the growth of errors over the motion.
+constexpr double kStepShare = 1e-3;
+// Rounding of a step, of a state's size: no tolerance below it can be met.
+constexpr double kRounding = 1e-15;
+constexpr double kTightest = 1e-14;
+constexpr double kSmallestStep = 1e-14;       // of the duration
+constexpr double kFirstStep = 1e-3;           // of the duration, at most
+constexpr long kMostEvaluations = 100000000;  // of the closed form: some minutes
+constexpr int kMostEventsAtOnce = 64;         // without a step between them
+constexpr double kOnTouch = 1e-15;            // m: as good as touching
+constexpr double kOnEdge = 1e-15;             // of the angle and a turn
+
+// One extrapolated step of scaled states; `h` becomes what the method would take next.
+class Stepper {
+ public:
+  Stepper(Equations& equations, const State& scale, double tolerance)
+      : equations_(equations), scale_(scale), method_(tolerance, kRounding, 1.0, 0.0) {}
+
+  bool attempt(double time, const State& y, const State& dy, double& h, State& out) {
+    State from, slope;
+    for (std::size_t i = 0; i < kStates; ++i) {
+      from[i] = y[i] / scale_[i];
+      slope[i] = dy[i] / scale_[i];
+    }
+    const auto system = [this](const State& x, State& dx, double t) {
+      State at, rate;
+      for (std::size_t i = 0; i < kStates; ++i) at[i] = x[i] * scale_[i];
+      equations_.rates(t, at, rate);
+      for (std::size_t i = 0; i < kStates; ++i) dx[i] = rate[i] / scale_[i];
+    };
+    const double asked = h;
+    const auto result = method_.try_step(system, from, slope, time, out, h);
+    for (std::size_t i = 0; i < kStates; ++i) out[i] *= scale_[i];
+    const bool finite =
+        std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); });
+    if (!finite || !std::isfinite(h)) {
+      h = asked / 8;
+      method_.reset();
+      return false;
+    }
+    return result == boost::numeric::odeint::success;
+  }
+
+ private:
+  Equations& equations_;
+  State scale_;
+  boost::numeric::odeint::bulirsch_stoer<State> method_;
+};
+
+// A value that ends the piece of motion where it rises above 0, with its rate.
+struct Guard {
+  double value, rate;
+};
+
+// First time in (0, h] at which the cubic through both ends is above 0; h or more: not within.
+double first_above(const Guard& from, const Guard& to, double h) {
+  const double a = from.value, b = from.rate * h;
+  const double c = 3 * (to.value - from.value) - h * (2 * from.rate + to.rate);
+  const double d = 2 * (from.value - to.value) + h * (from.rate + to.rate);
+  const auto at = [&](double s) { return a + s * (b + s * (c + s * d)); };
+  // Where it may turn back: roots of b + 2 c s + 3 d s^2.
+  std::array<double, 3> ends = {2, 2, 1};
+  const double discriminant = c * c - 3 * b * d;
+  if (discriminant > 0) {
+    const double q = -(c + std::copysign(std::sqrt(discriminant), c));
+    if (d != 0) ends[0] = q / (3 * d);
+    if (q != 0) ends[1] = b / q;
+    if (ends[0] > ends[1]) std::swap(ends[0], ends[1]);
+  }
+  double low = 0;
+  for (const double end : ends) {
+    if (!(end > 0 && end <= 1)) continue;
+    const bool above = end == 1 ? to.value > 0 : at(end) > 0;
+    if (above) {
+      double high = end;
+      for (int i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (at(middle) > 0 ? high : low) = middle;
+      }
+      return high * h;
+    }
+    low = end;
+  }
+  return 2 * h;
+}
+
+class Simulation {
+ public:
+  Simulation(const Case& the_case, const Assumptions& assumptions, const PressureTrace& pressure,
+             const SimulationOptions& options, const Progress& progress)
+      : equations_(the_case, assumptions, pressure),
+        options_(options),
+        progress_(progress),
+        tolerance_(std::max(kTightest, options.accuracy.value_or(options.error * kStepShare))),
+        stepper_(equations_, equations_.scales(), tolerance_) {
+    const int pistons = the_case.pump.geometry.pistons;
+    for (const double edge : pressure.edges_deg())
+      for (int k = 0; k < pistons; ++k)
+        edges_deg_.push_back(wrap_degrees(edge + 360.0 * k / pistons));
+    std::sort(edges_deg_.begin(), edges_deg_.end());
+    constexpr double kSame = 1e-9;
+    edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end(),
+                                 [](double a, double b) { return b - a < kSame; }),
+                     edges_deg_.end());
+    if (edges_deg_.size() > 1 && edges_deg_.front() + 360 - edges_deg_.back() < kSame)
+      edges_deg_.pop_back();
+  }
+
+  Trajectory run() {
+    const Stopwatch watch;
+    const DriveSpec& drive = equations_.drive();
+    Trajectory trajectory;
+    trajectory.table = trajectory_table("analytic", equations_.model().layout(), drive);
+    y_ = equations_.start(options_);
+    start_piece();
+    start_teeth();
+    if (equations_.teeth.pressing != 0) contact_changes(0, equations_.teeth.pressing);
+    kinetic_ = equations_.kinetic_energy(0, y_);
+    potential_ = equations_.potential_energy(y_);
+    const std::vector<double> stops =
+        options_.times.empty() ? trajectory_times(drive) : options_.times;
+    const std::size_t rows = stops.size();
+    next_ = drive.duration * kFirstStep;
+    for (const double knot : equations_.knots()) knots_.push_back(knot);
+    for (std::size_t row = 0; row < rows; ++row) {
+      while (time_ < stops[row]) {
+        const auto knot = std::upper_bound(knots_.begin(), knots_.end(), time_);
+        advance(knot != knots_.end() ? std::min(*knot, stops[row]) : stops[row]);
+      }
+      add_row(trajectory);
+    }
+    close_contact();
+    TrajectoryRecord& record = trajectory.record;
+    record = record_;
+    record.evaluations = equations_.evaluations();
+    record.seconds = watch.seconds();
+    record.share_out_of_contact = equations_.compliant() ? apart_ / drive.duration : 0;
+    record.choice = "Gragg-Bulirsch-Stoer extrapolation, " + number_text(tolerance_) +
+                    " per step of what each state's scale is, for an error of " +
+                    number_text(options_.error) + " of peak";
+    return trajectory;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const {
+    throw ComputationError("analytic model: the simulation stops at " + number_text(time_) +
+                           " s: " + why);
+  }
+
+  // The interval between edges of pressure in which the block stands, or which it enters.
+  void start_piece() {
+    if (edges_deg_.empty()) {
+      equations_.from_angle = -1e300;
+      equations_.to_angle = 1e300;
+      return;
+    }
+    const double angle = equations_.block_angle(time_, y_) / kRadPerDegree;
+    turn_ = std::floor(angle / 360);
+    const double within = angle - 360 * turn_;
+    edge_ = std::upper_bound(edges_deg_.begin(), edges_deg_.end(), within) - edges_deg_.begin();
+    set_piece();
+    if (radians(edge_deg(edge_ - 1)) == equations_.block_angle(time_, y_)) {
+      State dy;
+      equations_.rates(time_, y_, dy);
+      const Motion m = equations_.motion(time_, y_);
+      if (m.block.speed < 0 || (m.block.speed == 0 && m.block.acceleration < 0)) {
+        --edge_;
+        set_piece();
+      }
+    }
+  }
+
+  double edge_deg(std::ptrdiff_t index) const {
+    const auto count = static_cast<std::ptrdiff_t>(edges_deg_.size());
+    std::ptrdiff_t turns = index / count;
+    std::ptrdiff_t left = index % count;
+    if (left < 0) {
+      left += count;
+      --turns;
+    }
+    return edges_deg_[static_cast<std::size_t>(left)] + 360 * (turn_ + static_cast<double>(turns));
+  }
+
+  void set_piece() {
+    equations_.from_angle = radians(edge_deg(edge_ - 1));
+    equations_.to_angle = radians(edge_deg(edge_));
+  }
+
+  // Which flank presses from here on.
+  void start_teeth() {
+    Teeth& teeth = equations_.teeth;
+    teeth = {};
+    if (!equations_.compliant()) return;
+    State dy;
+    for (const int flank : {1, -1}) {
+      const double x = equations_.approach(y_, flank);
+      double rate = equations_.approach_rate(y_, flank);
+      if (x < -kOnTouch) continue;
+      if (x <= kOnTouch && rate == 0) {
+        equations_.rates(time_, y_, dy);  // without force
+        rate = flank * dy[kLagRate];
+      }
+      if (x <= kOnTouch && rate <= 0) continue;
+      if (1 + equations_.law().dissipation * equations_.approach_rate(y_, flank) > 0)
+        teeth.pressing = flank;
+      else
+        teeth.idle = flank;
+      return;
+    }
+  }
+
+  struct Guards {
+    std::array<Guard, 4> all;
+    std::size_t count = 0;
+    void add(double value, double rate) { all[count++] = {value, rate}; }
+  };
+
+  // In an order that handle() knows: the interval's two ends, then the teeth.
+  Guards guards(double time, const State& y, const State& dy) const {
+    Guards g;
+    const double psi = equations_.block_angle(time, y);
+    const Equations& e = equations_;
+    const double psi_rate = block_speed(time, y);
+    g.add(psi - e.to_angle, psi_rate);
+    g.add(e.from_angle - psi, -psi_rate);
+    if (!e.compliant()) return g;
+    const int within = e.teeth.pressing + e.teeth.idle;
+    if (within == 0) {
+      g.add(e.approach(y, 1), e.approach_rate(y, 1));
+      g.add(e.approach(y, -1), e.approach_rate(y, -1));
+    } else {
+      g.add(-e.approach(y, within), -e.approach_rate(y, within));
+      const double push = 1 + e.law().dissipation * e.approach_rate(y, within);
+      const double push_rate = e.law().dissipation * within * e.law().arm * dy[kLagRate];
+      if (e.teeth.pressing != 0)
+        g.add(-push, -push_rate);
+      else
+        g.add(push, push_rate);
+    }
+    return g;
+  }
+
+  double block_speed(double time, const State& y) const {
+    return equations_.speed(time, y) - y[kLagRate];
+  }
+
+  double nearness(std::size_t guard, double time) const {
+    if (guard < 2) return kOnEdge * (std::abs(equations_.block_angle(time, y_)) + 2 * kPi);
+    return guard == 3 && equations_.teeth.pressing + equations_.teeth.idle != 0 ? 1e-12 : kOnTouch;
+  }
+
+  // One step, to an event or to `stop` at most.
+  void advance(double stop) {
+    if (progress_) progress_(std::min(1.0, time_ / equations_.drive().duration));
+    if (equations_.evaluations() > kMostEvaluations)
+      fail("after " + std::to_string(kMostEvaluations) +
+           " evaluations: the motion is too fast for the time that is asked for; simulate less of "
+           "it (duration_s), or a larger error");
+    State dy, out, out_dy;
+    equations_.rates(time_, y_, dy);
+    const Guards before = guards(time_, y_, dy);
+    for (std::size_t i = 0; i < before.count; ++i)
+      if (before.all[i].rate > 0 && before.all[i].value > -nearness(i, time_)) {
+        handle(i);
+        return;
+      }
+    double h = std::min(next_, stop - time_);
+    // An event of which the rate says that it comes within this step: the pieces beyond it are
+    // another law, which the step need not see.
+    for (std::size_t i = 0; i < 2; ++i)
+      if (before.all[i].rate > 0) {
+        const double ahead = -before.all[i].value / before.all[i].rate;
+        if (ahead > 0) h = std::min(h, ahead * (1 + 1e-6));
+      }
+    double taken = h;
+    double proposal = h;
+    if (!stepper_.attempt(time_, y_, dy, proposal, out)) {
+      shrink(taken, proposal);
+      return;
+    }
+    ++record_.steps;
+    const double free_proposal = proposal;
+    equations_.rates(time_ + taken, out, out_dy);
+    Guards after = guards(time_ + taken, out, out_dy);
+    std::size_t event = after.count;
+    double when = taken;
+    for (std::size_t i = 0; i < after.count; ++i) {
+      const double t = first_above(before.all[i], after.all[i], taken);
+      if (t <= when && (t < when || event == after.count)) {
+        event = i;
+        when = t;
+      }
+    }
+    if (event < after.count) {
+      // To the event itself: false position between a time before and one after it.
+      double low = 0, high = taken;
+      bool landed = std::abs(after.all[event].value) <= nearness(event, time_) && when == taken;
+      for (int tries = 0; !landed; ++tries) {
+        constexpr int kMostTries = 60;
+        if (tries == kMostTries) fail("an event cannot be located");
+        proposal = taken = when;
+        if (!stepper_.attempt(time_, y_, dy, proposal, out)) {
+          shrink(taken, proposal);
+          return;
+        }
+        ++record_.steps;
+        equations_.rates(time_ + taken, out, out_dy);
+        after = guards(time_ + taken, out, out_dy);
+        const Guard& g = after.all[event];
+        if (std::abs(g.value) <= nearness(event, time_)) break;
+        (g.value > 0 ? high : low) = taken;
+        if (high - low <= 2e-16 * (time_ + high)) break;
+        when = g.rate != 0 ? taken - g.value / g.rate : low;
+        if (!(when > low && when < high)) when = (low + high) / 2;
+      }
+    }
+    // A step that was cut short says little of what the next may be.
+    if (h < next_)
+      next_ = std::max(next_, free_proposal);
+    else
+      next_ = free_proposal;
+    if (equations_.compliant() && equations_.teeth.pressing == 0) apart_ += taken;
+    time_ = taken == stop - time_ ? stop : time_ + taken;
+    y_ = out;
+    if (taken > kSmallestStep * equations_.drive().duration)
+      at_once_ = 0;
+    else
+      count_at_once();
+    if (event < after.count) handle(event);
+  }
+
+  void shrink(double taken, double proposal) {
+    next_ = std::min(proposal, taken / 2);
+    if (next_ < kSmallestStep * equations_.drive().duration)
+      fail("the motion changes faster there than steps above round-off can follow");
+  }
+
+  void count_at_once() {
+    if (++at_once_ > kMostEventsAtOnce)
+      fail("teeth and edges of the pressure are passed again and again without any motion");
+  }
+
+  // What changes at an event.
+  void handle(std::size_t guard) {
+    count_at_once();
+    if (guard < 2) {
+      edge_ += guard == 0 ? 1 : -1;
+      set_piece();
+      return;
+    }
+    const Teeth was = equations_.teeth;
+    const int within = was.pressing + was.idle;
+    Teeth& teeth = equations_.teeth;
+    if (within == 0) {
+      const int flank = guard == 2 ? 1 : -1;
+      y_[kLag] = flank * equations_.law().half_backlash / equations_.law().arm;
+      const bool pushes =
+          1 + equations_.law().dissipation * equations_.approach_rate(y_, flank) > 0;
+      (pushes ? teeth.pressing : teeth.idle) = flank;
+    } else if (guard == 2) {
+      y_[kLag] = within * equations_.law().half_backlash / equations_.law().arm;
+      teeth = {};
+    } else {
+      std::swap(teeth.pressing, teeth.idle);
+    }
+    if (was.pressing != teeth.pressing) contact_changes(was.pressing, teeth.pressing);
+  }
+
+  void contact_changes(int from, int to) {
+    constexpr std::size_t kMostEvents = 1000000;
+    if (record_.events.size() >= kMostEvents)
+      fail("after " + std::to_string(kMostEvents) + " touches of the teeth");
+    if (from != 0) close_contact();
+    ToothEvent event;
+    event.time_s = time_;
+    event.touch = to != 0;
+    event.flank = to != 0 ? to : from;
+    event.shaft_speed = equations_.speed(time_, y_);
+    event.block_speed = block_speed(time_, y_);
+    event.approach_speed = equations_.approach_rate(y_, event.flank);
+    if (to != 0) {
+      touch_ = record_.events.size();
+      y_[kImpulse] = 0;
+    }
+    record_.events.push_back(event);
+  }
+
+  // The flank that pressed has left: its impulse is known.
+  void close_contact() {
+    if (touch_ < record_.events.size()) record_.events[touch_].impulse = y_[kImpulse];
+    touch_ = kNone;
+  }
+
+  void add_row(Trajectory& trajectory) {
+    Motion m = equations_.motion(time_, y_);
+    equations_.at_own_angle(time_, y_);
+    const Model& model = equations_.model();
+    row_.assign(model.layout().size(), not_computed());
+    MotionChecks checks{};
+    model.evaluate(equations_.instant(), row_, &checks);
+    // By the lag's own digits.
+    if (equations_.compliant()) checks.tooth_law = m.tooth_force;
+    std::vector<double> state = {
+        time_, m.shaft.angle / kRadPerDegree, (m.shaft.angle - y_[kLag]) / kRadPerDegree,
+        m.shaft.speed / kRadPerSecondPerRpm, m.block.speed / kRadPerSecondPerRpm};
+    if (equations_.drive().kind == DriveKind::motor)
+      state.push_back((m.shaft.speed + y_[kTwistRate]) / kRadPerSecondPerRpm);
+    append_trajectory_row(trajectory.table, state, row_, checks);
+    trajectory.lag.push_back(y_[kLag]);
+
+    record_.work_of_loads = y_[kWorkOfLoads];
+    record_.work_of_drives = y_[kWorkOfDrive];
+    record_.kinetic_energy_gained = equations_.kinetic_energy(time_, y_) - kinetic_;
+    record_.potential_energy_gained = equations_.potential_energy(y_) - potential_;
+    record_.work_residual = record_.work_of_loads + record_.work_of_drives -
+                            record_.kinetic_energy_gained - record_.potential_energy_gained;
+    keep_worst(record_.worst_work_residual, record_.work_residual);
+  }
+
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  Equations equations_;
+  const SimulationOptions options_;
+  const Progress& progress_;
+  double tolerance_;
+  Stepper stepper_;
+  std::vector<double> edges_deg_, knots_, row_;
+  double turn_ = 0;
+  std::ptrdiff_t edge_ = 0;  // that ends the interval
+  double time_ = 0, next_ = 0, apart_ = 0, kinetic_ = 0, potential_ = 0;
+  State y_ = {};
+  int at_once_ = 0;
+  std::size_t touch_ = kNone;
+  TrajectoryRecord record_;
+};
+
+}  // namespace
+}  // namespace simulation
+
+Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
+                    const PressureTrace& pressure, const SimulationOptions& options,
+                    const Progress& progress) {
+  return simulation::Simulation(the_case, assumptions, pressure, options, progress).run();
+}
+
+}  // namespace bentaxis::analytic

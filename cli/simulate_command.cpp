@@ -1,0 +1,76 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bentaxis/files/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/results/trajectory.h"
+#include "bentaxis/study/simulation_document.h"
+#include "commands.h"
+#include "console.h"
+#include "options.h"
+#include "report_files.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+struct Options {
+  CaseOption the_case;
+  ReportPlace place;
+  std::string model;  ///< "": both
+  study::SimulationChoice choice;
+};
+
+int simulate(const Options& options, const CommandParser& command) {
+  study::SimulationChoice choice = options.choice;
+  if (options.model == "analytic") choice.only = study::Model::analytic;
+  if (options.model == "multibody") choice.only = study::Model::multibody;
+  for (const char* option : {"--integrator", "--accuracy"})
+    if (command.given(option) && choice.only == study::Model::analytic)
+      throw InputError(std::string(option) +
+                       ": changes nothing: only the multibody model is "
+                       "integrated by Simbody");
+  Case read = options.the_case.read();
+  drive_of(read);
+  ReportFolders folders(options.place);
+  const study::SimulationResult result =
+      study::simulate(study::prepare(std::move(read), progress_of), choice, progress_of);
+  std::vector<TextFile> curves;
+  if (result.analytic)
+    curves.emplace_back("simulation_analytic.csv", to_csv(result.analytic->table));
+  if (result.multibody)
+    curves.emplace_back("simulation_multibody.csv", to_csv(result.multibody->table));
+  const auto paths = folders.write("report", study::simulation_document(result, versions()),
+                                   study::simulation_curves(result), curves);
+  std::printf("%s\n", study::simulation_text(result).c_str());
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  return result.agrees() ? kDone : kOutOfTolerance;
+}
+
+}  // namespace
+
+Command add_simulate_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command = program.subcommand(
+      "simulate", "Integrate the motion of shaft and block in time by both models and compare");
+  add_case(command, options->the_case);
+  add_report(command, options->place, "report.html, report.json and the curves");
+  command.option("--model", options->model, "one model alone; nothing is compared then")
+      .one_of({"analytic", "multibody"})
+      .text("analytic|multibody [both]");
+  Option accuracy = command.option("--accuracy", options->choice.accuracy,
+                                   "multibody: relative accuracy per step of Simbody's integrator");
+  accuracy.accuracy().text("NUMBER [found for --error]");
+  command
+      .option("--error", options->choice.error,
+              "wanted error of every reaction, of peak: what both models are integrated for and "
+              "held to")
+      .number_in(1e-10, 0.1)
+      .text("NUMBER [1e-6]");
+  command.choice("--integrator", options->choice.integrator, multibody::integrator_names(),
+                 "multibody: time integrator of Simbody");
+  return {command, [options, command] { return simulate(*options, command); }};
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,382 @@
+#include "integration/motion_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/worst.h"
+#include "reactions/channels.h"
+#include "reactions/motion_checks.h"
+#include "reactions/solver_guard.h"
+
+namespace bentaxis::multibody {
+
+using SimTK::dot;
+using SimTK::Stage;
+using SimTK::State;
+using SimTK::Vec3;
+
+namespace {
+
+// Within a segment between edges the pressure is evaluated at least this far inside, degrees:
+// beyond the tolerance within which an angle counts as on an edge.
+constexpr double kInsideEdge = 2e-9;
+// An angle this near to an edge, degrees, is on it.
+constexpr double kOnEdge = 1e-10;
+// Approach, of its unit, and share of a force that count as none where a branch ends.
+constexpr double kNoApproach = 1e-10;
+constexpr double kNoForce = 1e-9;
+// m/s: of a piston that is about to turn.
+constexpr double kNoSpeed = 1e-12;
+// Events at one time after which nothing will come of it.
+constexpr int kMostEvents = 200;
+double rpm(double speed) { return speed / kRadPerSecondPerRpm; }
+
+// Of the duration: times nearer than that are one.
+constexpr double kOneTime = 1e-12;
+
+std::vector<double> pressure_edges(const PressureTrace& pressure, int pistons) {
+  std::vector<double> edges;
+  for (int k = 1; k <= pistons; ++k)
+    for (const double edge : pressure.edges_deg()) {
+      const double at = std::fmod(edge - piston_angle_deg(0, k, pistons), 360.0);
+      edges.push_back(at < 0 ? at + 360 : at);
+    }
+  std::sort(edges.begin(), edges.end());
+  const auto same = [](double a, double b) { return b - a < kInsideEdge; };
+  edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
+  return edges;
+}
+
+ComputationError stopped(double time, const std::string& why) {
+  const std::string model = "multibody model: ";
+  const bool named = why.compare(0, model.size(), model) == 0;
+  return ComputationError(model + "simulation stopped at " + short_text(time) +
+                          " s: " + (named ? why.substr(model.size()) : why));
+}
+
+}  // namespace
+
+MotionRun::MotionRun(const Case& the_case, const Assumptions& assumptions,
+                     const PressureTrace& pressure, const IntegrationOptions& options,
+                     long most_steps)
+    : case_(the_case),
+      spec_(*the_case.drive),
+      pressure_(pressure),
+      curve_(spec_.curve.time.empty() ? std::nullopt : std::optional<TimeSignal>(spec_.curve)),
+      system_(the_case.pump, assumptions, drive_in_time()),
+      stepper_(system_.system(), options, most_steps),
+      edges_(pressure_edges(pressure, the_case.pump.geometry.pistons)) {
+  if (!has_equation_of_motion(the_case.pump, assumptions.inertia))
+    throw ComputationError(
+        "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
+        "has no equation of motion in Simbody to simulate; use the analytic model");
+  system_.inputs().ports = the_case.pressure.ports;
+  place_at_start();
+  set_pressure();
+  const bool jumps = assumptions.piston_friction && the_case.pump.friction.regularization == 0 &&
+                     the_case.pump.friction.piston_coulomb > 0;
+  if (jumps) system_.inputs().held_direction.assign(system_.bodies().pistons.size(), 0);
+  const State& state = system_.dynamics();
+  energy_at_start_ = system_.system().calcKineticEnergy(state);
+  if (system_.teeth() != nullptr) elastic_at_start_ += system_.teeth()->elastic_energy(state);
+  if (system_.drive_torque() != nullptr)
+    elastic_at_start_ += system_.drive_torque()->elastic_energy(state);
+  stepper_.foresee(spec_.duration);
+}
+
+DriveInTime MotionRun::drive_in_time() const {
+  const double omega = rad_per_second(case_.operation.speed_rpm);
+  DriveInTime drive;
+  if (spec_.kind == DriveKind::speed) {
+    drive.turning = [this, omega](double time) {
+      if (!curve_) return AxisMotion{omega * time, omega, 0};
+      return AxisMotion{curve_->integral(time), curve_->value(time), curve_->slope(time)};
+    };
+    return drive;
+  }
+  const auto torque = [this](double time) { return curve_ ? curve_->value(time) : spec_.torque; };
+  drive.torque = TorqueInTime{torque, std::nullopt, omega, case_.pump.friction.shaft_torque_factor};
+  if (spec_.kind == DriveKind::motor) drive.torque->motor = spec_.motor;
+  return drive;
+}
+
+double MotionRun::start_speed() const {
+  if (spec_.kind == DriveKind::speed && curve_) return curve_->value(0);
+  return spec_.start_speed.value_or(rad_per_second(case_.operation.speed_rpm));
+}
+
+void MotionRun::place_at_start() {
+  const double speed = start_speed();
+  // Shaft and block stand at 0: on an edge there they are past it in the direction they turn.
+  segment_ = edges_.empty() || (edges_.front() <= kOnEdge && speed >= 0) ? 0 : -1;
+  system_.inputs().rest_speed = 0;
+  Placement placement(system_);
+  placement.place({0, speed, 0}, {0, speed, 0});
+  if (system_.drive_torque() != nullptr)
+    system_.drive_torque()->start(system_.dynamics(), speed, speed == 0 ? 0 : spec_.torque);
+  system_.system().realize(system_.dynamics(), Stage::Velocity);
+}
+
+double MotionRun::psi_deg(const State& state) const {
+  return system_.bodies().block.getOneQ(state, 0) / kRadPerDegree;
+}
+double MotionRun::block_speed(const State& state) const {
+  return system_.bodies().block.getOneU(state, 0);
+}
+double MotionRun::shaft_speed(const State& state) const {
+  return system_.bodies().shaft.getBodyAngularVelocity(state)[2];
+}
+
+// theta - psi.
+double MotionRun::lag(const State& state) const {
+  return system_.teeth() != nullptr ? system_.teeth()->advance(state) / system_.gear().arm()
+                                    : -system_.gear_phase(state);
+}
+
+double MotionRun::shaft_angle(const State& state) const {
+  const double near = system_.bodies().block.getOneQ(state, 0) + lag(state);
+  const double angle = turn_angle(system_.bodies().shaft.getBodyRotation(state), SimTK::Rotation());
+  return near + std::remainder(angle - near, 2 * kPi);
+}
+
+// The chambers' pressures on the branch of the present segment.
+void MotionRun::set_pressure() {
+  const auto edge = [this](long index) {
+    const auto count = static_cast<long>(edges_.size());
+    const long turn = index >= 0 ? index / count : -((-index + count - 1) / count);
+    return edges_[static_cast<std::size_t>(index - turn * count)] +
+           360.0 * static_cast<double>(turn);
+  };
+  const bool has_edges = !edges_.empty();
+  low_ = has_edges ? edge(segment_) : -SimTK::Infinity;
+  high_ = has_edges ? edge(segment_ + 1) : SimTK::Infinity;
+  system_.inputs().chamber_pressure = [this, has_edges](double, double psi,
+                                                        std::vector<double>& p) {
+    double angle = psi / kRadPerDegree;
+    if (has_edges) angle = std::clamp(angle, low_ + kInsideEdge, high_ - kInsideEdge);
+    const int n = static_cast<int>(p.size());
+    for (int k = 1; k <= n; ++k) p[k - 1] = pressure_(piston_angle_deg(angle, k, n));
+  };
+}
+
+std::vector<MotionRun::Event> MotionRun::events() {
+  std::vector<Event> events;
+  add_pressure_edges(events);
+  add_tooth_events(events);
+  add_friction_jumps(events);
+  return events;
+}
+
+void MotionRun::add_pressure_edges(std::vector<Event>& events) {
+  if (edges_.empty()) return;
+  for (const int way : {1, -1}) {
+    const double edge = way > 0 ? high_ : low_;
+    events.push_back({{[=](const State& s) { return way * (psi_deg(s) - edge); },
+                       [=](const State& s) { return way * block_speed(s) / kRadPerDegree; },
+                       kOnEdge * std::max(1.0, std::abs(edge) / 3600)},
+                      [=] {
+                        segment_ += way;
+                        set_pressure();
+                      }});
+  }
+}
+
+void MotionRun::add_tooth_events(std::vector<Event>& events) {
+  const CompliantTeeth* teeth = system_.teeth();
+  if (teeth == nullptr) return;
+  const double tolerance = kNoApproach * teeth->unit();
+  const ToothBranch branch = system_.tooth_branch();
+  if (branch.flank == 0) {
+    for (const int flank : {1, -1})
+      events.push_back({{[=](const State& s) { return teeth->approach(s, flank); },
+                         [=](const State& s) { return teeth->approach_rate(s, flank); }, tolerance},
+                        [=] { touch(flank); }});
+    return;
+  }
+  const int flank = branch.flank;
+  events.push_back({{[=](const State& s) { return -teeth->approach(s, flank); },
+                     [=](const State& s) { return -teeth->approach_rate(s, flank); }, tolerance},
+                    [=] {
+                      leave(flank);
+                      if (case_.pump.gear.compliance->backlash == 0) touch(-flank);
+                    }});
+  const double dissipation = case_.pump.gear.compliance->dissipation;
+  if (dissipation == 0) return;
+  const int way = branch.released ? 1 : -1;
+  events.push_back(
+      {{[=](const State& s) { return way * (1 + dissipation * teeth->approach_rate(s, flank)); },
+        {},
+        kNoForce},
+       [=] { set_branch(flank, !branch.released); }});
+}
+
+void MotionRun::add_friction_jumps(std::vector<Event>& events) {
+  std::vector<double>& held = system_.inputs().held_direction;
+  const Vec3 z2(system_.bodies().block_frame.z());
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    const auto velocity = [this, z2, k](const State& s) {
+      const SimTK::MobilizedBody& piston = system_.bodies().pistons[k];
+      return dot(
+          z2, piston.findStationVelocityInGround(s, Vec3(0, 0, case_.pump.geometry.piston_length)));
+    };
+    if (held[k] == 0) held[k] = velocity(stepper_.state()) < 0 ? -1 : 1;
+    const double way = held[k];
+    events.push_back({{[=](const State& s) { return -way * velocity(s); }, {}, kNoSpeed},
+                      [this, way, k] { system_.inputs().held_direction[k] = -way; }});
+  }
+}
+
+void MotionRun::set_branch(int flank, bool released) { system_.tooth_branch() = {flank, released}; }
+
+void MotionRun::touch(int flank) {
+  const State& state = stepper_.state();
+  time_apart_ += stepper_.time() - apart_since_;
+  impulse_at_touch_ = system_.teeth()->impulse(state);
+  tooth_events_.push_back({stepper_.time(), true, flank, shaft_speed(state), block_speed(state),
+                           system_.teeth()->approach_rate(state, flank), 0});
+  set_branch(flank, false);
+}
+
+void MotionRun::leave(int flank) {
+  const State& state = stepper_.state();
+  apart_since_ = stepper_.time();
+  if (!tooth_events_.empty())
+    tooth_events_.back().impulse = system_.teeth()->impulse(state) - impulse_at_touch_;
+  tooth_events_.push_back({stepper_.time(), false, flank, shaft_speed(state), block_speed(state),
+                           system_.teeth()->approach_rate(state, flank), 0});
+  set_branch(0, false);
+}
+
+void MotionRun::guard_against_chatter(double time) {
+  const bool same = time - last_event_ <= kOneTime * spec_.duration;
+  last_event_ = time;
+  events_there_ = same ? events_there_ + 1 : 0;
+  if (events_there_ > kMostEvents)
+    throw ComputationError("flanks, pressures or friction change " + std::to_string(kMostEvents) +
+                           " times at one time: nothing comes of it");
+}
+
+void MotionRun::advance_to(double time) {
+  while (stepper_.time() < time) {
+    const std::vector<Event> possible = events();
+    std::vector<Witness> witnesses;
+    for (const Event& event : possible) witnesses.push_back(event.witness);
+    const int which = stepper_.advance(time, witnesses);
+    if (which < 0) return;
+    system_.system().realize(stepper_.state(), Stage::Velocity);
+    possible[static_cast<std::size_t>(which)].happen();
+    guard_against_chatter(stepper_.time());
+    stepper_.restart();
+  }
+}
+
+void MotionRun::run(Trajectory& trajectory, const Progress& progress) {
+  const std::vector<double> rows = trajectory_times(spec_);
+  std::vector<double> knots;
+  if (curve_)
+    for (const double knot : curve_->knots())
+      if (knot > 0 && knot < spec_.duration) knots.push_back(knot);
+  stepper_.alive = [&] {
+    if (progress) progress(std::min(1.0, stepper_.time() / spec_.duration));
+  };
+  try {
+    stepper_.start(system_.dynamics());
+    std::size_t knot = 0;
+    for (const double row : rows) {
+      for (; knot < knots.size() && knots[knot] < row; ++knot) {
+        advance_to(knots[knot]);
+        stepper_.restart();
+      }
+      advance_to(row);
+      read(row, trajectory);
+    }
+  } catch (const SimTK::Exception::Base& error) {
+    std::string why = error.getMessageText();
+    std::replace(why.begin(), why.end(), '\n', ' ');
+    throw stopped(stepper_.time(), why);
+  } catch (const ComputationError& error) {
+    throw stopped(stepper_.time(), error.what());
+  }
+  if (progress) progress(1);
+  if (system_.teeth() != nullptr) {
+    const bool apart = system_.tooth_branch().flank == 0;
+    if (apart) time_apart_ += spec_.duration - apart_since_;
+    if (!apart && !tooth_events_.empty())
+      tooth_events_.back().impulse = system_.teeth()->impulse(stepper_.state()) - impulse_at_touch_;
+    record_.share_out_of_contact = time_apart_ / spec_.duration;
+  }
+  record_.events = tooth_events_;
+  record_.steps = stepper_.steps();
+  record_.evaluations = system_.system().getNumRealizationsOfThisStage(Stage::Acceleration);
+  trajectory.record = record_;
+}
+
+void MotionRun::account(TrajectoryRecord& record) {
+  const State& state = system_.dynamics();
+  const auto& simbody = system_.system();
+  double elastic = -elastic_at_start_;
+  double drives = system_.work().of_drives(state);
+  double total = system_.work().of_loads(state) + drives;
+  if (system_.teeth() != nullptr) elastic += system_.teeth()->elastic_energy(state);
+  if (system_.drive_torque() != nullptr) {
+    elastic += system_.drive_torque()->elastic_energy(state);
+    total -= drives;  // a torque that is applied is among the loads
+  }
+  record.kinetic_energy_gained = simbody.calcKineticEnergy(state) - energy_at_start_;
+  record.potential_energy_gained = elastic;
+  record.work_of_drives = drives;
+  // What is left to dissipate: springs are accounted for by their energy.
+  record.work_of_loads = total - drives + elastic;
+  record.work_residual = total - record.kinetic_energy_gained;
+  keep_worst(record.worst_work_residual, record.work_residual);
+  for (int i = 0; i < state.getNQErr(); ++i) keep_worst(record.drift, state.getQErr()[i]);
+}
+
+void MotionRun::read(double time, Trajectory& trajectory) {
+  State& state = system_.dynamics();
+  state.setTime(stepper_.time());
+  state.updY() = stepper_.state().getY();
+  realize_with_flank(system_, state);
+  const double theta = shaft_angle(state) / kRadPerDegree;
+  if (!std::isfinite(theta + shaft_speed(state) + block_speed(state)))
+    throw ComputationError("the state is no longer made of numbers");
+  require_accurate_forces(estimated_force_error(system_, state), radians(theta));
+
+  const int n = case_.pump.geometry.pistons;
+  const ChannelLayout layout(n);
+  std::vector<double> values(layout.size(), not_computed());
+  std::vector<double> pressure(static_cast<std::size_t>(n));
+  system_.inputs().chamber_pressure(0, system_.bodies().block.getOneQ(state, 0), pressure);
+  Reactions reactions;
+  reactions_from_multipliers(system_, state, reactions);
+  for (int k = 0; k < n; ++k)
+    read_piston_channels(system_, reactions, k, k, pressure[k], layout, values);
+  const SimTK::Vector& udot = state.getUDot();
+  const AxisMotion shaft{radians(theta), shaft_speed(state),
+                         udot[system_.bodies().shaft.getFirstUIndex(state) + 2]};
+  const AxisMotion block{radians(psi_deg(state)), block_speed(state),
+                         udot[system_.bodies().block.getFirstUIndex(state)]};
+  read_pump_channels(system_, state, reactions, {state, shaft.speed}, {shaft, block}, pressure,
+                     layout, values);
+  const MotionChecks checks{system_.teeth() != nullptr ? reactions.tooth : not_computed(),
+                            ring_power(system_, reactions, state),
+                            power_balance(system_, state, reactions, udot)};
+  values[layout.power_residual()] =
+      shaft.speed == 0 ? not_computed() : checks.power_balance / shaft.speed;
+  if (system_.has_rigid_gear()) system_.gear().setting().negative = false;
+
+  std::vector<double> columns = {time, theta, psi_deg(state), rpm(shaft.speed), rpm(block.speed)};
+  const DriveTorque* torque = system_.drive_torque();
+  if (torque != nullptr && torque->has_rotor()) columns.push_back(rpm(torque->rotor_speed(state)));
+  append_trajectory_row(trajectory.table, columns, values, checks);
+  trajectory.lag.push_back(lag(state));
+  account(record_);
+}
+
+}  // namespace bentaxis::multibody

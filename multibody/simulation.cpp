@@ -1,0 +1,73 @@
+#include "bentaxis/multibody/simulation.h"
+
+#include <algorithm>
+
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/validate.h"
+#include "bentaxis/results/stopwatch.h"
+#include "integration/motion_run.h"
+#include "reactions/solver_guard.h"
+#include "scene_facts.h"
+
+namespace bentaxis::multibody {
+
+namespace {
+
+void check(const Case& the_case, const Assumptions& assumptions) {
+  validate(the_case);
+  const DriveSpec& drive = bentaxis::drive_of(the_case);
+  refuse_ring_off_b(the_case.pump);
+  if (assumptions.gear == BlockDrive::imposed)
+    throw InputError(
+        "multibody model: a block whose motion is imposed has none to simulate: use the gear in "
+        "mesh");
+  const bool compliant = the_case.pump.gear.contact == ToothContact::compliant;
+  const bool speed_changes = drive.kind != DriveKind::speed || !drive.curve.time.empty();
+  const auto need = [](double inertia, const char* key) {
+    if (!(inertia > 0))
+      throw InputError(std::string("[") + key +
+                       "] axial_inertia_kg_mm2 = 0: must be > 0 where the speed may change");
+  };
+  if (speed_changes) need(the_case.pump.shaft.axial_inertia, "shaft");
+  if (speed_changes || compliant) need(the_case.pump.block.axial_inertia, "block");
+}
+
+}  // namespace
+
+// Measured on the stored motions: the tooth force of a stiff gear that rings is the reaction that
+// needs it, others are a hundred times nearer.
+double accuracy_for(double error) { return std::clamp(3e-4 * error, 1e-12, 1e-4); }
+
+Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
+                    const PressureTrace& pressure, const SimulationOptions& options,
+                    const Progress& progress, const SimulationMethod& method) {
+  check(the_case, assumptions);
+  const Stopwatch stopwatch;
+  const IntegrationOptions integration{method.integrator,
+                                       options.accuracy.value_or(accuracy_for(options.error))};
+  Trajectory trajectory;
+  translate_simbody_errors([&] {
+    const ChannelLayout layout(the_case.pump.geometry.pistons);
+    trajectory.table = trajectory_table("multibody", layout, *the_case.drive);
+    MotionRun run(the_case, assumptions, pressure, integration, method.most_steps);
+    run.run(trajectory, progress);
+    trajectory.record.choice =
+        integrator_names()[static_cast<std::size_t>(integration.integrator)] + ", accuracy " +
+        number_text(integration.accuracy) + " per step" +
+        (options.accuracy ? std::string() : " for an error of " + number_text(options.error));
+    Provenance& provenance = trajectory.table.results.provenance;
+    provenance.facts = scene_facts(the_case.pump, assumptions);
+    provenance.facts.insert(provenance.facts.begin() + 1,
+                            {"way", "integrated in time, " + trajectory.record.choice});
+    const Rank rank = constraint_rank(run.system(), run.system().dynamics());
+    provenance.facts.emplace_back("constraint equations", std::to_string(rank.equations));
+    provenance.facts.emplace_back("rank of the constraint matrix", std::to_string(rank.rank));
+  });
+  trajectory.record.seconds = stopwatch.seconds();
+  trajectory.table.results.provenance.seconds = trajectory.record.seconds;
+  return trajectory;
+}
+
+}  // namespace bentaxis::multibody

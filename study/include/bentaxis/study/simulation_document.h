@@ -1,0 +1,20 @@
+// A simulation as the document of report.json and of its page.
+#pragma once
+
+#include <string>
+
+#include "bentaxis/report/document.h"
+#include "bentaxis/study/simulation.h"
+
+namespace bentaxis::study {
+
+/// @param program  what computed it: names and versions
+report::Document simulation_document(const SimulationResult& result, const report::Lines& program);
+
+/// Curves over time, with the touches of the teeth marked.
+report::Curves simulation_curves(const SimulationResult& result);
+
+/// In words, for a terminal.
+std::string simulation_text(const SimulationResult& result);
+
+}  // namespace bentaxis::study

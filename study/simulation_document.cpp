@@ -1,0 +1,355 @@
+#include "bentaxis/study/simulation_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/comparison.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::study {
+namespace {
+
+using report::Cell;
+using report::Figure;
+using report::Values;
+
+constexpr std::size_t kMostTouches = 200;  // in the table
+constexpr std::size_t kMostMarks = 2000;   // in a figure
+constexpr double kMilliseconds = 1e3;
+
+// The runs there are, with their names.
+std::vector<std::pair<std::string, const Trajectory*>> runs_of(const SimulationResult& r) {
+  std::vector<std::pair<std::string, const Trajectory*>> runs;
+  if (r.analytic) runs.emplace_back("analytic", &*r.analytic);
+  if (r.multibody) runs.emplace_back("multibody", &*r.multibody);
+  return runs;
+}
+
+bool compliant(const SimulationResult& r) {
+  return r.ready.the_case.pump.gear.contact == ToothContact::compliant;
+}
+
+Values times_of(const Trajectory& run) {
+  Values times;
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    times.push_back(kMilliseconds * run.table.state(row, 0));
+  return times;
+}
+
+Values state_of(const Trajectory& run, std::size_t column) {
+  Values values;
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    values.push_back(run.table.state(row, column));
+  return values;
+}
+
+// ---- Figures
+
+std::vector<Figure> figures_of(const SimulationResult& r) {
+  std::vector<Figure> figures;
+  const auto add = [&](const std::string& id, const std::string& title, const std::string& unit,
+                       std::vector<std::string> names) {
+    figures.push_back({id, title, "", report::ChannelFigure{unit, std::move(names)}});
+  };
+  std::vector<std::string> speeds = {"shaft_rpm", "block_rpm"};
+  if (r.ready.the_case.drive->kind == DriveKind::motor) speeds.emplace_back("motor_rpm");
+  add("speed", "Speeds of shaft and block", "rpm", speeds);
+  if (compliant(r)) add("lag", "Lag of the block, theta - psi", "mrad", {"lag"});
+  add("rcs", "Gear tooth force Rcs on the block, by the shaft, at O4, along z4", "N", {"Rcs_z4_N"});
+  add("td", "Drive torque Td", "Nm", {"Td_z1_Nm"});
+  add("pressure", "Chamber pressure of piston 1, which both models take at the block's angle",
+      "bar", {"p_1_bar"});
+  add("rs", "Joint force Rs on piston 1, in S2", "N", {"Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N"});
+  add("rc", "Bore force Rc on piston 1, in S2", "N", {"Rc_1_x2_N", "Rc_1_y2_N"});
+  add("rb1", "Tapered bearing force Rb1 on the shaft, in S1", "N",
+      {"Rb1_x1_N", "Rb1_y1_N", "Rb1_z1_N"});
+  add("rb2", "Cylindrical bearing force Rb2 on the shaft, in S1", "N", {"Rb2_x1_N", "Rb2_y1_N"});
+  add("pin", "Pin force Rcn on the block", "N", {"Rcn_x2_N", "Rcn_y2_N"});
+  add("film", "Film force Fh of the port plate on the block", "N", {"Fh_z2_N"});
+  if (compliant(r))
+    for (Figure& figure : figures)
+      figure.note =
+          "Ticks below: touches of the teeth; upper row the driving flank, lower row the other.";
+  return figures;
+}
+
+Values positive(Values values) {
+  for (double& value : values)
+    if (!(value > 0)) value = not_computed();
+  return values;
+}
+
+Figure difference_figure(const SimulationResult& r) {
+  const Values times = times_of(*r.analytic);
+  Values allowed, disturbed;
+  for (std::size_t row = 0; row < times.size(); ++row) {
+    allowed.push_back(r.allowed(row));
+    disturbed.push_back(r.growth[row] * r.disturbance);
+  }
+  report::XyFigure content{{"time", "ms"}, {"difference over peak", "", true}, {}};
+  content.series = {
+      {"of the models, largest of any reaction", times, positive(r.difference)},
+      {"allowed: wanted error, grown", times, allowed},
+      {fmt::format("after a disturbance of {:g} at the start", r.disturbance), times, disturbed}};
+  return {
+      "difference", "Difference of the models, and how disturbances grow", "", std::move(content),
+      "Impacts make every error grow. What a disturbance of the start comes to says how much of "
+      "a difference is the motion's own doing."};
+}
+
+std::optional<Figure> effort_figure(const SimulationResult& r) {
+  report::ScatterFigure content{
+      {"time of the run", "s", true}, {"largest error of any reaction, of peak", "", true}, {}};
+  for (const Model model : kModels) {
+    report::ScatterSeries series{to_string(model), static_cast<int>(model), true, false, {}};
+    for (const Effort& effort : r.effort)
+      if (effort.model == model && is_computed(effort.error) && effort.error > 0)
+        series.points.push_back(
+            {effort.seconds, effort.error, fmt::format("{}, {:g}", effort.method, effort.asked)});
+    if (!series.points.empty()) content.series.push_back(std::move(series));
+  }
+  if (content.series.empty()) return std::nullopt;
+  return Figure{"effort", "Speed against error", "", std::move(content),
+                "Analytic: against its tightest run. Multibody: against the analytic model. Errors "
+                "within the judged time."};
+}
+
+// What both models need for the wanted error; "" where one of them is not there.
+std::string race(const SimulationResult& r) {
+  const double seconds[] = {r.seconds_for(Model::analytic, r.choice.error),
+                            r.seconds_for(Model::multibody, r.choice.error)};
+  if (!is_computed(seconds[0]) || !is_computed(seconds[1])) return "";
+  return fmt::format("analytic {:.3g} s, multibody {:.3g} s: {:.3g} times as long", seconds[0],
+                     seconds[1], seconds[1] / seconds[0]);
+}
+
+// ---- Tables
+
+report::Section difference_section(const SimulationResult& r) {
+  report::Section section;
+  section.title = "Difference of the two trajectories";
+  section.text =
+      "At equal times, and at equal shaft angles: there the analytic model is asked when its shaft "
+      "is where Simbody's is. Allowed is the wanted error times the growth of a disturbance until "
+      "then.";
+  section.facts = {
+      {"speed of the shaft, of its largest", fmt::format("{:.1e}", r.speed_difference)},
+      {"lag theta - psi", fmt::format("{:.1e} rad", r.lag_difference)},
+      {"judged until", fmt::format("{:.6g} s", r.judged_until_s)},
+      {"growth of a disturbance until the end", fmt::format("{:.3g}", r.growth.back())}};
+  section.table.columns = {"group",
+                           "unit",
+                           "peak",
+                           "in time, of peak",
+                           "at, s",
+                           "over the angle, of peak",
+                           "of what is allowed"};
+  for (const GroupDifference& g : r.groups)
+    section.table.rows.push_back(
+        {g.group, g.unit, g.peak, g.in_time, g.time_s, g.over_angle, g.of_allowed});
+  return section;
+}
+
+report::Section work_section(const SimulationResult& r) {
+  report::Section section;
+  section.title = "Work and drift";
+  section.text =
+      "Work of all loads and of the drive, integrated along, against the energy gained. What is "
+      "left over was made by integration or constraints.";
+  section.table.columns = {"quantity"};
+  std::vector<std::vector<Cell>> rows = {{std::string("work of loads, J")},
+                                         {std::string("work of the drive, J")},
+                                         {std::string("kinetic energy gained, J")},
+                                         {std::string("energy in teeth and coupling gained, J")},
+                                         {std::string("left over at the end, J")},
+                                         {std::string("left over at any row, J")},
+                                         {std::string("worst error of a constraint, m")}};
+  for (const auto& [name, run] : runs_of(r)) {
+    section.table.columns.push_back(name);
+    const TrajectoryRecord& t = run->record;
+    const double values[] = {t.work_of_loads,
+                             t.work_of_drives,
+                             t.kinetic_energy_gained,
+                             t.potential_energy_gained,
+                             t.work_residual,
+                             t.worst_work_residual,
+                             t.drift};
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].emplace_back(values[i]);
+  }
+  section.table.rows = std::move(rows);
+  return section;
+}
+
+report::Section teeth_section(const SimulationResult& r) {
+  report::Section section;
+  section.title = "Teeth: touches and impulses";
+  for (const auto& [name, run] : runs_of(r))
+    section.facts.emplace_back(name + ": share of the time out of contact",
+                               fmt::format("{:.4g} %", 100 * run->record.share_out_of_contact));
+  if (r.analytic && r.multibody) {
+    const EventMatch& e = r.events;
+    section.facts.emplace_back(
+        "touches", fmt::format("analytic {}, multibody {}; {} belong together", e.touches[0],
+                               e.touches[1], e.matched));
+    section.facts.emplace_back("their largest difference in time",
+                               fmt::format("{:.1e} s", e.time_s));
+    section.facts.emplace_back("their largest difference of impulse, of the largest impulse",
+                               fmt::format("{:.1e}", e.impulse));
+    section.facts.emplace_back(
+        "impulse of a touch, mean and largest",
+        fmt::format("analytic {:.4g}, {:.4g} Ns; multibody {:.4g}, {:.4g} Ns", e.mean_impulse[0],
+                    e.largest_impulse[0], e.mean_impulse[1], e.largest_impulse[1]));
+  }
+  const auto [name, run] = runs_of(r).front();
+  section.text = fmt::format(
+      "Touches of the {} model with the speeds before them and the impulse until the flanks "
+      "leave{}.",
+      name,
+      run->record.events.size() > 2 * kMostTouches
+          ? fmt::format("; the first {} of them", kMostTouches)
+          : "");
+  section.table.columns = {"time, s",      "flank",         "shaft, rad/s",
+                           "block, rad/s", "approach, m/s", "impulse, Ns"};
+  for (const ToothEvent& event : run->record.events) {
+    if (!event.touch) continue;
+    if (section.table.rows.size() == kMostTouches) break;
+    section.table.rows.push_back({event.time_s, std::string(event.flank > 0 ? "driving" : "other"),
+                                  event.shaft_speed, event.block_speed, event.approach_speed,
+                                  event.impulse});
+  }
+  return section;
+}
+
+report::Section effort_section(const SimulationResult& r) {
+  report::Section section;
+  section.title = "Speed against error";
+  section.text =
+      "Largest error of any reaction, of its peak, in the judged time: of the analytic model "
+      "against its tightest run, of Simbody against the analytic model.";
+  for (const auto& [name, run] : runs_of(r))
+    section.facts.emplace_back(name + ": chosen", run->record.choice);
+  if (!r.multibody_choice.empty())
+    section.facts.emplace_back("accuracy of Simbody", r.multibody_choice);
+  if (const std::string text = race(r); !text.empty())
+    section.facts.emplace_back(fmt::format("for an error of {:g} of peak", r.choice.error), text);
+  section.table.columns = {"model", "method",     "error or accuracy asked", "error", "s",
+                           "steps", "evaluations"};
+  for (const Effort& e : r.effort)
+    section.table.rows.push_back(
+        {to_string(e.model), e.method, e.asked, e.error, e.seconds, e.steps, e.evaluations});
+  return section;
+}
+
+report::Verdict verdict_of(const SimulationResult& r) {
+  report::Verdict verdict{r.agrees(), r.headline()};
+  if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
+  if (!r.choice.only) verdict.tolerance = r.choice.error;
+  return verdict;
+}
+
+}  // namespace
+
+report::Document simulation_document(const SimulationResult& r, const report::Lines& program) {
+  const Case& the_case = r.ready.the_case;
+  report::Document document;
+  document.title = the_case.name;
+  document.program = program;
+  describe_case(document, the_case);
+  document.derived = derived_section(the_case);
+  document.verdict = verdict_of(r);
+  document.meaning =
+      "Two derivations of the motion, each integrated by its own method, against each other in "
+      "time. Agreement says that both follow the same description; whether a pump does is another "
+      "question (docs/limits.md).";
+  document.checks = r.checks;
+  document.models.emplace();
+  document.runs.emplace();
+  if (!r.groups.empty()) document.runs->push_back(difference_section(r));
+  document.runs->push_back(work_section(r));
+  if (compliant(r)) document.runs->push_back(teeth_section(r));
+  if (!r.effort.empty()) document.runs->push_back(effort_section(r));
+  for (const auto& [name, run] : runs_of(r)) {
+    report::ModelSection model;
+    model.name = name;
+    model.assumptions =
+        in_words(r.ready.assumptions(name == "analytic" ? Model::analytic : Model::multibody));
+    model.facts = {{"integrated by", run->record.choice},
+                   {"steps", std::to_string(run->record.steps)},
+                   {"evaluations", std::to_string(run->record.evaluations)}};
+    model.seconds = run->record.seconds;
+    model.angles = run->lag.size();
+    document.models->push_back(std::move(model));
+  }
+  document.figures = figures_of(r);
+  if (!r.difference.empty()) document.figures->push_back(difference_figure(r));
+  if (auto figure = effort_figure(r)) document.figures->push_back(std::move(*figure));
+  return document;
+}
+
+report::Curves simulation_curves(const SimulationResult& r) {
+  report::Curves curves;
+  const auto runs = runs_of(r);
+  curves.axis = "time (ms)";
+  curves.theta_deg = times_of(*runs.front().second);
+  for (const auto& [name, run] : runs) {
+    report::Curves::Table table{name, {}};
+    const auto& states = run->table.state_names;
+    for (std::size_t i = 3; i < states.size(); ++i)  // behind time and angles
+      table.columns.emplace_back(states[i], state_of(*run, i));
+    Values lag = run->lag;
+    for (double& value : lag) value *= 1e3;
+    table.columns.emplace_back("lag", std::move(lag));
+    for (const Channel& channel : run->table.results.channels)
+      if (channel.kind != ChannelKind::check)
+        table.columns.emplace_back(channel.name,
+                                   report::values_of(run->table.results, channel.name));
+    curves.tables.push_back(std::move(table));
+  }
+  if (curves.tables.size() == 2)
+    for (const auto& [name, values] : curves.tables[0].columns) {
+      const Values* others = report::find(curves.tables[1].columns, name);
+      if (others == nullptr) continue;
+      Values difference;
+      for (std::size_t row = 0; row < values.size(); ++row)
+        difference.push_back((*others)[row] - values[row]);
+      curves.difference.emplace_back(name, std::move(difference));
+    }
+  for (const ToothEvent& event : runs.front().second->record.events)
+    if (event.touch && curves.marks.size() < kMostMarks)
+      curves.marks.push_back({event.time_s * kMilliseconds, event.flank > 0});
+  return curves;
+}
+
+std::string simulation_text(const SimulationResult& r) {
+  std::string text = r.ready.the_case.name + "\n" + r.headline() + "\n\n";
+  if (!r.groups.empty()) {
+    text += fmt::format("{:<6} {:>14} {:>14} {:>16} {:>12}\n", "group", "peak", "of peak, time",
+                        "of peak, angle", "of allowed");
+    for (const GroupDifference& g : r.groups)
+      text += fmt::format("{:<6} {:>11.5g} {:<2} {:>14.1e} {:>16.1e} {:>12.2g}\n", g.group, g.peak,
+                          g.unit, g.in_time, g.over_angle, g.of_allowed);
+    text += "\n";
+  }
+  for (const auto& [name, run] : runs_of(r)) {
+    const TrajectoryRecord& t = run->record;
+    text += fmt::format("{}: {:.3g} s, {} steps, {} evaluations; work left over {:.1e} J", name,
+                        t.seconds, t.steps, t.evaluations, t.worst_work_residual);
+    if (compliant(r)) {
+      const auto touches = std::count_if(t.events.begin(), t.events.end(),
+                                         [](const ToothEvent& event) { return event.touch; });
+      text += fmt::format("; {} touches, out of contact {:.3g} % of the time", touches,
+                          100 * t.share_out_of_contact);
+    }
+    text += "\n";
+  }
+  if (const std::string times = race(r); !times.empty())
+    text += fmt::format("for an error of {:g} of peak: {}\n", r.choice.error, times);
+  if (!r.multibody_choice.empty()) text += "chosen " + r.multibody_choice + "\n";
+  return text;
+}
+
+}  // namespace bentaxis::study

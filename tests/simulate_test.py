@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+"""`bentaxis simulate` from outside, and the files of states and drives that it and `run` are given.
+
+usage: simulate_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import math
+import os
+import pathlib
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import inertia_command_test as base
+
+DONE, OUT_OF_TOLERANCE, BAD_INPUT, COMPUTATION_FAILED = 0, 1, 2, 3
+FOLDERS = ("constant_torque", "motor_driven", "rattle")
+
+
+def stored(name):
+    return base.REPO / "reference_data" / "motion" / name
+
+
+class SimulateTest(base.WithFolder):
+    def case(self, name="rattle", **drive):
+        """A stored case with other entries in [drive]; None takes one out."""
+        head, tail = (stored(name) / "case.toml").read_text().split("[drive]")
+        lines = [line for line in tail.strip().splitlines() if line.split(" =")[0] not in drive]
+        lines += [f"{key} = {json.dumps(value)}" for key, value in drive.items() if value is not None]
+        path = self.folder / "case.toml"
+        path.write_text(head + "[drive]\n" + "\n".join(lines) + "\n")
+        return path
+
+    def simulate(self, case, *options, status=DONE):
+        return self.run_program("simulate", case, "--out", "out", *options, status=status)
+
+    def report(self):
+        return json.loads((self.folder / "out" / "report.json").read_text())
+
+    def section(self, title):
+        return next(s for s in self.report()["runs"] if s["title"].startswith(title))
+
+    def refused(self, case, *words, options=()):
+        error = self.simulate(case, *options, status=BAD_INPUT).stderr.strip()
+        self.assertEqual(len([line for line in error.splitlines() if "warning" not in line]), 1, error)
+        for word in words:
+            self.assertIn(word, error)
+        self.assertFalse((self.folder / "out" / "report.html").exists())
+
+
+class TrajectoryTest(SimulateTest):
+    def test_models_move_alike(self):
+        out = self.simulate(self.case(duration_s=0.002, samples=20), "--error", 1e-5).stdout
+        self.assertIn("Both models move alike", out)
+        a, m = self.table("out/simulation_analytic.csv"), self.table("out/simulation_multibody.csv")
+        self.assertEqual(len(a), 21)
+        self.assertEqual(list(a[0]), list(m[0]))
+        self.assertEqual(list(a[0])[:5], ["time_s", "theta_deg", "psi_deg", "shaft_rpm", "block_rpm"])
+        self.assertEqual(list(a[0])[-3:], ["Rcs_law_N", "ring_power_W", "power_balance_W"])
+        self.assertEqual([float(row["time_s"]) for row in a], [0.002 * i / 20 for i in range(21)])
+        peak = max(abs(float(row["Rcs_z4_N"])) for row in a)
+        apart = [abs(float(x["Rcs_z4_N"]) - float(y["Rcs_z4_N"])) / peak for x, y in zip(a, m)]
+        self.assertLess(max(apart), 1e-3)
+        self.assertGreater(max(apart), 0)
+        report = self.report()
+        self.assertTrue(report["verdict"]["agrees"])
+        self.assertEqual(report["files"], ["report.html", "simulation_analytic.csv", "simulation_multibody.csv", "report.json"])
+        self.assertTrue(all(check["verdict"] == "holds" for check in report["checks"]))
+        self.assertEqual(len(report["checks"]), 4)
+        touches = self.section("Teeth")
+        self.assertGreater(len(touches["table"]["rows"]), 0)
+        for row in touches["table"]["rows"]:
+            flank = 1 if row[1] == "driving" else -1
+            self.assertGreater(flank * (row[2] - row[3]), 0)  # they meet
+            self.assertGreater(row[5], 0)
+
+    def test_the_analytic_model_meets_the_stored_trajectories(self):
+        for name in FOLDERS[:2]:
+            with self.subTest(name):
+                self.simulate(stored(name) / "case.toml", "--model", "analytic")
+                found = self.table("out/simulation_analytic.csv")
+                with open(stored(name) / "reference.csv") as file:
+                    reference = list(csv.DictReader(file))
+                self.assertEqual(len(found), len(reference))
+                for column in reference[0]:
+                    peak = max(abs(float(row[column])) for row in reference)
+                    for x, y in zip(found, reference):
+                        self.assertLess(abs(float(x[column]) - float(y[column])), 1e-7 * peak + 1e-9, column)
+
+    def test_a_loose_multibody_run_differs(self):
+        case = self.case(duration_s=0.002, samples=20)
+        self.assertIn("The models differ", self.simulate(case, "--accuracy", 0.1, "--error", 1e-8,
+                                                         status=OUT_OF_TOLERANCE).stdout)
+        self.assertFalse(self.report()["verdict"]["agrees"])
+
+    def test_what_is_chaotic_is_not_judged(self):
+        out = self.simulate(self.case(), "--error", 0.003, "--accuracy", 1e-6).stdout
+        self.assertRegex(out, r"Both models move alike.*Later than 0\.0\d+ s nothing is judged")
+        facts = dict(self.section("Difference")["facts"])
+        self.assertGreater(float(facts["growth of a disturbance until the end"]), 1e3)
+
+    def test_simbody_converges(self):
+        errors = []
+        for accuracy in (1e-4, 1e-6, 1e-8):
+            self.simulate(self.case("constant_torque", duration_s=0.01, samples=10), "--accuracy", accuracy, status=None)
+            errors.append(self.section("Speed against error")["table"]["rows"][-1][3])
+        self.assertLess(errors[1], errors[0] / 10)
+        self.assertLess(errors[2], errors[1] / 10)
+        self.assertLess(errors[2], 1e-6)
+
+    def run_program(self, *arguments, status=DONE):
+        if status is not None:
+            return super().run_program(*arguments, status=status)
+        return subprocess.run([base.PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                              timeout=base.SECONDS)
+
+    def test_the_closed_form_is_fast(self):
+        """One run, both at the same achieved error, which lies between measured ones."""
+        out = self.simulate(self.case("motor_driven", duration_s=0.01, samples=20)).stdout
+        times = re.search(r"for an error of 1e-06 of peak: analytic (\S+) s, multibody (\S+) s: (\S+) times", out)
+        self.assertGreater(float(times[3]), 50)
+        self.assertAlmostEqual(float(times[2]) / float(times[1]) / float(times[3]), 1, 1)
+
+    def test_a_motor_from_rest_and_curves_over_time(self):
+        self.simulate(self.case("motor_driven", start_rpm=0.0, duration_s=0.004, samples=8), "--model", "analytic")
+        rows = self.table("out/simulation_analytic.csv")
+        self.assertEqual(list(rows[0])[5], "motor_rpm")
+        self.assertEqual([float(rows[0][c]) for c in ("shaft_rpm", "block_rpm", "motor_rpm")], [0, 0, 0])
+        self.assertGreater(float(rows[-1]["motor_rpm"]), 10)
+        (self.folder / "speed.csv").write_text("time_s,speed_rpm\n0,0\n0.001,100\n0.002,200\n0.003,300\n")
+        self.simulate(self.case(file="speed.csv", duration_s=0.004, samples=8), "--model", "analytic")
+        rows = self.table("out/simulation_analytic.csv")
+        self.assertAlmostEqual(float(rows[2]["shaft_rpm"]), 100, 9)
+        self.assertAlmostEqual(float(rows[-1]["shaft_rpm"]), 300, 9)
+        (self.folder / "torque.csv").write_text("time_s,torque_Nm\n0,280\n0.001,280\n0.002,280\n0.003,280\n")
+        self.simulate(self.case("constant_torque", file="torque.csv", duration_s=0.004, samples=8), "--model", "analytic")
+        self.assertEqual({row["Td_z1_Nm"][:8] for row in self.table("out/simulation_analytic.csv")} & {"280"}, {"280"})
+
+
+class RefusalTest(SimulateTest):
+    def test_without_a_drive(self):
+        self.refused(base.REPO / "cases" / "bap63_rated.toml", "[drive]", "duration_s")
+
+    def test_options_that_would_change_nothing(self):
+        for option in (("--accuracy", "1e-6"), ("--integrator", "rk-merson")):
+            self.refused(self.case(), option[0], options=("--model", "analytic", *option))
+
+    def test_dry_friction_where_the_shaft_may_rest(self):
+        case = self.case("constant_torque")
+        case.write_text(case.read_text().replace("regularization_m_per_s = 0.01", "regularization_m_per_s = 0.0"))
+        self.refused(case, "regularization_m_per_s")
+
+    def test_a_start_speed_beside_a_given_speed(self):
+        self.refused(self.case(start_rpm=100.0), "start_rpm")
+
+    def test_wrong_curves(self):
+        for text, *words in (("time_s,speed_rpm\n0,1\n1,1\n1,1\n2,1\n", "speed.csv:4", "time_s"),
+                             ("time_s,torque_Nm\n0,1\n1,1\n2,1\n3,1\n", "speed.csv:1", "speed_rpm"),
+                             ("time_s,speed_rpm\n0,1\n1,1\n", "speed.csv", "4"),
+                             ("time_s,speed_rpm\n0.5,1\n1,1\n2,1\n3,1\n", "speed.csv:2", "time_s")):
+            (self.folder / "speed.csv").write_text(text)
+            with self.subTest(text):
+                self.refused(self.case(file="speed.csv"), *words)
+
+    def test_it_can_be_interrupted(self):
+        case = self.case("motor_driven", duration_s=30.0)
+        process = subprocess.Popen([base.PROGRAM, "simulate", str(case), "--model", "analytic", "--out", "out"],
+                                   cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        time.sleep(1)
+        start = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        error = process.communicate(timeout=20)[1]
+        self.assertLess(time.monotonic() - start, 2)
+        self.assertEqual(process.returncode, 130, error)
+        self.assertEqual(os.listdir(self.folder / "out") if (self.folder / "out").exists() else [], [])
+
+
+class GarbageTest(SimulateTest):
+    """Files of drives: any bytes end in a result or in one line, never in a crash or a hang."""
+
+    def test_curves_of_garbage(self):
+        good = "time_s,speed_rpm\n0,1500\n0.001,1510\n0.002,1490\n0.003,1500\n"
+        case = self.case(file="speed.csv", duration_s=0.001, samples=2)
+        for seed in range(60):
+            draw = random.Random(seed)
+            text = list(good)
+            for _ in range(draw.randint(1, 6)):
+                at = draw.randrange(len(text))
+                text[at:at + draw.randint(0, 3)] = draw.choice(
+                    ["", ",", "\n", "nan", "-", "1e308", "1e999", "0", "x", "\0", "\"", ";", "é", "1e-300", "time_s"])
+            (self.folder / "speed.csv").write_text("".join(text))
+            with self.subTest(seed):
+                result = subprocess.run([base.PROGRAM, "simulate", str(case), "--model", "analytic", "--out", "out"],
+                                        cwd=self.folder, capture_output=True, text=True, timeout=60)
+                self.assertIn(result.returncode, (DONE, OUT_OF_TOLERANCE, BAD_INPUT, COMPUTATION_FAILED), result.stderr)
+                if result.returncode >= BAD_INPUT:
+                    self.assertEqual(len([line for line in result.stderr.splitlines()
+                                          if line.startswith("bentaxis: ") and "warning" not in line]), 1, result.stderr)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    base.PROGRAM, base.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

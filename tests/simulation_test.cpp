@@ -1,0 +1,401 @@
+// The closed form's motion in time: reference trajectories, convergence, work, limits, hard cases.
+#include "bentaxis/analytic/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "bentaxis/files/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/time_signal.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+using analytic::simulate;
+using analytic::SimulationOptions;
+
+Case motion_case(const std::string& name) {
+  return read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "motion" / name /
+                   "case.toml");
+}
+NumericTable motion_reference(const std::string& name) {
+  return read_numeric_csv(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "motion" /
+                          name / "reference.csv");
+}
+
+Trajectory run(const Case& the_case, const SimulationOptions& options = {}) {
+  return simulate(the_case, the_case.analytic, PressureTrace(the_case.pressure), options);
+}
+SimulationOptions wanting(double error) {
+  SimulationOptions options;
+  options.error = error;
+  return options;
+}
+
+std::vector<double> column(const Trajectory& trajectory, const std::string& name) {
+  std::vector<double> values;
+  const auto& names = trajectory.table.state_names;
+  const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+  for (std::size_t row = 0; row < trajectory.lag.size(); ++row)
+    values.push_back(at < static_cast<std::ptrdiff_t>(names.size())
+                         ? trajectory.table.state(row, static_cast<std::size_t>(at))
+                         : trajectory.table.results.at(row, trajectory.table.results.find(name)));
+  return values;
+}
+
+double largest(const std::vector<double>& values) {
+  double result = 0;
+  for (const double v : values) result = std::max(result, std::abs(v));
+  return result;
+}
+
+// Largest difference of two runs over each group's peak, at rows from `first` on.
+double apart(const Trajectory& a, const Trajectory& b, std::size_t first = 0) {
+  double worst = 0;
+  const ResultTable& table = a.table.results;
+  for (std::size_t c = 0; c < table.columns(); ++c) {
+    if (table.channels[c].kind != ChannelKind::reaction) continue;
+    const double peak = table.peak(table.channels[c].group);
+    for (std::size_t row = first; row < table.rows(); ++row)
+      if (peak > 0)
+        worst = std::max(worst, std::abs(table.at(row, c) - b.table.results.at(row, c)) / peak);
+  }
+  return worst;
+}
+
+// ---- reference trajectories --------------------------------------------------------------------
+
+class ReferenceTrajectories : public testing::TestWithParam<const char*> {};
+
+TEST_P(ReferenceTrajectories, DefaultsReachThem) {
+  const Trajectory trajectory = run(motion_case(GetParam()));
+  const NumericTable reference = motion_reference(GetParam());
+  ASSERT_EQ(trajectory.lag.size(), reference.rows.size());
+  const ResultTable& table = trajectory.table.results;
+  std::size_t compared = 0;
+  for (std::size_t c = 0; c < reference.header.size(); ++c) {
+    const std::string& name = reference.header[c];
+    const std::vector<double> values = column(trajectory, name);
+    double allowed = 1e-15;
+    if (name.find("_rpm") != std::string::npos)
+      allowed = 1e-8 * 1500;
+    else if (name == "theta_deg" || name == "psi_deg")
+      allowed = 1e-9 / kRadPerDegree;  // the reference's own is 2e-10 rad
+    else if (table.find(name) < table.columns())
+      allowed = 1e-7 * table.peak(table.channels[table.find(name)].group);
+    for (std::size_t row = 0; row < values.size(); ++row)
+      ASSERT_NEAR(reference.rows[row][c], values[row], scaled(allowed)) << name << ", row " << row;
+    ++compared;
+  }
+  EXPECT_GT(compared, 40U);
+  for (std::size_t row = 0; row < trajectory.lag.size(); ++row)
+    ASSERT_NEAR(radians(reference.rows[row][1] - reference.rows[row][2]), trajectory.lag[row],
+                scaled(1e-11));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, ReferenceTrajectories,
+                         testing::Values("constant_torque", "motor_driven"),
+                         [](const auto& test) { return test.param; });
+
+// Impacts let every error grow. The reference errs by 3e-13 rad per step: an error of that size
+// early on, grown as a perturbation of the start is seen to grow, is what may lie between the two.
+TEST(Rattle, MeetsItsReferenceAsFarAsErrorsGrow) {
+  const Case the_case = motion_case("rattle");
+  const NumericTable reference = motion_reference("rattle");
+  ASSERT_EQ(reference.header[35], "Rcs_z4_N");
+  const Trajectory trajectory = run(the_case);
+  SimulationOptions moved;
+  moved.start_lag = 1e-12;
+  const Trajectory beside = run(the_case, moved);
+  double growth = 1;
+  for (std::size_t row = 0; row < trajectory.lag.size(); ++row) {
+    growth = std::max(growth, std::abs(beside.lag[row] - trajectory.lag[row]) / moved.start_lag);
+    const double lag = radians(reference.rows[row][1] - reference.rows[row][2]);
+    ASSERT_NEAR(lag, trajectory.lag[row], scaled(1e-12) * growth) << row;
+    if (reference.rows[row][0] <= 0.012) {  // where it is good to 3.5e-10 rad and 2e-4 N
+      ASSERT_NEAR(lag, trajectory.lag[row], scaled(1e-11));
+      ASSERT_NEAR(column(trajectory, "Rcs_z4_N")[row], reference.rows[row][35], scaled(2e-4));
+    }
+  }
+  EXPECT_GT(growth, 1e3);
+  EXPECT_GT(trajectory.record.share_out_of_contact, 0.5);
+}
+
+// ---- what the integrator must do ---------------------------------------------------------------
+
+class Drives : public testing::TestWithParam<const char*> {
+ protected:
+  Case the_case = motion_case(GetParam());
+};
+
+TEST_P(Drives, TighterIsNearer) {
+  the_case.drive->duration = 0.01;
+  const Trajectory best = run(the_case, wanting(1e-11));
+  double before = 1;
+  for (const double error : {1e-3, 1e-5, 1e-7}) {
+    const double now = apart(best, run(the_case, wanting(error)));
+    EXPECT_LT(now, scaled(error)) << error;
+    EXPECT_LT(now, std::max(before, 1e-11)) << error;
+    before = now;
+  }
+}
+
+TEST_P(Drives, WorkAndPowerBalance) {
+  const Trajectory trajectory = run(the_case);
+  const TrajectoryRecord& r = trajectory.record;
+  const double turned = std::abs(r.work_of_drives) + std::abs(r.work_of_loads);
+  EXPECT_GT(turned, 1);
+  EXPECT_LT(std::abs(r.worst_work_residual), scaled(1e-9) * turned);
+  EXPECT_LT(largest(column(trajectory, "power_balance_W")), scaled(1e-8));
+  // The energies are no sums of the works: they change.
+  EXPECT_GT(std::abs(r.kinetic_energy_gained), 1e-3);
+  // And a looser integration closes it worse.
+  EXPECT_GT(std::abs(run(the_case, wanting(1e-2)).record.worst_work_residual),
+            std::abs(r.worst_work_residual));
+}
+
+TEST_P(Drives, ReversedItRunsBackwards) {
+  // Not a mirror image: the plate stays. But it must run and balance.
+  the_case.operation.speed_rpm *= -1;
+  the_case.drive->torque *= -1;
+  const Trajectory trajectory = run(the_case);
+  EXPECT_LT(trajectory.table.state(1, 1), 0);
+  EXPECT_LT(std::abs(trajectory.record.worst_work_residual), scaled(1e-6));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, Drives,
+                         testing::Values("constant_torque", "motor_driven", "rattle"),
+                         [](const auto& test) { return test.param; });
+
+TEST(Simulation, TouchesAreRecordedAndTheirImpulseIsThatOfTheForce) {
+  Case the_case = motion_case("rattle");
+  the_case.drive->samples = 40000;  // fine enough to integrate the column
+  const Trajectory t = run(the_case);
+  const std::vector<double> force = column(t, "Rcs_z4_N");
+  double all = 0, of_events = 0;
+  for (std::size_t i = 1; i < force.size(); ++i)
+    all += (std::abs(force[i]) + std::abs(force[i - 1])) / 2 * 1e-6;
+  int touches = 0;
+  const ToothEvent* last = nullptr;
+  for (const ToothEvent& event : t.record.events) {
+    if (last != nullptr) {
+      ASSERT_GE(event.time_s, last->time_s);
+      ASSERT_NE(event.touch, last->touch);  // one flank at a time
+    }
+    if (event.touch) {
+      EXPECT_GT(event.approach_speed, 0);
+      EXPECT_NEAR(event.approach_speed,
+                  event.flank * (event.shaft_speed - event.block_speed) * 0.106466 / 2 *
+                      std::cos(radians(20)),
+                  1e-12);
+      of_events += event.impulse;
+      ++touches;
+    } else {
+      EXPECT_LE(event.approach_speed, 0);
+    }
+    last = &event;
+  }
+  EXPECT_GT(touches, 20);
+  EXPECT_NEAR(all, of_events, 1e-5 * all);
+}
+
+// ---- limits ------------------------------------------------------------------------------------
+
+// Stiff teeth, pressed together at the start as the load wants it, without backlash: what is left
+// is their give, which goes with 1/k.
+TEST(Simulation, RigidTeethAreTheLimitOfStiffOnes) {
+  Case rigid = motion_case("constant_torque");
+  rigid.drive->duration = 0.02;
+  rigid.drive->samples = 20;
+  const Trajectory limit = run(rigid);
+  const double force = column(limit, "Rcs_z4_N")[0];
+  double before = 0, reactions_before = 0;
+  for (const double stiffness : {1e9, 1e10, 1e11}) {
+    Case soft = rigid;
+    soft.pump.gear.contact = ToothContact::compliant;
+    soft.pump.gear.compliance = ToothCompliance{stiffness, 1, 20, 0};
+    SimulationOptions options;
+    options.start_lag =
+        force / stiffness /
+        (soft.pump.gear.pitch_diameter / 2 * std::cos(soft.pump.gear.pressure_angle));
+    const Trajectory near = run(soft, options);
+    const std::vector<double> a = column(limit, "shaft_rpm"), b = column(near, "shaft_rpm");
+    double difference = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      difference = std::max(difference, std::abs(a[i] - b[i]));
+    const double of_reactions = apart(limit, near, 1);
+    if (before > 0) {
+      EXPECT_NEAR(before / difference, 10, scaled(1));
+      EXPECT_NEAR(reactions_before / of_reactions, 10, scaled(4));
+    }
+    before = difference;
+    reactions_before = of_reactions;
+  }
+}
+
+// ---- drives ------------------------------------------------------------------------------------
+
+TEST(TimeSignal, IsMonotoneAndItsIntegralIsThatOfItsValue) {
+  const TimeSignal signal({"", {-1, 0, 1, 1.5, 4}, {2, 3, 7, 7, 1}});
+  EXPECT_EQ(signal.value(-5), 2);
+  EXPECT_EQ(signal.value(9), 1);
+  EXPECT_EQ(signal.value(1), 7);
+  EXPECT_EQ(signal.integral(0), 0);
+  double sum = 0;
+  constexpr double kStep = 1e-4;
+  for (double t = -2; t < 5; t += kStep) {
+    sum += signal.value(t + kStep / 2) * kStep;
+    ASSERT_NEAR(signal.integral(t + kStep) - signal.integral(-2), sum, 1e-6);
+    ASSERT_NEAR(signal.slope(t + kStep / 2), (signal.value(t + kStep) - signal.value(t)) / kStep,
+                1e-3);
+    ASSERT_LE(signal.value(t), 7);
+    ASSERT_GE(signal.value(t), 1);
+  }
+  EXPECT_THROW(TimeSignal({"x.csv", {0, 1, 1, 2}, {1, 1, 1, 1}}), InputError);
+  EXPECT_THROW(TimeSignal({"x.csv", {0, 1, 2}, {1, 1, 1}}), InputError);
+}
+
+TEST(Simulation, AGivenSpeedIsFollowed) {
+  Case the_case = motion_case("rattle");
+  the_case.drive->curve = {"", {0, 0.01, 0.02, 0.03}, {0, 100, 150, 150}};
+  const Trajectory t = run(the_case);
+  EXPECT_NEAR(column(t, "shaft_rpm")[20], 100 / kRadPerSecondPerRpm, 1e-9);
+  EXPECT_NEAR(column(t, "theta_deg").back(),
+              TimeSignal(the_case.drive->curve).integral(0.04) / kRadPerDegree, 1e-9);
+  EXPECT_LT(std::abs(t.record.worst_work_residual), scaled(1e-6));
+}
+
+TEST(Simulation, ACurveOfConstantTorqueIsAConstantTorque) {
+  Case the_case = motion_case("constant_torque");
+  const Trajectory constant = run(the_case);
+  the_case.drive->curve = {"", {0, 0.013, 0.04, 0.2}, {280, 280, 280, 280}};
+  the_case.drive->torque = 0;
+  EXPECT_LT(apart(constant, run(the_case)), scaled(1e-8));
+}
+
+TEST(Simulation, AMotorStartsFromRest) {
+  Case the_case = motion_case("motor_driven");
+  the_case.drive->start_speed = 0;
+  the_case.drive->duration = 0.5;
+  const Trajectory t = run(the_case);
+  EXPECT_EQ(column(t, "shaft_rpm").front(), 0);
+  EXPECT_NEAR(column(t, "Td_z1_Nm").front(), 0, 1e-12);  // the coupling is unwound
+  EXPECT_NEAR(column(t, "shaft_rpm").back(), 1500, 15);
+  EXPECT_LT(std::abs(t.record.worst_work_residual), scaled(1e-5));
+}
+
+// ---- cases that could hang ---------------------------------------------------------------------
+
+TEST(Simulation, HardCasesEnd) {
+  const Case rattle = motion_case("rattle");
+  const auto with_teeth = [&](double stiffness, double exponent, double dissipation,
+                              double backlash) {
+    Case c = rattle;
+    c.pump.gear.compliance = ToothCompliance{stiffness, exponent, dissipation, backlash};
+    c.drive->duration = 0.002;
+    c.drive->samples = 4;
+    return c;
+  };
+  std::map<std::string, Case> cases = {
+      {"no backlash", with_teeth(1e8, 1, 0.5, 0)},
+      {"no backlash, exponent 3", with_teeth(1e8, 3, 0.5, 0)},
+      {"as stiff as 1e5 N/um", with_teeth(1e11, 1, 0, 1e-6)},
+      {"as stiff as 1e5 N/um, no backlash", with_teeth(1e11, 1.5, 0, 0)},
+      {"so damped that flanks stick", with_teeth(1e8, 1, 1e4, 2e-5)},
+      {"hardly there", with_teeth(1, 1, 0, 2e-5)}};
+  {
+    // Nothing moves the block: it meets its flank at no speed, and stays in touch with it.
+    Case& c = cases["touch at no speed"] = with_teeth(1e8, 1, 0, 0);
+    c.pressure.ports = {0, 0};
+    c.pump.piston.mass = 0;
+    c.pump.friction.piston_coulomb = 0;
+    c.drive->curve = {"", {0, 1, 2, 3}, {0, 0, 0, 0}};
+  }
+  {
+    Case& c = cases["one piston at its dead centre"] = motion_case("constant_torque");
+    c.pump.geometry.pistons = 1;
+    c.drive->start_speed = 0;
+    c.drive->torque = 0;
+    c.drive->duration = 0.5;
+    c.drive->samples = 3;
+  }
+  {
+    Case& c = cases["pressure that jumps, at rest"] = motion_case("constant_torque");
+    c.pressure.transition_deg = 0;
+    c.drive->start_speed = 0;
+    c.drive->duration = 0.1;
+    c.drive->samples = 3;
+  }
+  for (const auto& [name, the_case] : cases) {
+    SCOPED_TRACE(name);
+    const Trajectory t = run(the_case);
+    EXPECT_EQ(t.lag.size(), static_cast<std::size_t>(the_case.drive->samples) + 1);
+    EXPECT_LT(std::abs(t.record.worst_work_residual),
+              scaled(1e-6) * std::max(1.0, std::abs(t.record.work_of_loads)));
+    EXPECT_LT(t.record.seconds, 60);
+  }
+}
+
+TEST(Simulation, ItCanBeStopped) {
+  const Case the_case = motion_case("motor_driven");
+  int calls = 0;
+  EXPECT_THROW(simulate(the_case, the_case.analytic, PressureTrace(the_case.pressure), {},
+                        [&](double) {
+                          if (++calls == 100) throw Interrupted();
+                        }),
+               Interrupted);
+}
+
+TEST(Simulation, WhatCannotBeSimulatedIsRefusedByName) {
+  const auto refusal = [](const Case& the_case) -> std::string {
+    try {
+      run(the_case);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Case the_case = motion_case("rattle");
+  the_case.drive.reset();
+  EXPECT_NE(refusal(the_case).find("[drive]"), std::string::npos);
+  the_case = motion_case("constant_torque");
+  the_case.pump.friction.regularization = 0;
+  EXPECT_NE(refusal(the_case).find("regularization_m_per_s"), std::string::npos);
+  the_case = motion_case("rattle");
+  the_case.pump.friction.regularization = 0;
+  EXPECT_EQ(refusal(the_case), "");
+  the_case.drive->start_speed = 3;
+  EXPECT_NE(refusal(the_case).find("start_rpm"), std::string::npos);
+  the_case = motion_case("constant_torque");
+  the_case.analytic.gear = BlockDrive::imposed;
+  EXPECT_NE(refusal(the_case).find("imposed"), std::string::npos);
+}
+
+// ---- any pump ----------------------------------------------------------------------------------
+
+TEST(Simulation, AnyPumpBalancesItsWork) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomPump random(seed);
+    Case the_case = motion_case(seed % 3 == 0   ? "motor_driven"
+                                : seed % 3 == 1 ? "rattle"
+                                                : "constant_torque");
+    const Gear gear = the_case.pump.gear;
+    the_case.pump = random.free(random.pump());
+    the_case.pump.gear = gear;
+    the_case.pump.friction.regularization = 0.01;
+    the_case.analytic = random.assumptions(the_case.pump);
+    the_case.analytic.gear = BlockDrive::mesh;
+    the_case.drive->duration = 0.005;
+    const Trajectory t = run(the_case);
+    const TrajectoryRecord& r = t.record;
+    EXPECT_LT(std::abs(r.worst_work_residual),
+              scaled(1e-7) * (std::abs(r.work_of_loads) + std::abs(r.work_of_drives)));
+  }
+}
+
+}  // namespace
+}  // namespace bentaxis::test
