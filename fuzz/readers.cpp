@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include "bentaxis/files/foreign_table.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/time_signal.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::fuzz {
@@ -130,6 +132,43 @@ void read_as_curve(const std::uint8_t* data, std::size_t size) {
       require(std::abs(trace(x[i]) - spec.curve.pressure[i]) <= 1e-2 * largest,
               "spline misses a point");
   } catch (const InputError& error) {
+    check_message(error);
+  }
+}
+
+void read_as_motion(const std::uint8_t* data, std::size_t size) {
+  static const Case the_case = read_case(BENTAXIS_FUZZED_CASE);
+  static const PressureTrace pressure(the_case.pressure);
+  const auto file = file_with(data, size);
+  for (const DriveKind kind : {DriveKind::speed, DriveKind::torque}) {
+    try {
+      const TimeCurve curve = read_drive_curve(file, kind);
+      const TimeSignal signal(curve);
+      const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
+      for (const double share : {-1.0, 0.0, 0.3, 0.999, 2.0}) {
+        const double time = curve.time.front() + share * (curve.time.back() - curve.time.front());
+        const double value = signal.value(time);
+        const double slack = 1e-9 * (std::abs(*low) + std::abs(*high));
+        if (std::isfinite(time) && std::isfinite(slack) && std::isfinite(*high - *low))
+          require(value >= *low - slack && value <= *high + slack, "curve leaves its points");
+        (void)signal.slope(time);
+        (void)signal.integral(time);
+      }
+    } catch (const InputError& error) {
+      check_message(error);
+    }
+  }
+  try {
+    const States states = read_states(file, the_case, pressure);
+    require(states.rows() > 0 && states.given.size() == states.rows() * states.header.size() &&
+                states.chamber_pressure.size() ==
+                    states.rows() * static_cast<std::size_t>(states.pistons),
+            "states are not complete");
+    const MotionTable table = analytic::run_states(the_case, the_case.analytic, states);
+    require(table.results.rows() == states.rows(), "a state has no result");
+  } catch (const InputError& error) {
+    check_message(error);
+  } catch (const ComputationError& error) {
     check_message(error);
   }
 }
