@@ -94,7 +94,11 @@ void RunChoice::add_to(CommandParser command, bool several) {
       .text("NUMBER");
 }
 
-void RunChoice::refuse_without_effect(bool multibody) const {
+void RunChoice::refuse_without_effect(bool multibody, bool states) const {
+  if (states && way == study::Way::integrated)
+    throw InputError("--way integrated: --states gives the motion, so nothing is integrated");
+  if (states && given("--scene"))
+    throw InputError("--scene: changes nothing: at given --states the whole pump is built");
   const bool integrated = multibody && way == study::Way::integrated;
   if (given("--error") && !integrated)
     throw InputError(
@@ -126,7 +130,7 @@ multibody::SceneChoice RunChoice::scene_for(const Case& the_case) const {
   const ChannelLayout layout(the_case.pump.geometry.pistons);
   const study::ChannelChoice wanted = channels();
   multibody::SceneChoice choice = scene;
-  if (given("--reactions")) choice.method = method_;
+  choice.method = method();
   if (way == study::Way::integrated) {
     wanted.of(layout);  // refuses unknown names
     return choice;
@@ -141,6 +145,10 @@ multibody::SceneChoice RunChoice::scene_for(const Case& the_case) const {
                  multibody::scene_names()[static_cast<std::size_t>(choice.scene)].c_str(),
                  wanted.text().c_str());
   return choice;
+}
+
+std::optional<multibody::Method> RunChoice::method() const {
+  return given("--reactions") ? std::optional<multibody::Method>(method_) : std::nullopt;
 }
 
 std::optional<study::ErrorTarget> RunChoice::target() const {

@@ -44,13 +44,16 @@ class RunChoice {
 
   /// Refuses options that were given and would change nothing.
   /// @param multibody  whether the multibody model is run at all
+  /// @param states     whether the motion is given by a file
   /// @throws InputError
-  void refuse_without_effect(bool multibody) const;
+  void refuse_without_effect(bool multibody, bool states = false) const;
 
   study::ChannelChoice channels() const { return study::ChannelChoice(channels_); }
   /// The scene to build, which standard error names where it was not chosen by the user.
   /// @throws InputError
   multibody::SceneChoice scene_for(const Case& the_case) const;
+  /// The way to find reactions that was asked for.
+  std::optional<multibody::Method> method() const;
   /// The error asked for instead of an accuracy.
   std::optional<study::ErrorTarget> target() const;
 

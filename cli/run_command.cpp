@@ -19,13 +19,40 @@ struct Options {
   std::string out = "out";
   study::Model model = study::Model::analytic;
   RunChoice choice;
-  std::string gear;  ///< "", "mesh" or "imposed"
+  std::string gear;    ///< "", "mesh" or "imposed"
+  std::string states;  ///< file with the motion; "": constant speed
 };
+
+void warn(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings)
+    std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
+}
+
+int finish(OutputFolder& folder) {
+  for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
+  return kDone;
+}
+
+// Reactions at given states.
+int run_states(const Options& options, const study::ReadyCase& ready,
+               const study::RunOptions& run_options, const study::ChannelChoice& channels,
+               OutputFolder& folder) {
+  std::vector<Channel> there = ChannelLayout(ready.the_case.pump.geometry.pistons).channels();
+  for (const Channel& channel : motion_channels()) there.push_back(channel);
+  channels.of(there);  // refuses unknown names
+  const States states = read_states(options.states, ready.the_case, ready.pressure);
+  MotionTable table = study::run_states(ready, states, run_options, progress_of);
+  table.results = select_channels(table.results,
+                                  [&](const Channel& channel) { return channels.wants(channel); });
+  folder.add(to_string(options.model) + ".csv", to_csv(table));
+  return finish(folder);
+}
 
 int run(const Options& options) {
   const bool analytic = options.model == study::Model::analytic;
   const bool driven = options.choice.way == study::Way::driven;
-  options.choice.refuse_without_effect(!analytic);
+  const bool states = !options.states.empty();
+  options.choice.refuse_without_effect(!analytic, states);
   Case read = options.the_case.read();
   OutputFolder folder(options.out);
   const study::ReadyCase ready = study::prepare(std::move(read), progress_of);
@@ -39,6 +66,15 @@ int run(const Options& options) {
   run_options.model = options.model;
   run_options.assumptions = assumptions;
   run_options.way = options.choice.way;
+  std::vector<std::string> warnings;
+  if (ready.hydraulics)
+    for (const auto& warning : study::hydraulic_warnings(*ready.hydraulics))
+      warnings.push_back(warning.name + ": " + warning.text);
+  if (states) {
+    run_options.scene.method = options.choice.method();
+    warn(warnings);
+    return run_states(options, ready, run_options, channels, folder);
+  }
   if (analytic)
     channels.of(ChannelLayout(ready.the_case.pump.geometry.pistons));  // refuses unknown names
   else
@@ -49,16 +85,10 @@ int run(const Options& options) {
   run_options.target = options.choice.target();
 
   const auto lines = study::rounding_lines(ready.the_case, assumptions);
-  std::vector<std::string> warnings = study::rounding_warnings(lines);
+  warn(study::rounding_warnings(lines));
   if (!analytic && driven)
-    for (auto& text :
-         study::multibody_warnings(ready.the_case, assumptions, run_options.scene, lines))
-      warnings.push_back(text);
-  if (ready.hydraulics)
-    for (const auto& warning : study::hydraulic_warnings(*ready.hydraulics))
-      warnings.push_back(warning.name + ": " + warning.text);
-  for (const std::string& warning : warnings)
-    std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
+    warn(study::multibody_warnings(ready.the_case, assumptions, run_options.scene, lines));
+  warn(warnings);
 
   if (analytic) {
     study::stream_analytic(ready, assumptions, wanted, folder.open("analytic.csv"), progress_of);
@@ -67,8 +97,7 @@ int run(const Options& options) {
     if (!result.choice.empty()) std::fprintf(stderr, "chosen %s\n", result.choice.c_str());
     folder.add("multibody.csv", to_csv(select_channels(result.table, wanted)));
   }
-  for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
-  return kDone;
+  return finish(folder);
 }
 
 }  // namespace
@@ -81,6 +110,11 @@ Command add_run_command(CommandParser program) {
       .required()
       .text("analytic|multibody");
   add_out(command, options->out, "the curves");
+  command
+      .option("--states", options->states,
+              "CSV with the motion of shaft and block, and pressures where it has them: "
+              "reactions there instead of along a turn at constant speed")
+      .text("FILE");
   options->choice.add_to(command, false);
   command
       .option("--gear", options->gear,

@@ -298,6 +298,17 @@ States read_states(const std::filesystem::path& file, const Case& the_case,
     state.block_speed = rad_per_second(at("psi_rpm"));
     state.shaft_acceleration = at("theta_rad_per_s2");
     state.block_acceleration = at("psi_rad_per_s2");
+    const Geometry& geometry = the_case.pump.geometry;
+    for (int k = 0; k < pistons; ++k) {
+      const double phase = 360.0 * k / pistons;
+      const double needed = joint_distance(geometry, radians(state.theta_deg - phase),
+                                           radians(state.psi_deg - phase));
+      if (!(needed < geometry.piston_length))
+        refuse_value(file, table, i, columns.at("psi_deg"),
+                     "closer to theta_deg = " + number_text(state.theta_deg) +
+                         ": the pump cannot be assembled, piston " + std::to_string(k + 1) +
+                         " would have to be longer than " + number_text(needed * 1e3) + " mm");
+    }
     state.ports = the_case.pressure.ports;
     if (has("suction_bar")) state.ports.suction = pascals(at("suction_bar"));
     if (has("delivery_bar")) state.ports.delivery = pascals(at("delivery_bar"));

@@ -134,4 +134,27 @@ void read_as_curve(const std::uint8_t* data, std::size_t size) {
   }
 }
 
+void read_as_states(const std::uint8_t* data, std::size_t size) {
+  static const Case the_case = read_case(BENTAXIS_FUZZED_CASE);
+  static const PressureTrace pressure(the_case.pressure);
+  try {
+    const States states = read_states(file_with(data, size), the_case, pressure);
+    require(states.rows() > 0 && states.given.size() == states.rows() * states.header.size() &&
+                states.chamber_pressure.size() == states.rows() * states.pistons,
+            "states are not complete");
+    const MotionTable table = analytic::run_states(the_case, the_case.analytic, states);
+    const std::string text = to_csv(table);
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+    const NumericTable again = read_numeric_csv(file_with(bytes, text.size()), true);
+    require(again.rows.size() == states.rows(), "table has lost rows");
+    for (std::size_t row = 0; row < again.rows.size(); ++row)
+      for (std::size_t c = 0; c < states.header.size(); ++c)
+        require(again.rows[row][c] == table.state(row, c), "state is not the same when read back");
+  } catch (const InputError& error) {
+    check_message(error);
+  } catch (const ComputationError& error) {
+    check_message(error);
+  }
+}
+
 }  // namespace bentaxis::fuzz

@@ -37,4 +37,11 @@ AssemblyMargin assembly_margin(const Geometry& g) {
   return {distance(worst_u), std::acos(worst_u) / kRadPerDegree};
 }
 
+double joint_distance(const Geometry& g, double theta, double psi) {
+  return std::hypot(g.bore_circle_radius * std::sin(psi) - g.joint_circle_radius * std::sin(theta),
+                    g.bore_circle_radius * std::cos(psi) -
+                        g.joint_circle_radius * std::cos(g.tilt) * std::cos(theta) -
+                        g.axis_offset * std::sin(g.tilt));
+}
+
 }  // namespace bentaxis

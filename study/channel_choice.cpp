@@ -19,9 +19,9 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string hint(const std::string& name, const ChannelLayout& layout) {
+std::string hint(const std::string& name, const std::vector<Channel>& channels) {
   std::set<std::string> known;
-  for (const Channel& channel : layout.channels()) {
+  for (const Channel& channel : channels) {
     known.insert(channel.quantity);
     known.insert(channel.name);
   }
@@ -46,12 +46,11 @@ bool ChannelChoice::wants(const Channel& channel) const {
 
 std::string ChannelChoice::text() const { return all() ? "all" : joined(names_); }
 
-std::vector<Channel> ChannelChoice::of(const ChannelLayout& layout) const {
-  const auto& channels = layout.channels();
+std::vector<Channel> ChannelChoice::of(const std::vector<Channel>& channels) const {
   for (const auto& name : names_)
     if (std::none_of(channels.begin(), channels.end(),
                      [&](const Channel& c) { return is_called(c, name); }))
-      throw InputError("--channels: no channel is called " + name + hint(name, layout));
+      throw InputError("--channels: no channel is called " + name + hint(name, channels));
   std::vector<Channel> wanted;
   std::copy_if(channels.begin(), channels.end(), std::back_inserter(wanted),
                [&](const Channel& c) { return wants(c); });

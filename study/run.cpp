@@ -120,6 +120,21 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
   return result;
 }
 
+MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
+                       const PartProgress& progress_of) {
+  check(options);
+  if (options.way == Way::integrated)
+    throw InputError("given states are not integrated: the motion is an input");
+  if (options.budget || options.scene.scene != multibody::Scene::full)
+    throw InputError("at given states the whole pump is evaluated, without a torque budget");
+  const Assumptions& assumptions =
+      options.assumptions ? *options.assumptions : ready.assumptions(options.model);
+  if (options.model == Model::analytic)
+    return analytic::run_states(ready.the_case, assumptions, states, progress_of("analytic"));
+  return multibody::run_states(ready.the_case, assumptions, states, progress_of("multibody"),
+                               options.scene.method);
+}
+
 ResultTable run_turn(const ReadyCase& ready, Model model, const PartProgress& progress_of) {
   RunOptions options;
   options.model = model;

@@ -324,6 +324,21 @@ const GroupDifference* SimulationResult::worst() const {
   return groups.empty() ? nullptr : &groups.front();
 }
 
+double SimulationResult::seconds_for(Model model, double error) const {
+  // The slowest that is not good enough, the fastest that is.
+  const Effort* poor = nullptr;
+  const Effort* good = nullptr;
+  for (const Effort& e : effort) {
+    if (e.model != model || !(e.error > 0)) continue;
+    if (e.error <= error && (good == nullptr || e.seconds < good->seconds)) good = &e;
+    if (e.error > error && (poor == nullptr || e.error < poor->error)) poor = &e;
+  }
+  if (good == nullptr) return not_computed();
+  if (poor == nullptr || poor->seconds >= good->seconds) return good->seconds;
+  const double share = std::log(poor->error / error) / std::log(poor->error / good->error);
+  return poor->seconds * std::pow(good->seconds / poor->seconds, share);
+}
+
 bool SimulationResult::agrees() const {
   const bool hold = std::all_of(checks.begin(), checks.end(),
                                 [](const compare::Check& check) { return check.holds(); });

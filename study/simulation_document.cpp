@@ -118,6 +118,15 @@ std::optional<Figure> effort_figure(const SimulationResult& r) {
                 "within the judged time."};
 }
 
+// What both models need for the wanted error; "" where one of them is not there.
+std::string race(const SimulationResult& r) {
+  const double seconds[] = {r.seconds_for(Model::analytic, r.choice.error),
+                            r.seconds_for(Model::multibody, r.choice.error)};
+  if (!is_computed(seconds[0]) || !is_computed(seconds[1])) return "";
+  return fmt::format("analytic {:.3g} s, multibody {:.3g} s: {:.3g} times as long", seconds[0],
+                     seconds[1], seconds[1] / seconds[0]);
+}
+
 // ---- Tables
 
 report::Section difference_section(const SimulationResult& r) {
@@ -225,6 +234,8 @@ report::Section effort_section(const SimulationResult& r) {
     section.facts.emplace_back(name + ": chosen", run->record.choice);
   if (!r.multibody_choice.empty())
     section.facts.emplace_back("accuracy of Simbody", r.multibody_choice);
+  if (const std::string text = race(r); !text.empty())
+    section.facts.emplace_back(fmt::format("for an error of {:g} of peak", r.choice.error), text);
   section.table.columns = {"model", "method",     "error or accuracy asked", "error", "s",
                            "steps", "evaluations"};
   for (const Effort& e : r.effort)
@@ -335,6 +346,8 @@ std::string simulation_text(const SimulationResult& r) {
     }
     text += "\n";
   }
+  if (const std::string times = race(r); !times.empty())
+    text += fmt::format("for an error of {:g} of peak: {}\n", r.choice.error, times);
   if (!r.multibody_choice.empty()) text += "chosen " + r.multibody_choice + "\n";
   return text;
 }

@@ -100,8 +100,8 @@ CURVE = "theta_deg,pressure_bar\n0,5\n90,6\n180,100\n270,90\n"
 
 PUMP = re.compile(r"^(pump|bentaxis: warning: [a-z0-9-]+): [^\n]+\n", re.MULTILINE)
 
-# Tables whose numbers tests/hydraulics_test.cpp and tests/circuit_test.cpp hold to count.
-HYDRAULIC = {"hydraulics", "oil", "leakage", "suction_line", "delivery_line", "load"}
+# Tables whose numbers tests/hydraulics_test.cpp, tests/circuit_test.cpp and, of [drive], tests/simulation_test.cpp hold to count.
+HELD_ELSEWHERE = {"hydraulics", "oil", "leakage", "suction_line", "delivery_line", "load", "drive"}
 
 
 class ProgramTest(unittest.TestCase):
@@ -117,7 +117,7 @@ class ProgramTest(unittest.TestCase):
 
     def controls(self):
         """Cases with the numbers that must count there. A number is what the program's schema says is one."""
-        numbers = {f"{table}.{key}" for table, schema in self.schema()["properties"].items() if table not in HYDRAULIC
+        numbers = {f"{table}.{key}" for table, schema in self.schema()["properties"].items() if table not in HELD_ELSEWHERE
                    for key, parameter in schema.get("properties", {}).items()
                    if parameter.get("type") in ("number", "integer", "array")} - STRUCTURE
         self.assertGreater(len(numbers), 40)
@@ -294,6 +294,75 @@ class UsageTest(ProgramTest):
         # Golden curves of a changed case belong to the case as changed.
         self.run_program("reference", "golden", self.case(), *settings, "--out", "golden")
         self.run_program("regress", "golden")
+
+    def states(self, lines, name="states.csv"):
+        file = self.folder / name
+        file.write_text("\n".join(lines) + "\n")
+        return file
+
+    MOTION = "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2"
+
+    def test_states_of_constant_speed_are_a_turn(self):
+        case = self.case()
+        for model in ("analytic", "multibody"):
+            self.run_program("run", case, "--model", model, "--out", "turn")
+            angles = self.column(f"turn/{model}.csv", "theta_deg")
+            states = self.states([self.MOTION, *(f"{a},{a},1500,1500,0,0" for a in angles)])
+            self.run_program("run", case, "--model", model, "--states", states, "--out", "states")
+            header = (self.folder / f"states/{model}.csv").read_text().splitlines()[0]
+            self.assertTrue(header.startswith(self.MOTION + ",Rs_1_x2_N"), header)
+            self.assertTrue(header.endswith("Rcs_law_N,ring_power_W,power_balance_W"), header)
+            for column in (self.folder / f"turn/{model}.csv").read_text().splitlines()[0].split(","):
+                with self.subTest(model=model, column=column):
+                    self.assertEqual(*[self.column(f"{out}/{model}.csv", column) for out in ("turn", "states")])
+
+    def test_states_give_reactions_with_their_own_pressures_and_columns(self):
+        case = self.case()
+        pressures = ",".join(f"p_{k}_bar" for k in range(1, 6))
+        own = self.states([f"time_s,{self.MOTION},{pressures},suction_bar,delivery_bar",
+                           "0,10,9.5,1500,1490,100,-200,275,275,0,0,0,1,270", "0.001,19,18.7,1510,1492,90,-150,275,275,0,0,0,1,270"])
+        case_s = self.states([self.MOTION, "10,9.5,1500,1490,100,-200"], "plain.csv")
+        torque = {}
+        for model in ("analytic", "multibody"):
+            self.run_program("run", case, "--model", model, "--states", own, "--channels", "p,Td,Rcs_law", "--out", "own")
+            with open(self.folder / f"own/{model}.csv") as file:
+                rows = list(csv.DictReader(file))
+            self.assertEqual([row["time_s"] for row in rows], ["0", "0.001"])
+            self.assertEqual([row["p_1_bar"] for row in rows], ["275", "275"])
+            self.assertEqual({row["Rcs_law_N"] for row in rows}, {""})
+            self.assertNotIn("Rs_1_x2_N", rows[0])
+            self.run_program("run", case, "--model", model, "--states", case_s, "--out", "plain")
+            torque[model] = float(rows[0]["Td_z1_Nm"])
+            # Other pressures, another torque.
+            self.assertNotAlmostEqual(torque[model], float(self.column(f"plain/{model}.csv", "Td_z1_Nm")[0]), 3)
+        self.assertAlmostEqual(torque["analytic"], torque["multibody"], delta=1e-9 * abs(torque["analytic"]))
+
+    def test_bad_states(self):
+        case = self.case()
+        good = "10,9.5,1500,1490,100,-200"
+        for lines, words in (
+            ([self.MOTION], ["no states"]),
+            ([], ["states.csv"]),
+            ([self.MOTION.replace("psi_rpm", "psi_rmp"), good], ["states.csv:1", "psi_rmp", 'did you mean "psi_rpm"']),
+            ([self.MOTION[:-len(",psi_rad_per_s2")], good[:-5]], ["states.csv:1", "psi_rad_per_s2", "missing"]),
+            ([self.MOTION + ",psi_deg", good + ",1"], ["states.csv:1", "psi_deg", "twice"]),
+            ([self.MOTION + ",p_2_bar", good + ",1"], ["states.csv:1", "p_1_bar", "missing"]),
+            ([self.MOTION, good, good.replace("9.5", "9,5")], ["states.csv:3"]),
+            ([self.MOTION, good, good.replace("9.5", "east")], ["states.csv:3", "psi_deg", "east"]),
+            ([self.MOTION, good.replace("9.5", "nan")], ["states.csv:2", "psi_deg", "nan"]),
+            (["time_s," + self.MOTION, "1," + good, "0.5," + good], ["states.csv:3", "time_s = 0.5", ">= 1"]),
+            ([self.MOTION, good, "10,190,1500,1490,0,0"],
+             ["states.csv:3", "psi_deg = 190", "closer to theta_deg = 10", "piston 5", "longer than"]),
+        ):
+            with self.subTest(words):
+                self.assert_mentions(self.refused("run", case, "--model", "analytic", "--states", self.states(lines),
+                                                  "--out", "out"), *words)
+        self.assert_mentions(self.refused("run", case, "--model", "analytic", "--states", "absent.csv"), "absent.csv")
+        states = self.states([self.MOTION, good])
+        for option, word in ((["--way", "integrated"], "--way"), (["--scene", "piston"], "--scene"),
+                             (["--channels", "Rcs_lew"], "Rcs_law"), (["--accuracy", "1e-4"], "--accuracy")):
+            with self.subTest(option):
+                self.assert_mentions(self.refused("run", case, "--model", "multibody", "--states", states, *option), word)
 
     def test_every_command_that_reads_a_case_takes_changes(self):
         case = self.case()
@@ -1167,6 +1236,8 @@ RATED = {"pressure.suction_bar": 5.0, "friction.piston_viscous_N_s_per_m": 20.0,
 LIGHT = {"pressure.delivery_bar": 0.0, "operation.speed_rpm": 3000.0}
 REAL = {**LIGHT, "piston.inertia": '"real"', "piston.centre_of_mass_mm": 19.0, "piston.transverse_inertia_kg_mm2": 24.0,
         "piston.axial_inertia_kg_mm2": 5.0, "piston.spin_rpm": 900.0}
+BESIDE_B = {**RATED, "piston.contact_mm": 41.5, "gear.flanks": '"two"', "friction.block_viscous_Nm_per_rpm": 0.0}
+COMPLIANT = {**RATED, "gear.contact": '"compliant"', "gear.stiffness_N_per_um": 200.0}
 CURVED = {"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'}
 
 # What does not make itself felt in the rated case; every other number of that case does.
@@ -1177,6 +1248,7 @@ CONTROLS = (
     (LIGHT, {*HIDDEN_BY_PRESSURE, "piston.mass_kg", "piston.joint_mass_fraction", "operation.speed_rpm"}),
     (REAL, {"piston.mass_kg", "piston.centre_of_mass_mm", "piston.transverse_inertia_kg_mm2", "piston.axial_inertia_kg_mm2",
             "piston.spin_rpm"}),
+    (BESIDE_B, {"piston.contact_mm", "gear.pitch_diameter_mm", "gear.pressure_angle_deg"}),
 )
 # Numbers that say how much is computed, not what of.
 STRUCTURE = {"pump.pistons", "operation.samples_per_revolution", "operation.revolutions", "pressure.points"}
@@ -1185,6 +1257,9 @@ WITHOUT_EFFECT = (
     (RATED, "shaft.axial_inertia_kg_mm2", 20000.0), (RATED, "block.axial_inertia_kg_mm2", 15000.0),
     (LIGHT, "shaft.axial_inertia_kg_mm2", 0.0), (LIGHT, "block.axial_inertia_kg_mm2", 0.0),
     (REAL, "piston.joint_mass_fraction", 0.7), (LIGHT, "piston.spin_rpm", 900.0),
+    # Compliant teeth act where the motion is not given; rigid ones have nothing of this.
+    *((base, f"gear.{key}", value) for base in (COMPLIANT, RATED)
+      for key, value in (("stiffness_N_per_um", 300.0), ("stiffness_exponent", 1.5), ("dissipation_s_per_m", 0.1), ("backlash_um", 20.0))),
 )
 
 

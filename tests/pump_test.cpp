@@ -184,6 +184,7 @@ TEST(Assembly, MarginIsTheLargestDistanceOverTheTurn) {
           (g.bore_circle_radius - g.joint_circle_radius * std::cos(g.tilt)) * std::cos(t) -
           g.axis_offset * std::sin(g.tilt);
       largest = std::max(largest, std::hypot(x, y));
+      ASSERT_NEAR(joint_distance(g, t, t), std::hypot(x, y), 1e-15);
     }
     EXPECT_NEAR(assembly_margin(g).longest_distance, largest, 1e-7);
     EXPECT_GE(assembly_margin(g).longest_distance, largest * (1 - 1e-14));

@@ -120,6 +120,13 @@ class TrajectoryTest(SimulateTest):
         return subprocess.run([base.PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
                               timeout=base.SECONDS)
 
+    def test_the_closed_form_is_fast(self):
+        """One run, both at the same achieved error, which lies between measured ones."""
+        out = self.simulate(self.case("motor_driven", duration_s=0.01, samples=20)).stdout
+        times = re.search(r"for an error of 1e-06 of peak: analytic (\S+) s, multibody (\S+) s: (\S+) times", out)
+        self.assertGreater(float(times[3]), 50)
+        self.assertAlmostEqual(float(times[2]) / float(times[1]) / float(times[3]), 1, 1)
+
     def test_a_motor_from_rest_and_curves_over_time(self):
         self.simulate(self.case("motor_driven", start_rpm=0.0, duration_s=0.004, samples=8), "--model", "analytic")
         rows = self.table("out/simulation_analytic.csv")

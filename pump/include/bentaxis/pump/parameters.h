@@ -189,4 +189,8 @@ struct AssemblyMargin {
 /// The worst angle for assembly, exactly (the squared distance is a quadratic in cos theta).
 AssemblyMargin assembly_margin(const Geometry& geometry);
 
+/// Distance of a joint A at the angle theta of the shaft from the axis of its bore at the angle psi
+/// of the block, m: what a piston's length must exceed. Angles in rad.
+double joint_distance(const Geometry& geometry, double theta, double psi);
+
 }  // namespace bentaxis

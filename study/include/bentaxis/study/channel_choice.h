@@ -25,7 +25,8 @@ class ChannelChoice {
   std::string text() const;
   /// Every channel of a pump that is asked for.
   /// @throws InputError if a name is of no channel
-  std::vector<Channel> of(const ChannelLayout& layout) const;
+  std::vector<Channel> of(const ChannelLayout& layout) const { return of(layout.channels()); }
+  std::vector<Channel> of(const std::vector<Channel>& channels) const;
 
   /// The scene to build: `asked` where there is one, the full pump where all channels are asked
   /// for, else the smallest that computes what is asked for.

@@ -11,6 +11,7 @@
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/study/progress.h"
 
@@ -79,6 +80,12 @@ ModelRun run(const ReadyCase& ready, const RunOptions& options,
 /// The same at samples that are already there: of ready.samples(way).
 ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& options,
              const PartProgress& progress_of = silent());
+
+/// Reactions at given states of shaft and block, as options.model and options.assumptions say;
+/// options.scene.method of the multibody model. The pump is whole.
+/// @throws InputError where the options say something that has no effect on given states
+MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
+                       const PartProgress& progress_of = silent());
 
 /// One turn by one model, driven, as the case assumes.
 ResultTable run_turn(const ReadyCase& ready, Model model,

@@ -71,7 +71,10 @@ struct SimulationResult {
   /// Allowed difference at a row, of peak: the wanted error, grown as disturbances grow.
   double allowed(std::size_t row) const { return choice.error * growth[row]; }
   const GroupDifference* worst() const;  ///< nearest to or furthest beyond what is allowed
-  bool agrees() const;                   ///< of one model alone: its checks hold
+  /// Time that a model needs for an error, between its efforts; not_computed() where none of them
+  /// reached it.
+  double seconds_for(Model model, double error) const;
+  bool agrees() const;  ///< of one model alone: its checks hold
   std::string headline() const;
 };
 
