@@ -3,11 +3,13 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <type_traits>
 #include <vector>
 
 #include "bentaxis/analytic/model.h"
 #include "closed_form/reactions.h"
 #include "prepared.h"
+#include "turning.h"
 
 namespace bentaxis::analytic {
 namespace {
@@ -16,11 +18,11 @@ namespace {
 struct LoadAlone {
   Cause cause;
   closed_form::PistonNumbers<double> piston;
-  double omega, omega_dot;  // that inertia knows of
+  double rate, rate_dot;  // of the motion's parameter, that inertia knows of
   bool friction, pressure;
 };
 
-// Pistons without weight: mass is what the accelerations of `omega` make of it.
+// Pistons without weight: mass is what accelerations make of it.
 closed_form::PistonNumbers<double> weightless(closed_form::PistonNumbers<double> piston) {
   piston.gravity_y = piston.gravity_z = 0;
   return piston;
@@ -29,6 +31,22 @@ closed_form::PistonNumbers<double> weightless(closed_form::PistonNumbers<double>
 closed_form::PistonNumbers<double> massless(closed_form::PistonNumbers<double> piston) {
   piston.mass = piston.static_moment = piston.inertia = piston.spin_momentum = 0;
   return piston;
+}
+
+// Velocity of the point C of a piston against the block's there, where shaft and block turn alone
+// at these speeds.
+template <class State>
+closed_form::Vec3<double> play(const closed_form::Pump<double>& p, const State& state, double s,
+                               double c, double shaft, double block) {
+  closed_form::FreeState<double> turning = {};
+  if constexpr (std::is_same_v<State, closed_form::FreeState<double>>) turning = state;
+  turning.omega = shaft;
+  turning.block_omega = block;
+  turning.omega_dot = turning.block_omega_dot = 0;
+  const auto m = closed_form::piston_motion(p.frame, p.piston, turning, s, c);
+  const closed_form::Vec3<double> at = closed_form::contact_point(p.block, m);
+  return m.joint_first + p.block.contact * m.axis_first -
+         block * closed_form::Vec3<double>{-at.y, at.x, 0};
 }
 
 }  // namespace
@@ -42,6 +60,10 @@ struct BudgetModel::Implementation {
         values(model.layout().size()) {}
 
   Budget evaluate(const Instant& instant);
+  template <class State>
+  Budget causes(const Instant& instant, const State& state) const;
+  // Whether the bores' forces act beside B, where they do work.
+  bool off_the_ring() const { return prepared.numbers.block.contact != 1; }
   void put(Budget& budget, Cause cause, double on_shaft, double on_block) const;
 
   Model model;
@@ -61,55 +83,77 @@ void BudgetModel::Implementation::put(Budget& budget, Cause cause, double on_sha
   budget.drive_of(cause) -= closed_form::tooth_on_shaft(gear, on_block * gear.inverse_arm).moment.z;
 }
 
-Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
+template <class State>
+Budget BudgetModel::Implementation::causes(const Instant& instant, const State& state) const {
   using closed_form::BlockLoad;
   using closed_form::ShaftLoad;
   const closed_form::Pump<double>& p = prepared.numbers;
-  const double omega = instant.shaft.speed;
-  const double omega_dot = instant.shaft.acceleration;
-  const double sine = std::sin(instant.shaft.angle);
-  const double cosine = std::cos(instant.shaft.angle);
-  // Tcs is a reaction where the gear carries the block, else it follows from the bores' forces.
-  if (prepared.imposed)
-    model.evaluate(instant, values);
-  else
-    model.reactions(instant, values);
-
   const LoadAlone loads[] = {
       {Cause::pressure, weightless(massless(p.piston)), 0, 0, false, true},
       {Cause::piston_friction, weightless(massless(p.piston)), 0, 0, true, false},
       {Cause::weight, p.piston, 0, 0, false, false},
-      {Cause::inertia, weightless(p.piston), omega, omega_dot, false, false}};
+      {Cause::inertia, weightless(p.piston), state.rate(), state.rate_dot(), false, false}};
   std::array<BlockLoad<double>, std::size(loads)> on_block = {};
   std::array<ShaftLoad<double>, std::size(loads)> on_shaft = {};
+  // Of the torques, what the bores' forces of a load alone take for their work on the play.
+  std::array<double, std::size(loads)> ring_on_shaft = {};
+  std::array<double, std::size(loads)> ring_on_block = {};
   for (std::size_t k = 0; k < prepared.phase_sin.size(); ++k) {
-    const double s = sine * prepared.phase_cos[k] - cosine * prepared.phase_sin[k];
-    const double c = cosine * prepared.phase_cos[k] + sine * prepared.phase_sin[k];
-    const auto motion = closed_form::piston_motion(p.frame, p.piston, s, c);
-    const double ring_friction = closed_form::friction_force(prepared.friction, p.friction,
-                                                             motion.ring_velocity(omega), omega);
+    const double s = state.sine * prepared.phase_cos[k] - state.cosine * prepared.phase_sin[k];
+    const double c = state.cosine * prepared.phase_cos[k] + state.sine * prepared.phase_sin[k];
+    const auto motion = closed_form::piston_motion(p.frame, p.piston, state, s, c);
+    const double ring_friction = closed_form::friction_force(
+        prepared.friction, p.friction, motion.ring_velocity(state.rate()), state.omega);
+    closed_form::Vec3<double> shaft_play = {};
+    closed_form::Vec3<double> block_play = {};
+    if (off_the_ring()) {
+      shaft_play = play(p, state, s, c, 1, 0);
+      block_play = play(p, state, s, c, 0, 1);
+    }
     for (std::size_t i = 0; i < std::size(loads); ++i) {
       const LoadAlone& load = loads[i];
       const double friction = load.friction ? ring_friction : 0;
       const double pressure = load.pressure ? instant.chamber_pressure[k] : 0;
-      const auto forces = closed_form::piston_forces(load.piston, motion, load.omega,
-                                                     load.omega_dot, friction, pressure);
+      const auto forces = closed_form::piston_forces(load.piston, motion, load.rate, load.rate_dot,
+                                                     friction, pressure);
       closed_form::add_piston(p.block, motion, forces, friction, pressure, on_block[i]);
       closed_form::add_joint(p.frame, forces.rs, s, c, on_shaft[i]);
+      ring_on_shaft[i] -= forces.rc_x * shaft_play.x + forces.rc_y * shaft_play.y;
+      ring_on_block[i] -= forces.rc_x * block_play.x + forces.rc_y * block_play.y;
     }
   }
 
   Budget budget;
   double axial = 0;
+  double ring_shaft = 0;
+  double ring_block = 0;
   for (std::size_t i = 0; i < std::size(loads); ++i) {
     const bool inertia = loads[i].cause == Cause::inertia;
     put(budget, loads[i].cause,
-        p.shaft.joint_radius * on_shaft[i].torque + (inertia ? p.shaft.inertia * omega_dot : 0),
-        (inertia ? p.block.inertia * omega_dot : 0) - on_block[i].moment.z);
+        p.shaft.joint_radius * on_shaft[i].torque +
+            (inertia ? p.shaft.inertia * instant.shaft.acceleration : 0) - ring_on_shaft[i],
+        (inertia ? p.block.inertia * instant.block.acceleration : 0) - on_block[i].moment.z -
+            ring_on_block[i]);
     axial += on_block[i].axial;
+    ring_shaft += ring_on_shaft[i];
+    ring_block += ring_on_block[i];
   }
-  put(budget, Cause::block_friction, 0, p.block.viscous * omega);
-  put(budget, Cause::shaft_friction, p.shaft.viscous * omega, 0);
+  put(budget, Cause::ring, ring_shaft, ring_block);
+  put(budget, Cause::block_friction, 0, p.block.viscous * instant.block.speed);
+  put(budget, Cause::shaft_friction, p.shaft.viscous * instant.shaft.speed, 0);
+  budget.pressing = axial + block_weight_and_spring;
+  return budget;
+}
+
+Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
+  // Tcs is a reaction where the gear carries the block, else it follows from the bores' forces.
+  if (prepared.imposed)
+    model.evaluate(instant, values);
+  else
+    model.reactions(instant, values);
+  const closed_form::Pump<double>& p = prepared.numbers;
+  Budget budget;
+  with_state<double>(instant, [&](const auto& state) { budget = causes(instant, state); });
 
   const ChannelLayout& at = model.layout();
   budget.drive_torque = values[at.Td()];
@@ -117,12 +161,12 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
   closed_form::BlockBalance<double> lands = {{0, 0, 0}, 0, 0};
   closed_form::add_lands(p.film, instant.ports.delivery, instant.ports.suction, lands);
   budget.separating = lands.force.z;
-  budget.pressing = axial + block_weight_and_spring;
   budget.film = values[at.Fh()];
   if (prepared.imposed) {
     budget.carrying_torque = values[at.Tcs()];
   } else {
-    const double tooth = closed_form::Math<double>::direction(omega) * values[at.Rcs()];
+    const double tooth =
+        closed_form::Math<double>::direction(instant.shaft.speed) * values[at.Rcs()];
     const auto carried = closed_form::tooth_on_block(p.gear, tooth);
     budget.carrying_torque = carried.moment.z;
     budget.pressing += carried.force.z;
@@ -136,12 +180,14 @@ BudgetModel::~BudgetModel() = default;
 BudgetModel::BudgetModel(BudgetModel&&) noexcept = default;
 BudgetModel& BudgetModel::operator=(BudgetModel&&) noexcept = default;
 
+bool BudgetModel::has_ring() const { return implementation_->off_the_ring(); }
+
 Budget BudgetModel::evaluate(const Instant& instant) { return implementation_->evaluate(instant); }
 
 ResultTable run_budget(const Case& the_case, const Assumptions& assumptions,
                        const Samples& samples) {
   BudgetModel model(the_case.pump, assumptions);
-  ResultTable table = budget_table("analytic");
+  ResultTable table = budget_table("analytic", model.has_ring());
   Instant instant;
   for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
     samples.instant(row, instant);

@@ -228,16 +228,26 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values,
   if (checks != nullptr) *checks = found;
 }
 
-Model::FlankChange Model::other_flank(double tooth_force) const {
-  // The part of k4 that pushes the gears apart, turned round.
-  const closed_form::GearNumbers<double>& gear = prepared_->numbers.gear;
-  const Vector3d on_block = 2 * std::abs(tooth_force) * Vector3d(0, gear.line_y1, gear.line_z1);
-  const Vector3d moment = Vector3d(0, gear.y, gear.z1).cross(-on_block);
-  const auto held =
-      closed_form::bearings(prepared_->numbers.shaft, {-on_block.x(), -on_block.y(), -on_block.z()},
-                            moment.x(), moment.y());
-  return {Kinematics(pump_.geometry).to_s2(on_block).head<2>().norm(),
-          to_eigen(held.tapered).norm(), std::hypot(held.cylindrical_x, held.cylindrical_y)};
+Model::FlankChange Model::flank_change(double tooth_force, double speed) const {
+  const closed_form::Pump<double>& p = prepared_->numbers;
+  closed_form::GearNumbers<double> one = p.gear;
+  closed_form::GearNumbers<double> two = p.gear;
+  one.two_flanks = 0;
+  two.two_flanks = 1;
+  const double tooth = closed_form::Math<double>::direction(speed) * tooth_force;
+  const auto on_block_one = closed_form::tooth_on_block(one, tooth);
+  const auto on_block_two = closed_form::tooth_on_block(two, tooth);
+  const auto block = closed_form::hold_block(
+      p.block, closed_form::BlockBalance<double>{on_block_two.force - on_block_one.force,
+                                                 on_block_two.moment.x - on_block_one.moment.x,
+                                                 on_block_two.moment.y - on_block_one.moment.y});
+  const auto on_shaft_one = closed_form::tooth_on_shaft(one, tooth);
+  const auto on_shaft_two = closed_form::tooth_on_shaft(two, tooth);
+  const auto held = closed_form::bearings(p.shaft, on_shaft_two.force - on_shaft_one.force,
+                                          on_shaft_two.moment.x - on_shaft_one.moment.x,
+                                          on_shaft_two.moment.y - on_shaft_one.moment.y);
+  return {std::hypot(block.pin_x, block.pin_y), std::abs(block.fh), to_eigen(held.tapered).norm(),
+          std::hypot(held.cylindrical_x, held.cylindrical_y)};
 }
 
 Model::FrictionPower Model::friction_power(const Instant& instant, double drive_torque) const {

@@ -83,22 +83,32 @@ void RoundingEstimate::estimate(const Instant& instant,
     add(p.input, p.per_change);
   }
   Instant changed = instant;
+  const bool locked = instant.locked();
   const auto vary = [&](const std::string& name, double& value, double rounding, double step = 0) {
     if (rounding == 0) return;
     const double before = value;
     if (step == 0) step = std::max(std::abs(before), rounding / kInputRounding) * kChange;
     value = before + step;
-    changed.block = changed.shaft;
+    if (locked) changed.block = changed.shaft;
     model_.reactions(changed, other);
     add(name, rounding / (value - before));
     value = before;
-    changed.block = changed.shaft;
+    if (locked) changed.block = changed.shaft;
   };
   // The angle of a piston is the shaft's and its phase. The step leaves a piston at a dead centre
   // at rest in the sign law of friction (kRestShare).
   vary("theta", changed.shaft.angle,
        kInputRounding * std::max(std::abs(instant.shaft.angle), 2 * kPi), 0x1p-41);
   vary("speed", changed.shaft.speed, kInputRounding * std::abs(instant.shaft.speed));
+  if (!locked) {
+    vary("psi", changed.block.angle,
+         kInputRounding * std::max(std::abs(instant.block.angle), 2 * kPi), 0x1p-41);
+    vary("block speed", changed.block.speed, kInputRounding * std::abs(instant.block.speed));
+    vary("acceleration", changed.shaft.acceleration,
+         kInputRounding * std::abs(instant.shaft.acceleration));
+    vary("block acceleration", changed.block.acceleration,
+         kInputRounding * std::abs(instant.block.acceleration));
+  }
   vary("ports.delivery", changed.ports.delivery, kInputRounding * std::abs(instant.ports.delivery));
   vary("ports.suction", changed.ports.suction, kInputRounding * std::abs(instant.ports.suction));
   for (std::size_t k = 0; k < pressure_rounding.size(); ++k)

@@ -39,8 +39,60 @@ void scan(ValidityLimit& limit, const ResultTable& table,
 }
 
 std::string flank_text(const Model::FlankChange& change) {
-  return "with the other flank carrying, Rcn changes by up to " + newtons(change.pin) +
-         ", Rb1 by " + newtons(change.tapered) + ", Rb2 by " + newtons(change.cylindrical);
+  return "Rcn changes by up to " + newtons(change.pin) + ", Rb1 by " + newtons(change.tapered) +
+         ", Rb2 by " + newtons(change.cylindrical) + ", Fh by " + newtons(change.film);
+}
+
+// Where the other flank carries, and what that means.
+void describe_flanks(ValidityLimit& flank, const Model& model, bool two, double omega,
+                     double furthest) {
+  // Of the rows where the two differ, that with the largest force.
+  const Model::FlankChange change = model.flank_change(furthest, omega);
+  const bool differs = change.tapered > 0;
+  if (two) {
+    flank.consequence =
+        "where it is negative the other flank carries; each flank pushes the gears apart" +
+        (differs
+             ? ". With one line of action for both, as the paper prints it, " + flank_text(change)
+             : std::string());
+    return;
+  }
+  flank.consequence =
+      "the model keeps one line of action; a real tooth pair loads its other flank, which still "
+      "pushes the gears apart";
+  if (flank.violated_share == 0) return;
+  flank.consequence += omega < 0 ? ", as the line turned by sign(omega) does here"
+                                 : ": with the other flank carrying, " + flank_text(change);
+}
+
+// Bore forces off B act on a point that the bore does not guide.
+ValidityLimit ring_limit(const Model& model, const Case& the_case, const Samples& samples,
+                         const ResultTable& table) {
+  ValidityLimit ring;
+  ring.limit = "bore forces act where the bore guides the piston: they do no work on the play";
+  ring.name = "Rc works on the play";
+  ring.unit = "W";
+  Instant instant;
+  std::vector<double> values(model.layout().size());
+  const auto power = [&](std::size_t row) {
+    MotionChecks checks;
+    samples.instant(row, instant);
+    model.evaluate(instant, values, &checks);
+    return checks.ring_power;
+  };
+  scan(
+      ring, table, [&](std::size_t row) { return -std::abs(power(row)); }, power);
+  double mean = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    mean += power(row) / static_cast<double>(table.rows());
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "Rc acts at C, %.6g mm from A, and the ring keeps B, at %.6g mm, on the axis of the "
+      "bore: mean power of Rc on the play %.4g W, its torque is a line of the budget",
+      *the_case.pump.piston.contact * 1e3, the_case.pump.geometry.piston_length * 1e3, mean);
+  ring.consequence = text;
+  return ring;
 }
 
 }  // namespace
@@ -57,22 +109,26 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   };
   std::vector<ValidityLimit> limits;
 
+  const bool two = the_case.pump.gear.flanks == Flanks::two;
   ValidityLimit flank;
-  flank.limit = "tooth force on the modelled flank: Rcs >= 0";
+  flank.limit = two ? "tooth force on the driving flank: Rcs >= 0"
+                    : "tooth force on the modelled flank: Rcs >= 0";
   flank.name = "Rcs < 0";
   flank.unit = "N";
   scan(flank, table, value(at.Rcs()), value(at.Rcs()));
-  flank.consequence =
-      flank.applicable
-          ? "the model keeps one line of action; a real tooth pair loads its other flank, which "
-            "still pushes the gears apart" +
-                (flank.violated_share > 0
-                     ? ": " + flank_text(model.other_flank(std::min(0.0, flank.worst)))
-                     : std::string())
-          : "no tooth force: the block's speed is imposed";
+  flank.consequence = "no tooth force: the block's speed is imposed";
+  if (flank.applicable) {
+    // (22) turns with the speed: so does the sign at which one line and two flanks differ.
+    ValidityLimit pulled;
+    if (samples.omega < 0)
+      scan(pulled, table, negated(at.Rcs()), value(at.Rcs()));
+    else
+      pulled = flank;
+    describe_flanks(flank, model, two, samples.omega, pulled.worst);
+  }
   limits.push_back(flank);
 
-  if (samples.omega < 0) {
+  if (samples.omega < 0 && !two) {
     ValidityLimit turned;
     turned.limit = "separating part of the tooth force pushes the gears apart";
     turned.name = "separating force reversed by sign(omega)";
@@ -81,7 +137,8 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
     turned.consequence =
         "(22) as printed turns the whole line of action with the speed; a real gear keeps the "
         "separating direction" +
-        (turned.violated_share > 0 ? ": " + flank_text(model.other_flank(turned.worst))
+        (turned.violated_share > 0 ? ": with the other flank carrying, " +
+                                         flank_text(model.flank_change(turned.worst, samples.omega))
                                    : std::string());
     limits.push_back(turned);
   }
@@ -139,6 +196,10 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
       "(38) is kept as printed: where Td omega < 0 (motoring) its proportional part drives the "
       "shaft instead of braking it";
   limits.push_back(friction);
+
+  if (the_case.pump.piston.contact &&
+      *the_case.pump.piston.contact != the_case.pump.geometry.piston_length)
+    limits.push_back(ring_limit(model, the_case, samples, table));
   return limits;
 }
 

@@ -136,19 +136,18 @@ void read_as_curve(const std::uint8_t* data, std::size_t size) {
   }
 }
 
-void read_as_motion(const std::uint8_t* data, std::size_t size) {
-  static const Case the_case = read_case(BENTAXIS_FUZZED_CASE);
-  static const PressureTrace pressure(the_case.pressure);
+void read_as_drive(const std::uint8_t* data, std::size_t size) {
   const auto file = file_with(data, size);
   for (const DriveKind kind : {DriveKind::speed, DriveKind::torque}) {
     try {
       const TimeCurve curve = read_drive_curve(file, kind);
       const TimeSignal signal(curve);
       const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
+      const double span = curve.time.back() - curve.time.front();
+      const double slack = 1e-9 * (std::abs(*low) + std::abs(*high));
       for (const double share : {-1.0, 0.0, 0.3, 0.999, 2.0}) {
-        const double time = curve.time.front() + share * (curve.time.back() - curve.time.front());
+        const double time = curve.time.front() + share * span;
         const double value = signal.value(time);
-        const double slack = 1e-9 * (std::abs(*low) + std::abs(*high));
         if (std::isfinite(time) && std::isfinite(slack) && std::isfinite(*high - *low))
           require(value >= *low - slack && value <= *high + slack, "curve leaves its points");
         (void)signal.slope(time);
@@ -158,14 +157,24 @@ void read_as_motion(const std::uint8_t* data, std::size_t size) {
       check_message(error);
     }
   }
+}
+
+void read_as_states(const std::uint8_t* data, std::size_t size) {
+  static const Case the_case = read_case(BENTAXIS_FUZZED_CASE);
+  static const PressureTrace pressure(the_case.pressure);
   try {
-    const States states = read_states(file, the_case, pressure);
+    const States states = read_states(file_with(data, size), the_case, pressure);
     require(states.rows() > 0 && states.given.size() == states.rows() * states.header.size() &&
-                states.chamber_pressure.size() ==
-                    states.rows() * static_cast<std::size_t>(states.pistons),
+                states.chamber_pressure.size() == states.rows() * states.pistons,
             "states are not complete");
     const MotionTable table = analytic::run_states(the_case, the_case.analytic, states);
-    require(table.results.rows() == states.rows(), "a state has no result");
+    const std::string text = to_csv(table);
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+    const NumericTable again = read_numeric_csv(file_with(bytes, text.size()), true);
+    require(again.rows.size() == states.rows(), "table has lost rows");
+    for (std::size_t row = 0; row < again.rows.size(); ++row)
+      for (std::size_t c = 0; c < states.header.size(); ++c)
+        require(again.rows[row][c] == table.state(row, c), "state is not the same when read back");
   } catch (const InputError& error) {
     check_message(error);
   } catch (const ComputationError& error) {

@@ -67,7 +67,7 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
     }
   }
   std::size_t next = 0;
-  if (budget != nullptr) *budget = budget_table("multibody");
+  if (budget != nullptr) *budget = budget_table("multibody", has_ring_off_b(the_case.pump));
   const ChannelLayout& at = model.layout();
   const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {
     if (!shared) {

@@ -20,7 +20,11 @@ constexpr CauseWords kWords[kCauses] = {
     {"inertia", "inertia", true},
     {"block_friction", "viscous friction of the block, Cc", true},
     {"shaft_friction", "viscous friction of the shaft, Cs", false},
-    {"torque_factor", "proportional loss of the shaft, (1 - Ct) Td", false}};
+    {"torque_factor", "proportional loss of the shaft, (1 - Ct) Td", false},
+    {"ring", "bore forces beside B, on the play of the pistons", true}};
+
+// Causes that a table has columns of: all, or all but the last.
+std::size_t causes_of(bool ring) { return ring ? kCauses : kCauses - 1; }
 
 Channel channel_of(const std::string& name, const std::string& meaning, const std::string& unit,
                    const std::string& body, ChannelKind kind) {
@@ -40,18 +44,19 @@ const char* to_string(Cause cause) { return kWords[static_cast<std::size_t>(caus
 std::string drive_column(Cause cause) { return std::string("Td_") + to_string(cause) + "_Nm"; }
 std::string carrying_column(Cause cause) { return std::string("Tcs_") + to_string(cause) + "_Nm"; }
 
-ResultTable budget_table(const std::string& model) {
+ResultTable budget_table(const std::string& model, bool ring) {
+  const std::size_t causes = causes_of(ring);
   ResultTable table;
   table.name = model;
   const auto add = [&](const std::string& name, const std::string& meaning, const std::string& unit,
                        const std::string& body, ChannelKind kind = ChannelKind::derived) {
     table.channels.push_back(channel_of(name, meaning, unit, body, kind));
   };
-  for (std::size_t c = 0; c < kCauses; ++c)
+  for (std::size_t c = 0; c < causes; ++c)
     add(drive_column(static_cast<Cause>(c)), std::string("drive torque for ") + kWords[c].meaning,
         "Nm", "shaft");
   add("Td_z1_Nm", "drive torque", "Nm", "shaft");
-  for (std::size_t c = 0; c < kCauses; ++c)
+  for (std::size_t c = 0; c < causes; ++c)
     if (kWords[c].carries)
       add(carrying_column(static_cast<Cause>(c)),
           std::string("torque that carries the block round against ") + kWords[c].meaning, "Nm",
@@ -71,12 +76,13 @@ void append_budget(ResultTable& table, double theta_deg, const Budget& budget) {
   const auto add = [&](double value) { table.values.push_back(value); };
   double drive = 0;
   double carrying = 0;
-  for (const double part : budget.drive) {
-    add(part);
-    drive += part;
+  const std::size_t causes = causes_of(table.find(drive_column(Cause::ring)) < table.columns());
+  for (std::size_t c = 0; c < causes; ++c) {
+    add(budget.drive[c]);
+    drive += budget.drive[c];
   }
   add(budget.drive_torque);
-  for (std::size_t c = 0; c < kCauses; ++c) {
+  for (std::size_t c = 0; c < causes; ++c) {
     if (kWords[c].carries) add(budget.carrying[c]);
     carrying += budget.carrying[c];
   }

@@ -30,7 +30,16 @@ constexpr CauseText kTexts[] = {
     {Cause::torque_factor, "shaft friction, (1 - Ct) Td", "loss"},
     {Cause::weight, "weight of the pistons", "stored"},
     {Cause::inertia, "inertia", "stored"},
+    {Cause::ring, "bore forces beside B, on the play", "no body's"},
 };
+
+// Causes that the budgets of a comparison have.
+std::vector<CauseText> causes_in(const ResultTable& budget) {
+  std::vector<CauseText> causes;
+  for (const CauseText& text : kTexts)
+    if (budget.find(drive_column(text.cause)) < budget.columns()) causes.push_back(text);
+  return causes;
+}
 
 struct Statistics {
   double mean = 0, least = 0, greatest = 0;
@@ -108,7 +117,7 @@ std::vector<report::Budget::Torque> torque_lines(const BudgetComparison& budgets
     }
     lines.push_back(std::move(line));
   };
-  for (const CauseText& text : kTexts)
+  for (const CauseText& text : causes_in(turns.front().budget))
     add(text.name, drive_column(text.cause), carrying_column(text.cause));
   add("drive torque Td", "Td_z1_Nm", "Tcs_z2_Nm");
   return lines;
@@ -126,12 +135,14 @@ std::vector<report::Budget::Quantity> power_lines(const std::vector<Turn>& turns
   };
   add(
       "drive", "in", [](const Turn& turn) { return turn.power("Td_z1_Nm"); }, "mean Td x speed");
-  for (const CauseText& text : kTexts) add(text.name, text.kind, of(text.cause));
+  for (const CauseText& text : causes_in(turns.front().budget))
+    add(text.name, text.kind, of(text.cause));
   add(
       "not accounted for", "open",
       [](const Turn& turn) {
         double rest = turn.power("Td_z1_Nm");
-        for (const CauseText& text : kTexts) rest -= turn.power(drive_column(text.cause));
+        for (const CauseText& text : causes_in(turn.budget))
+          rest -= turn.power(drive_column(text.cause));
         return rest;
       },
       "drive less all lines above");
@@ -309,7 +320,7 @@ std::string budget_text(const BudgetComparison& budgets) {
   const double whole = mean("Td_z1_Nm");
   std::string text = fmt::format("mean drive torque {:.5g} Nm:", whole);
   const char* separator = " ";
-  for (const CauseText& cause : kTexts) {
+  for (const CauseText& cause : causes_in(budgets.analytic)) {
     const double part = mean(drive_column(cause.cause));
     if (std::abs(part) < 1e-9 * std::abs(whole)) continue;
     text += fmt::format("{}{} {:.4g}", separator, cause.name, part);

@@ -115,10 +115,16 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case) {
        the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
        "high-precision curves; power balance; written once in each model"},
       {"line of action of the teeth (22)",
-       "as printed, turned by the sense of rotation; written once in each model",
-       "high-precision curves and the frame of O4 check the algebra; that real teeth push "
-       "otherwise "
-       "backwards and on the other flank is among the limits of validity"},
+       the_case.pump.gear.flanks == Flanks::two
+           ? "one for each flank, whose separating part pushes the gears apart; written once in "
+             "each model"
+           : "as printed, turned by the sense of rotation; written once in each model",
+       the_case.pump.gear.flanks == Flanks::two
+           ? "high-precision instants and the frame of O4; what one line of action would change is "
+             "among the limits of validity"
+           : "high-precision curves and the frame of O4 check the algebra; that real teeth push "
+             "otherwise "
+             "backwards and on the other flank is among the limits of validity"},
       {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
       {"constant speed, equal for shaft and block (1:1)",
        "omega given; no torsion, no play in the gear",

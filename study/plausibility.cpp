@@ -894,10 +894,13 @@ const Check kChecks[] = {
            f.turn->press_force > 0 ? f.turn->land_force / f.turn->press_force : HUGE_VAL);
      }},
     {"tooth-force-flank",
-     "Rcs < 0 in more than 5 % of the turn, but at standstill: the other flank would carry",
+     "one flank, and Rcs < 0 in more than 5 % of the turn, but at standstill: the other flank "
+     "would carry",
      [](const Facts& f) -> std::string {
        const auto* limit = f.limit("Rcs < 0");
-       if (limit == nullptr || limit->violated_share <= kShareOfTurn || f.speed == 0) return "";
+       if (limit == nullptr || limit->violated_share <= kShareOfTurn || f.speed == 0 ||
+           f.pump.gear.flanks == Flanks::two)
+         return "";
        return fmt::format(
            "the tooth force is on the other flank in {:.3g} % of the turn, worst {:.4g} N at "
            "{:.4g} "

@@ -100,8 +100,8 @@ CURVE = "theta_deg,pressure_bar\n0,5\n90,6\n180,100\n270,90\n"
 
 PUMP = re.compile(r"^(pump|bentaxis: warning: [a-z0-9-]+): [^\n]+\n", re.MULTILINE)
 
-# Tables whose numbers tests/hydraulics_test.cpp and tests/circuit_test.cpp hold to count.
-HYDRAULIC = {"hydraulics", "oil", "leakage", "suction_line", "delivery_line", "load"}
+# Tables whose numbers tests/hydraulics_test.cpp, tests/circuit_test.cpp and, of [drive], tests/simulation_test.cpp hold to count.
+HELD_ELSEWHERE = {"hydraulics", "oil", "leakage", "suction_line", "delivery_line", "load", "drive"}
 
 
 class ProgramTest(unittest.TestCase):
@@ -117,7 +117,7 @@ class ProgramTest(unittest.TestCase):
 
     def controls(self):
         """Cases with the numbers that must count there. A number is what the program's schema says is one."""
-        numbers = {f"{table}.{key}" for table, schema in self.schema()["properties"].items() if table not in HYDRAULIC
+        numbers = {f"{table}.{key}" for table, schema in self.schema()["properties"].items() if table not in HELD_ELSEWHERE
                    for key, parameter in schema.get("properties", {}).items()
                    if parameter.get("type") in ("number", "integer", "array")} - STRUCTURE
         self.assertGreater(len(numbers), 40)
@@ -1236,6 +1236,8 @@ RATED = {"pressure.suction_bar": 5.0, "friction.piston_viscous_N_s_per_m": 20.0,
 LIGHT = {"pressure.delivery_bar": 0.0, "operation.speed_rpm": 3000.0}
 REAL = {**LIGHT, "piston.inertia": '"real"', "piston.centre_of_mass_mm": 19.0, "piston.transverse_inertia_kg_mm2": 24.0,
         "piston.axial_inertia_kg_mm2": 5.0, "piston.spin_rpm": 900.0}
+BESIDE_B = {**RATED, "piston.contact_mm": 41.5, "gear.flanks": '"two"', "friction.block_viscous_Nm_per_rpm": 0.0}
+COMPLIANT = {**RATED, "gear.contact": '"compliant"', "gear.stiffness_N_per_um": 200.0}
 CURVED = {"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'}
 
 # What does not make itself felt in the rated case; every other number of that case does.
@@ -1246,6 +1248,7 @@ CONTROLS = (
     (LIGHT, {*HIDDEN_BY_PRESSURE, "piston.mass_kg", "piston.joint_mass_fraction", "operation.speed_rpm"}),
     (REAL, {"piston.mass_kg", "piston.centre_of_mass_mm", "piston.transverse_inertia_kg_mm2", "piston.axial_inertia_kg_mm2",
             "piston.spin_rpm"}),
+    (BESIDE_B, {"piston.contact_mm", "gear.pitch_diameter_mm", "gear.pressure_angle_deg"}),
 )
 # Numbers that say how much is computed, not what of.
 STRUCTURE = {"pump.pistons", "operation.samples_per_revolution", "operation.revolutions", "pressure.points"}
@@ -1254,6 +1257,9 @@ WITHOUT_EFFECT = (
     (RATED, "shaft.axial_inertia_kg_mm2", 20000.0), (RATED, "block.axial_inertia_kg_mm2", 15000.0),
     (LIGHT, "shaft.axial_inertia_kg_mm2", 0.0), (LIGHT, "block.axial_inertia_kg_mm2", 0.0),
     (REAL, "piston.joint_mass_fraction", 0.7), (LIGHT, "piston.spin_rpm", 900.0),
+    # Compliant teeth act where the motion is not given; rigid ones have nothing of this.
+    *((base, f"gear.{key}", value) for base in (COMPLIANT, RATED)
+      for key, value in (("stiffness_N_per_um", 300.0), ("stiffness_exponent", 1.5), ("dissipation_s_per_m", 0.1), ("backlash_um", 20.0))),
 )
 
 

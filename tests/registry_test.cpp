@@ -175,13 +175,15 @@ TEST(Registry, ContinuousInputsKeepTheirOrder) {
 // No number of PumpParameters is left out: the struct has no other doubles than those listed.
 TEST(Registry, ListsEveryNumberOfAPump) {
   PumpParameters pump = reference_case("asymmetric_ports").pump;
+  pump.piston.contact.emplace();
+  pump.gear.compliance.emplace();
   std::set<const void*> places;
   for (const PumpInput& input : continuous_inputs(pump)) places.insert(input.value);
   constexpr std::size_t kNumbers =
-      (sizeof(Gear) + sizeof(Bearings) + sizeof(PistonMass::Real) + sizeof(Shaft) + sizeof(Block) +
-       sizeof(Friction) + sizeof(PortPlate)) /
+      (sizeof(ToothCompliance) + sizeof(Bearings) + sizeof(PistonMass::Real) + sizeof(Shaft) +
+       sizeof(Block) + sizeof(Friction) + sizeof(PortPlate)) /
           sizeof(double) +
-      6 + 2 + 1;  // Geometry without N, PistonMass's own, gravity
+      6 + 2 + 3 + 1;  // Geometry without N, Gear's and PistonMass's own, gravity
   EXPECT_EQ(places.size(), kNumbers);
 }
 

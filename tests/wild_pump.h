@@ -26,6 +26,7 @@ inline void scale_pump(PumpParameters& p, double factor) {
         &g.bore_diameter, &p.gear.pitch_diameter, &p.bearings.tapered_z, &p.bearings.cylindrical_z,
         &p.shaft.centre_of_mass_z, &p.block.centre_of_mass_z, &p.block.pin_z})
     *length *= f;
+  if (p.piston.contact) *p.piston.contact *= f;
   for (double* mass : {&p.piston.mass, &p.shaft.mass, &p.block.mass}) *mass *= f3;
   for (double* inertia : {&p.shaft.axial_inertia, &p.block.axial_inertia}) *inertia *= f3 * f2;
   if (p.piston.real) {
@@ -46,6 +47,11 @@ inline void scale_pump(PumpParameters& p, double factor) {
   p.gravity /= f;
 }
 
+/// How a block moves past the shaft, on top of its motion.
+struct Lead {
+  double angle = 0, speed = 0, acceleration = 0, shaft_acceleration = 0;  ///< rad, rad/s, rad/s2
+};
+
 class RandomCase {
  public:
   explicit RandomCase(unsigned seed) : random_(seed) {}
@@ -54,9 +60,24 @@ class RandomCase {
   struct Drawn {
     Case the_case;
     double theta_deg = 0;
+    Lead lead;
   };
 
   Drawn tame() { return finish(random_.pump()); }
+
+  /// That with a block that moves on its own, any flank, and bore forces anywhere on the pistons.
+  Drawn freed(Drawn drawn) {
+    PumpParameters& p = drawn.the_case.pump;
+    if (random_.in(0, 1) < 0.5) p.gear.flanks = Flanks::two;
+    if (random_.in(0, 1) < 0.5) p.piston.contact = power(-0.5, 0.2) * p.geometry.piston_length;
+    Lead& lead = drawn.lead;
+    lead = {random_.in(-0.1, 0.1), random_.in(-300, 300), random_.in(-9000, 9000),
+            random_.in(-9000, 9000)};
+    if (random_.in(0, 1) < 0.2) lead.angle *= power(-12, 0);
+    if (random_.in(0, 1) < 0.2) lead.speed = lead.acceleration = 0;
+    while (!assembled(drawn)) lead.angle /= 2;
+    return drawn;
+  }
 
   Drawn wild() {
     PumpParameters p = random_.pump();
@@ -92,6 +113,18 @@ class RandomCase {
   }
 
  private:
+  // Whether joints and bores are no further apart than without the lead, but for little.
+  static bool assembled(const Drawn& drawn) {
+    const Geometry& g = drawn.the_case.pump.geometry;
+    const double slack = g.piston_length - assembly_margin(g).longest_distance;
+    for (int k = 0; k < g.pistons; ++k) {
+      const double angle = radians(drawn.theta_deg) - 2 * kPi * k / g.pistons;
+      if (joint_distance(g, angle, angle + drawn.lead.angle) > g.piston_length - slack / 2)
+        return false;
+    }
+    return true;
+  }
+
   // 10^x, x uniform.
   double power(double low, double high) { return std::pow(10.0, random_.in(low, high)); }
 
@@ -119,6 +152,8 @@ inline Case shrink(Case the_case, const std::function<bool(const Case&)>& fails)
   using Step = std::function<void(Case&)>;
   std::vector<Step> steps = {
       [](Case& c) { c.pump.port_plate.reset(); },
+      [](Case& c) { c.pump.piston.contact.reset(); },
+      [](Case& c) { c.pump.gear.flanks = Flanks::one; },
       [](Case& c) { c.pump.friction = {0, 0, 0.01, 0, 0, 1}; },
       [](Case& c) { c.analytic.piston_friction = c.multibody.piston_friction = false; },
       [](Case& c) { c.pump.gravity = 0; },

@@ -89,6 +89,23 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
                                                      residual);
   put(Cause::inertia, ~residual * shaft_turns.speeds, ~residual * block_turns.speeds);
 
+  if (!pump.contact_at_b()) {
+    // The bores' forces, on piston and block: what moves one past the other is the play.
+    forces.resize(pump.matter().getNumBodies());
+    forces = SpatialVec(Vec3(0), Vec3(0));
+    for (std::size_t k = 0; k < bodies.pistons.size(); ++k) {
+      const Reactions::OnPiston& on = reactions.pistons[k];
+      const Vec3 contact = on.place.p() + pump.contact_length() * Vec3(on.place.z());
+      const auto push = [&](const SimTK::MobilizedBody& body, const Vec3& force) {
+        forces[body.getMobilizedBodyIndex()] +=
+            SpatialVec((contact - body.getBodyOriginLocation(state)) % force, force);
+      };
+      push(bodies.pistons[k], on.bore);
+      push(bodies.block, -on.bore);
+    }
+    put_forces(Cause::ring);
+  }
+
   budget.drive_torque = reactions.drive / pump.pump().friction.shaft_torque_factor;
   budget.drive_of(Cause::torque_factor) =
       (1 - pump.pump().friction.shaft_torque_factor) * budget.drive_torque;

@@ -12,7 +12,8 @@ namespace bentaxis::analytic {
 
 /// For a given motion every reaction is linear in the loads. So each cause's part of Td and of the
 /// torque on the block is what (31)-(33), (38), (43) and (57) give where that load acts alone: no
-/// part is found as what others leave over.
+/// part is found as what others leave over. Where the bore forces do not act at B their work on the
+/// play is a cause of its own, of every load's share less it.
 class BudgetModel {
  public:
   /// @throws InputError as Model does
@@ -20,6 +21,9 @@ class BudgetModel {
   ~BudgetModel();
   BudgetModel(BudgetModel&&) noexcept;
   BudgetModel& operator=(BudgetModel&&) noexcept;
+
+  /// Whether the bore forces do work, so that Cause::ring is not 0.
+  bool has_ring() const;
 
   /// @throws InputError as Model::reactions() does
   Budget evaluate(const Instant& instant);

@@ -50,14 +50,17 @@ class Model {
   void evaluate(const Instant& instant, std::vector<double>& values,
                 MotionChecks* checks = nullptr) const;
 
-  /// What would change if the other tooth flank carried where the model's separating force pulls
-  /// the gears together: the part of the tooth force that pushes the gears apart is turned round.
+  /// By how much reactions with two flanks differ from those with one line of action, as printed,
+  /// where that one's separating part would pull the gears together; 0 where it pushes them apart.
   struct FlankChange {
     double pin = 0;          ///< |change of Rcn|, N
+    double film = 0;         ///< |change of Fh|, N
     double tapered = 0;      ///< |change of Rb1|, N
     double cylindrical = 0;  ///< |change of Rb2|, N
   };
-  FlankChange other_flank(double tooth_force) const;
+  /// @param tooth_force  Rcs
+  /// @param speed        of the shaft: its sign turns the line of action (22)
+  FlankChange flank_change(double tooth_force, double speed) const;
 
   /// Power of the sources of friction at an instant, W; positive feeds energy in.
   struct FrictionPower {

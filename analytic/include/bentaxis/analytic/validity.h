@@ -24,8 +24,9 @@ struct ValidityLimit {
 };
 
 /// Checks a table of results (of either model) against the limits of what was modelled: tooth force
-/// on one flank, film force that only pushes, its point within the port plate, thrust of the
-/// tapered bearing, friction that only takes energy.
+/// on the driving flank, and how far two flanks differ from the one that the paper prints, film
+/// force that only pushes, its point within the port plate, thrust of the tapered bearing, friction
+/// that only takes energy, bore forces that do no work.
 std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumptions& assumptions,
                                           const Samples& samples, const ResultTable& table);
 

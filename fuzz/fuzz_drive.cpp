@@ -2,6 +2,6 @@
 #include "readers.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  bentaxis::fuzz::read_as_motion(data, size);
+  bentaxis::fuzz::read_as_drive(data, size);
   return 0;
 }
