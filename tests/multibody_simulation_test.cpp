@@ -188,6 +188,30 @@ TEST(SimulatedMotion, AtConstantSpeedItIsTheDrivenModel) {
   }
 }
 
+// A row reports the law and not the branch a step was taken on: at its dead centre a piston is at
+// rest, and dry friction that jumps has no force there.
+TEST(SimulatedMotion, APistonAtADeadCentreHasNoDryFriction) {
+  Case the_case = stored_case("rattle", 80);  // row 40 is half a turn
+  the_case.pump.gear.contact = ToothContact::rigid;
+  the_case.pump.friction.regularization = 0;
+  the_case.pump.geometry.axis_offset = 0;  // a dead centre there, to the last digit
+  const Trajectory run = simulate(the_case, 1e-8);
+  multibody::Model model(the_case.pump, the_case.multibody, 1);
+  const PressureTrace pressure(the_case.pressure);
+  std::vector<double> v(model.layout().size());
+  const ResultTable& table = run.table.results;
+  for (const std::size_t row : {0U, 40U}) {
+    Instant i;
+    i.turn(radians(run.table.state(row, 1)), rad_per_second(1500));
+    i.ports = the_case.pressure.ports;
+    for (int k = 1; k <= 5; ++k)
+      i.chamber_pressure.push_back(pressure(piston_angle_deg(run.table.state(row, 1), k, 5)));
+    i.turn(row == 0 ? 0 : kPi, rad_per_second(1500));
+    model.evaluate(i, v);
+    EXPECT_NEAR(table.at(row, table.find("Rs_1_z2_N")), v[model.layout().Rs(0, 2)], 1e-2) << row;
+  }
+}
+
 // The shaft follows a curve of speed by its own integral; the block follows within the backlash.
 TEST(SimulatedMotion, SpeedOverTimeIsFollowedFromRest) {
   Case the_case = stored_case("rattle", 20);

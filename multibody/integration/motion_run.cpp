@@ -10,6 +10,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/worst.h"
+#include "loads/friction.h"
 #include "reactions/channels.h"
 #include "reactions/motion_checks.h"
 #include "reactions/solver_guard.h"
@@ -71,7 +72,8 @@ MotionRun::MotionRun(const Case& the_case, const Assumptions& assumptions,
       curve_(spec_.curve.time.empty() ? std::nullopt : std::optional<TimeSignal>(spec_.curve)),
       system_(the_case.pump, assumptions, drive_in_time()),
       stepper_(system_.system(), options, most_steps),
-      edges_(pressure_edges(pressure, the_case.pump.geometry.pistons)) {
+      edges_(pressure_edges(pressure, the_case.pump.geometry.pistons)),
+      accuracy_(options.accuracy) {
   if (!has_equation_of_motion(the_case.pump, assumptions.inertia))
     throw ComputationError(
         "multibody model: a piston without inertia about its joint A (mass 0, or all of it at A) "
@@ -342,7 +344,15 @@ void MotionRun::read(double time, Trajectory& trajectory) {
   State& state = system_.dynamics();
   state.setTime(stepper_.time());
   state.updY() = stepper_.state().getY();
+  // A row is no step: what it reports follows the law, by which a piston that is slower than the
+  // integration resolves is at rest.
+  std::vector<double> held;
+  held.swap(system_.inputs().held_direction);
+  system_.inputs().rest_speed = std::max(kRestShare, accuracy_) *
+                                std::abs(shaft_speed(stepper_.state())) *
+                                case_.pump.geometry.joint_circle_radius;
   realize_with_flank(system_, state);
+  held.swap(system_.inputs().held_direction);
   const double theta = shaft_angle(state) / kRadPerDegree;
   if (!std::isfinite(theta + shaft_speed(state) + block_speed(state)))
     throw ComputationError("the state is no longer made of numbers");

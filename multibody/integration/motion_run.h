@@ -66,6 +66,7 @@ class MotionRun {
   // Block angles in [0, 360) at which a chamber's pressure has an edge, and the present segment
   // between two of them, degrees that do not wrap.
   std::vector<double> edges_;
+  double accuracy_;
   long segment_ = 0;
   double low_ = 0, high_ = 0;
   // Contact.
