@@ -180,8 +180,8 @@ TEST(Registry, ListsEveryNumberOfAPump) {
   std::set<const void*> places;
   for (const PumpInput& input : continuous_inputs(pump)) places.insert(input.value);
   constexpr std::size_t kNumbers =
-      (sizeof(ToothCompliance) + sizeof(Bearings) + sizeof(PistonMass::Real) + sizeof(Shaft) + sizeof(Block) +
-       sizeof(Friction) + sizeof(PortPlate)) /
+      (sizeof(ToothCompliance) + sizeof(Bearings) + sizeof(PistonMass::Real) + sizeof(Shaft) +
+       sizeof(Block) + sizeof(Friction) + sizeof(PortPlate)) /
           sizeof(double) +
       6 + 2 + 3 + 1;  // Geometry without N, Gear's and PistonMass's own, gravity
   EXPECT_EQ(places.size(), kNumbers);
