@@ -34,8 +34,8 @@ Fluid::Fluid(const HydraulicData& data)
       reference_density_(data.density * (1 - data.air_share)),
       saturation_(data.saturation_pressure),
       vapour_(data.vapour_pressure),
-      boils_(data.cavitation == Cavitation::equilibrium && data.vapour_pressure > 0),
-      dissolves_(data.cavitation == Cavitation::equilibrium && data.dissolved_air > 0) {
+      boils_(data.cavitation != Cavitation::ignored && data.vapour_pressure > 0),
+      dissolves_(data.cavitation != Cavitation::ignored && data.dissolved_air > 0) {
   const double vapour = boils_ ? vapour_ : 0;
   const double air_at_saturation = saturation_ + atmosphere_ - vapour;
   if (boils_) {
@@ -66,8 +66,7 @@ Fluid::Smooth Fluid::under_saturation(const Smooth& q) const {
   return {w.value, -w.first * q.first, w.second * q.first * q.first - w.first * q.second};
 }
 
-Fluid::Volumes Fluid::volumes(double s, double pressure) const {
-  Volumes v;
+void Fluid::add_oil_and_air(double pressure, const Smooth& q, Volumes& v) const {
   const double over = pressure - atmosphere_;
   const double modulus = bulk_modulus_ + modulus_slope_ * over;
   const double strain = pressure / modulus;
@@ -76,11 +75,16 @@ Fluid::Volumes Fluid::volumes(double s, double pressure) const {
                                         : std::pow(modulus / bulk_modulus_, -1 / modulus_slope_));
   v.oil.first = v.oil.value * strain;
   v.oil.second = v.oil.value * strain * (strain * (1 + modulus_slope_) - 1);
-  const Smooth q = air_pressure(s);
   v.air.value = air_share_ * std::exp(-q.value * inverse_exponent_);
   v.air.first = v.air.value * inverse_exponent_ * q.first;
   v.air.second =
       v.air.value * inverse_exponent_ * (inverse_exponent_ * q.first * q.first - q.second);
+}
+
+Fluid::Volumes Fluid::volumes(double s, double pressure) const {
+  Volumes v;
+  const Smooth q = air_pressure(s);
+  add_oil_and_air(pressure, q, v);
   if (dissolves_) {
     const Smooth w = under_saturation(q);
     const double grown = std::exp(w.value);
@@ -91,10 +95,9 @@ Fluid::Volumes Fluid::volumes(double s, double pressure) const {
   return v;
 }
 
-Fluid::State Fluid::state(double s) const {
+Fluid::State Fluid::state_of(const Volumes& v, double pressure) const {
   State result;
-  result.pressure = atmosphere_ * std::exp(s);
-  const Volumes v = volumes(s, result.pressure);
+  result.pressure = pressure;
   const double volume = v.oil.value + v.air.value + v.released.value;
   const double slope = v.oil.first + v.air.first + v.released.first;  // -dv/ds
   const double curvature = v.oil.second + v.air.second + v.released.second;
@@ -102,6 +105,39 @@ Fluid::State Fluid::state(double s) const {
   result.stiffness = volume / slope;
   result.d_stiffness = volume * curvature / (slope * slope) - 1;
   return result;
+}
+
+Fluid::State Fluid::state(double s) const {
+  const double pressure = atmosphere_ * std::exp(s);
+  return state_of(volumes(s, pressure), pressure);
+}
+
+Fluid::Mixture Fluid::mixture(double s, double air_out) const {
+  const double pressure = atmosphere_ * std::exp(s);
+  const Smooth q = air_pressure(s);
+  Volumes v;
+  add_oil_and_air(pressure, q, v);
+  const double all = released_scale_ * std::exp(log_saturation_ - q.value);  // of all the air, out
+  v.released.value = all * air_out;
+  v.released.first = v.released.value * q.first;
+  v.released.second = v.released.value * (q.first * q.first - q.second);
+  Mixture result;
+  static_cast<State&>(result) = state_of(v, pressure);
+  result.swelling = all / (v.oil.value + v.air.value + v.released.value);
+  result.d_swelling = result.swelling * (1 / result.stiffness - q.first);
+  result.swelling_by_air = -result.swelling * result.swelling;
+  result.stiffness_by_air = result.stiffness * result.swelling * (1 - result.stiffness * q.first);
+  return result;
+}
+
+Fluid::AirOut Fluid::equilibrium(double s) const {
+  if (!dissolves_) return {};
+  // As much as gives the volume of the law in equilibrium, rounding included.
+  const Smooth q = air_pressure(s);
+  const Smooth w = under_saturation(q);
+  const double pressed = std::exp(q.value - log_saturation_);
+  return {std::expm1(w.value) * pressed,
+          (std::exp(w.value) * w.first + std::expm1(w.value) * q.first) * pressed};
 }
 
 double Fluid::log_pressure(double gauge) const { return std::log1p(gauge / atmosphere_); }

@@ -18,6 +18,9 @@ namespace bentaxis::hydraulics {
 /// (P - Pv)/(Ps - Pv) of its air, in equilibrium at each pressure; what has come out is as warm as
 /// the oil. The masses of air and vapour are neglected. Cavitation::ignored is y = Pv = 0.
 ///
+/// With Cavitation::rate the share phi of the dissolved air that is out is a state of its own: the
+/// last term is (1 - x) y phi P0/(P - Pv), which is the same at phi in equilibrium.
+///
 /// All functions are of s = ln(P/P0), P absolute: any finite s is a pressure above absolute zero,
 /// and at low pressure the air makes the mixture so soft that s stays finite. Two kinks are rounded
 /// by w(t) = b ln(1 + exp(t/b)) in place of max(t, 0), all derivatives continuous: Henry's at
@@ -36,6 +39,20 @@ class Fluid {
     double d_stiffness = 0;  ///< its derivative with respect to s
   };
   State state(double s) const;
+
+  /// The same with the share of the dissolved air that is out given. Air being out
+  /// makes the mixture larger: d ln(density) = ds/stiffness - swelling d(air out).
+  struct Mixture : State {
+    double swelling = 0, d_swelling = 0;  ///< and its derivative with respect to s
+    double stiffness_by_air = 0;          ///< d(stiffness)/d(air out)
+    double swelling_by_air = 0;
+  };
+  Mixture mixture(double s, double air_out) const;
+  /// The share of the dissolved air that is out in equilibrium, and its derivative: 0 to nearly 1.
+  struct AirOut {
+    double value = 0, slope = 0;
+  };
+  AirOut equilibrium(double s) const;
 
   /// s of a gauge pressure, Pa. Needs gauge > -atmosphere.
   double log_pressure(double gauge) const;
@@ -70,6 +87,8 @@ class Fluid {
     Smooth oil, air, released;  // first: -dv/ds
   };
   Volumes volumes(double s, double pressure) const;
+  void add_oil_and_air(double pressure, const Smooth& q, Volumes& v) const;
+  State state_of(const Volumes& v, double pressure) const;
 
   double atmosphere_, bulk_modulus_, modulus_slope_, air_share_, inverse_exponent_,
       reference_density_;

@@ -57,6 +57,9 @@ std::vector<Channel> turn_channels(const Network& network) {
   if (network.has_delivery_line())
     all.push_back(channel("p_load_bar", "pressure at the end of the delivery line, gauge", "bar",
                           kPascalPerBar, 0));
+  if (network.air_at() > 0)
+    all.push_back(channel("air_1_percent", "share of the dissolved air that is out in chamber 1",
+                          "%", 0.01, 1));
   return all;
 }
 
@@ -151,6 +154,7 @@ void TurnRecord::add_row(const Integrator::Step& step) {
   for (const double m : mass) *to++ = m;
   if (network_.has_suction_line()) *to++ = network_.suction_gauge(y);
   if (network_.has_delivery_line()) *to++ = network_.load_gauge(y);
+  if (network_.air_at() > 0) *to++ = network_.air_out(y, k);
 }
 
 void TurnRecord::see(const Integrator::Step& step) {
