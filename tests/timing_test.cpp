@@ -190,9 +190,7 @@ TEST(Timing, TrappedOilFollowsTheLawOfTheOil) {
 
 // What docs/hydraulics.md says that the plate was chosen by.
 TEST(TimedPlate, MeetsItsCriteria) {
-  const struct {
-    double rpm, bar;
-  } points[] = {{1500, 275}, {1600, 350}, {2350, 0}};
+  const struct { double rpm, bar; } points[] = {{1500, 275}, {1600, 350}, {2350, 0}};
   for (const auto& [rpm, bar] : points) {
     Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" /
                               "bap63_rated_timed_plate.toml");
