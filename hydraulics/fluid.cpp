@@ -43,8 +43,8 @@ Fluid::Fluid(const HydraulicData& data)
       reference_density_(data.density * (1 - data.air_share)),
       saturation_(data.saturation_pressure),
       vapour_(data.vapour_pressure),
-      boils_(data.cavitation == Cavitation::equilibrium && data.vapour_pressure > 0),
-      dissolves_(data.cavitation == Cavitation::equilibrium && data.dissolved_air > 0) {
+      boils_(data.cavitation != Cavitation::ignored && data.vapour_pressure > 0),
+      dissolves_(data.cavitation != Cavitation::ignored && data.dissolved_air > 0) {
   const double vapour = boils_ ? vapour_ : 0;
   const double air_at_saturation = saturation_ + atmosphere_ - vapour;
   if (boils_) {
@@ -76,8 +76,7 @@ Fluid::Smooth Fluid::under_saturation(const Smooth& q) const {
   return {w.value, -w.first * q.first, w.second * q.first * q.first - w.first * q.second};
 }
 
-Fluid::Volumes Fluid::volumes(double s, double pressure) const {
-  Volumes v;
+void Fluid::add_oil_and_air(double pressure, const Smooth& q, Volumes& v) const {
   const double over = pressure - atmosphere_;
   const double modulus = bulk_modulus_ + modulus_slope_ * over;
   const double strain = pressure / modulus;
@@ -86,11 +85,16 @@ Fluid::Volumes Fluid::volumes(double s, double pressure) const {
                                         : std::pow(modulus / bulk_modulus_, -1 / modulus_slope_));
   v.oil.first = v.oil.value * strain;
   v.oil.second = v.oil.value * strain * (strain * (1 + modulus_slope_) - 1);
-  const Smooth q = air_pressure(s);
   v.air.value = air_share_ * std::exp(-q.value * inverse_exponent_);
   v.air.first = v.air.value * inverse_exponent_ * q.first;
   v.air.second =
       v.air.value * inverse_exponent_ * (inverse_exponent_ * q.first * q.first - q.second);
+}
+
+Fluid::Volumes Fluid::volumes(double s, double pressure) const {
+  Volumes v;
+  const Smooth q = air_pressure(s);
+  add_oil_and_air(pressure, q, v);
   if (dissolves_) {
     const Smooth w = under_saturation(q);
     const double grown = std::exp(w.value);
@@ -101,10 +105,9 @@ Fluid::Volumes Fluid::volumes(double s, double pressure) const {
   return v;
 }
 
-Fluid::State Fluid::state(double s) const {
+Fluid::State Fluid::state_of(const Volumes& v, double pressure) const {
   State result;
-  result.pressure = atmosphere_ * std::exp(s);
-  const Volumes v = volumes(s, result.pressure);
+  result.pressure = pressure;
   const double volume = v.oil.value + v.air.value + v.released.value;
   const double slope = v.oil.first + v.air.first + v.released.first;  // -dv/ds
   const double curvature = v.oil.second + v.air.second + v.released.second;
@@ -112,6 +115,39 @@ Fluid::State Fluid::state(double s) const {
   result.stiffness = volume / slope;
   result.d_stiffness = volume * curvature / (slope * slope) - 1;
   return result;
+}
+
+Fluid::State Fluid::state(double s) const {
+  const double pressure = atmosphere_ * std::exp(s);
+  return state_of(volumes(s, pressure), pressure);
+}
+
+Fluid::Mixture Fluid::mixture(double s, double air_out) const {
+  const double pressure = atmosphere_ * std::exp(s);
+  const Smooth q = air_pressure(s);
+  Volumes v;
+  add_oil_and_air(pressure, q, v);
+  const double all = all_released(q);
+  v.released.value = all * air_out;
+  v.released.first = v.released.value * q.first;
+  v.released.second = v.released.value * (q.first * q.first - q.second);
+  Mixture result;
+  static_cast<State&>(result) = state_of(v, pressure);
+  result.swelling = all / (v.oil.value + v.air.value + v.released.value);
+  result.d_swelling = result.swelling * (1 / result.stiffness - q.first);
+  result.swelling_by_air = -result.swelling * result.swelling;
+  result.stiffness_by_air = result.stiffness * result.swelling * (1 - result.stiffness * q.first);
+  return result;
+}
+
+Fluid::AirOut Fluid::equilibrium(double s) const {
+  if (!dissolves_) return {};
+  // As much as gives the volume of the law in equilibrium, rounding included.
+  const Smooth q = air_pressure(s);
+  const Smooth w = under_saturation(q);
+  const double pressed = std::exp(q.value - log_saturation_);
+  return {std::expm1(w.value) * pressed,
+          (std::exp(w.value) * w.first + std::expm1(w.value) * q.first) * pressed};
 }
 
 double Fluid::log_pressure(double gauge) const { return std::log1p(gauge / atmosphere_); }
@@ -132,13 +168,23 @@ double Fluid::oil_potential(double pressure) const {
   return oil / modulus_slope_ * (power == 0 ? grown : std::expm1(power * grown) / power);
 }
 
-double Fluid::bubbles_between(double from, double to) const {
-  const auto integrand = [&](double s) {
+Fluid::Bubbles Fluid::bubbles_between(double from, double to) const {
+  using Rule = boost::math::quadrature::gauss<double, 7>;
+  Bubbles sum;
+  const double middle = (from + to) / 2, half = (to - from) / 2;
+  const auto add = [&](double s, double weight) {
     const double pressure = atmosphere_ * std::exp(s);
     const Volumes v = volumes(s, pressure);
-    return pressure * (v.air.value + v.released.value);
+    sum.air += weight * pressure * v.air.value;
+    sum.released += weight * pressure * v.released.value;
+    sum.all += weight * pressure * all_released(air_pressure(s));
   };
-  return boost::math::quadrature::gauss<double, 7>::integrate(integrand, from, to);
+  for (std::size_t i = 0; i < Rule::abscissa().size(); ++i) {
+    const double off = half * Rule::abscissa()[i], weight = half * Rule::weights()[i];
+    add(middle + off, weight);
+    if (off != 0) add(middle - off, weight);
+  }
+  return sum;
 }
 
 void Fluid::sum_up_bubbles() {
@@ -150,25 +196,45 @@ void Fluid::sum_up_bubbles() {
     s = s < 0 && next > 0 ? 0 : next;  // atmospheric pressure, where the potential is exactly 0
   }
   sums_.resize(places_.size());
+  const auto add = [](Bubbles& to, const Bubbles& more, double sign) {
+    to.air += sign * more.air;
+    to.released += sign * more.released;
+    to.all += sign * more.all;
+  };
   // Downwards: the last stretches above vapour pressure are the largest by far.
-  for (std::size_t i = places_.size() - 1; i > 0; --i)
-    sums_[i - 1] = sums_[i] - bubbles_between(places_[i - 1], places_[i]);
-  const double at_atmosphere = bubble_potential(0);
-  for (double& sum : sums_) sum -= at_atmosphere;
+  for (std::size_t i = places_.size() - 1; i > 0; --i) {
+    sums_[i - 1] = sums_[i];
+    add(sums_[i - 1], bubbles_between(places_[i - 1], places_[i]), -1);
+  }
+  const Bubbles at_atmosphere = bubble_potential(0);
+  for (Bubbles& sum : sums_) add(sum, at_atmosphere, -1);
 }
 
-double Fluid::bubble_potential(double s) const {
+Fluid::Bubbles Fluid::bubble_potential(double s) const {
   if (places_.empty()) {  // entrained air alone
     const double power = 1 - inverse_exponent_;
-    return air_share_ * atmosphere_ * (power == 0 ? s : std::expm1(power * s) / power);
+    return {air_share_ * atmosphere_ * (power == 0 ? s : std::expm1(power * s) / power), 0, 0};
   }
   const auto after = std::upper_bound(places_.begin() + 1, places_.end() - 1, s);
   const auto i = static_cast<std::size_t>(after - places_.begin()) - 1;
-  return sums_[i] + bubbles_between(places_[i], s);
+  const Bubbles more = bubbles_between(places_[i], s);
+  return {sums_[i].air + more.air, sums_[i].released + more.released, sums_[i].all + more.all};
 }
 
 double Fluid::potential(double s) const {
-  return (oil_potential(atmosphere_ * std::exp(s)) + bubble_potential(s)) / reference_density_;
+  const Bubbles bubbles = bubble_potential(s);
+  return (oil_potential(atmosphere_ * std::exp(s)) + bubbles.air + bubbles.released) /
+         reference_density_;
+}
+
+double Fluid::potential(double s, double air_out) const {
+  const Bubbles bubbles = bubble_potential(s);
+  return (oil_potential(atmosphere_ * std::exp(s)) + bubbles.air + air_out * bubbles.all) /
+         reference_density_;
+}
+
+double Fluid::potential_by_air(double s) const {
+  return bubble_potential(s).all / reference_density_;
 }
 
 double Fluid::released_air(double s) const {

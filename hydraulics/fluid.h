@@ -1,6 +1,7 @@
 // Oil with entrained air, dissolved air and vapour.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "bentaxis/pump/hydraulic_data.h"
@@ -19,6 +20,9 @@ namespace bentaxis::hydraulics {
 /// saturated vapour of pressure Pv, so that the air's own is P - Pv. Henry: the oil keeps the share
 /// (P - Pv)/(Ps - Pv) of its air, in equilibrium at each pressure; what has come out is as warm as
 /// the oil. The masses of air and vapour are neglected. Cavitation::ignored is y = Pv = 0.
+///
+/// With Cavitation::rate the share phi of the dissolved air that is out is a state of its own: the
+/// last term is (1 - x) y phi P0/(P - Pv), which is the same at phi in equilibrium.
 ///
 /// All functions are of s = ln(P/P0), P absolute: any finite s is a pressure above absolute zero,
 /// and at low pressure the air makes the mixture so soft that s stays finite. Two kinks are rounded
@@ -39,6 +43,20 @@ class Fluid {
   };
   State state(double s) const;
 
+  /// The same with the share of the dissolved air that is out given. Air being out
+  /// makes the mixture larger: d ln(density) = ds/stiffness - swelling d(air out).
+  struct Mixture : State {
+    double swelling = 0, d_swelling = 0;  ///< and its derivative with respect to s
+    double stiffness_by_air = 0;          ///< d(stiffness)/d(air out)
+    double swelling_by_air = 0;
+  };
+  Mixture mixture(double s, double air_out) const;
+  /// The share of the dissolved air that is out in equilibrium, and its derivative: 0 to nearly 1.
+  struct AirOut {
+    double value = 0, slope = 0;
+  };
+  AirOut equilibrium(double s) const;
+
   /// s of a gauge pressure, Pa. Needs gauge > -atmosphere.
   double log_pressure(double gauge) const;
   /// Gauge pressure of s, Pa.
@@ -50,6 +68,9 @@ class Fluid {
   /// Pressure potential, J/kg: the integral of dP/density from atmospheric pressure. A mass flow m
   /// carries m x potential, and what it loses between two pressures is m x their difference.
   double potential(double s) const;
+  /// The same with the share of the dissolved air that is out given, and what it grows by with it.
+  double potential(double s, double air_out) const;
+  double potential_by_air(double s) const;
 
   double atmosphere() const { return atmosphere_; }
 
@@ -75,12 +96,23 @@ class Fluid {
     Smooth oil, air, released;  // first: -dv/ds
   };
   Volumes volumes(double s, double pressure) const;
+  // Volume of all of the dissolved air, out.
+  double all_released(const Smooth& q) const {
+    return dissolves_ ? released_scale_ * std::exp(log_saturation_ - q.value) : 0;
+  }
+  void add_oil_and_air(double pressure, const Smooth& q, Volumes& v) const;
+  State state_of(const Volumes& v, double pressure) const;
   double oil_potential(double pressure) const;  // integral of the oil's own v dP
   // The same of the bubbles where no closed form is: sums up to places in s between which few
   // points are enough.
+  struct Bubbles {
+    double air = 0;       // entrained
+    double released = 0;  // in equilibrium
+    double all = 0;       // all of the dissolved air, out
+  };
   void sum_up_bubbles();
-  double bubble_potential(double s) const;
-  double bubbles_between(double from, double to) const;
+  Bubbles bubble_potential(double s) const;
+  Bubbles bubbles_between(double from, double to) const;
 
   double atmosphere_, bulk_modulus_, modulus_slope_, air_share_, inverse_exponent_,
       reference_density_;
@@ -89,7 +121,8 @@ class Fluid {
   double log_vapour_ = 0, vapour_over_air_ = 0;  // ln(Pv/P0), ln(Pv/(P0 - Pv))
   double log_saturation_ = 0;                    // ln((Ps - Pv)/(P0 - Pv))
   double released_scale_ = 0;                    // (1 - x) y P0/(Ps - Pv)
-  std::vector<double> places_, sums_;            // of the bubbles' potential; rising in s
+  std::vector<double> places_;                   // in s, rising
+  std::vector<Bubbles> sums_;                    // of the bubbles' potential there
 };
 
 }  // namespace bentaxis::hydraulics

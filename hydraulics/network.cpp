@@ -79,7 +79,10 @@ Network::Network(const Case& the_case)
       fixed_potential_(fluid_.potential(delivery_s_)),
       load_(load_of(the_case), orifice_, fluid_, suction_state_.density * load_of(the_case).flow),
       fixed_(fixed_end_ && !the_case.hydraulics->delivery_line),
-      sought_(!fixed_end_ && load_.sought()) {
+      sought_(!fixed_end_ && load_.sought()),
+      release_time_(the_case.hydraulics->release_time),
+      dissolution_time_(the_case.hydraulics->dissolution_time),
+      case_s_(fluid_.log_pressure(the_case.hydraulics->case_pressure)) {
   const Geometry& g = the_case.pump.geometry;
   const double area = kPi / 4 * g.bore_diameter * g.bore_diameter;
   if (chamber_.swept() <= kNoStroke * area * g.piston_length)
@@ -114,6 +117,10 @@ Network::Network(const Case& the_case)
     pipe_at_ = states_;
     states_ += pipe_->size();
   }
+  if (data.cavitation == Cavitation::rate && data.dissolved_air > 0) {
+    air_at_ = states_;
+    states_ += n_;
+  }
   // All chambers meet an edge at the same angle within the period.
   for (const auto* port : {&delivery_, &suction_})
     for (const double edge : port->edges_deg()) {
@@ -142,6 +149,7 @@ std::vector<double> Network::uniform(double chambers, double delivery, double ma
     y[suction_at_ + 1] = mass_flow / ideal_mass_flow();
   }
   if (pipe_) pipe_->uniform(fluid_.state(delivery).pressure, mass_flow, y.data() + pipe_at_);
+  if (air_at_ > 0) std::fill(y.begin() + air_at_, y.end(), fluid_.equilibrium(chambers).value);
   return y;
 }
 
@@ -157,21 +165,84 @@ double Network::to_load(const double* y, const Fluid::State& line, double load_s
   return load_.flow(pipe_->end_side(modes), load_size).value;
 }
 
+Network::Sources Network::sources(const double* y) const {
+  if (air_at_ == 0) return {};
+  return {fluid_.equilibrium(suction_line_ ? y[suction_at_] : suction_s_),
+          fluid_.equilibrium(fixed_ ? delivery_s_ : y[n_]), fluid_.equilibrium(case_s_)};
+}
+
+Network::ChamberFlows Network::chamber_flows(double angle_deg, double volume,
+                                             const Fluid::Mixture& at, const Fluid::State& source,
+                                             const Fluid::State& line) const {
+  ChamberFlows flows{orifice_.flow(suction_.area(angle_deg), source, at),
+                     orifice_.flow(delivery_.area(angle_deg), at, line), leakage_.flow(at, volume)};
+  if (at.swelling != 0) {
+    // All depend on the sum of both densities, by its root or in proportion.
+    const double thinner = -at.density * at.swelling;
+    flows.in_by_air = flows.in.value * thinner / (2 * (at.density + source.density));
+    flows.out_by_air = flows.out.value * thinner / (2 * (at.density + line.density));
+    flows.lost_by_air = flows.lost.value * thinner / (at.density + fluid_.state(case_s_).density);
+  }
+  return flows;
+}
+
+Network::AirRate Network::release(double s, double air_out) const {
+  const Fluid::AirOut wanted = fluid_.equilibrium(s);
+  const double time = air_out < wanted.value ? release_time_ : dissolution_time_;
+  return {(wanted.value - air_out) / time, wanted.slope / time, -1 / time};
+}
+
+Network::AirRate Network::air_rate(double s, double air_out, const Fluid::Mixture& at,
+                                   double volume, const ChamberFlows& flows,
+                                   const Sources& from) const {
+  const double per_mass = 1 / (at.density * volume);
+  AirRate rate = release(s, air_out);
+  double brought = 0, by_air = 0, by_pressure = 0;
+  // Oil that comes in brings its own air: `sign` x flow > 0.
+  const auto bring = [&](const MassFlow& flow, double sign, double by_own, double flow_by_air,
+                         double by_source, const Fluid::AirOut& source, double* with_source) {
+    const double in = sign * flow.value;
+    if (!(in > 0)) return;
+    const double more = source.value - air_out;
+    brought += in * more;
+    by_pressure += sign * by_own * more;
+    by_air += sign * flow_by_air * more - in;
+    if (with_source != nullptr)
+      *with_source = per_mass * (sign * by_source * more + in * source.slope);
+  };
+  bring(flows.in, 1, flows.in.by_second, flows.in_by_air, flows.in.by_first, from.suction,
+        &rate.by_suction);
+  bring(flows.out, -1, flows.out.by_first, flows.out_by_air, flows.out.by_second, from.delivery,
+        &rate.by_delivery);
+  bring(flows.lost, -1, flows.lost.by_first, flows.lost_by_air, 0, from.outside, nullptr);
+  rate.value += per_mass * brought;
+  rate.by_pressure += per_mass * (by_pressure - brought / at.stiffness);
+  rate.by_air += per_mass * (by_air + brought * at.swelling);
+  for (double* one :
+       {&rate.value, &rate.by_pressure, &rate.by_air, &rate.by_suction, &rate.by_delivery})
+    *one *= seconds_per_degree_;
+  return rate;
+}
+
 bool Network::rates(double x, const double* y, double load_size, double* dy) const {
   const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
   const Fluid::State source = suction_line_ ? fluid_.state(y[suction_at_]) : suction_state_;
+  const Sources from = sources(y);
   double delivered = 0, taken = 0;
   for (int k = 0; k < n_; ++k) {
     const double angle = angle_deg(x, k);
     const Chamber::Volume volume = chamber_.volume(radians(angle));
-    const Fluid::State at = fluid_.state(y[k]);
-    const double out = orifice_.flow(delivery_.area(angle), at, line).value;
-    const double in = orifice_.flow(suction_.area(angle), source, at).value;
-    const double mass = in - out - leakage_.flow(at, volume.value).value;
-    delivered += out;
-    taken += in;
+    const Fluid::Mixture at = mixture(y, k);
+    const ChamberFlows flows = chamber_flows(angle, volume.value, at, source, line);
+    const double mass = flows.in.value - flows.out.value - flows.lost.value;
+    delivered += flows.out.value;
+    taken += flows.in.value;
     dy[k] = at.stiffness *
             (seconds_per_degree_ * mass / at.density - kRadPerDegree * volume.slope) / volume.value;
+    if (air_at_ > 0) {
+      dy[air_at_ + k] = air_rate(y[k], y[air_at_ + k], at, volume.value, flows, from).value;
+      dy[k] += at.stiffness * at.swelling * dy[air_at_ + k];
+    }
     if (!std::isfinite(dy[k])) return false;
   }
   if (suction_line_) {
@@ -208,14 +279,14 @@ void Network::jacobian(double x, const double* y, double load_size, double* by_s
   const double source_factor =
       suction_line_ ? source.stiffness * seconds_per_degree_ / (source.density * suction_volume_)
                     : 0;
+  const Sources from = sources(y);
   double delivered = 0, taken = 0;
   for (int k = 0; k < n_; ++k) {
     const double angle = angle_deg(x, k);
     const Chamber::Volume volume = chamber_.volume(radians(angle));
-    const Fluid::State at = fluid_.state(y[k]);
-    const MassFlow out = orifice_.flow(delivery_.area(angle), at, line);
-    const MassFlow in = orifice_.flow(suction_.area(angle), source, at);
-    const MassFlow lost = leakage_.flow(at, volume.value);
+    const Fluid::Mixture at = mixture(y, k);
+    const ChamberFlows flows = chamber_flows(angle, volume.value, at, source, line);
+    const auto& [in, out, lost, in_by_air, out_by_air, lost_by_air] = flows;
     const double mass = in.value - out.value - lost.value;
     const double by_own = in.by_second - out.by_first - lost.by_first;
     delivered += out.value;
@@ -230,10 +301,36 @@ void Network::jacobian(double x, const double* y, double load_size, double* by_s
       entry(suction_at_, k) = -source_factor * in.by_second;
       entry(suction_at_, suction_at_) -= source_factor * in.by_first;
     }
-    if (fixed_) continue;
-    entry(k, n_) = -by_mass * out.by_second / (at.density * volume.value);
-    entry(n_, k) = line_factor * out.by_first;
-    entry(n_, n_) += line_factor * out.by_second;
+    if (!fixed_) {
+      entry(k, n_) = -by_mass * out.by_second / (at.density * volume.value);
+      entry(n_, k) = line_factor * out.by_first;
+      entry(n_, n_) += line_factor * out.by_second;
+    }
+    if (air_at_ == 0) continue;
+    const int a = air_at_ + k;
+    const AirRate air = air_rate(y[k], y[a], at, volume.value, flows, from);
+    entry(a, k) = air.by_pressure;
+    entry(a, a) = air.by_air;
+    // ds/dx is stiffness x (drive + swelling x d(air out)/dx).
+    const double drive =
+        (seconds_per_degree_ * mass / at.density - kRadPerDegree * volume.slope) / volume.value;
+    const double swells = at.stiffness * at.swelling;
+    entry(k, k) += (at.d_stiffness * at.swelling + at.stiffness * at.d_swelling) * air.value +
+                   swells * air.by_pressure;
+    entry(k, a) = at.stiffness_by_air * (drive + at.swelling * air.value) +
+                  by_mass * (in_by_air - out_by_air - lost_by_air + mass * at.swelling) /
+                      (at.density * volume.value) +
+                  at.stiffness * at.swelling_by_air * air.value + swells * air.by_air;
+    if (suction_line_) {
+      entry(a, suction_at_) = air.by_suction;
+      entry(k, suction_at_) += swells * air.by_suction;
+      entry(suction_at_, a) = -source_factor * in_by_air;
+    }
+    if (!fixed_) {
+      entry(a, n_) = air.by_delivery;
+      entry(k, n_) += swells * air.by_delivery;
+      entry(n_, a) = line_factor * out_by_air;
+    }
   }
   // The factor K/P/density of a volume itself: its logarithmic derivative is (K/P)'/(K/P) -
   // 1/(K/P).
@@ -284,7 +381,7 @@ void Network::flows(double x, const double* y, double load_size, Flows& flows) c
   for (int k = 0; k < n_; ++k) {
     const double angle = angle_deg(x, k);
     const Chamber::Volume volume = chamber_.volume(radians(angle));
-    const Fluid::State at = fluid_.state(y[k]);
+    const Fluid::State at = mixture(y, k);
     flows.delivery[k] = orifice_.flow(delivery_.area(angle), at, line).value;
     flows.suction[k] = orifice_.flow(suction_.area(angle), source, at).value;
     flows.leakage[k] = leakage_.flow(at, volume.value).value;
@@ -307,21 +404,31 @@ PowerBudget Network::power(double x, const double* y, const Flows& flows) const 
   power[Place::pistons] = flows.power;
   const double line = fixed_ ? fixed_potential_ : fluid_.potential(y[n_]);
   const double source = suction_line_ ? fluid_.potential(y[suction_at_]) : suction_potential_;
+  const Sources from = sources(y);
   double taken = 0;
   for (int k = 0; k < n_; ++k) {
-    const Fluid::State at = fluid_.state(y[k]);
-    const double potential = fluid_.potential(y[k]);
-    const double in = flows.suction[k], out = flows.delivery[k];
-    power[in < 0 ? Place::suction_backflow : Place::suction_port] += in * (source - potential);
-    power[out < 0 ? Place::delivery_backflow : Place::delivery_port] += out * (potential - line);
-    const Leakage::Parts parts =
-        leakage_.parts(at, chamber_.volume(radians(angle_deg(x, k))).value);
-    const double drop = potential - case_potential_;
+    const Fluid::Mixture at = mixture(y, k);
+    const double volume = chamber_.volume(radians(angle_deg(x, k))).value;
+    const double in = flows.suction[k], out = flows.delivery[k], lost = flows.leakage[k];
+    // What comes in brings the air that is out where it comes from.
+    const double air = air_at_ > 0 ? y[air_at_ + k] : 0;
+    const double by_air = air_at_ > 0 ? fluid_.potential_by_air(y[k]) : 0;
+    const double own = air_at_ > 0 ? fluid_.potential(y[k], air) : fluid_.potential(y[k]);
+    const auto potential = [&](bool comes_in, const Fluid::AirOut& there) {
+      return comes_in ? own + by_air * (there.value - air) : own;
+    };
+    power[in < 0 ? Place::suction_backflow : Place::suction_port] +=
+        in * (source - potential(in > 0, from.suction));
+    power[out < 0 ? Place::delivery_backflow : Place::delivery_port] +=
+        out * (potential(out < 0, from.delivery) - line);
+    if (air_at_ > 0) power[Place::air] -= at.density * volume * by_air * release(y[k], air).value;
+    const Leakage::Parts parts = leakage_.parts(at, volume);
+    const double drop = potential(lost < 0, from.outside) - case_potential_;
     power[Place::conductance] += parts.conductance * drop;
     power[Place::piston_gap] += parts.piston_gap * drop;
     power[Place::plate_gap] += parts.plate_gap * drop;
     power[Place::ring_slot] += parts.ring_slot * drop;
-    power[Place::drain] += flows.leakage[k] * case_potential_;
+    power[Place::drain] += lost * case_potential_;
     taken += in;
   }
   // In a line the oil has one density: its potential there is linear in the pressure.
@@ -363,6 +470,7 @@ std::vector<Place> Network::places() const {
     all.push_back(Place::delivery_line);
     all.push_back(Place::damped_waves);
   }
+  if (air_at_ > 0) all.push_back(Place::air);
   if (pipe_ || suction_line_) all.push_back(Place::line_density);
   return all;
 }

@@ -23,9 +23,10 @@ namespace bentaxis::hydraulics {
 ///
 /// State: s_1..s_N of the chambers, s = ln(P/P0); then, of what there is, s_d of the delivery
 /// volume, s_s of the volume at the suction port and the flow of the suction line over the ideal
-/// one, the modes of the delivery line; and with a delivery volume the mean so far of its gauge
-/// pressure over the pressure asked for. Chamber k stands at x - 360 (k-1)/N degrees. Balance of
-/// mass of a volume with d(density)/density = dP/K:
+/// one, the modes of the delivery line; where air takes time to come out (Cavitation::rate) the
+/// share of the dissolved air that is out in each chamber; and with a delivery volume the mean so
+/// far of its gauge pressure over the pressure asked for. Chamber k stands at x - 360 (k-1)/N
+/// degrees. Balance of mass of a volume with d(density)/density = dP/K:
 ///
 ///   ds/dx = (K/P) (dt/dx sum(mass flows)/(density V) - (dV/dx)/V).
 ///
@@ -99,6 +100,20 @@ class Network {
   double suction_gauge(const double* y) const {
     return fluid_.gauge(suction_line_ ? y[suction_at_] : suction_s_);
   }
+  /// Place in the state of the air that is out, of chambers 1..N; 0: it is no state.
+  int air_at() const { return air_at_; }
+  /// Places in the state where something of chambers 1..N begins.
+  std::vector<int> by_chamber() const {
+    return air_at_ > 0 ? std::vector<int>{0, air_at_} : std::vector<int>{0};
+  }
+  /// Share of the dissolved air that is out in chamber k, from 0, at a state.
+  double air_out(const double* y, int k) const {
+    return air_at_ > 0 ? y[air_at_ + k] : fluid_.equilibrium(y[k]).value;
+  }
+  /// Oil of chamber k, from 0, at a state.
+  Fluid::Mixture mixture(const double* y, int k) const {
+    return air_at_ > 0 ? fluid_.mixture(y[k], y[air_at_ + k]) : Fluid::Mixture{fluid_.state(y[k])};
+  }
   /// Gauge pressure in front of the load.
   double load_gauge(const double* y) const;
   /// Displacement x speed at the density in the tank, kg/s.
@@ -114,6 +129,24 @@ class Network {
 
  private:
   double to_load(const double* y, const Fluid::State& line, double load_size) const;
+  // The air that is out where oil comes from.
+  struct Sources {
+    Fluid::AirOut suction, delivery, outside;
+  };
+  Sources sources(const double* y) const;
+  // d(air out)/dx of a chamber and its derivatives.
+  struct AirRate {
+    double value = 0, by_pressure = 0, by_air = 0, by_suction = 0, by_delivery = 0;
+  };
+  AirRate release(double s, double air_out) const;  // of its own, per s, and by s and air out
+  struct ChamberFlows {
+    MassFlow in, out, lost;  // from the suction port, into the delivery port, to the case
+    double in_by_air = 0, out_by_air = 0, lost_by_air = 0;
+  };
+  ChamberFlows chamber_flows(double angle_deg, double volume, const Fluid::Mixture& at,
+                             const Fluid::State& source, const Fluid::State& line) const;
+  AirRate air_rate(double s, double air_out, const Fluid::Mixture& at, double volume,
+                   const ChamberFlows& flows, const Sources& from) const;
 
   int n_;
   bool fixed_end_;  // the far end of the delivery side is held at a pressure
@@ -130,7 +163,8 @@ class Network {
   std::optional<TransmissionLine> pipe_;
   std::optional<SuctionLine> suction_line_;
   bool fixed_, sought_;
-  int suction_at_ = 0, pipe_at_ = 0, states_ = 0;  // places in the state
+  int suction_at_ = 0, pipe_at_ = 0, air_at_ = 0, states_ = 0;  // places in the state
+  double release_time_, dissolution_time_, case_s_;
   std::vector<double> edges_deg_;
 };
 

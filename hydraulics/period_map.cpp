@@ -30,7 +30,8 @@ std::vector<double> PeriodMap::states(const Vector& z) const {
 std::vector<double> PeriodMap::relabelled(const std::vector<double>& end) const {
   const int n = network_.pistons();
   std::vector<double> next(end.begin(), end.begin() + network_.states());
-  for (int k = 0; k < n; ++k) next[(k + n - 1) % n] = end[k];
+  for (const int first : network_.by_chamber())
+    for (int k = 0; k < n; ++k) next[first + (k + n - 1) % n] = end[first + k];
   return next;
 }
 
@@ -51,8 +52,10 @@ PeriodMap::Vector PeriodMap::residual(const Vector& z, double tolerance, Matrix*
   if (jacobian != nullptr) {
     const Eigen::Map<const Matrix> end_by_start(sensitivity.data(), size, unknowns());
     jacobian->resize(unknowns(), unknowns());
-    for (int k = 0; k < n; ++k) jacobian->row((k + n - 1) % n) = end_by_start.row(k);
     for (int i = n; i < network_.states(); ++i) jacobian->row(i) = end_by_start.row(i);
+    for (const int first : network_.by_chamber())
+      for (int k = 0; k < n; ++k)
+        jacobian->row(first + (k + n - 1) % n) = end_by_start.row(first + k);
     if (sized_) jacobian->row(unknowns() - 1) = end_by_start.row(size - 1);
     for (int i = 0; i < network_.states(); ++i) (*jacobian)(i, i) -= 1;
   }

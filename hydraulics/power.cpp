@@ -25,6 +25,7 @@ constexpr Description kDescriptions[kPlaces] = {
     {PowerUse::loss, "ring_slot", "leakage, joint of the piston ring"},
     {PowerUse::loss, "delivery_line", "delivery line, friction"},
     {PowerUse::loss, "damped_waves", "delivery line, waves above its bandwidth"},
+    {PowerUse::loss, "air", "air that comes out and dissolves late"},
     {PowerUse::approximation, "line_density", "lines: one density in them, another at their ends"},
 };
 

@@ -59,6 +59,9 @@ std::vector<Channel> turn_channels(const Network& network) {
   if (network.has_delivery_line())
     all.push_back(channel("p_load_bar", "pressure at the end of the delivery line, gauge", "bar",
                           kPascalPerBar, 0));
+  if (network.air_at() > 0)
+    all.push_back(channel("air_1_percent", "share of the dissolved air that is out in chamber 1",
+                          "%", 0.01, 1));
   all.push_back(channel("dp_1_bar_per_deg", "rate of the pressure in chamber 1", "bar/deg",
                         kPascalPerBar, 1));
   all.push_back(channel("K_1_MPa", "effective bulk modulus in chamber 1", "MPa", 1e6, 1));
@@ -187,7 +190,8 @@ void TurnRecord::add_row(const Integrator::Step& step) {
   for (const double m : mass) *to++ = m;
   if (network_.has_suction_line()) *to++ = network_.suction_gauge(y);
   if (network_.has_delivery_line()) *to++ = network_.load_gauge(y);
-  const Fluid::State at = network_.fluid().state(y[k]);
+  if (network_.air_at() > 0) *to++ = network_.air_out(y, k);
+  const Fluid::State at = network_.mixture(y, k);
   network_.rates(place.x, y, load_size_, state_.data());
   *to++ = at.pressure * state_[k];
   *to++ = at.stiffness * at.pressure;

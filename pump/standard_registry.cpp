@@ -33,6 +33,7 @@ constexpr Unit kInertia{"kg mm2", square_metres};
 constexpr Unit kNewtons{"N"};
 constexpr Unit kTorquePerSpeed{"Nm/rpm", [](double x) { return x / kRadPerSecondPerRpm; }};
 constexpr Unit kMegapascals{"MPa", [](double x) { return x * 1e6; }};
+constexpr Unit kMilliseconds{"ms", [](double x) { return x / 1000; }};
 constexpr Unit kPercent{"percent", [](double x) { return x / 100; }};
 constexpr Unit kCubicCentimetres{"cm3", [](double x) { return x / 1e6; }};
 constexpr Unit kMicrometres{"um", [](double x) { return x / 1e6; }};
@@ -52,6 +53,7 @@ constexpr Unit kLeakage{"l/min/bar", [](double x) { return x / 6e4 / kPascalPerB
 const When kIdeal{"pressure", "kind", {"ideal"}};
 const When kCurve{"pressure", "kind", {"curve"}};
 const When kHydraulic{"pressure", "kind", {"hydraulic"}};
+const When kAirTakesTime{"hydraulics", "cavitation", {"rate"}};
 const When kReliefValve{"load", "kind", {"relief_valve"}};
 const When kGivenFlow{"load", "kind", {"flow"}};
 const When kCompliant{"gear", "contact", {"compliant"}};
@@ -1133,10 +1135,33 @@ Table hydraulics_table() {
             {.key = "cavitation",
              .field = choice_at(
                  [](const auto& v) { return in(v.hydraulic_data(), &HydraulicData::cavitation); }),
-             .words = {"ignored", "equilibrium"},
+             .words = {"ignored", "equilibrium", "rate"},
              .fallback = {std::string("ignored")},
              .meaning = "ignored: entrained air only; equilibrium: dissolved air comes out by "
-                        "Henry's law, and bubbles hold vapour"},
+                        "Henry's law, and bubbles hold vapour; rate: likewise, but it takes "
+                        "time"},
+            {.key = "air_release_ms",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::release_time);
+             }),
+             .symbol = "tau_r",
+             .unit = kMilliseconds,
+             .range = {1e-3, 1e9},
+             .fallback = {10.0},
+             .meaning = "time constant with which dissolved air comes out",
+             .practice = "some milliseconds where the oil is stirred, to seconds",
+             .active = kAirTakesTime},
+            {.key = "air_dissolution_ms",
+             .field = number_at([](const auto& v) {
+               return in(v.hydraulic_data(), &HydraulicData::dissolution_time);
+             }),
+             .symbol = "tau_d",
+             .unit = kMilliseconds,
+             .range = {1e-3, 1e9},
+             .fallback = {100.0},
+             .meaning = "time constant with which it dissolves again",
+             .practice = "some 10 times longer",
+             .active = kAirTakesTime},
             {.key = "dissolved_air_percent",
              .field = number_at([](const auto& v) {
                return in(v.hydraulic_data(), &HydraulicData::dissolved_air);

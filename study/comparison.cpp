@@ -10,8 +10,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
-#include "bentaxis/study/pressure_document.h"
 #include "bentaxis/study/published_section.h"
+#include "bentaxis/study/timing.h"
 
 namespace bentaxis::study {
 namespace {

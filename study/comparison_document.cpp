@@ -11,6 +11,7 @@
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/regression_document.h"
+#include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
 #include "hydraulic_sections.h"
 

@@ -142,6 +142,10 @@ TimingRow trapped(const hydraulics::Timing& t, const hydraulics::Summary& s) {
   return r;
 }
 
+std::string value_text(const TimingRow& r) {
+  return is_computed(r.value) ? fmt::format("{:.4g}", r.value) : "none";
+}
+
 std::string angles_text(const TimingRow& r) {
   std::string text;
   for (const auto& [from, to] : r.angles)
@@ -185,7 +189,7 @@ std::vector<report::Warning> timing_warnings(const std::vector<TimingRow>& rows)
     if (!r.flagged || !r.meant.empty()) continue;
     const std::string where = angles_text(r);
     warnings.push_back(
-        {r.code, fmt::format("{}: {:.4g} {}{}, limit {:.4g}; {}.", r.quantity, r.value, r.unit,
+        {r.code, fmt::format("{}: {} {}{}, limit {:.4g}; {}.", r.quantity, value_text(r), r.unit,
                              where.empty() ? "" : " (" + where + ")", *r.limit, r.text)});
   }
   return warnings;
@@ -194,7 +198,7 @@ std::vector<report::Warning> timing_warnings(const std::vector<TimingRow>& rows)
 std::string timing_text(const std::vector<TimingRow>& rows) {
   std::string text;
   for (const TimingRow& r : rows)
-    text += fmt::format("{:<17} {:>9.4g} {:<25}{:<14}{:<8} {}\n", r.code, r.value, r.unit,
+    text += fmt::format("{:<17} {:>9} {:<25}{:<14}{:<8} {}\n", r.code, value_text(r), r.unit,
                         r.limit ? fmt::format("limit {:.4g}", *r.limit) : "",
                         !r.limit          ? ""
                         : !r.flagged      ? "holds"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <random>
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
@@ -13,6 +14,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "fluid.h"
+#include "integrator.h"
+#include "network.h"
 #include "port.h"
 #include "support.h"
 
@@ -191,6 +194,26 @@ TEST(Cavitation, BulkModulusGrowsWithPressure) {
   constant.bulk_modulus_slope = 0;
   EXPECT_NEAR(Fluid(data).density(pascals(500)) / Fluid(constant).density(pascals(500)), 1,
               scaled(1e-8));
+}
+
+TEST(Oil, PotentialWithAirOutGiven) {
+  const Fluid fluid(oil(0.09, 0, 100));
+  for (const double air_out : {0.0, 0.3, 1.0})
+    for (const double s : {-4.0, -0.5, 0.5, 5.0}) {
+      const double h = 1e-4;
+      const double slope =
+          (fluid.potential(s + h, air_out) - fluid.potential(s - h, air_out)) / (2 * h);
+      const auto at = fluid.mixture(s, air_out);
+      EXPECT_NEAR(slope / (at.pressure / at.density), 1, scaled(1e-6)) << s << " " << air_out;
+      EXPECT_NEAR(fluid.potential(s, air_out) - fluid.potential(s, 0),
+                  air_out * fluid.potential_by_air(s), scaled(1e-9));
+    }
+  EXPECT_EQ(fluid.potential(0, 1), 0);
+  // Where none is out in equilibrium, the two are one from there on.
+  const double above = fluid.log_pressure(5e5), far = fluid.log_pressure(275e5);
+  EXPECT_NEAR((fluid.potential(far, 0) - fluid.potential(above, 0)) /
+                  (fluid.potential(far) - fluid.potential(above)),
+              1, scaled(1e-12));
 }
 
 // By Simpson's rule over the law itself, at every pressure.
@@ -518,6 +541,192 @@ TEST(PortOpening, RoundOffIsNoOverlap) {
   EXPECT_TRUE(
       bridges(PortOpening(data, data.suction, kRadius), PortOpening(data, data.delivery, kRadius))
           .empty());
+}
+
+// ---- Air that takes time to come out
+// ----------------------------------------------------------------------------
+
+Case with_rate(double release, double dissolution) {
+  Case the_case = rated();
+  HydraulicData& h = *the_case.hydraulics;
+  h.cavitation = Cavitation::rate;
+  h.release_time = release;
+  h.dissolution_time = dissolution;
+  h.saturation_pressure = -pascals(0.3);
+  h.vapour_pressure = 100;
+  h.dissolved_air = 0.09;
+  return the_case;
+}
+
+double difference(const SteadyState& a, const SteadyState& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.chamber.pressure.size(); ++i)
+    most = std::max(most, std::abs(a.chamber.pressure[i] - b.chamber.pressure[i]));
+  return most;
+}
+
+TEST(AirRelease, MixtureWithTheAirOfEquilibriumIsThatOfTheLaw) {
+  const Fluid fluid(*with_rate(1, 1).hydraulics);
+  for (double s = -6; s < 6; s += 0.0931) {  // vapour pressure is at -6.9
+    const auto law = fluid.state(s);
+    const auto out = fluid.equilibrium(s);
+    const auto mixture = fluid.mixture(s, out.value);
+    EXPECT_NEAR(mixture.density / law.density, 1, scaled(1e-12)) << s;
+    EXPECT_GE(out.value, 0);
+    EXPECT_LE(out.value, 1);
+    // d ln(density)/ds of the law is that at constant air less the swelling by more air.
+    EXPECT_NEAR(1 / mixture.stiffness - mixture.swelling * out.slope, 1 / law.stiffness,
+                scaled(1e-10) / law.stiffness)
+        << s;
+    const double h = 1e-6;
+    EXPECT_NEAR((fluid.equilibrium(s + h).value - fluid.equilibrium(s - h).value) / (2 * h),
+                out.slope, scaled(1e-5))
+        << s;
+    for (const double air : {0.0, 0.3, 1.0}) {
+      const auto at = fluid.mixture(s, air);
+      const auto low = fluid.mixture(s - h, air), high = fluid.mixture(s + h, air);
+      const auto less = fluid.mixture(s, air - h), more = fluid.mixture(s, air + h);
+      const auto expect = [&](double up, double down, double slope, double scale) {
+        EXPECT_NEAR((up - down) / (2 * h) / scale, slope / scale, scaled(1e-5)) << s << " " << air;
+      };
+      expect(std::log(high.density), std::log(low.density), 1 / at.stiffness, 1 / at.stiffness);
+      expect(std::log(more.density), std::log(less.density), -at.swelling, at.swelling);
+      expect(high.stiffness, low.stiffness, at.d_stiffness, at.stiffness);
+      expect(more.stiffness, less.stiffness, at.stiffness_by_air, at.stiffness);
+      expect(high.swelling, low.swelling, at.d_swelling, at.swelling);
+      expect(more.swelling, less.swelling, at.swelling_by_air, at.swelling);
+    }
+  }
+}
+
+TEST(AirRelease, JacobianIsThatOfTheRates) {
+  Case the_case = with_rate(2e-3, 30e-3);
+  the_case.hydraulics->suction_line = SuctionLineData{2, 0.04, 2, 1e-3};
+  const Network network(the_case);
+  ASSERT_EQ(network.states(), 5 + 1 + 2 + 5);
+  ASSERT_EQ(network.air_at(), 8);
+  const int size = network.size();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (const double x : {3.0, 21.0, 40.0, 66.0}) {
+    std::vector<double> y(size);
+    for (int k = 0; k < 5; ++k) {
+      y[k] = -2.5 + 4 * share(random);
+      y[network.air_at() + k] = share(random);
+    }
+    y[5] = 5.5;
+    y[6] = -0.1;
+    y[7] = 0.9;
+    const double load = 9e-6;
+    std::vector<double> by_state(static_cast<std::size_t>(size) * size), by_load(size), low(size),
+        high(size), rates(size);
+    network.jacobian(x, y.data(), load, by_state.data(), by_load.data());
+    network.rates(x, y.data(), load, rates.data());
+    const double h = 1e-6;
+    for (int j = 0; j < size; ++j) {
+      auto to = y;
+      to[j] = y[j] - h;
+      network.rates(x, to.data(), load, low.data());
+      to[j] = y[j] + h;
+      network.rates(x, to.data(), load, high.data());
+      for (int i = 0; i < size; ++i) {
+        const double slope = (high[i] - low[i]) / (2 * h);
+        EXPECT_NEAR(slope, by_state[j * size + i],
+                    scaled(1e-5) * (1 + std::abs(slope) + std::abs(rates[i])))
+            << x << ": " << i << " by " << j;
+      }
+    }
+  }
+}
+
+// At constant pressure, only oil of its own leaving: an exponential.
+TEST(AirRelease, RelaxesExponentially) {
+  for (const bool release : {true, false}) {
+    Case the_case = with_rate(5e-3, 0.2);
+    HydraulicData& h = *the_case.hydraulics;
+    h.leakage = 0;
+    h.kidney_height = 100;  // m, and next to no drop: the port holds the pressure
+    h.transition_pressure = 1;
+    h.suction = {{250, 380}};
+    h.delivery = {{60, 150}};
+    const double suction = pascals(release ? -0.6 : -0.31);
+    the_case.pressure.ports.suction = suction;
+    const Network network(the_case);
+    const Fluid& fluid = network.fluid();
+    const double wanted = fluid.equilibrium(fluid.log_pressure(suction)).value;
+    const double start = release ? 0 : 0.5;
+    ASSERT_EQ(wanted > start, release);
+    auto y = network.uniform(fluid.log_pressure(suction), network.delivery_log_pressure(), 0);
+    std::fill(y.begin() + network.air_at(), y.end(), start);
+    const double time = release ? h.release_time : h.dissolution_time;
+    double worst = 0, last = 0;
+    Integrator(network).over_period(
+        y, 9e-6, 1e-11, nullptr, nullptr, [&](const Integrator::Step& step) {
+          if (step.to > 60) return;  // the chamber stands at 288 degrees and goes to 348
+          const double air = network.air_out(step.state(step.to), 1);
+          last =
+              wanted + (start - wanted) * std::exp(-step.to * network.seconds_per_degree() / time);
+          worst = std::max(worst, std::abs(air - last));
+        });
+    EXPECT_LT(worst, scaled(1e-6));
+    EXPECT_GT(std::abs(last - start), 0.01);  // 6.7 ms
+  }
+}
+
+// In no time it is the equilibrium; off by a time, so a tenth of the time is a tenth of it.
+TEST(AirRelease, InNoTimeIsTheEquilibrium) {
+  Case the_case = with_rate(1e-5, 1e-5);
+  const SteadyState slower = steady_state(the_case);
+  the_case = with_rate(1e-6, 1e-6);
+  const SteadyState fast = steady_state(the_case);
+  the_case.hydraulics->cavitation = Cavitation::equilibrium;
+  const SteadyState equilibrium = steady_state(the_case);
+  const double off = difference(fast, equilibrium);
+  // 1 us is 0.009 degrees, in which a chamber's pressure falls by 275 bar over 10 degrees at most.
+  EXPECT_LT(off, pascals(0.25));
+  EXPECT_LT(off, 0.2 * difference(slower, equilibrium));
+  EXPECT_GT(difference(slower, equilibrium), 100 * equilibrium.computed->error);
+}
+
+TEST(AirRelease, NeverIsTheLawWithoutDissolvedAir) {
+  Case the_case = with_rate(1e6, 1e6);
+  the_case.pressure.ports.suction = 0;
+  const SteadyState never = steady_state(the_case);
+  the_case.hydraulics->cavitation = Cavitation::equilibrium;
+  const SteadyState equilibrium = steady_state(the_case);
+  the_case.hydraulics->dissolved_air = 0;
+  const SteadyState without = steady_state(the_case);
+  // In a turn of 40 ms 4e-8 of the air comes out, which is 9 % of the oil's volume.
+  EXPECT_LT(difference(never, without), 3 * (never.computed->error + without.computed->error));
+  EXPECT_GT(difference(equilibrium, without), pascals(0.05));
+}
+
+TEST(AirRelease, BothTimesCount) {
+  const Case base = with_rate(5e-3, 50e-3);
+  const SteadyState usual = steady_state(base);
+  for (double HydraulicData::*time :
+       {&HydraulicData::release_time, &HydraulicData::dissolution_time}) {
+    Case changed = base;
+    (*changed.hydraulics).*time *= 1.01;
+    const SteadyState state = steady_state(changed);
+    EXPECT_GT(difference(usual, state), 10 * (usual.computed->error + state.computed->error));
+  }
+}
+
+TEST(AirRelease, MassThatEntersLeavesAndTheRateLiesBetween) {
+  Case the_case = with_rate(5e-3, 50e-3);
+  the_case.operation.speed_rpm = 2350;
+  const SteadyState state = steady_state(the_case);
+  const Summary& s = state.summary;
+  EXPECT_NEAR(s.mass_in / s.mass_out, 1, scaled(1e-9));
+  EXPECT_LE(state.computed->error, 1e-7 * state.computed->peak);
+  Case other = the_case;
+  other.hydraulics->cavitation = Cavitation::equilibrium;
+  const double softest = steady_state(other).summary.chamber_least;
+  other.hydraulics->dissolved_air = 0;
+  const double stiffest = steady_state(other).summary.chamber_least;
+  EXPECT_LT(stiffest, s.chamber_least);
+  EXPECT_LT(s.chamber_least, softest);
 }
 
 TEST(Control, EveryNumberOfOilAndPortsCounts) {

@@ -165,6 +165,9 @@ class SaidTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
         rows = {row["code"]: row for row in json.loads((self.folder / "out" / "pressure.json").read_text())["timing"]}
         self.assertEqual({code for code, row in rows.items() if row["meant"]}, codes)
+        # The plate that could be built gives its reasons itself.
+        case = REPO / "cases" / "bap63_rated_timed_plate.toml"
+        self.assertEqual(run("pressure", case, "--strict", cwd=self.folder).returncode, 0)
 
     def test_suction_speed_is_asked_for(self):
         case = REPO / "cases" / "bap63_rated_hydraulic.toml"

@@ -188,6 +188,24 @@ TEST(Timing, TrappedOilFollowsTheLawOfTheOil) {
   EXPECT_FALSE(row_of(rows, "ports-connected").flagged);
 }
 
+// What docs/hydraulics.md says that the plate was chosen by.
+TEST(TimedPlate, MeetsItsCriteria) {
+  const struct { double rpm, bar; } points[] = {{1500, 275}, {1600, 350}, {2350, 0}};
+  for (const auto& [rpm, bar] : points) {
+    Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" /
+                              "bap63_rated_timed_plate.toml");
+    the_case.operation.speed_rpm = rpm;
+    the_case.pressure.ports.delivery = pascals(bar);
+    const SteadyState state = hydraulics::steady_state(the_case);
+    EXPECT_GE(state.summary.chamber_least, pascals(-0.8)) << rpm;
+    EXPECT_LE(state.summary.both_open_deg, 6) << rpm;
+    EXPECT_LE(state.timing.through(), 0.005 * stroke_volume(the_case)) << rpm;
+    if (bar > 0) {
+      EXPECT_LE(state.summary.overshoot, 0.05 * pascals(bar)) << rpm;
+    }
+  }
+}
+
 TEST(Verdicts, AReasonOfTheCaseSilencesOne) {
   Case the_case = rated();
   const SteadyState state = hydraulics::steady_state(the_case);
@@ -233,7 +251,9 @@ TEST(SuctionSpeed, EndsAtItsBoundsAndWhenAsked) {
   const SuctionSpeed never = suction_speed(the_case, pascals(1.5));
   EXPECT_FALSE(never.rpm.has_value());
   EXPECT_NEAR(never.searched_from, 0.05 * 1500, 1e-9);
-  EXPECT_TRUE(suction_speed_row(the_case, never).flagged);
+  const report::TimingRow row = suction_speed_row(the_case, never);
+  EXPECT_TRUE(row.flagged);
+  EXPECT_THAT(timing_warnings({row})[0].text, testing::HasSubstr("follows: none rpm"));
   the_case.hydraulics->kidney_height = 1;  // m
   const SuctionSpeed always = suction_speed(the_case, pascals(0.5));
   EXPECT_FALSE(always.rpm.has_value());

@@ -25,9 +25,10 @@ enum class Place {
   ring_slot,          ///< loss of leakage through the joint of the piston ring
   delivery_line,      ///< loss by friction in the delivery line
   damped_waves,       ///< what the delivery line's model takes out of waves above its bandwidth
+  air,                ///< of dissolved air that comes out and dissolves late (cavitation = "rate")
   line_density,       ///< no loss: oil in the lines has one density there, another at their ends
 };
-constexpr int kPlaces = 16;
+constexpr int kPlaces = 17;
 
 /// By place, W or J.
 class PowerBudget {

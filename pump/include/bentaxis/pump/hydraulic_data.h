@@ -66,6 +66,7 @@ enum class KidneyEnds {
 enum class Cavitation {
   ignored,      ///< entrained air alone: none dissolves or comes out, no vapour
   equilibrium,  ///< dissolved air comes out by Henry's law; bubbles hold saturated vapour
+  rate,         ///< likewise, but what is out follows that equilibrium with time constants
 };
 
 /// What the pump delivers against. Size: what is sought so that the mean delivery pressure is the
@@ -141,6 +142,8 @@ struct HydraulicData {
   double dissolved_air = 0;        ///< volume at P0 of the air dissolved at saturation / oil's
   double saturation_pressure = 0;  ///< Pa gauge: below it dissolved air comes out
   double vapour_pressure = 0;      ///< Pa absolute, of the oil
+  // Of Cavitation::rate, s.
+  double release_time = 0.01, dissolution_time = 0.1;
   // Flow between the kidney of a chamber (in the block) and the ports of the plate.
   PlatePort delivery, suction;
   double kidney_width_deg = 0;  ///< of a block kidney, seen from the block axis
