@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include "bentaxis/files/foreign_table.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/time_signal.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::fuzz {
@@ -131,6 +133,29 @@ void read_as_curve(const std::uint8_t* data, std::size_t size) {
               "spline misses a point");
   } catch (const InputError& error) {
     check_message(error);
+  }
+}
+
+void read_as_drive(const std::uint8_t* data, std::size_t size) {
+  const auto file = file_with(data, size);
+  for (const DriveKind kind : {DriveKind::speed, DriveKind::torque}) {
+    try {
+      const TimeCurve curve = read_drive_curve(file, kind);
+      const TimeSignal signal(curve);
+      const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
+      const double span = curve.time.back() - curve.time.front();
+      const double slack = 1e-9 * (std::abs(*low) + std::abs(*high));
+      for (const double share : {-1.0, 0.0, 0.3, 0.999, 2.0}) {
+        const double time = curve.time.front() + share * span;
+        const double value = signal.value(time);
+        if (std::isfinite(time) && std::isfinite(slack) && std::isfinite(*high - *low))
+          require(value >= *low - slack && value <= *high + slack, "curve leaves its points");
+        (void)signal.slope(time);
+        (void)signal.integral(time);
+      }
+    } catch (const InputError& error) {
+      check_message(error);
+    }
   }
 }
 

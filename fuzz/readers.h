@@ -21,6 +21,9 @@ void read_as_csv(const std::uint8_t* data, std::size_t size);
 /// Reads bytes as a pressure curve, makes its periodic spline and evaluates it.
 void read_as_curve(const std::uint8_t* data, std::size_t size);
 
+/// Reads bytes as a speed and as a torque over time, whose curve is then evaluated.
+void read_as_drive(const std::uint8_t* data, std::size_t size);
+
 /// Reads bytes as states of a shipped case's pump. Where they are accepted the reactions there must
 /// be finite or end in a ComputationError, and their table must read back.
 void read_as_states(const std::uint8_t* data, std::size_t size);

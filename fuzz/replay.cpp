@@ -1,6 +1,6 @@
 // Runs a committed corpus and seeded mutations of it through a reader: a fuzzer without a compiler
 // of its own, the same every time.
-//   fuzz_replay case|csv|curve|set|states FOLDER MUTATIONS
+//   fuzz_replay case|csv|curve|drive|set|states FOLDER MUTATIONS
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -80,13 +80,12 @@ void keep_input(int) {
 
 int main(int argc, char** argv) {
   using Reader = void (*)(const std::uint8_t*, std::size_t);
-  const std::map<std::string, Reader> readers = {{"case", bentaxis::fuzz::read_as_case},
-                                                 {"csv", bentaxis::fuzz::read_as_csv},
-                                                 {"curve", bentaxis::fuzz::read_as_curve},
-                                                 {"set", bentaxis::fuzz::read_as_change},
-                                                 {"states", bentaxis::fuzz::read_as_states}};
+  const std::map<std::string, Reader> readers = {
+      {"case", bentaxis::fuzz::read_as_case},   {"csv", bentaxis::fuzz::read_as_csv},
+      {"curve", bentaxis::fuzz::read_as_curve}, {"drive", bentaxis::fuzz::read_as_drive},
+      {"set", bentaxis::fuzz::read_as_change},  {"states", bentaxis::fuzz::read_as_states}};
   if (argc != 4 || readers.count(argv[1]) == 0) {
-    std::fprintf(stderr, "usage: fuzz_replay case|csv|curve|set|states FOLDER MUTATIONS\n");
+    std::fprintf(stderr, "usage: fuzz_replay case|csv|curve|drive|set|states FOLDER MUTATIONS\n");
     return 2;
   }
   const Reader read = readers.at(argv[1]);

@@ -369,6 +369,12 @@ TEST(Simulation, WhatCannotBeSimulatedIsRefusedByName) {
   EXPECT_EQ(refusal(the_case), "");
   the_case.drive->start_speed = 3;
   EXPECT_NE(refusal(the_case).find("start_rpm"), std::string::npos);
+  for (const char* name : {"motor_driven", "rattle"}) {
+    the_case = motion_case(name);
+    the_case.pump.shaft.axial_inertia = the_case.pump.block.axial_inertia = 0;
+    the_case.pump.piston.mass = 0;
+    EXPECT_NE(refusal(the_case).find("axial_inertia_kg_mm2"), std::string::npos) << name;
+  }
   the_case = motion_case("constant_torque");
   the_case.analytic.gear = BlockDrive::imposed;
   EXPECT_NE(refusal(the_case).find("imposed"), std::string::npos);

@@ -69,7 +69,13 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   const Response still = respond(model_, 0, 0);
   shaft_inertia_ = std::abs(respond(model_, 1e5, 1e5).drive_torque - still.drive_torque) / 1e5;
   block_inertia_ = std::abs(respond(model_, 0, 1e5).tooth_force - still.tooth_force) * arm_ / 1e5;
-  probe_ = torque_scale_ / shaft_inertia_;
+  // Rounding leaves this much of nothing.
+  constexpr double kLeastInertia = 1e-14;
+  if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kLeastInertia))
+    throw InputError("[shaft] axial_inertia_kg_mm2: must be > 0 where a torque moves the shaft");
+  if (law_ && !(block_inertia_ > kLeastInertia))
+    throw InputError("[block] axial_inertia_kg_mm2: must be > 0 where the teeth are compliant");
+  probe_ = torque_scale_ / std::max(shaft_inertia_, kLeastInertia);
 }
 
 Equations::Response Equations::respond(const Model& model, double shaft_acceleration,

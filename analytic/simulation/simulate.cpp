@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
 #include <cmath>
-#include <functional>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
