@@ -80,9 +80,15 @@ std::vector<std::string> texts_of(const Grid& grid, const Row& row, std::size_t 
   for (const Cell& cell : row.cells) texts.emplace_back(cell.text);
   while (texts.size() > width && texts.back().empty()) texts.pop_back();
   if (grid.blanks && texts.size() != width) {
-    // Names with blanks in them stand at least two blanks apart.
-    const std::string_view first = row.cells.front().text, last = row.cells.back().text;
-    const std::string_view line(first.data(), last.data() + last.size() - first.data());
+    // Names with blanks in them stand at least two blanks apart. An empty cell has no place in the
+    // line.
+    const auto filled = [](const Cell& cell) { return !cell.text.empty(); };
+    const auto first = std::find_if(row.cells.begin(), row.cells.end(), filled);
+    const auto last = std::find_if(row.cells.rbegin(), row.cells.rend(), filled);
+    if (first == row.cells.end()) return {};
+    const char* const end_of_line = last->text.data() + last->text.size();
+    const std::string_view line(first->text.data(),
+                                static_cast<std::size_t>(end_of_line - first->text.data()));
     texts.clear();
     for (std::size_t at = 0; at < line.size();) {
       const auto end = std::min(line.find("  ", at), line.size());
