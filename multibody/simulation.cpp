@@ -1,6 +1,9 @@
 #include "bentaxis/multibody/simulation.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
@@ -34,6 +37,27 @@ void check(const Case& the_case, const Assumptions& assumptions) {
   if (speed_changes || compliant) need(the_case.pump.block.axial_inertia, "block");
 }
 
+// What is built, where it differs from a pump that is evaluated at instants.
+std::vector<std::pair<std::string, std::string>> facts_of(const Case& the_case,
+                                                          const Assumptions& assumptions) {
+  const DriveKind drive = the_case.drive->kind;
+  const bool rigid = the_case.pump.gear.contact == ToothContact::rigid;
+  auto facts = scene_facts(the_case.pump, assumptions);
+  for (auto& [name, fact] : facts) {
+    if (name == "scene" && !rigid)
+      fact = "full pump, compliant teeth pushing each other at O4 by a force element";
+    if (name == "bodies" && drive == DriveKind::motor) fact += " and the motor's rotor";
+    if (name == "constraints")
+      fact = std::string("cylindrical bearing inline at C2 (2), ") +
+             (drive == DriveKind::speed ? "angle of the shaft over time (1), " : "") +
+             (rigid ? "gear (1), " : "") + "B on its bore axis (2 per piston)";
+  }
+  const char* const drives[] = {"angle of the shaft given over time", "torque on the shaft",
+                                "rotor on a pin about z1, coupling as a force element"};
+  facts.emplace_back("drive", drives[static_cast<std::size_t>(drive)]);
+  return facts;
+}
+
 }  // namespace
 
 // Measured on the stored motions: the tooth force of a stiff gear that rings is the reaction that
@@ -58,7 +82,7 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
         number_text(integration.accuracy) + " per step" +
         (options.accuracy ? std::string() : " for an error of " + number_text(options.error));
     Provenance& provenance = trajectory.table.results.provenance;
-    provenance.facts = scene_facts(the_case.pump, assumptions);
+    provenance.facts = facts_of(the_case, assumptions);
     provenance.facts.insert(provenance.facts.begin() + 1,
                             {"way", "integrated in time, " + trajectory.record.choice});
     const Rank rank = constraint_rank(run.system(), run.system().dynamics());

@@ -329,6 +329,9 @@ SpinRun spin_run(const Case& the_case, double speed_rpm, double spin_rpm,
   require_real_piston(the_case);
   Case spinning = at_speed(the_case, speed_rpm);
   spinning.pump.piston.real->spin = rad_per_second(spin_rpm);
+  // No force on a piston's own axis turns it about that: where on it the bore acts makes no
+  // difference, and beside B it cannot be integrated.
+  spinning.pump.piston.contact.reset();
   spinning.operation.samples_per_revolution = 72;
   spinning.operation.revolutions = 1;
   const PressureTrace pressure(spinning.pressure);

@@ -1263,6 +1263,35 @@ WITHOUT_EFFECT = (
 )
 
 
+class TwoFlanksTest(ProgramTest):
+    """Two flanks and bore forces beside B at constant speed."""
+
+    def test_models_agree_and_say_what_it_means(self):
+        case = self.case(**BESIDE_B)
+        out = self.run_program("compare", case, "--out", "out").out
+        self.assertIn("The two models agree", out)
+        self.assertRegex(out, r"Rcs < 0: over .* each flank pushes the gears apart\. With one line of action .* Rcn changes by up to")
+        self.assertRegex(out, r"Rc works on the play: over .* mean power of Rc on the play -?[0-9.]+ W")
+        power = [float(re.search(r"mean power of Rc on the play (-?[0-9.]+) W", out)[1])]
+        for model in ("analytic", "multibody"):
+            torque = [float(value) for value in self.column(f"out/budget_{model}.csv", "Td_ring_Nm")]
+            power.append(-sum(torque) / len(torque) * 1500 * 3.14159265358979 / 30)
+        for value in power[1:]:
+            self.assertAlmostEqual(value, power[0], delta=1e-3 * abs(power[0]))
+        # Every difference between unlike assumptions is still explained.
+        out = self.run_program("compare", case, "--multibody", "gear=imposed", "piston_friction=off", "--out", "out").out
+        self.assertIn("Explained.", out)
+
+    def test_compliant_teeth_at_constant_speed_are_two_rigid_flanks(self):
+        for name, base in (("two", {"gear.flanks": '"two"'}), ("compliant", COMPLIANT)):
+            self.run_program("run", self.case(**{**RATED, **base}), "--model", "analytic", "--out", name)
+        self.assertEqual(*[(self.folder / out / "analytic.csv").read_bytes() for out in ("two", "compliant")])
+
+    def test_inertia_study(self):
+        case = self.case(**{**REAL, "piston.contact_mm": 41.5, "gear.flanks": '"two"'})
+        self.assertIn("The models agree", self.run_program("inertia", case, "--out", "out").out)
+
+
 class NegativeControlTest(ProgramTest):
     def compare(self, first, second, status):
         first.write(self.folder / "first.toml")

@@ -4,9 +4,15 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <functional>
+#include <optional>
 
 #include "bentaxis/analytic/batch.h"
+#include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/rounding.h"
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -409,6 +415,92 @@ TEST(FreeMotion, DerivativesAreThoseOfThePositions) {
   }
 }
 
+// ---- hard states -------------------------------------------------------------------------------
+
+TEST(HardStates, AnglesOfManyTurnsAreThoseOfOne) {
+  const Case the_case = read_case(motion_folder() / "free_block" / "case.toml");
+  States states;
+  states.pistons = 5;
+  for (const double turns : {0.0, 1e7, -1e7})
+    states.motion.push_back(
+        {10 + 360 * turns, 9.5 + 360 * turns, 150, 149, 20, -30, the_case.pressure.ports});
+  states.chamber_pressure.assign(15, 1e7);
+  const ResultTable table = run_states(the_case, the_case.analytic, states).results;
+  for (std::size_t c = 0; c < ChannelLayout(5).reactions(); ++c)
+    for (const std::size_t row : {1, 2})
+      ASSERT_NEAR(table.at(row, c), table.at(0, c), 1e-12 * table.peak(table.channels[c].group))
+          << table.channels[c].name;  // -350 deg is not 10 deg to the last bit
+}
+
+// One of both at rest, or both: dry friction has no speed of its own to compare with.
+TEST(HardStates, ShaftOrBlockAtRest) {
+  for_each_pump([](const Drawn& d) {
+    for (const double regularization : {0.0, d.pump.friction.regularization})
+      for (const int who : {0, 1, 2}) {
+        PumpParameters pump = d.pump;
+        pump.friction.regularization = regularization;
+        Instant i = d.instant;
+        if (who != 1) i.shaft.speed = 0;
+        if (who != 0) i.block.speed = 0;
+        const Model model(pump, d.assumptions);
+        MotionChecks checks;
+        const std::vector<double> values = evaluate(model, i, &checks);
+        for (std::size_t c = 0; c < model.layout().reactions(); ++c)
+          ASSERT_TRUE(std::isfinite(values[c])) << model.layout().channels()[c].name;
+        ASSERT_EQ(is_computed(values[model.layout().power_residual()]), who == 1);
+        ASSERT_LT(std::abs(checks.power_balance), scaled(1e-13) * power_scale(d, values));
+        if (who == 2) {
+          ASSERT_EQ(checks.power_balance, 0);
+        }
+        ASSERT_LT(free_body_residual(pump, d.assumptions, i, values), scaled(1e-12));
+      }
+  });
+}
+
+// Where the lead has all but taken a piston out of its reach digits go, as many as are foretold.
+TEST(HardStates, LostDigitsNextToTheLimitOfAssemblyAreForetold) {
+  const Case the_case = read_case(motion_folder() / "free_block" / "case.toml");
+  const Geometry& g = the_case.pump.geometry;
+  const auto farthest = [&](double lead) {
+    double most = 0;
+    for (int k = 0; k < g.pistons; ++k) {
+      const double angle = 0.2 - 2 * kPi * k / g.pistons;
+      most = std::max(most, joint_distance(g, angle, angle + lead));
+    }
+    return most;
+  };
+  double within = 0;
+  double beyond = kPi;
+  ASSERT_GT(farthest(beyond), g.piston_length);
+  while (farthest(within) < g.piston_length * (1 - 1e-10)) {
+    const double middle = (within + beyond) / 2;
+    (farthest(middle) < g.piston_length * (1 - 1e-10 / 2) ? within : beyond) = middle;
+  }
+  Instant i;
+  i.shaft = {0.2, 150, 20};
+  i.block = {0.2 + within, 149, -30};
+  i.chamber_pressure.assign(5, 1e7);
+  const Model model(the_case.pump, the_case.analytic);
+  std::vector<double> values(model.layout().size());
+  std::vector<long double> wide(model.layout().reactions());
+  model.reactions(i, values);
+  model.reactions(i, wide);
+  RoundingEstimate::Parts parts;
+  RoundingEstimate(the_case.pump, the_case.analytic)
+      .estimate(i, std::vector<double>(5, 1e-9), parts);
+  bool of_the_angles = false;
+  double worst = 0;
+  for (std::size_t c = 0; c < wide.size(); ++c) {
+    const double lost = static_cast<double>(std::abs(wide[c] - values[c]));
+    worst = std::max(worst, lost / largest_of(values, wide.size()));
+    // A prediction is one of the first order, of an error that is partly luck.
+    ASSERT_LE(lost, 100 * (parts.inputs[c] + parts.arithmetic[c]));
+    of_the_angles |= parts.worst_input[c] == "psi" || parts.worst_input[c] == "theta";
+  }
+  EXPECT_TRUE(of_the_angles);
+  EXPECT_GT(worst, 1e-12);  // the case is as hard as it says
+}
+
 // ---- teeth -------------------------------------------------------------------------------------
 
 TEST(ToothLaw, IsThePrintedOneOnEitherFlank) {
@@ -473,7 +565,9 @@ TEST(TwoFlanks, DifferFromOneWhereTheForceIsNegativeOnly) {
     ASSERT_EQ(a[at.Rb1(0)], b[at.Rb1(0)]);
     const double towards_psi = (d.instant.shaft.speed < 0 ? -1 : 1) * a[at.Rcs()];
     (towards_psi < 0 ? negative : positive) += 1;
+    const Model::FlankChange change = first.flank_change(a[at.Rcs()], d.instant.shaft.speed);
     if (towards_psi >= 0) {
+      ASSERT_EQ(change.pin + change.film + change.tapered + change.cylindrical, 0);
       for (std::size_t c = 0; c < at.reactions(); ++c) ASSERT_EQ(a[c], b[c]);
       return;
     }
@@ -484,9 +578,76 @@ TEST(TwoFlanks, DifferFromOneWhereTheForceIsNegativeOnly) {
                 1e-12 * largest_of(a, at.reactions()));
     ASSERT_NEAR(b[at.Fh()] - a[at.Fh()], -turned * std::cos(half),
                 1e-12 * largest_of(a, at.reactions()));
+    // What validity says of it.
+    const auto apart = [&](std::size_t first_column, int components) {
+      double sum = 0;
+      for (int i = 0; i < components; ++i)
+        sum += std::pow(b[first_column + i] - a[first_column + i], 2);
+      return std::sqrt(sum);
+    };
+    const double off = 1e-12 * largest_of(a, at.reactions());
+    ASSERT_NEAR(change.pin, apart(at.Rcn(0), 2), off);
+    ASSERT_NEAR(change.film, apart(at.Fh(), 1), off);
+    ASSERT_NEAR(change.tapered, apart(at.Rb1(0), 3), off);
+    ASSERT_NEAR(change.cylindrical, apart(at.Rb2(0), 2), off);
   });
   EXPECT_GT(negative, kPumps / 4);
   EXPECT_GT(positive, kPumps / 4);
+}
+
+// The figure that validity gives is the largest difference over the turn, whichever of the two was
+// run and whichever way the pump turns.
+TEST(TwoFlanks, ValiditySaysHowFarTheyDifferFromOne) {
+  for (const double speed : {1500.0, -1500.0}) {
+    Case the_case = reference_case("bap63_rated");
+    the_case.operation.speed_rpm = speed;
+    the_case.pump.friction.block_viscous = 0;
+    Case other = the_case;
+    other.pump.gear.flanks = Flanks::two;
+    const Samples samples = one_turn(the_case);
+    const ResultTable one = run(the_case, the_case.analytic, samples);
+    const ResultTable two = run(other, other.analytic, samples);
+    const ChannelLayout at(5);
+    double pin = 0;
+    for (std::size_t row = 0; row < one.rows(); ++row)
+      pin = std::max(pin, std::hypot(two.at(row, at.Rcn(0)) - one.at(row, at.Rcn(0)),
+                                     two.at(row, at.Rcn(1)) - one.at(row, at.Rcn(1))));
+    ASSERT_GT(pin, 1);
+    char expected[64];
+    std::snprintf(expected, sizeof expected, "Rcn changes by up to %.4g N", pin);
+    const auto said = [&](const Case& c, const ResultTable& table) {
+      std::string text;
+      for (const auto& limit : check_validity(c, c.analytic, samples, table))
+        text += limit.consequence + "\n";
+      return text;
+    };
+    EXPECT_NE(said(the_case, one).find(expected), std::string::npos) << said(the_case, one);
+    EXPECT_NE(said(other, two).find(expected), std::string::npos) << said(other, two);
+  }
+}
+
+TEST(RingContact, ValidityStatesTheWorkThatTheBudgetHasAsACause) {
+  Case the_case = reference_case("bap63_rated");
+  const auto ring_of = [&](const Samples& samples) -> std::optional<ValidityLimit> {
+    const ResultTable table = run(the_case, the_case.analytic, samples);
+    for (const auto& limit : check_validity(the_case, the_case.analytic, samples, table))
+      if (limit.name == "Rc works on the play") return limit;
+    return {};
+  };
+  const Samples samples = one_turn(the_case);
+  EXPECT_FALSE(ring_of(samples));
+  the_case.pump.piston.contact = the_case.pump.geometry.piston_length;
+  EXPECT_FALSE(ring_of(samples));
+  the_case.pump.piston.contact = 0.0415;
+  const auto ring = ring_of(samples);
+  ASSERT_TRUE(ring);
+  const ResultTable budget = run_budget(the_case, the_case.analytic, samples);
+  double largest = 0;
+  for (std::size_t row = 0; row < budget.rows(); ++row)
+    largest =
+        std::max(largest, samples.omega * std::abs(budget.at(row, budget.find("Td_ring_Nm"))));
+  EXPECT_NEAR(std::abs(ring->worst), largest, 1e-9 * largest);
+  EXPECT_GT(ring->violated_share, 0.9);
 }
 
 }  // namespace
