@@ -288,7 +288,8 @@ double Equations::kinetic_energy(double time, const State& y) {
   const double psi = instant_.block.speed;
   double energy =
       (shaft * theta * theta + 2 * mixed * theta * psi + block * psi * psi) / 2 / probe_;
-  if (drive_.kind == DriveKind::motor) energy += drive_.motor->rotor_inertia * std::pow(theta + y[kTwistRate], 2) / 2;
+  if (drive_.kind == DriveKind::motor)
+    energy += drive_.motor->rotor_inertia * std::pow(theta + y[kTwistRate], 2) / 2;
   return energy;
 }
 
@@ -299,7 +300,8 @@ double Equations::potential_energy(const State& y) const {
       const double x = approach(y, flank);
       if (x > 0) energy += spring_force(x) * x / (law_->exponent + 1);
     }
-  if (drive_.kind == DriveKind::motor) energy += drive_.motor->coupling_stiffness * y[kTwist] * y[kTwist] / 2;
+  if (drive_.kind == DriveKind::motor)
+    energy += drive_.motor->coupling_stiffness * y[kTwist] * y[kTwist] / 2;
   return energy;
 }
 

@@ -9,6 +9,7 @@
 #include "bentaxis/results/stopwatch.h"
 #include "bentaxis/results/worst.h"
 #include "simulation/equations.h"
+#include "simulation/pieces.h"
 
 namespace bentaxis::analytic {
 namespace simulation {
@@ -104,10 +105,11 @@ double first_above(const Guard& from, const Guard& to, double h) {
 class Simulation {
  public:
   Simulation(const Case& the_case, const Assumptions& assumptions, const PressureTrace& pressure,
-             const SimulationOptions& options, const Progress& progress)
+             const SimulationOptions& options, const Progress& progress, std::vector<Piece>* pieces)
       : equations_(the_case, assumptions, pressure),
         options_(options),
         progress_(progress),
+        pieces_(pieces),
         tolerance_(std::max(kTightest, options.accuracy.value_or(options.error * kStepShare))),
         stepper_(equations_, equations_.scales(), tolerance_) {
     const int pistons = the_case.pump.geometry.pistons;
@@ -138,6 +140,7 @@ class Simulation {
         options_.times.empty() ? trajectory_times(drive) : options_.times;
     const std::size_t rows = stops.size();
     next_ = drive.duration * kFirstStep;
+    note_piece();
     for (const double knot : equations_.knots()) knots_.push_back(knot);
     for (std::size_t row = 0; row < rows; ++row) {
       while (time_ < stops[row]) {
@@ -147,6 +150,7 @@ class Simulation {
       add_row(trajectory);
     }
     close_contact();
+    note_piece();
     TrajectoryRecord& record = trajectory.record;
     record = record_;
     record.evaluations = equations_.evaluations();
@@ -279,6 +283,7 @@ class Simulation {
     for (std::size_t i = 0; i < before.count; ++i)
       if (before.all[i].rate > 0 && before.all[i].value > -nearness(i, time_)) {
         handle(i);
+        note_piece();
         return;
       }
     double h = std::min(next_, stop - time_);
@@ -343,7 +348,15 @@ class Simulation {
       at_once_ = 0;
     else
       count_at_once();
-    if (event < after.count) handle(event);
+    if (event < after.count) {
+      handle(event);
+      note_piece();
+    }
+  }
+
+  void note_piece() {
+    if (pieces_ != nullptr)
+      pieces_->push_back({time_, y_, equations_.teeth, equations_.from_angle, equations_.to_angle});
   }
 
   void shrink(double taken, double proposal) {
@@ -439,6 +452,7 @@ class Simulation {
   Equations equations_;
   const SimulationOptions options_;
   const Progress& progress_;
+  std::vector<Piece>* pieces_;
   double tolerance_;
   Stepper stepper_;
   std::vector<double> edges_deg_, knots_, row_;
@@ -452,12 +466,19 @@ class Simulation {
 };
 
 }  // namespace
+
+Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
+                    const PressureTrace& pressure, const SimulationOptions& options,
+                    std::vector<Piece>& pieces) {
+  return Simulation(the_case, assumptions, pressure, options, {}, &pieces).run();
+}
+
 }  // namespace simulation
 
 Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                     const PressureTrace& pressure, const SimulationOptions& options,
                     const Progress& progress) {
-  return simulation::Simulation(the_case, assumptions, pressure, options, progress).run();
+  return simulation::Simulation(the_case, assumptions, pressure, options, progress, nullptr).run();
 }
 
 }  // namespace bentaxis::analytic
