@@ -79,7 +79,7 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
     run.run(trajectory, progress);
     trajectory.record.choice =
         integrator_names()[static_cast<std::size_t>(integration.integrator)] + ", accuracy " +
-        number_text(integration.accuracy) + " per step" +
+        rounded_text(integration.accuracy) + " per step" +
         (options.accuracy ? std::string() : " for an error of " + number_text(options.error));
     Provenance& provenance = trajectory.table.results.provenance;
     provenance.facts = facts_of(the_case, assumptions);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 
 namespace bentaxis {
@@ -31,6 +32,12 @@ void append_number(std::string& text, double value) {
   const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(),
                                     value == 0 ? 0.0 : value);  // no "-0"
   text.append(buffer.data(), result.ptr);
+}
+
+std::string rounded_text(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 std::string number_text(double value) {

@@ -156,9 +156,9 @@ class Simulation {
     record.evaluations = equations_.evaluations();
     record.seconds = watch.seconds();
     record.share_out_of_contact = equations_.compliant() ? apart_ / drive.duration : 0;
-    record.choice = "Gragg-Bulirsch-Stoer extrapolation, " + number_text(tolerance_) +
+    record.choice = "Gragg-Bulirsch-Stoer extrapolation, " + rounded_text(tolerance_) +
                     " per step of what each state's scale is, for an error of " +
-                    number_text(options_.error) + " of peak";
+                    rounded_text(options_.error) + " of peak";
     return trajectory;
   }
 

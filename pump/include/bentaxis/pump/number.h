@@ -19,6 +19,9 @@ void append_number(std::string& text, double value);
 /// The same as a string of its own.
 std::string number_text(double value);
 
+/// To three digits, for people.
+std::string rounded_text(double value);
+
 /// Allowed values of a number, with the text an engineer sees when it is left. What is not finite
 /// lies in no range.
 struct NumberRange {
