@@ -322,17 +322,22 @@ States read_states(const std::filesystem::path& file, const Case& the_case,
 }
 
 std::string to_csv(const MotionTable& table) {
+  const ResultTable& results = table.results;
   std::string text;
-  for (const std::string& name : table.state_names) text += name + ",";
-  for (const Channel& channel : table.results.channels) text += channel.name + ",";
+  std::vector<std::size_t> columns;  // those that the states do not have already: given pressures
+  const auto& names = table.state_names;
+  for (const std::string& name : names) text += name + ",";
+  for (std::size_t c = 0; c < results.columns(); ++c)
+    if (std::find(names.begin(), names.end(), results.channels[c].name) == names.end()) {
+      columns.push_back(c);
+      text += results.channels[c].name + ",";
+    }
   text.back() = '\n';
-  const std::size_t states = table.state_names.size();
-  std::vector<double> line(states + table.results.columns());
-  for (std::size_t row = 0; row < table.results.rows(); ++row) {
-    const auto first = table.states.begin() + static_cast<std::ptrdiff_t>(row * states);
-    std::copy(first, first + static_cast<std::ptrdiff_t>(states), line.begin());
-    for (std::size_t c = 0; c < table.results.columns(); ++c)
-      line[states + c] = table.results.at(row, c);
+  std::vector<double> line;
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    line.clear();
+    for (std::size_t c = 0; c < names.size(); ++c) line.push_back(table.state(row, c));
+    for (const std::size_t c : columns) line.push_back(results.at(row, c));
     append_csv_row(text, line[0], line.data() + 1, line.size() - 1);
   }
   return text;

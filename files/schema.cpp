@@ -142,6 +142,7 @@ std::string meaning_cell(const Parameter& p) {
   const When* when = !p.active.words.empty() ? &p.active
                      : p.part != nullptr     ? &p.part->needed
                                              : nullptr;
+  if (when != nullptr && when->words.empty()) return p.meaning;
   return p.meaning + (when != nullptr ? " (with " + code(to_text(*when)) + ")" : "");
 }
 

@@ -1619,8 +1619,9 @@ Table drive_table() {
                 number_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::torque); }),
             .symbol = "Td, T0",
             .unit = {"Nm"},
-            .meaning = "of the drive, or of a motor at the speed of `[operation]`; unused beside a "
-                       "`file`",
+            .meaning =
+                "of the drive, or of a motor at the speed of `[operation]`; beside a `file` it "
+                "is asked for and unused",
             .active = kGivenTorque},
            {.key = "torque_slope_Nm_s_per_rad",
             .field =
@@ -1659,13 +1660,16 @@ Table drive_table() {
             .field = number_at([](const auto& v) { return v.start_speed(); }),
             .unit = kRotation,
             .fallback = {.words = "`speed_rpm`"},
-            .meaning = "speed of every body at the start; from 0 the coupling is unwound",
+            .meaning = "speed of every body at the start, not beside a given speed; from 0 the "
+                       "coupling is unwound",
             .part = &kStartSpeed},
            {.key = "file",
             .field = curve,
             .fallback = {std::string()},
-            .meaning = "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case "
-                       "file: the speed or the torque over time instead; empty: none"},
+            .meaning =
+                "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case "
+                "file, at least 4 points from a time <= 0 on: the speed or the torque (not of a "
+                "motor) over time instead; empty: none"},
            {.key = "duration_s",
             .field =
                 number_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::duration); }),

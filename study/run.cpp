@@ -34,11 +34,9 @@ void check(const RunOptions& options) {
 }
 
 // Tables of a run, and what a comparison makes of them, lie in memory.
-void check_fits_memory(const Case& the_case, Way way) {
+void check_fits_memory(const Case& the_case, double rows, const std::string& because,
+                       const std::string& advice) {
   constexpr double kCopies = 4;  // of the results, least: two models, sorted apart, as text
-  const auto& operation = the_case.operation;
-  const double rows = static_cast<double>(operation.samples_per_revolution) *
-                      (way == Way::integrated ? operation.revolutions : 1);
   const double columns = static_cast<double>(ChannelLayout(the_case.pump.geometry.pistons).size());
   const double needed = kCopies * rows * columns * sizeof(double);
   rlimit limit{};
@@ -48,15 +46,29 @@ void check_fits_memory(const Case& the_case, Way way) {
     there = std::min(there, static_cast<double>(limit.rlim_cur));
   if (needed <= there) return;
   throw InputError(fmt::format(
-      "[operation] samples_per_revolution = {}{}: {:.6g} samples of {:.0f} columns take at least "
-      "{:.3g} GB of memory, and this machine lets a program have {:.3g} GB; run --model analytic "
-      "writes row by row",
-      operation.samples_per_revolution,
-      way == Way::integrated ? fmt::format(", revolutions = {}", operation.revolutions) : "", rows,
-      columns, needed / 1e9, there / 1e9));
+      "{}: {:.6g} samples of {:.0f} columns take at least {:.3g} GB of memory, and this machine "
+      "lets a program have {:.3g} GB{}",
+      because, rows, columns, needed / 1e9, there / 1e9, advice));
+}
+
+void check_fits_memory(const Case& the_case, Way way) {
+  const auto& operation = the_case.operation;
+  const bool integrated = way == Way::integrated;
+  check_fits_memory(
+      the_case,
+      static_cast<double>(operation.samples_per_revolution) *
+          (integrated ? operation.revolutions : 1),
+      fmt::format("[operation] samples_per_revolution = {}{}", operation.samples_per_revolution,
+                  integrated ? fmt::format(", revolutions = {}", operation.revolutions) : ""),
+      "; run --model analytic writes row by row");
 }
 
 }  // namespace
+
+void check_fits_memory(const Case& the_case, const DriveSpec& drive) {
+  check_fits_memory(the_case, drive.samples + 1.0,
+                    fmt::format("[drive] samples = {}", drive.samples), "");
+}
 
 std::string to_string(Model model) { return model == Model::analytic ? "analytic" : "multibody"; }
 

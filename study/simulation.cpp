@@ -287,15 +287,18 @@ class Study {
       if (!*run) continue;
       const Trajectory& t = **run;
       const TrajectoryRecord& record = t.record;
-      const double work = std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
-                                    std::abs(record.kinetic_energy_gained)});
+      // Where nothing moves there is no work: then that of the largest torque over 1e-6 rad.
+      const ResultTable& table = t.table.results;
+      constexpr double kLeastTurn = 1e-6;
+      const double work =
+          std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
+                    std::abs(record.kinetic_energy_gained), kLeastTurn * table.peak("Td")});
       // Simbody's work is integrated with its motion, to the same error.
       const double tolerance = model == Model::analytic
                                    ? kAnalyticError
                                    : std::max(r_.choice.error, r_.choice.accuracy.value_or(0));
       r_.checks.push_back({to_string(model), "work less energy gained", "J",
                            record.worst_work_residual, 0, work, tolerance});
-      const ResultTable& table = t.table.results;
       const std::size_t balance = table.find("power_balance_W");
       double worst = 0, angle = 0, scale = 0;
       for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -304,8 +307,10 @@ class Study {
           worst = value;
           angle = table.theta_deg[row];
         }
-        scale = std::max(scale, std::abs(table.at(row, table.find("Td_z1_Nm")) *
-                                         t.table.state(row, 3) * kRadPerSecondPerRpm));
+        // Of the torque at the faster body's speed; at rest at 1 rad/s, as in virtual work.
+        const double speed = std::max({1.0, kRadPerSecondPerRpm * std::abs(t.table.state(row, 3)),
+                                       kRadPerSecondPerRpm * std::abs(t.table.state(row, 4))});
+        scale = std::max(scale, std::abs(table.at(row, table.find("Td_z1_Nm"))) * speed);
       }
       constexpr double kPowerTolerance = 1e-8;
       r_.checks.push_back({to_string(model), "power of all loads less the change of kinetic energy",
@@ -376,7 +381,7 @@ std::string SimulationResult::headline() const {
 
 SimulationResult simulate(ReadyCase ready, const SimulationChoice& choice,
                           const PartProgress& progress_of) {
-  drive_of(ready.the_case);
+  check_fits_memory(ready.the_case, drive_of(ready.the_case));
   SimulationResult result;
   result.ready = std::move(ready);
   result.choice = choice;

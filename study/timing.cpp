@@ -143,6 +143,7 @@ TimingRow trapped(const hydraulics::Timing& t, const hydraulics::Summary& s) {
 }
 
 std::string value_text(const TimingRow& r) {
+  if (!r.bound.empty()) return r.bound;
   return is_computed(r.value) ? fmt::format("{:.4g}", r.value) : "none";
 }
 
@@ -266,6 +267,10 @@ SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& p
 TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found) {
   TimingRow r = row("suction-speed", "largest speed at which suction follows",
                     found.rpm.value_or(not_computed()), "rpm");
+  if (!found.rpm)
+    r.bound = found.searched_from < the_case.operation.speed_rpm
+                  ? fmt::format("< {:.4g}", found.searched_from)
+                  : fmt::format("> {:.4g}", found.searched_to);
   const double own = the_case.operation.speed_rpm;
   r.limit = own;
   r.flagged = found.rpm ? *found.rpm < own : found.searched_from < own;

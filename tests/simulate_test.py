@@ -54,6 +54,51 @@ class SimulateTest(base.WithFolder):
         self.assertFalse((self.folder / "out" / "report.html").exists())
 
 
+class RestTest(SimulateTest):
+    def test_a_shaft_at_rest_has_one_direction(self):
+        """A given speed of 0 counts as +, whatever round-off the integration makes of it."""
+        out = self.simulate(self.case(duration_s=0.002, samples=8), "--set", "operation.speed_rpm=0", "--error", 1e-5).stdout
+        self.assertIn("Both models move alike", out)
+        for name in ("analytic", "multibody"):
+            for row in self.table(f"out/simulation_{name}.csv"):
+                self.assertEqual(row["power_residual_Nm"], "")
+                if float(row["Rcs_law_N"]) != 0:
+                    self.assertAlmostEqual(float(row["Rcs_z4_N"]) / float(row["Rcs_law_N"]), 1, 6)
+
+    def test_where_nothing_moves_the_checks_hold(self):
+        self.simulate(self.case("constant_torque", kind="speed", duration_s=0.002, samples=4), "--set", "operation.speed_rpm=0",
+                      "--error", 1e-5)
+        self.assertTrue(all(check["verdict"] == "holds" for check in self.report()["checks"]))
+
+    def test_work_of_the_drive_is_that_of_its_torque(self):
+        """Ct of it turns the shaft (38); the rest is lost. In both models."""
+        for name in ("constant_torque", "rattle"):
+            self.simulate(self.case(name, duration_s=0.004, samples=400), "--error", 1e-5)
+            for work in ("work of the drive", "work of loads"):
+                analytic, multibody = next(r for r in self.section("Work")["table"]["rows"] if r[0].startswith(work))[1:]
+                self.assertAlmostEqual(multibody / analytic, 1, 6, work)
+
+    def test_too_many_rows_are_refused_before_they_are_computed(self):
+        self.refused(self.case(samples=2000000000), "[drive] samples = 2000000000", "GB")
+
+    def test_given_pressures_stand_there_once(self):
+        columns = ["theta_deg", "psi_deg", "theta_rpm", "psi_rpm", "theta_rad_per_s2", "psi_rad_per_s2"]
+        columns += [f"p_{k}_bar" for k in range(1, 6)]
+        states = self.folder / "states.csv"
+        states.write_text(",".join(columns) + "\n" + "10,10,1500,1500,0,0,1,2,3,4,275\n")
+        for model in ("analytic", "multibody"):
+            self.run_program("run", stored("rattle") / "case.toml", "--model", model, "--states", states, "--out", "out")
+            heading = (self.folder / "out" / f"{model}.csv").read_text().splitlines()[0].split(",")
+            self.assertEqual(heading[:11], columns)
+            self.assertEqual(len(heading), len(set(heading)))
+
+    def test_parameters_say_when_they_act_in_words(self):
+        for table in ("drive", "piston", "gear"):
+            text = self.run_program("schema", "--markdown", table).stdout
+            self.assertNotIn("` = `", text)
+            self.assertNotIn("``", text)
+
+
 class TrajectoryTest(SimulateTest):
     def test_models_move_alike(self):
         out = self.simulate(self.case(duration_s=0.002, samples=20), "--error", 1e-5).stdout

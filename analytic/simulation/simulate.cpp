@@ -21,7 +21,7 @@ constexpr double kStepShare = 1e-3;
 // Rounding of a step, of a state's size: no tolerance below it can be met.
 constexpr double kRounding = 1e-15;
 constexpr double kTightest = 1e-14;
-constexpr double kSmallestStep = 1e-14;       // of the duration
+constexpr double kSmallestStep = 1e-14;       // of the duration, or of a second if that is less
 constexpr double kFirstStep = 1e-3;           // of the duration, at most
 constexpr long kMostEvaluations = 100000000;  // of the closed form: some minutes
 constexpr int kMostEventsAtOnce = 64;         // without a step between them
@@ -344,7 +344,7 @@ class Simulation {
     if (equations_.compliant() && equations_.teeth.pressing == 0) apart_ += taken;
     time_ = taken == stop - time_ ? stop : time_ + taken;
     y_ = out;
-    if (taken > kSmallestStep * equations_.drive().duration)
+    if (taken > smallest_step())
       at_once_ = 0;
     else
       count_at_once();
@@ -361,8 +361,12 @@ class Simulation {
 
   void shrink(double taken, double proposal) {
     next_ = std::min(proposal, taken / 2);
-    if (next_ < kSmallestStep * equations_.drive().duration)
+    if (next_ < smallest_step())
       fail("the motion changes faster there than steps above round-off can follow");
+  }
+
+  double smallest_step() const {
+    return kSmallestStep * std::min(1.0, equations_.drive().duration);
   }
 
   void count_at_once() {

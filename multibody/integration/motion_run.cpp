@@ -332,6 +332,8 @@ void MotionRun::account(TrajectoryRecord& record) {
   }
   record.kinetic_energy_gained = simbody.calcKineticEnergy(state) - energy_at_start_;
   record.potential_energy_gained = elastic;
+  // What turns the shaft is Ct Td (38): the rest of Td's work is lost, to friction that is a load.
+  if (spec_.kind != DriveKind::motor) drives /= case_.pump.friction.shaft_torque_factor;
   record.work_of_drives = drives;
   // What is left to dissipate: springs are accounted for by their energy.
   record.work_of_loads = total - drives + elastic;
@@ -368,8 +370,12 @@ void MotionRun::read(double time, Trajectory& trajectory) {
   for (int k = 0; k < n; ++k)
     read_piston_channels(system_, reactions, k, k, pressure[k], layout, values);
   const SimTK::Vector& udot = state.getUDot();
-  const AxisMotion shaft{radians(theta), shaft_speed(state),
-                         udot[system_.bodies().shaft.getFirstUIndex(state) + 2]};
+  // Of a given speed the sign is that of what was given: at rest the integration's own is
+  // round-off.
+  const AxisMotion shaft{
+      radians(theta),
+      spec_.kind == DriveKind::speed ? drive_in_time().turning(time).speed : shaft_speed(state),
+      udot[system_.bodies().shaft.getFirstUIndex(state) + 2]};
   const AxisMotion block{radians(psi_deg(state)), block_speed(state),
                          udot[system_.bodies().block.getFirstUIndex(state)]};
   read_pump_channels(system_, state, reactions, {state, shaft.speed}, {shaft, block}, pressure,
@@ -381,7 +387,8 @@ void MotionRun::read(double time, Trajectory& trajectory) {
       shaft.speed == 0 ? not_computed() : checks.power_balance / shaft.speed;
   if (system_.has_rigid_gear()) system_.gear().setting().negative = false;
 
-  std::vector<double> columns = {time, theta, psi_deg(state), rpm(shaft.speed), rpm(block.speed)};
+  std::vector<double> columns = {time, theta, psi_deg(state), rpm(shaft_speed(state)),
+                                 rpm(block.speed)};
   const DriveTorque* torque = system_.drive_torque();
   if (torque != nullptr && torque->has_rotor()) columns.push_back(rpm(torque->rotor_speed(state)));
   append_trajectory_row(trajectory.table, columns, values, checks);

@@ -251,6 +251,7 @@ struct TimingRow {
   std::vector<std::pair<double, double>> angles = {};  ///< stretches of chamber angles it is about
   std::string meant = {};  ///< why it is beyond, where the case says so, or ""
   std::string text = {};
+  std::string bound = {};  ///< "> 12000": what is known of a value that was not found
 };
 
 /// How a table was obtained.

@@ -72,6 +72,9 @@ struct ModelRun {
   std::string choice;  ///< of a run to an error: what was chosen, and what it then did
 };
 
+/// @throws InputError where the rows of a simulation would not fit into this machine's memory
+void check_fits_memory(const Case& the_case, const DriveSpec& drive);
+
 /// Runs one model.
 /// @throws InputError where the options contradict each other or the case refuses them (integrated
 ///         at standstill, say); ComputationError where a model fails
