@@ -58,7 +58,7 @@ int compare(const Options& options) {
 
   const auto refuse = [&](const study::ReadyCase& ready) {
     if (ready.hydraulics)
-      options.the_case.refuse(
+      options.the_case.refuse_timing(
           study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics)));
   };
   refuse(result.first);

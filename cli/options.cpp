@@ -35,13 +35,17 @@ Case CaseOption::read() const {
   return the_case;
 }
 
-void CaseOption::refuse(const std::vector<report::Warning>& timing) const {
-  if (!strict || timing.empty()) return;
-  for (const report::Warning& warning : timing)
+void CaseOption::refuse(const std::vector<report::Warning>& doubts, const std::string& what) const {
+  if (!strict || doubts.empty()) return;
+  for (const report::Warning& warning : doubts)
     std::fprintf(stderr, "bentaxis: error: %s: %s\n", warning.name.c_str(), warning.text.c_str());
-  throw InputError(file +
-                   ": timing of the ports beyond its limits, and --strict; what is meant needs a "
-                   "reason in [plausibility] (docs/hydraulics.md)");
+  throw InputError(what);
+}
+
+void CaseOption::refuse_timing(const std::vector<report::Warning>& timing) const {
+  refuse(timing, file +
+                     ": timing of the ports beyond its limits, and --strict; what is meant needs a "
+                     "reason in [plausibility] (docs/hydraulics.md)");
 }
 
 void add_case(CommandParser command, CaseOption& the_case) {

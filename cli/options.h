@@ -24,9 +24,10 @@ struct CaseOption {
   /// The case as if its file said so. Says on standard error what pump it is, and what of it is
   /// doubtful. @throws InputError, with `strict` for doubtful values too
   Case read() const;
-  /// With `strict`, says on standard error what of the timing of the ports is beyond its limit.
+  /// With `strict`, says what is doubtful on standard error. @param what  the end of the refusal
   /// @throws InputError then
-  void refuse(const std::vector<report::Warning>& timing) const;
+  void refuse(const std::vector<report::Warning>& doubts, const std::string& what) const;
+  void refuse_timing(const std::vector<report::Warning>& timing) const;
 };
 /// CASE, --set and --strict.
 void add_case(CommandParser command, CaseOption& the_case);

@@ -92,7 +92,7 @@ int pressure(const Options& options) {
     study::add_suction_speed(
         document, point,
         study::suction_speed(point.the_case(), *limit, progress_of("suction speed")));
-  options.the_case.refuse(*document.warnings);
+  options.the_case.refuse_timing(*document.warnings);
   if (published) study::add_published(document, *published, point, progress_of);
   if (second)
     study::add_overlay(document, point, study::run_point(std::move(*second), progress_of));

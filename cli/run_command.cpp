@@ -6,6 +6,7 @@
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/run.h"
+#include "bentaxis/study/state_doubts.h"
 #include "bentaxis/study/timing.h"
 #include "commands.h"
 #include "console.h"
@@ -41,6 +42,9 @@ int run_states(const Options& options, const study::ReadyCase& ready,
   for (const Channel& channel : motion_channels()) there.push_back(channel);
   channels.of(there);  // refuses unknown names
   const States states = read_states(options.states, ready.the_case, ready.pressure);
+  const auto doubts = study::state_doubts(ready.the_case, states);
+  options.the_case.refuse(doubts, options.states + ": doubtful states, and --strict");
+  for (const auto& doubt : doubts) warn({doubt.name + ": " + doubt.text});
   MotionTable table = study::run_states(ready, states, run_options, progress_of);
   table.results = select_channels(table.results,
                                   [&](const Channel& channel) { return channels.wants(channel); });
@@ -70,7 +74,7 @@ int run(const Options& options) {
   if (ready.hydraulics) {
     const auto timing =
         study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics));
-    options.the_case.refuse(timing);
+    options.the_case.refuse_timing(timing);
     for (const auto& warning : timing) warnings.push_back(warning.name + ": " + warning.text);
   }
   if (states) {

@@ -28,11 +28,16 @@ void check(const Case& the_case, const Assumptions& assumptions) {
         "mesh");
   const bool compliant = the_case.pump.gear.contact == ToothContact::compliant;
   const bool speed_changes = drive.kind != DriveKind::speed || !drive.curve.time.empty();
-  const auto need = [](double inertia, const char* key) {
+  const std::string file = the_case.file.empty() ? "" : the_case.file.string() + ": ";
+  const auto need = [&](double inertia, const char* key) {
     if (!(inertia > 0))
-      throw InputError(std::string("[") + key +
+      throw InputError(file + "[" + key +
                        "] axial_inertia_kg_mm2 = 0: must be > 0 where the speed may change");
   };
+  if (!has_equation_of_motion(the_case.pump, assumptions.inertia))
+    throw InputError(file +
+                     "[piston]: without inertia about A (mass 0, or all of it at A) pistons have "
+                     "no equation of motion in Simbody: use the analytic model");
   if (speed_changes) need(the_case.pump.shaft.axial_inertia, "shaft");
   if (speed_changes || compliant) need(the_case.pump.block.axial_inertia, "block");
 }

@@ -1614,14 +1614,25 @@ Table drive_table() {
             .fallback = {std::string("speed")},
             .meaning = "the shaft's speed is given; a torque turns it; or a rotor turns it through "
                        "a coupling, Td = K (phi - theta) + D (phi' - theta')"},
+           {.key = "file",
+            .field = curve,
+            .fallback = {std::string()},
+            .meaning =
+                "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case "
+                "file, at least 4 points from a time <= 0 on: the speed or the torque (not of a "
+                "motor) over time instead; empty: none"},
            {.key = "torque_Nm",
             .field =
                 number_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::torque); }),
             .symbol = "Td, T0",
             .unit = {"Nm"},
+            .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                           if (v.drive_spec()->curve.time.empty()) return std::nullopt;
+                           return 0.0;
+                         },
+                         .words = "required, but beside a `file`"},
             .meaning =
-                "of the drive, or of a motor at the speed of `[operation]`; beside a `file` it "
-                "is asked for and unused",
+                "of the drive, or of a motor at the speed of `[operation]`; unused beside a `file`",
             .active = kGivenTorque},
            {.key = "torque_slope_Nm_s_per_rad",
             .field =
@@ -1663,13 +1674,6 @@ Table drive_table() {
             .meaning = "speed of every body at the start, not beside a given speed; from 0 the "
                        "coupling is unwound",
             .part = &kStartSpeed},
-           {.key = "file",
-            .field = curve,
-            .fallback = {std::string()},
-            .meaning =
-                "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case "
-                "file, at least 4 points from a time <= 0 on: the speed or the torque (not of a "
-                "motor) over time instead; empty: none"},
            {.key = "duration_s",
             .field =
                 number_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::duration); }),

@@ -48,19 +48,21 @@ void append_trajectory_row(MotionTable& table, const std::vector<double>& state,
 }
 
 const DriveSpec& drive_of(const Case& the_case) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") + why);
+  };
   if (!the_case.drive)
-    throw InputError("case \"" + the_case.name +
-                     "\" has no [drive]: a simulation needs what turns the shaft, and duration_s");
+    refuse("table [drive] is missing: a simulation needs what turns the shaft, and duration_s");
   const DriveSpec& drive = *the_case.drive;
   if (drive.start_speed && drive.kind == DriveKind::speed)
-    throw InputError(
-        "[drive] start_rpm: must be left out beside kind = \"speed\", which says how "
-        "the shaft turns from the start");
+    refuse(
+        "[drive] start_rpm: must be left out beside kind = \"speed\", which says how the shaft "
+        "turns from the start");
   if (drive.kind != DriveKind::speed && the_case.pump.friction.piston_coulomb > 0 &&
       the_case.pump.friction.regularization == 0)
-    throw InputError(
-        "[friction] regularization_m_per_s = 0: must be > 0 where the shaft may come "
-        "to rest, which [drive] kind = \"" +
+    refuse(
+        "[friction] regularization_m_per_s = 0: must be > 0 where the shaft may come to rest, "
+        "which [drive] kind = \"" +
         std::string(drive.kind == DriveKind::torque ? "torque" : "motor") + "\" allows");
   return drive;
 }

@@ -1,6 +1,9 @@
 #include "bentaxis/study/case_sections.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <string>
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/units.h"
@@ -9,6 +12,79 @@ namespace bentaxis::study {
 
 report::CaseSection case_section(const Case& the_case) {
   return {the_case.file.filename().string(), the_case.entries};
+}
+
+std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion) {
+  const std::string once = motion ? ", asked by each model at its own block angle"
+                                  : ", evaluated once per sample and given to both models";
+  std::string trace = "ideal trace" + once;
+  if (the_case.pressure.kind == PressureKind::curve)
+    trace = "periodic cubic spline through " + the_case.pressure.file.filename().string() + once;
+  if (the_case.pressure.kind == PressureKind::hydraulic)
+    trace = (the_case.pressure.points == 0
+                 ? "hydraulic model, the computed curve"
+                 : fmt::format("hydraulic model, periodic cubic spline through {} points",
+                               the_case.pressure.points)) +
+            once + (motion ? "; that of the constant speed of [operation]" : "");
+  std::vector<report::CommonInput> inputs = {
+      {"chamber pressure", trace,
+       "high-precision curves (computed with their own trace); mean torque of a frictionless pump "
+       "= "
+       "displacement x pressure / 2 pi"},
+      {"geometry, masses, loads of the case file", "read and converted to SI once",
+       "high-precision curves, which read the case file with another parser"},
+      {"law of the port-plate film", "full pressure between r2 and r3, linear to 0 at r1 and r4",
+       "high-precision curves; the integral itself is taken twice (closed form, quadrature)"},
+      {"law of piston friction",
+       the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
+       "high-precision curves; power balance; written once in each model"},
+      {"line of action of the teeth (22)",
+       the_case.pump.gear.flanks == Flanks::two
+           ? "one for each flank, whose separating part pushes the gears apart; written once in "
+             "each model"
+           : "as printed, turned by the sense of rotation; written once in each model",
+       the_case.pump.gear.flanks == Flanks::two
+           ? "high-precision instants and the frame of O4; what one line of action would change is "
+             "among the limits of validity"
+           : "high-precision curves and the frame of O4 check the algebra; that real teeth push "
+             "otherwise "
+             "backwards and on the other flank is among the limits of validity"},
+      {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
+      {"rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
+       "nothing here: a rig or an elastic model"},
+      {"frames, signs and the names of the reactions", "docs/theory.md",
+       "free-body diagrams written in the tests; signs printed in the paper"}};
+  if (!motion) {
+    inputs.push_back(
+        {"constant speed, equal for shaft and block (1:1)",
+         "omega given; no torsion, no play in the gear",
+         "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, "
+         "holds "
+         "its speed"});
+    return inputs;
+  }
+  const DriveSpec& drive = *the_case.drive;
+  inputs.push_back({"what turns the shaft",
+                    drive.kind == DriveKind::speed    ? "its speed is given"
+                    : drive.kind == DriveKind::torque ? "its torque is given"
+                                                      : "torque of rotor and coupling; written "
+                                                        "once in each model",
+                    "stored trajectories of a third integration; work balance of each model"});
+  if (!drive.curve.time.empty())
+    inputs.push_back(
+        {"course over time",
+         "one monotone cubic through " + drive.curve.file.filename().string() + " for both models",
+         "its values, slopes and integral in the tests"});
+  inputs.push_back(
+      the_case.pump.gear.contact == ToothContact::compliant
+          ? report::CommonInput{"contact law of the teeth",
+                                "F = k x0 (x/x0)^e (1 + c x'), from one line of action per flank; "
+                                "written once in each model",
+                                "stored trajectories; rigid teeth are its limit in proportion to "
+                                "1/k"}
+          : report::CommonInput{"rigid teeth", "psi = theta (1:1), no play",
+                                "nothing here: a rig, or compliant teeth"});
+  return inputs;
 }
 
 std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {

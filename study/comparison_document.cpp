@@ -91,53 +91,6 @@ report::Section rounding_section(const std::vector<RoundingLine>& lines) {
   return section;
 }
 
-// What both models are given, and what would catch a mistake in it.
-std::vector<report::CommonInput> common_inputs(const Case& the_case) {
-  const std::string once = ", evaluated once per sample and given to both models";
-  std::string trace = "ideal trace" + once;
-  if (the_case.pressure.kind == PressureKind::curve)
-    trace = "periodic cubic spline through " + the_case.pressure.file.filename().string() + once;
-  if (the_case.pressure.kind == PressureKind::hydraulic)
-    trace = (the_case.pressure.points == 0
-                 ? "hydraulic model, the computed curve"
-                 : fmt::format("hydraulic model, periodic cubic spline through {} points",
-                               the_case.pressure.points)) +
-            once;
-  return {
-      {"chamber pressure", trace,
-       "high-precision curves (computed with their own trace); mean torque of a frictionless pump "
-       "= "
-       "displacement x pressure / 2 pi"},
-      {"geometry, masses, loads of the case file", "read and converted to SI once",
-       "high-precision curves, which read the case file with another parser"},
-      {"law of the port-plate film", "full pressure between r2 and r3, linear to 0 at r1 and r4",
-       "high-precision curves; the integral itself is taken twice (closed form, quadrature)"},
-      {"law of piston friction",
-       the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
-       "high-precision curves; power balance; written once in each model"},
-      {"line of action of the teeth (22)",
-       the_case.pump.gear.flanks == Flanks::two
-           ? "one for each flank, whose separating part pushes the gears apart; written once in "
-             "each model"
-           : "as printed, turned by the sense of rotation; written once in each model",
-       the_case.pump.gear.flanks == Flanks::two
-           ? "high-precision instants and the frame of O4; what one line of action would change is "
-             "among the limits of validity"
-           : "high-precision curves and the frame of O4 check the algebra; that real teeth push "
-             "otherwise "
-             "backwards and on the other flank is among the limits of validity"},
-      {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
-      {"constant speed, equal for shaft and block (1:1)",
-       "omega given; no torsion, no play in the gear",
-       "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, "
-       "holds "
-       "its speed"},
-      {"rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
-       "nothing here: a rig or an elastic model"},
-      {"frames, signs and the names of the reactions", "docs/theory.md",
-       "free-body diagrams written in the tests; signs printed in the paper"}};
-}
-
 std::vector<report::ValidityRow> validity_of(const std::vector<analytic::ValidityLimit>& limits) {
   std::vector<report::ValidityRow> rows;
   for (const auto& limit : limits)
@@ -186,7 +139,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
       "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
       "so is validation, and needs measurements.";
   document.warnings = r.warnings;
-  document.common = common_inputs(the_case);
+  document.common = common_inputs(the_case, false);
   document.validity = validity_of(r.limits);
   if (r.first.hydraulics) document.timing = timing_rows(r.first.the_case, *r.first.hydraulics);
   document.models = {report::model_of(r.analytic, in_words(the_case.analytic)),

@@ -244,6 +244,14 @@ report::Section effort_section(const SimulationResult& r) {
   return section;
 }
 
+std::vector<report::Warning> warnings_of(const SimulationResult& r) {
+  if (!r.ready.hydraulics) return {};
+  return {{"pressure of constant speed",
+           fmt::format("the chamber pressure is the periodic one of {:g} rpm at every speed of the "
+                       "motion; the oil does not follow it.",
+                       r.ready.the_case.operation.speed_rpm)}};
+}
+
 report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
@@ -265,6 +273,8 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
       "Two derivations of the motion, each integrated by its own method, against each other in "
       "time. Agreement says that both follow the same description; whether a pump does is another "
       "question (docs/limits.md).";
+  document.warnings = warnings_of(r);
+  if (!r.choice.only) document.common = common_inputs(the_case, true);
   document.checks = r.checks;
   document.models.emplace();
   document.runs.emplace();
@@ -349,6 +359,8 @@ std::string simulation_text(const SimulationResult& r) {
   if (const std::string times = race(r); !times.empty())
     text += fmt::format("for an error of {:g} of peak: {}\n", r.choice.error, times);
   if (!r.multibody_choice.empty()) text += "chosen " + r.multibody_choice + "\n";
+  for (const report::Warning& warning : warnings_of(r))
+    text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
   return text;
 }
 

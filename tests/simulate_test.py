@@ -81,6 +81,49 @@ class RestTest(SimulateTest):
     def test_too_many_rows_are_refused_before_they_are_computed(self):
         self.refused(self.case(samples=2000000000), "[drive] samples = 2000000000", "GB")
 
+    def test_doubtful_states_are_said(self):
+        columns = "time_s,theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2,suction_bar"
+        good = "0,0,0,1500,1500,0,0,0\n0.001,9,9,1500,1500,0,0,0\n"
+        bad = {"states-vacuum": "0,0,0,1500,1500,0,0,-1.1\n", "states-teeth-apart": "0,0,10.5,1500,1500,0,0,0\n",
+               "states-against-time": "0,0,0,1500,1500,0,0,0\n0.001,0,0,1500,1500,0,0,0\n"}
+        states = self.folder / "states.csv"
+        arguments = ["run", stored("constant_torque") / "case.toml", "--model", "analytic", "--states", states, "--out", "out"]
+        for code, rows in {"": good, **bad}.items():
+            with self.subTest(code):
+                states.write_text(columns + "\n" + rows)
+                done = subprocess.run([base.PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True)
+                said = re.findall(r"warning: (states-[a-z-]+)", done.stderr)
+                self.assertEqual(said, [code] if code else [])
+                if code:
+                    error = self.run_program(*arguments, "--strict", status=BAD_INPUT).stderr
+                    self.assertIn("--strict", error)
+
+    def test_a_torque_over_time_needs_no_torque_beside_it(self):
+        (self.folder / "torque.csv").write_text("time_s,torque_Nm\n0,280\n0.1,280\n0.2,280\n0.3,280\n")
+        case = self.case("constant_torque", torque_Nm=None, file="torque.csv", duration_s=0.002, samples=2)
+        self.simulate(case, "--model", "analytic")
+        by_file = self.table("out/simulation_analytic.csv")
+        self.simulate(self.case("constant_torque", duration_s=0.002, samples=2), "--model", "analytic")
+        for first, second in zip(by_file, self.table("out/simulation_analytic.csv")):
+            self.assertAlmostEqual(float(first["shaft_rpm"]), float(second["shaft_rpm"]), 7)
+
+    def test_a_constant_torque_must_be_given(self):
+        self.refused(self.case("constant_torque", torque_Nm=None), "torque_Nm is missing")
+
+    def test_pressure_that_does_not_follow_the_motion_is_said(self):
+        case = (base.REPO / "cases" / "bap63_rated_hydraulic.toml").read_text()
+        path = self.folder / "case.toml"
+        path.write_text(case + "\n[drive]\ntorque_Nm = 200\nkind = \"torque\"\nduration_s = 0.001\nsamples = 2\n")
+        self.assertIn("pressure of constant speed", self.simulate(path, "--model", "analytic").stdout)
+        self.assertEqual([w["name"] for w in self.report()["warnings"]], ["pressure of constant speed"])
+        self.simulate(self.case(duration_s=0.001, samples=2), "--error", 1e-4)
+        shared = [row["input"] for row in self.report()["common"]]
+        self.assertIn("contact law of the teeth", shared)
+        self.assertIn("what turns the shaft", shared)
+
+    def test_what_cannot_move_is_bad_input(self):
+        self.refused(self.case(duration_s=0.002, samples=2), "case.toml", "[piston]", options=("--set", "piston.mass_kg=0"))
+
     def test_given_pressures_stand_there_once(self):
         columns = ["theta_deg", "psi_deg", "theta_rpm", "psi_rpm", "theta_rad_per_s2", "psi_rad_per_s2"]
         columns += [f"p_{k}_bar" for k in range(1, 6)]

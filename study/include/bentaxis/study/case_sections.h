@@ -11,6 +11,10 @@ namespace bentaxis::study {
 /// The case as it was read.
 report::CaseSection case_section(const Case& the_case);
 
+/// What both models are given, and what would catch a mistake in it.
+/// @param motion  of a simulation of its [drive]; otherwise at constant speed
+std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion);
+
 /// Displacement, stroke, ideal flow and torque, ..
 std::vector<report::DerivedQuantity> derived_section(const Case& the_case);
 
