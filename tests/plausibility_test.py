@@ -108,6 +108,16 @@ class DoubtTest(unittest.TestCase):
                 self.assertEqual(warned(case), [])
                 self.assertIn("278.8" if factor == 1 else f"{278.83 * factor ** 3:.4g} Nm", run("show", case).stderr)
 
+    def test_lands_are_off_the_bores_beyond_their_edges(self):
+        """Rd = 22 mm between r1 and r4; the groove r2 .. r3 within Rd -+ Dpi/2 = 10.75 .. 33.25 mm."""
+        for inner, outer, off in (([21.9, 23], [24, 26], 0), ([22, 23], [24, 26], 1), ([17, 19], [21, 22.1], 0),
+                                  ([17, 19], [21, 22], 1), ([9, 10.8], [24, 26], 0), ([9, 10.7], [24, 26], 1),
+                                  ([17, 19], [33.2, 35], 0), ([17, 19], [33.3, 35], 1)):
+            with self.subTest(inner=inner, outer=outer):
+                codes = warned(self.rated, "--set", f"port_plate.inner_land_mm={inner}",
+                               "--set", f"port_plate.outer_land_mm={outer}")
+                self.assertEqual("lands-off-bores" in codes, bool(off), codes)
+
     def test_what_is_a_limit_is_meant(self):
         for change in ("pump.tilt_deg=0", "operation.speed_rpm=0", "operation.speed_rpm=-1500", "operation.gravity_m_per_s2=0",
                        "pressure.delivery_bar=0", "pressure.transition_deg=0", "block.spring_force_N=0", "piston.mass_kg=0",
@@ -254,6 +264,12 @@ class PictureTest(unittest.TestCase):
             return sum(p.get("class") == "mass" and p.get("d").count("L") == 2 for p in group.iter(SVG + "path"))
         self.assertEqual(heads(), 6)
         self.assertEqual(heads("--set", "pump.joint_circle_radius_mm=2", "--set", "pump.bore_circle_radius_mm=2"), 2)
+
+    def test_an_arrow_points_to_what_is_too_far_to_be_drawn(self):
+        for bearing, words in (("tapered_z_mm=-5000", "C1 tapered at -5000 mm \u2190"),
+                               ("cylindrical_z_mm=5000", "C2 cylindrical at 5000 mm \u2192")):
+            texts = [text.text for text in self.picture("--set", "bearings." + bearing).iter(SVG + "text")]
+            self.assertIn(words, texts)
 
     def test_exchanged_radii_are_seen(self):
         """The circle of the bores leaves the ellipse of the joints' circle altogether."""

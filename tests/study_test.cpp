@@ -1,5 +1,6 @@
 // Studies: one call from a case to a verdict; the inertia study: what lumping does, against the
 // paper's appendix and against scaling laws.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -248,6 +249,26 @@ TEST(InertiaStudy, ReportIsOfTheRunsThatItNames) {
   EXPECT_EQ(analytic.at("Td_z1_Nm, 2 masses - real"),
             report::values_of(study::difference(full.analytic_lumped, full.analytic_real, ""),
                               "Td_z1_Nm"));
+  // The figures of the paper: Figs. 36, 37 without load, Figs. 14, 12 of the loaded pump.
+  const std::map<std::string, std::pair<std::string, bool>> of_the_paper = {
+      {"Fig. 36", {"Rc", false}},
+      {"Fig. 37", {"Rs", false}},
+      {"Fig. 14", {"Rc", true}},
+      {"Fig. 12", {"Rs", true}}};
+  std::size_t shown = 0;
+  for (const report::Figure& figure : report.document.figures.value()) {
+    const auto found = of_the_paper.find(figure.paper);
+    if (found == of_the_paper.end()) continue;
+    ++shown;
+    const auto& [symbol, loaded] = found->second;
+    const std::string name =
+        "|" + symbol + "| 2350 rpm, 2 masses, " + (loaded ? "loaded" : "no load");
+    EXPECT_THAT(std::get<report::ChannelFigure>(figure.content).channels, testing::Contains(name));
+    const Magnitude expected = magnitude(of(study.one_piston, loaded).analytic_lumped, symbol);
+    EXPECT_DOUBLE_EQ(*std::max_element(analytic.at(name).begin(), analytic.at(name).end()),
+                     expected.high);
+  }
+  EXPECT_EQ(shown, of_the_paper.size());
 
   int rows = 0;
   for (const auto& row : report.document.published.value().section.rows) {
