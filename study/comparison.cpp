@@ -16,9 +16,6 @@
 namespace bentaxis::study {
 namespace {
 
-// A film force below this share of the load scale is round-off: its point (53) means nothing.
-constexpr double kNoFilmForce = 1e-12;
-
 double worst_of_group(const compare::Comparison& comparison, const std::string& group) {
   double worst = 0;
   for (const auto& c : comparison.channels)
@@ -183,9 +180,7 @@ bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
     return true;
   if (channel.quantity != "xh" && channel.quantity != "yh") return false;
   const std::size_t fh = ChannelLayout(r.first.the_case.pump.geometry.pistons).Fh();
-  const double scale = zero_scales_.at("N");
-  return std::abs(r.analytic.at(row, fh)) <= kNoFilmForce * scale ||
-         std::abs(r.multibody.at(row, fh)) <= kNoFilmForce * scale;
+  return r.analytic.at(row, fh) == 0 || r.multibody.at(row, fh) == 0;
 }
 
 void Maker::compare_tables() {

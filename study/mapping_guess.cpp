@@ -56,7 +56,7 @@ Series normalised(const Series& values) {
   const double size = std::sqrt(dot(values, values));
   Series out = centred(values);
   const double length = std::sqrt(dot(out, out));
-  for (double& value : out) value = length > 1e-9 * size && length > 0 ? value / length : 0;
+  for (double& value : out) value = length > 1e-9 * size ? value / length : 0;
   return out;
 }
 

@@ -25,6 +25,8 @@ std::vector<fs::path> files_of(const Case& the_case) {
   if (the_case.hydraulics)
     for (const PlatePort* port : {&the_case.hydraulics->delivery, &the_case.hydraulics->suction})
       if (!port->table.file.empty()) files.push_back(port->table.file);
+  if (the_case.drive && !the_case.drive->curve.file.empty())
+    files.push_back(the_case.drive->curve.file);
   return files;
 }
 

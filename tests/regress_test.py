@@ -401,11 +401,14 @@ class ForeignCurveTest(RegressTest):
         lines = [",".join(names)] + [",".join(f"{f * float(row[i]):.6g}" for f, i in zip(factors, keep))
                                      for row in rows]
         (self.folder / "rig.csv").write_text("\n".join(lines) + "\n")
-        shutil.copy(base.REPO / "cases" / "bap63_rated.toml", self.folder / "pump.toml")
+        # What the case reads goes with it, used in a turn at constant speed or not.
+        (self.folder / "pump.toml").write_text((base.REPO / "cases" / "bap63_rated.toml").read_text() +
+                                               '\n[drive]\nfile = "speed.csv"\nduration_s = 0.1\nsamples = 2\n')
+        (self.folder / "speed.csv").write_text("time_s,speed_rpm\n0,1500\n1,1500\n2,1500\n3,1500\n")
         out = self.run_program("reference", "new", "pump.toml", "--from", "rig.csv", "--out", "mine", "--accept").out
         self.assertIn("4 of 4 columns", out)
         self.assertEqual({p.name for p in (self.folder / "mine").iterdir()},
-                         {"case.toml", "rig.csv", "description.toml"})
+                         {"case.toml", "rig.csv", "description.toml", "speed.csv"})
         self.assertIn('theirs = "film"', (self.folder / "mine" / "description.toml").read_text())
         out = self.regress("mine")
         self.assert_mentions(out, "Rb1", "Td", "Fh", "missing     mine: no curve of Rb2", "assumed")

@@ -22,6 +22,7 @@
 #include "bentaxis/study/inertia_study.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/plausibility.h"
+#include "bentaxis/study/reference_set.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/tradeoff.h"
 #include "bentaxis/study/tradeoff_study.h"
@@ -481,6 +482,19 @@ TEST(CompareModels, AWrongInputToOneModelIsNoticed) {
   EXPECT_THROW(study::compare_models(case_named("bap63_rated.toml", 36), wrong, {}), InputError);
 }
 
+TEST(ReferenceSet, FilesOfACaseAreThoseThatItReads) {
+  Case the_case = case_named("bap63_rated.toml", 36);
+  EXPECT_TRUE(study::files_of(the_case).empty());
+  the_case.pressure.kind = PressureKind::curve;
+  the_case.pressure.file = "pressure.csv";
+  the_case.hydraulics.emplace().suction.table.file = "opening.csv";
+  the_case.drive.emplace();
+  EXPECT_EQ(study::files_of(the_case).size(), 2U);
+  the_case.drive->curve.file = "speed.csv";
+  EXPECT_EQ(study::files_of(the_case),
+            (std::vector<std::filesystem::path>{"pressure.csv", "opening.csv", "speed.csv"}));
+}
+
 // Imposed gear, a smaller scene, a film force of zero: absent channels, all of them expected.
 TEST(CompareModels, WhatARunIsKnownNotToComputeDoesNotCountAgainstIt) {
   Case the_case = case_named("bap63_rated.toml", 36);
@@ -495,7 +509,7 @@ TEST(CompareModels, WhatARunIsKnownNotToComputeDoesNotCountAgainstIt) {
   EXPECT_EQ(piston.comparison.find("Td_z1_Nm")->verdict, compare::Verdict::not_computed);
   EXPECT_TRUE(piston.agrees()) << piston.headline();
 
-  // Nothing presses the block along its axis: one model has a force of zero, the other round-off.
+  // Nothing presses the block along its axis: a force of zero, or in one model or both round-off.
   the_case.pump.geometry.tilt = the_case.pump.geometry.axis_offset = 0;
   the_case.pressure.ports = {0, 0};
   the_case.pump.block.spring_force = the_case.pump.friction.piston_coulomb = 0;
@@ -503,6 +517,10 @@ TEST(CompareModels, WhatARunIsKnownNotToComputeDoesNotCountAgainstIt) {
   const auto still = study::compare_models(the_case, {}, {});
   EXPECT_EQ(still.comparison.find("xh_x2_mm")->verdict, compare::Verdict::not_computed);
   EXPECT_EQ(still.comparison.incomplete(), nullptr) << still.headline();
+  the_case.analytic.gear = the_case.multibody.gear = BlockDrive::mesh;
+  the_case.pump.gravity = 0;
+  const auto weightless = study::compare_models(the_case, {}, {});
+  EXPECT_EQ(weightless.comparison.incomplete(), nullptr) << weightless.headline();
 }
 
 TEST(CompareModels, AGapIsNoAgreementWhateverExplainsTheRest) {
