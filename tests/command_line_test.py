@@ -207,6 +207,7 @@ class UsageTest(ProgramTest):
         case = self.case()
         for arguments, words in (
             (["hardcases", "--turns", "100001"], ["--turns", "100000"]),
+            (["hardcases", "--filter", "absent"], ["hard/catalogue.toml", "absent"]),
             (["tradeoff", case, "--samples", "100001"], ["--samples", "100000"]),
             (["run", case, "--model", "multibody", "--way", "integrated", "--error", "0.1004"], ["--error", "0.1"]),
         ):

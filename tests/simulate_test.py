@@ -83,7 +83,7 @@ class RestTest(SimulateTest):
 
     def test_doubtful_states_are_said(self):
         columns = "time_s,theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2,suction_bar"
-        good = "0,0,0,1500,1500,0,0,0\n0.001,9,9,1500,1500,0,0,0\n"
+        good = "0,90,90,1500,1500,0,0,0\n0.001,99,99,1500,1500,0,0,0\n"
         bad = {"states-vacuum": "0,0,0,1500,1500,0,0,-1.1\n", "states-teeth-apart": "0,0,10.5,1500,1500,0,0,0\n",
                "states-against-time": "0,0,0,1500,1500,0,0,0\n0.001,0,0,1500,1500,0,0,0\n"}
         states = self.folder / "states.csv"
@@ -161,12 +161,22 @@ class TrajectoryTest(SimulateTest):
         self.assertEqual(report["files"], ["report.html", "simulation_analytic.csv", "simulation_multibody.csv", "report.json"])
         self.assertTrue(all(check["verdict"] == "holds" for check in report["checks"]))
         self.assertEqual(len(report["checks"]), 4)
+        for rows, check in zip((a, m), (c for c in report["checks"] if c["name"].startswith("power"))):
+            worst = max(rows, key=lambda row: abs(float(row["power_balance_W"])))
+            self.assertEqual((check["worst"], check["theta_deg"]),
+                             (abs(float(worst["power_balance_W"])), float(worst["theta_deg"])))
+            self.assertAlmostEqual(check["scale"], max(
+                abs(float(row["Td_z1_Nm"])) * math.pi / 30 * max(abs(float(row[f"{body}_rpm"])) for body in ("shaft", "block"))
+                for row in rows), delta=1e-9 * check["scale"])
         touches = self.section("Teeth")
         self.assertGreater(len(touches["table"]["rows"]), 0)
         for row in touches["table"]["rows"]:
             flank = 1 if row[1] == "driving" else -1
             self.assertGreater(flank * (row[2] - row[3]), 0)  # they meet
             self.assertGreater(row[5], 0)
+        count = len(touches["table"]["rows"])
+        self.assertEqual(dict(touches["facts"])["touches"], f"analytic {count}, multibody {count}; {count} belong together")
+        self.assertEqual(dict(self.section("Difference")["facts"])["judged until"], "0.002 s")
 
     def test_the_analytic_model_meets_the_stored_trajectories(self):
         for name in FOLDERS[:2]:

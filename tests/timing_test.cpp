@@ -223,6 +223,21 @@ TEST(Verdicts, AReasonOfTheCaseSilencesOne) {
   EXPECT_THROW(names(), InputError);
 }
 
+TEST(Verdicts, OvershootIsHeldToATenthOfTheMeanPressureAndAtLeastTenBar) {
+  Case the_case = rated();
+  for (const double delivery : {275, 50}) {
+    the_case.pressure.ports.delivery = pascals(delivery);
+    const SteadyState state = hydraulics::steady_state(the_case);
+    const auto rows = timing_rows(the_case, state);
+    EXPECT_NEAR(*row_of(rows, "overshoot").limit,
+                delivery == 275 ? state.summary.delivery_mean * 1e-6 : 10, 1e-9);
+    double widest = 0;
+    for (const auto& c : state.timing.connected) widest = std::max(widest, c.largest_area);
+    EXPECT_GT(widest, 0);
+    EXPECT_DOUBLE_EQ(row_of(rows, "connected-area").value, widest * 1e6);
+  }
+}
+
 // The suction port's drop is largest in mid-suction, where its opening is whole: kidney area and
 // the pistons' greatest speed give the flow, the orifice the drop.
 TEST(SuctionSpeed, IsThatOfTheOrificesDrop) {

@@ -231,14 +231,15 @@ class CompletionTest(WordsTest):
         (self.folder / "place").mkdir()
         def completed(line):
             return self.shell("bash", "-c", f"""source {script}
-                compopt() {{ :; }}  # is for a completion at a prompt
-                COMP_LINE={line!r}; COMP_POINT=${{#COMP_LINE}}; _bentaxis; printf '%s\\n' "${{COMPREPLY[@]}}" """).split()
+                compopt() {{ options+=" $*"; }}  # is for a completion at a prompt
+                COMP_LINE={line!r}; COMP_POINT=${{#COMP_LINE}}; _bentaxis
+                printf '%s\\n' "${{COMPREPLY[@]}}" $options """).split()
         self.assertEqual(completed("bentaxis tra"), ["tradeoff"])
         self.assertEqual(completed("bentaxis run pump.toml --model "), ["analytic", "multibody"])
         self.assertEqual(completed("bentaxis run pump.toml --model=an"), ["analytic"])  # bash replaces what follows =
-        self.assertEqual(completed("bentaxis run pu"), ["pump.toml"])
-        self.assertEqual(completed("bentaxis run pump.toml --out p"), ["place"])
-        self.assertEqual(completed("bentaxis run --set pump.tilt"), ["pump.tilt_deg="])
+        self.assertEqual(completed("bentaxis run pu"), ["pump.toml", "-o", "filenames"])
+        self.assertEqual(completed("bentaxis run pump.toml --out p"), ["place", "-o", "filenames"])
+        self.assertEqual(completed("bentaxis run --set pump.tilt"), ["pump.tilt_deg=", "-o", "nospace"])
 
     def test_fish(self):
         script = self.script("fish")
