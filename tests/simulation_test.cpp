@@ -236,6 +236,20 @@ TEST(Simulation, RigidTeethAreTheLimitOfStiffOnes) {
   }
 }
 
+// Without play both flanks are at the teeth at the start: the one presses that the load presses.
+TEST(Simulation, TheFlankThatTheLoadWantsPressesFromTheStart) {
+  Case the_case = motion_case("rattle");
+  the_case.drive->duration = 0.001;
+  the_case.pump.gear.compliance->backlash = 0;
+  const Trajectory t = run(the_case);
+  ASSERT_FALSE(t.record.events.empty());
+  const ToothEvent& first = t.record.events.front();
+  EXPECT_TRUE(first.touch);
+  EXPECT_EQ(first.time_s, 0);
+  EXPECT_EQ(first.flank, column(t, "Rcs_z4_N")[1] > 0 ? 1 : -1);
+  EXPECT_GT(first.impulse, 1e-6);
+}
+
 // ---- drives ------------------------------------------------------------------------------------
 
 TEST(TimeSignal, IsMonotoneAndItsIntegralIsThatOfItsValue) {
