@@ -244,6 +244,9 @@ class PictureTest(unittest.TestCase):
         picture = self.picture("--set", "pump.bore_diameter_mm=20.5")
         scales = {self.drawn(picture, view)[0] for view in ("side", "joints", "block")}
         self.assertEqual(len(scales), 1)
+        _, joints = self.drawn(picture, "joints")
+        flange = next(c for c in joints.iter(SVG + "circle") if c.get("class") == "pale")
+        self.assertTrue(24.92 < float(flange.get("r")) < 1.5 * 24.92, flange.attrib)
         _, block = self.drawn(picture, "block")
         bores = [c for c in block.iter(SVG + "circle") if c.get("class") == "bore"]
         self.assertEqual([float(c.get("r")) for c in bores], [10.25] * 5)

@@ -457,8 +457,15 @@ class GoldenTest(RegressTest):
         self.assertIn("13 others", self.run_program("reference", "update", "set").out)
         for kind in ("high_precision", "published"):
             line = self.refused("reference", "update", f"set/{kind}")
-            self.assert_mentions(line, "no golden curves", "never written")
+            self.assert_mentions(line, f"no golden curves; {kind.replace('_', '-')} data are never written")
         self.assertEqual(self.contents(), before)
+
+    def test_a_golden_curve_has_our_columns(self):
+        self.case()
+        self.run_program("reference", "golden", "case.toml", "--out", "golden")
+        description = self.folder / "golden" / "description.toml"
+        description.write_text(description.read_text() + '\n[[curve.column]]\ntheirs = "Td_z1_Nm"\nours = "Td_z1_Nm"\nunit = "Nm"\n')
+        self.assert_mentions(self.refused("reference", "update", "golden"), "multibody.csv", "has our columns")
 
     def test_golden_needs_a_new_folder(self):
         self.case()

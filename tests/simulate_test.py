@@ -116,10 +116,12 @@ class RestTest(SimulateTest):
         path.write_text(case + "\n[drive]\ntorque_Nm = 200\nkind = \"torque\"\nduration_s = 0.001\nsamples = 2\n")
         self.assertIn("pressure of constant speed", self.simulate(path, "--model", "analytic").stdout)
         self.assertEqual([w["name"] for w in self.report()["warnings"]], ["pressure of constant speed"])
+        shared = lambda: {row["input"]: row["value"] for row in self.report()["common"]}
+        self.simulate(self.case("constant_torque", duration_s=0.001, samples=2), "--error", 1e-4)
+        self.assertEqual(shared()["what turns the shaft"], "its torque is given")
         self.simulate(self.case(duration_s=0.001, samples=2), "--error", 1e-4)
-        shared = [row["input"] for row in self.report()["common"]]
-        self.assertIn("contact law of the teeth", shared)
-        self.assertIn("what turns the shaft", shared)
+        self.assertIn("contact law of the teeth", shared())
+        self.assertEqual(shared()["what turns the shaft"], "its speed is given")
 
     def test_what_cannot_move_is_bad_input(self):
         self.refused(self.case(duration_s=0.002, samples=2), "case.toml", "[piston]", options=("--set", "piston.mass_kg=0"))

@@ -271,6 +271,10 @@ TEST(InertiaStudy, ReportIsOfTheRunsThatItNames) {
   }
   EXPECT_EQ(shown, of_the_paper.size());
 
+  // A piston that does not spin in the case spins in the run that shows that spin stays.
+  EXPECT_EQ(the_case.pump.piston.real->spin, 0);
+  EXPECT_GT(study.spin.value().spin_rpm, 100);
+
   int rows = 0;
   for (const auto& row : report.document.published.value().section.rows) {
     if (row.at.find("2350 rpm") == std::string::npos ||
@@ -480,6 +484,26 @@ TEST(CompareModels, AWrongInputToOneModelIsNoticed) {
   EXPECT_NE(result.headline().find("differ"), std::string::npos);
   wrong.operation.samples_per_revolution = 72;
   EXPECT_THROW(study::compare_models(case_named("bap63_rated.toml", 36), wrong, {}), InputError);
+}
+
+TEST(ReferenceSet, FrameOfTheBlockIsTurnedByTheTilt) {
+  const Case the_case = case_named("bap63_rated.toml", 36);
+  const double tilt = the_case.pump.geometry.tilt;
+  const auto frames = study::frames_of(the_case);
+  const auto& shaft = frames.at("S1");
+  const auto& block = frames.at("S2");
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      double cosine = 0, between = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        cosine += block[i][k] * block[j][k];
+        between += shaft[i][k] * block[j][k];
+      }
+      EXPECT_NEAR(cosine, i == j, 1e-15);
+      const bool about_x = i != 0 && j != 0;
+      EXPECT_NEAR(std::abs(between),
+                  i == j ? (i == 0 ? 1 : std::cos(tilt)) : about_x * std::sin(tilt), 1e-15);
+    }
 }
 
 TEST(ReferenceSet, FilesOfACaseAreThoseThatItReads) {
