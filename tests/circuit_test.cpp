@@ -432,6 +432,7 @@ void expect_closed(const Case& the_case, const std::string& name) {
     EXPECT_NEAR(turns_per_second * work, power[Place::pistons],
                 scaled(2) * turns_per_second * state.summary.displacement * state.computed->error)
         << name;
+  double lost = 0;
   for (int i = 0; i < kPlaces; ++i) {
     const auto place = static_cast<Place>(i);
     const bool there =
@@ -441,8 +442,10 @@ void expect_closed(const Case& the_case, const std::string& name) {
     }
     if (use_of(place) == PowerUse::loss) {
       EXPECT_GE(power[place], 0) << name << ": " << name_of(place);
+      lost += power[place];
     }
   }
+  EXPECT_DOUBLE_EQ(losses(power), lost) << name;
 }
 
 TEST(Power, WhatGoesInComesOut) {

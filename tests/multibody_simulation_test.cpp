@@ -316,6 +316,20 @@ TEST(SimulatedMotion, RigidTeethAreTheLimitOfStiffOnes) {
   EXPECT_LT(soft, 2);  // of some 300 N
 }
 
+TEST(SimulatedMotion, SaysHowFarItIsAndEndsAtOne) {
+  const Case the_case = stored_case("rattle", 2);
+  double done = 0;
+  std::size_t calls = 0;
+  multibody::simulate(the_case, the_case.multibody, PressureTrace(the_case.pressure), {},
+                      [&](double share) {
+                        EXPECT_GE(share, done);
+                        done = share;
+                        ++calls;
+                      });
+  EXPECT_EQ(done, 1);
+  EXPECT_GT(calls, 10U);
+}
+
 TEST(SimulatedMotion, RefusesByNameWhatItCannotHave) {
   const auto refused = [](const Case& the_case, const std::string& what) {
     EXPECT_THAT([&] { simulate(the_case, 1e-6); },
