@@ -118,6 +118,11 @@ class DoubtTest(unittest.TestCase):
                                "--set", f"port_plate.outer_land_mm={outer}")
                 self.assertEqual("lands-off-bores" in codes, bool(off), codes)
 
+    def test_a_speed_in_rad_per_s_is_that_of_a_usual_pump(self):
+        for rpm, doubted in ((50, False), (1500, True), (6150, False)):
+            codes = warned(self.rated, "--set", f"operation.speed_rpm={rpm * 0.104719755:.6g}")
+            self.assertEqual("speed-in-rad-per-s" in codes, doubted, rpm)
+
     def test_what_is_a_limit_is_meant(self):
         for change in ("pump.tilt_deg=0", "operation.speed_rpm=0", "operation.speed_rpm=-1500", "operation.gravity_m_per_s2=0",
                        "pressure.delivery_bar=0", "pressure.transition_deg=0", "block.spring_force_N=0", "piston.mass_kg=0",
