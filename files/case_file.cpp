@@ -149,6 +149,10 @@ class CaseReader {
       drive.curve = read_drive_curve(file, drive.kind);
       return;
     }
+    if (field.share != nullptr) {
+      *field.share(view()) = read_share_curve(file);
+      return;
+    }
     result_.pressure.curve = read_pressure_curve(file);
     PressureTrace{result_.pressure};  // refuses a curve that cannot be a periodic spline
   }

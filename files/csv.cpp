@@ -221,27 +221,49 @@ OpeningTable read_opening_table(const std::filesystem::path& file) {
   return opening;
 }
 
-TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind) {
+namespace {
+
+// Of a value over `first`, times or speeds, as the file has it.
+TimeCurve read_time_curve(const std::filesystem::path& file, const std::string& first,
+                          const std::string& second, bool negative) {
   const NumericTable table = read_numeric_csv(file);
-  const bool speed = kind == DriveKind::speed;
-  const std::string name = speed ? "speed_rpm" : "torque_Nm";
-  if (table.header != std::vector<std::string>{"time_s", name})
-    throw InputError(file.string() + ":1: header must be time_s," + name);
+  if (table.header != std::vector<std::string>{first, second})
+    throw InputError(file.string() + ":1: header must be " + first + "," + second);
+  const bool in_time = first == "time_s";
   TimeCurve curve{file, {}, {}};
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const double time = table.rows[i][0];
-    if (i == 0 && time > 0) refuse_value(file, table, i, 0, "<= 0 (a simulation starts at 0)");
-    if (i > 0 && !(time > curve.time.back()))
+    const double at = table.rows[i][0];
+    if (i == 0 && at > 0 && in_time)
+      refuse_value(file, table, i, 0, "<= 0 (a simulation starts at 0)");
+    if (i > 0 && !(at > curve.time.back()))
       refuse_value(file, table, i, 0,
-                   "> " + number_text(curve.time.back()) + " (times increase strictly)");
-    curve.time.push_back(time);
-    curve.value.push_back(speed ? rad_per_second(table.rows[i][1]) : table.rows[i][1]);
+                   "> " + number_text(curve.time.back()) + (in_time ? " (times" : " (speeds") +
+                       " increase strictly)");
+    if (!negative && !(table.rows[i][1] >= 0)) refuse_value(file, table, i, 1, ">= 0");
+    curve.time.push_back(at);
+    curve.value.push_back(table.rows[i][1]);
   }
   constexpr std::size_t kFewestPoints = 4;
   if (curve.time.size() < kFewestPoints)
     throw InputError(file.string() + ": has " + std::to_string(curve.time.size()) +
                      " points, must be at least 4");
   return curve;
+}
+
+}  // namespace
+
+TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind) {
+  const bool motor = kind == DriveKind::motor;
+  const bool speed = kind == DriveKind::speed;
+  TimeCurve curve = read_time_curve(file, motor ? "speed_rpm" : "time_s",
+                                    speed ? "speed_rpm" : "torque_Nm", true);
+  for (double& value : motor ? curve.time : curve.value)
+    if (motor || speed) value = rad_per_second(value);
+  return curve;
+}
+
+TimeCurve read_share_curve(const std::filesystem::path& file) {
+  return read_time_curve(file, "time_s", "share", false);
 }
 
 // The columns that say how shaft and block move, in the order of their use.
@@ -340,6 +362,16 @@ std::string to_csv(const MotionTable& table) {
     for (const std::size_t c : columns) line.push_back(results.at(row, c));
     append_csv_row(text, line[0], line.data() + 1, line.size() - 1);
   }
+  return text;
+}
+
+std::string oil_csv(const Trajectory& run) {
+  std::string text = "time_s";
+  for (const OilColumn& column : run.oil->columns) text += "," + column.name;
+  text += "\n";
+  const std::size_t columns = run.oil->columns.size();
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    append_csv_row(text, run.table.state(row, 0), run.oil->values.data() + row * columns, columns);
   return text;
 }
 

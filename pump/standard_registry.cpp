@@ -56,6 +56,11 @@ const When kHydraulic{"pressure", "kind", {"hydraulic"}};
 const When kAirTakesTime{"hydraulics", "cavitation", {"rate"}};
 const When kReliefValve{"load", "kind", {"relief_valve"}};
 const When kGivenFlow{"load", "kind", {"flow"}};
+const When kOrifice{"load", "kind", {"orifice"}};
+const When kLaminar{"load", "kind", {"laminar"}};
+const When kBesideRelief{"load", "kind", {"orifice", "laminar", "flow"}};
+const When kAnyRelief{"load", "kind", {"relief_valve", "orifice", "laminar", "flow"}};
+const When kSizedLoad = kAnyRelief;
 const When kCompliant{"gear", "contact", {"compliant"}};
 const When kMotor{"drive", "kind", {"motor"}};
 const When kGivenTorque{"drive", "kind", {"torque", "motor"}};
@@ -113,6 +118,8 @@ constexpr auto kGaps = &HydraulicData::gaps;
 constexpr auto kLoad = &HydraulicData::load;
 constexpr auto kSuctionLine = &HydraulicData::suction_line;
 constexpr auto kDeliveryLine = &HydraulicData::delivery_line;
+constexpr auto kAccumulator = &HydraulicData::accumulator;
+constexpr auto kLoop = &HydraulicData::loop;
 
 // ---- What a rule says
 // ----------------------------------------------------------------------------
@@ -275,6 +282,36 @@ std::string ring_slot_refusal(const ConstView& v) {
   return gaps == nullptr || gaps->ring_slot_height == 0 || gaps->ring_slot_length > 0
              ? ""
              : "must be > 0 where ring_slot_um is";
+}
+
+// Whether what the pump delivers to is held at a pressure.
+bool delivery_is_held(const ConstView& v) {
+  const LoadData* load = hydraulic_part<kLoad>(v);
+  return v.pressure->ports.delivery == 0 ||
+         (load != nullptr && load->kind == LoadKind::constant_pressure);
+}
+
+std::string share_refusal(const ConstView& v) {
+  const TimeCurve& share = hydraulic_part<kLoad>(v)->share;
+  if (share.time.empty()) return "";
+  return share.time.size() >= 4 && share.time.size() == share.value.size()
+             ? ""
+             : "must have at least 4 points";
+}
+
+std::string accumulator_refusal(const ConstView& v) {
+  return !delivery_is_held(v) || hydraulic_part<kDeliveryLine>(v) != nullptr
+             ? ""
+             : "the delivery volume is held at a pressure (constant_pressure, or delivery_bar = 0):"
+               " an accumulator does nothing there";
+}
+
+std::string loop_refusal(const ConstView& v) {
+  if (hydraulic_part<kSuctionLine>(v) != nullptr)
+    return "a closed loop has no tank to draw from: leave out [suction_line]";
+  return delivery_is_held(v) ? "a closed loop needs a load between its sides: not "
+                               "constant_pressure, and not delivery_bar = 0"
+                             : "";
 }
 
 // ---- Tables of a kind
@@ -1539,59 +1576,161 @@ Table delivery_line_table() {
 }
 
 Table load_table() {
+  CurveField share = curve_at([](const auto& v) {
+    return in(in(hydraulic_part<kLoad>(v), &LoadData::share), &TimeCurve::file);
+  });
+  share.share = [](const View& v) { return &hydraulic_part<kLoad>(v)->share; };
   return {
       .name = "load",
       .meaning = "what the pump delivers against; an orifice where there is no such table",
       .part = &kHydraulicPart<kLoad>,
-      .parameters = {
-          {.key = "kind",
-           .field = choice_at(
-               [](const auto& v) { return in(hydraulic_part<kLoad>(v), &LoadData::kind); }),
-           .words = {"orifice", "laminar", "relief_valve", "constant_pressure", "flow"},
-           .fallback = {std::string("orifice")},
-           .meaning = "orifice and laminar: of the size that gives the mean `delivery_bar`; "
-                      "relief_valve: likewise by its cracking pressure, where that is not given; "
-                      "constant_pressure: a line held at `delivery_bar`; flow: takes a given flow"},
-          {.key = "cracking_bar",
-           .field = number_of<kLoad, &LoadData::cracking_pressure>(),
-           .symbol = "p_c",
-           .unit = kBar,
-           .range = {0, 10000},
-           .fallback = {0.0},
-           .meaning = "pressure at which the valve begins to open; 0: sought",
-           .active = kReliefValve},
-          {.key = "opening_mm2_per_bar",
-           .field = number_of<kLoad, &LoadData::opening>(),
-           .symbol = "k",
-           .unit = kAreaPerPressure,
-           .range = kPositive,
-           .fallback = {1.0},
-           .meaning = "area that it opens per pressure above that",
-           .practice = "95 l/min at 275 bar take about 9 mm2",
-           .active = kReliefValve},
-          {.key = "full_area_mm2",
-           .field = number_of<kLoad, &LoadData::full_area>(),
-           .unit = kSquareMillimetres,
-           .range = kPositive,
-           .fallback = {100.0},
-           .meaning = "area of the valve fully open",
-           .active = kReliefValve},
-          {.key = "flow_l_per_min",
-           .field = number_of<kLoad, &LoadData::flow>(),
-           .symbol = "Q",
-           .unit = kLitresPerMinute,
-           .range = kNotNegative,
-           .range_words = "> 0, below displacement x speed",
-           .meaning = "taken whatever the pressure, at the density in the tank; the pressure "
-                      "follows, and `delivery_bar` is where its search starts",
-           .active = kGivenFlow}}};
+      .parameters =
+          {{.key = "kind",
+            .field = choice_at(
+                [](const auto& v) { return in(hydraulic_part<kLoad>(v), &LoadData::kind); }),
+            .words = {"orifice", "laminar", "relief_valve", "constant_pressure", "flow"},
+            .fallback = {std::string("orifice")},
+            .meaning =
+                "orifice and laminar: of the size that gives the mean `delivery_bar`, or of "
+                "that given, then the pressure follows; "
+                "relief_valve: likewise by its cracking pressure; "
+                "constant_pressure: a line held at `delivery_bar`; flow: takes a given flow"},
+           {.key = "cracking_bar",
+            .field = number_of<kLoad, &LoadData::cracking_pressure>(),
+            .symbol = "p_c",
+            .unit = kBar,
+            .range = {0, 10000},
+            .fallback = {0.0},
+            .meaning = "pressure at which the valve begins to open; 0: sought",
+            .active = kReliefValve},
+           {.key = "opening_mm2_per_bar",
+            .field = number_of<kLoad, &LoadData::opening>(),
+            .symbol = "k",
+            .unit = kAreaPerPressure,
+            .range = kPositive,
+            .fallback = {1.0},
+            .meaning = "area that a relief valve opens per pressure above its cracking pressure",
+            .practice = "95 l/min at 275 bar take about 9 mm2",
+            .active = kAnyRelief},
+           {.key = "full_area_mm2",
+            .field = number_of<kLoad, &LoadData::full_area>(),
+            .unit = kSquareMillimetres,
+            .range = kPositive,
+            .fallback = {100.0},
+            .meaning = "area of the valve fully open",
+            .active = kAnyRelief},
+           {.key = "area_mm2",
+            .field = number_of<kLoad, &LoadData::area>(),
+            .symbol = "a",
+            .unit = kSquareMillimetres,
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "of the orifice; 0: sought",
+            .active = kOrifice},
+           {.key = "conductance_l_per_min_per_bar",
+            .field = number_of<kLoad, &LoadData::conductance>(),
+            .symbol = "G_L",
+            .unit = kLeakage,
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "of the laminar load; 0: sought",
+            .active = kLaminar},
+           {.key = "relief_bar",
+            .field = number_of<kLoad, &LoadData::relief_pressure>(),
+            .symbol = "p_r",
+            .unit = kBar,
+            .range = {0, 10000},
+            .fallback = {0.0},
+            .meaning = "cracking pressure of a relief valve beside the load; 0: none",
+            .active = kBesideRelief},
+           {.key = "file",
+            .field = share,
+            .fallback = {std::string()},
+            .meaning =
+                "CSV `time_s,share`, path relative to the case file, at least 4 points from a "
+                "time <= 0 on: in `bentaxis simulate` the load's size (of a relief valve its "
+                "cracking pressure) is times that; other commands leave it aside; empty: none",
+            .active = kSizedLoad},
+           {.key = "flow_l_per_min",
+            .field = number_of<kLoad, &LoadData::flow>(),
+            .symbol = "Q",
+            .unit = kLitresPerMinute,
+            .range = kNotNegative,
+            .range_words = "> 0, below displacement x speed",
+            .meaning = "taken whatever the pressure, at the density in the tank; the pressure "
+                       "follows, and `delivery_bar` is where its search starts",
+            .active = kGivenFlow}},
+      .rules = {{.key = "file", .after = "file", .broken = share_refusal}}};
+}
+
+Table accumulator_table() {
+  return {.name = "accumulator",
+          .meaning = "gas spring at the delivery volume",
+          .part = &kHydraulicPart<kAccumulator>,
+          .parameters = {{.key = "gas_volume_l",
+                          .field = number_of<kAccumulator, &AccumulatorData::gas_volume>(),
+                          .symbol = "V_g",
+                          .unit = kLitres,
+                          .range = {1e-6, 1e4},
+                          .meaning = "of the gas at the precharge"},
+                         {.key = "precharge_bar",
+                          .field = number_of<kAccumulator, &AccumulatorData::precharge>(),
+                          .symbol = "p_g",
+                          .unit = kBar,
+                          .range = {0, 10000},
+                          .meaning = "gauge pressure of the gas without oil; below it the gas "
+                                     "expands no further",
+                          .practice = "0.6..0.9 of the working pressure"},
+                         {.key = "gas_exponent",
+                          .field = number_of<kAccumulator, &AccumulatorData::exponent>(),
+                          .symbol = "n_g",
+                          .range = {1, 1.67},
+                          .fallback = {1.4},
+                          .meaning = "polytropic exponent of the gas",
+                          .practice = "fast: 1.4, at high pressure more; slow: 1"},
+                         {.key = "inlet_area_mm2",
+                          .field = number_of<kAccumulator, &AccumulatorData::inlet_area>(),
+                          .symbol = "a_g",
+                          .unit = kSquareMillimetres,
+                          .range = kPositive,
+                          .fallback = {100.0},
+                          .meaning = "orifice between it and the delivery volume"}},
+          .rules = {{.key = "gas_volume_l", .after = "", .broken = accumulator_refusal}}};
+}
+
+Table loop_table() {
+  return {.name = "loop",
+          .meaning =
+              "closed circuit: the load leads into a volume at the suction port, and a "
+              "charge supply at `suction_bar` feeds either side through a check valve",
+          .part = &kHydraulicPart<kLoop>,
+          .parameters = {{.key = "volume_l",
+                          .field = number_of<kLoop, &LoopData::volume>(),
+                          .symbol = "V_s",
+                          .unit = kLitres,
+                          .range = kPositive,
+                          .fallback = {0.5},
+                          .meaning = "at the suction port"},
+                         {.key = "charge_area_mm2",
+                          .field = number_of<kLoop, &LoopData::charge_area>(),
+                          .symbol = "a_c",
+                          .unit = kSquareMillimetres,
+                          .range = kPositive,
+                          .fallback = {50.0},
+                          .meaning = "of each check valve, fully open"},
+                         {.key = "charge_opening_bar",
+                          .field = number_of<kLoop, &LoopData::opening>(),
+                          .unit = kBar,
+                          .range = {1e-3, 1000},
+                          .fallback = {1.0},
+                          .meaning = "pressure difference over which its area grows from 0 to "
+                                     "that, in proportion"}},
+          .rules = {{.key = "volume_l", .after = "", .broken = loop_refusal}}};
 }
 
 std::string curve_refusal(const ConstView& v) {
   const DriveSpec& drive = *v.drive_spec();
   if (drive.curve.time.empty()) return "";
-  if (drive.kind == DriveKind::motor)
-    return "must be empty: a motor's torque follows from its speed";
   return drive.curve.time.size() >= 4 && drive.curve.time.size() == drive.curve.value.size()
              ? ""
              : "must have at least 4 points";
@@ -1619,8 +1758,9 @@ Table drive_table() {
             .fallback = {std::string()},
             .meaning =
                 "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case "
-                "file, at least 4 points from a time <= 0 on: the speed or the torque (not of a "
-                "motor) over time instead; empty: none"},
+                "file, at least 4 points from a time <= 0 on: the speed or the torque over time "
+                "instead; of a motor `speed_rpm,torque_Nm`, its torque over its speed; empty: "
+                "none"},
            {.key = "torque_Nm",
             .field =
                 number_at([](const auto& v) { return in(v.drive_spec(), &DriveSpec::torque); }),
@@ -1640,7 +1780,7 @@ Table drive_table() {
             .symbol = "s",
             .unit = {"Nm s/rad"},
             .fallback = {0.0},
-            .meaning = "the motor's torque is T0 - s (phi' - omega)",
+            .meaning = "the motor's torque is T0 - s (phi' - omega), beside a `file` it is unused",
             .part = &kMotorData},
            {.key = "rotor_inertia_kg_m2",
             .field =
@@ -1710,6 +1850,8 @@ const Registry& standard_registry() {
        suction_line_table(),
        delivery_line_table(),
        load_table(),
+       accumulator_table(),
+       loop_table(),
        assumptions_table("analytic", [](const auto& v) { return v.analytic; }),
        assumptions_table("multibody", [](const auto& v) { return v.multibody; }),
        plausibility_table()}};

@@ -11,6 +11,7 @@
 #include "bentaxis/pump/pressure.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/results/trajectory.h"
 
 namespace bentaxis {
 
@@ -42,6 +43,10 @@ OpeningTable read_opening_table(const std::filesystem::path& file);
 /// @throws InputError naming file and line.
 TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind);
 
+/// Reads the share of a load over time: CSV with the header time_s,share; shares >= 0.
+/// @throws InputError naming file and line.
+TimeCurve read_share_curve(const std::filesystem::path& file);
+
 /// Reads the motion of another simulator or a rig: CSV with theta_deg, psi_deg, theta_rpm, psi_rpm,
 /// theta_rad_per_s2, psi_rad_per_s2 and where there are any time_s, p_1_bar .. p_N_bar,
 /// suction_bar, delivery_bar, in any order. Pressures that it does not give are the case's, those
@@ -52,6 +57,9 @@ States read_states(const std::filesystem::path& file, const Case& the_case,
 
 /// A table along a motion as CSV text: its states, then its channels.
 std::string to_csv(const MotionTable& table);
+
+/// What the oil of a simulation does: time_s, then its columns.
+std::string oil_csv(const Trajectory& run);
 
 /// The table as CSV text: theta_deg, then one column per channel; shortest text that reads back to
 /// the same double; not computed = empty.

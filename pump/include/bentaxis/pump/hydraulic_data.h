@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "bentaxis/pump/drive_spec.h"
 #include "bentaxis/pump/parameters.h"
 
 namespace bentaxis {
@@ -69,11 +70,11 @@ enum class Cavitation {
   rate,         ///< likewise, but what is out follows that equilibrium with time constants
 };
 
-/// What the pump delivers against. Size: what is sought so that the mean delivery pressure is the
-/// one asked for.
+/// What the pump delivers against. Size: what is given, or sought so that the mean delivery
+/// pressure is the one asked for.
 enum class LoadKind {
-  orifice,       ///< to the atmosphere; its area is sought
-  laminar,       ///< to the atmosphere, flow in proportion to pressure; its conductance is sought
+  orifice,       ///< its area is the size
+  laminar,       ///< flow in proportion to pressure; its conductance is the size
   relief_valve,  ///< opens in proportion to the pressure above cracking, which is given or sought
   constant_pressure,  ///< a line held at the delivery pressure
   flow,               ///< takes a given flow; the pressure follows
@@ -87,10 +88,23 @@ struct LoadData {
   double opening = 1e-11;        ///< m2/Pa, area per pressure above cracking
   double full_area = 1e-4;       ///< m2, fully open
   double flow = 0;               ///< m3/s, given, at the density in the suction port
+  double area = 0;               ///< m2, of the orifice; 0: sought
+  double conductance = 0;        ///< m3/(s Pa), of the laminar load; 0: sought
+  /// Pa, cracking pressure of a relief valve beside an orifice, a laminar load or a given flow; 0:
+  /// none.
+  double relief_pressure = 0;
+  TimeCurve share = {};  ///< of the size over time, in a simulation
 
   /// Whether the mean delivery pressure follows from the load instead of being asked for.
   bool sets_pressure() const {
-    return kind == LoadKind::flow || (kind == LoadKind::relief_valve && cracking_pressure > 0);
+    return kind == LoadKind::flow || (kind == LoadKind::orifice && area > 0) ||
+           (kind == LoadKind::laminar && conductance > 0) ||
+           (kind == LoadKind::relief_valve && cracking_pressure > 0);
+  }
+  /// Whether there is a relief valve beside the load.
+  bool has_relief() const {
+    return relief_pressure > 0 && kind != LoadKind::relief_valve &&
+           kind != LoadKind::constant_pressure;
   }
 };
 
@@ -106,6 +120,22 @@ struct SuctionLineData {
   double length = 0, diameter = 0;  ///< m, inside
   double loss = 0;                  ///< zeta: pressure loss over the dynamic pressure in the pipe
   double volume = 0;                ///< m3, at the port
+};
+
+/// `[accumulator]`: a gas spring at the delivery volume.
+struct AccumulatorData {
+  double gas_volume = 0;  ///< m3, at the precharge
+  double precharge = 0;   ///< Pa gauge
+  double exponent = 1.4;  ///< n of the gas, p V^n = const
+  double inlet_area = 0;  ///< m2, orifice between it and the delivery volume
+};
+
+/// `[loop]`: the load leads into a volume at the suction port, and a charge supply at the suction
+/// pressure fills either side through a check valve.
+struct LoopData {
+  double volume = 0;       ///< m3, at the suction port
+  double charge_area = 0;  ///< m2, of each check valve, fully open
+  double opening = 1e5;    ///< Pa, pressure difference over which it opens
 };
 
 /// `[oil]`: viscosity.
@@ -161,6 +191,8 @@ struct HydraulicData {
   std::optional<LoadData> load;  ///< an orifice where there is none
   std::optional<DeliveryLineData> delivery_line;
   std::optional<SuctionLineData> suction_line;
+  std::optional<AccumulatorData> accumulator;
+  std::optional<LoopData> loop;  ///< an open circuit where there is none
   std::optional<OilData> oil;
   std::optional<GapData> gaps;
   double tolerance = 0;       ///< relative error of pressure per step of the time integration

@@ -112,11 +112,13 @@ struct PairField {
   Access<double> first, second;
 };
 /// A CSV file with the points of a curve, relative to the case file: the opening of a port, what
-/// drives the shaft over time, or where both are null the chamber pressure. An empty name: none.
+/// drives the shaft over time, the share of a load over time, or where all are null the chamber
+/// pressure. An empty name: none.
 struct CurveField {
   Access<std::filesystem::path> file;
   OpeningTable* (*opening)(const View&) = nullptr;
   DriveSpec* (*drive)(const View&) = nullptr;
+  TimeCurve* (*share)(const View&) = nullptr;
 };
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;
