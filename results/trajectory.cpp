@@ -67,4 +67,14 @@ const DriveSpec& drive_of(const Case& the_case) {
   return drive;
 }
 
+void require_smooth_friction(const Case& the_case) {
+  const bool free = drive_of(the_case).kind != DriveKind::speed ||
+                    the_case.pump.gear.contact == ToothContact::compliant;
+  if (free && the_case.pump.friction.piston_coulomb > 0 &&
+      the_case.pump.friction.regularization == 0)
+    throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+                     "[friction] regularization_m_per_s = 0: must be > 0 where the oil follows the "
+                     "motion: friction that jumps is not followed there");
+}
+
 }  // namespace bentaxis

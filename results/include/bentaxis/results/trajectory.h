@@ -8,6 +8,7 @@
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
+#include "bentaxis/results/oil.h"
 
 namespace bentaxis {
 
@@ -50,12 +51,39 @@ struct TrajectoryRecord {
   std::string choice;  ///< method and tolerance, and why
 };
 
+/// Energy that went by a place of the oil's circuit, J, from the start to the end.
+struct OilEnergy {
+  OilPlace place;
+  double energy = 0;
+};
+
+/// The oil of a simulation in which it follows the motion.
+struct OilHistory {
+  std::vector<OilColumn> columns;
+  std::vector<double> values;  ///< row-major, rows of the trajectory
+  std::vector<OilEnergy> energies;
+  double energy_gained = 0;    ///< J, stored in the oil
+  double energy_residual = 0;  ///< J, sources less everything else at the end; must vanish
+  double worst_energy_residual = 0;
+  double mass_in = 0, mass_out = 0, mass_gained = 0;  ///< kg
+  double mass_residual = 0, worst_mass_residual = 0;  ///< kg
+  /// J, work of the pressures on the pistons by the mechanical model; with that of the pistons on
+  /// the oil, which comes from the volumes of the chambers, it must vanish.
+  double pressure_work = 0;
+  double exchange_residual = 0, worst_exchange_residual = 0;  ///< J, their sum
+
+  double value(std::size_t row, std::size_t column) const {
+    return values[row * columns.size() + column];
+  }
+};
+
 /// A simulated motion: rows at 0, duration/samples, .., duration.
 struct Trajectory {
   /// State columns as trajectory_columns() has them.
   MotionTable table;
   std::vector<double> lag;  ///< theta - psi, rad, per row, with its own digits
   TrajectoryRecord record;
+  std::optional<OilHistory> oil;  ///< where oil is simulated too
 };
 
 /// time_s, theta_deg, psi_deg, shaft_rpm, block_rpm, and motor_rpm where a motor drives.
@@ -77,5 +105,10 @@ void append_trajectory_row(MotionTable& table, const std::vector<double>& state,
 /// @throws InputError naming the key where [drive] is missing or cannot be simulated with the
 /// pump: dry friction that jumps (`regularization_m_per_s` = 0) where speeds may vanish.
 const DriveSpec& drive_of(const Case& the_case);
+
+/// @throws InputError where dry friction jumps and the motion depends on it, which an integration
+///         with the oil does not follow: `regularization_m_per_s` = 0 of a shaft or a block that
+///         moves freely
+void require_smooth_friction(const Case& the_case);
 
 }  // namespace bentaxis

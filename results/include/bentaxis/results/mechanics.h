@@ -1,0 +1,71 @@
+// The mechanics of a pump as equations of motion, for an integration that carries oil with it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "bentaxis/results/channels.h"
+#include "bentaxis/results/motion.h"
+#include "bentaxis/results/oil.h"
+
+namespace bentaxis {
+
+/// States of motion. Those that a case does not have stay 0.
+enum MotionIndex : std::size_t {
+  kTurn,         ///< theta less the start's speed times time, rad; 0 where the speed is given
+  kTurnRate,     ///< rad/s, likewise
+  kLag,          ///< theta - psi, rad, of compliant teeth
+  kLagRate,      ///< rad/s
+  kTwist,        ///< of the coupling, phi - theta, rad
+  kTwistRate,    ///< rad/s
+  kWorkOfLoads,  ///< J, as in TrajectoryRecord
+  kWorkOfDrive,  ///< J
+  kImpulse,      ///< Ns, integral of the magnitude of the tooth force
+  kMotionStates
+};
+using MotionVector = std::array<double, kMotionStates>;
+
+/// Shaft and block, and the rotor of a motor, under the loads of the oil. A model derives its own;
+/// nothing of it depends on what was asked before.
+class Mechanics {
+ public:
+  virtual ~Mechanics() = default;
+
+  virtual const ChannelLayout& layout() const = 0;
+  /// At time 0, theta = psi = 0, as DriveSpec says.
+  virtual MotionVector start() const = 0;
+  /// What each state is measured by: an error of one part in this scale changes reactions by about
+  /// the same part of their peak. > 0.
+  virtual MotionVector scales() const = 0;
+  /// Which states move in this case: [kTurn, kTurnRate], [kLag, kLagRate], [kTwist, kTwistRate].
+  virtual bool shaft_is_free() const = 0;
+  virtual bool compliant() const = 0;
+  virtual bool has_motor() const = 0;
+  /// Times at which what drives the shaft changes its law, s.
+  virtual std::vector<double> knots() const = 0;
+
+  /// Angles and speeds; accelerations are not filled in.
+  virtual AxisMotion shaft(double time, const MotionVector& y) const = 0;
+  virtual AxisMotion block(double time, const MotionVector& y) const = 0;
+  /// Of a flank (+1: the shaft pushes the block towards +psi, -1) of compliant teeth, m; below 0:
+  /// the gap; and its rate, m/s.
+  virtual double approach(const MotionVector& y, int flank) const = 0;
+  virtual double approach_rate(const MotionVector& y, int flank) const = 0;
+
+  /// dy/dt. Forces follow their laws as they are: between flanks that do not touch nothing acts.
+  /// @throws ComputationError where the model has no accelerations
+  virtual void rates(double time, const MotionVector& y, const OilLoads& loads,
+                     MotionVector& dy) = 0;
+  /// Power of the chamber pressures on the pistons, W.
+  virtual double pressure_power(double time, const MotionVector& y, const OilLoads& loads) = 0;
+  /// All channels of the layout, SI, and the checks.
+  /// @param state  values of trajectory_columns() in their units
+  virtual void row(double time, const MotionVector& y, const OilLoads& loads,
+                   std::vector<double>& state, std::vector<double>& row, MotionChecks& checks) = 0;
+  /// Of all bodies and of the rotor, J; of the teeth and the coupling, J.
+  virtual double kinetic_energy(double time, const MotionVector& y) = 0;
+  virtual double potential_energy(const MotionVector& y) const = 0;
+};
+
+}  // namespace bentaxis
