@@ -45,6 +45,32 @@ function(bentaxis_library room)
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 endfunction()
 
+# A source that uses SUNDIALS, as an object with SUNDIALS joined to it statically and out of sight
+# (cmake/isolate.cmake says why). It sees bentaxis::results and the headers of its room.
+#   bentaxis_with_sundials(<target> <source> <variable that receives the object>)
+function(bentaxis_with_sundials name source variable)
+  set(sundials SUNDIALS::cvodes_static SUNDIALS::nvecserial_static SUNDIALS::sunmatrixdense_static
+    SUNDIALS::sunlinsoldense_static)
+  set(archives "")
+  foreach(library IN LISTS sundials)
+    list(APPEND archives $<TARGET_FILE:${library}>)
+  endforeach()
+  add_library(${name} STATIC ${source})
+  bentaxis_target(${name} 20)
+  target_link_libraries(${name} PRIVATE bentaxis::results ${sundials})
+  target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/include)
+  set(isolated ${CMAKE_CURRENT_BINARY_DIR}/${name}_with_sundials.o)
+  add_custom_command(
+    OUTPUT ${isolated}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${isolated} -DARCHIVE=$<TARGET_FILE:${name}>
+      "-DLIBRARIES=${archives}" -DLINKER=${CMAKE_LINKER} -DNM=${CMAKE_NM} -DOBJCOPY=${CMAKE_OBJCOPY}
+      -P ${PROJECT_SOURCE_DIR}/cmake/isolate.cmake
+    DEPENDS ${name} ${PROJECT_SOURCE_DIR}/cmake/isolate.cmake
+    COMMENT "Hiding SUNDIALS from Simbody" VERBATIM)
+  set_source_files_properties(${isolated} PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
+  set(${variable} ${isolated} PARENT_SCOPE)
+endfunction()
+
 # For what runs once a command and is long to compile (documents, JSON, option parsing): less optimisation
 # costs nothing there. Never for what computes at angles.
 #   bentaxis_compile_fast(<target> [<source>...])    all of the target, or these sources of it

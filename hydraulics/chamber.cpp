@@ -10,6 +10,10 @@ namespace bentaxis::hydraulics {
 
 Chamber::Chamber(const Geometry& g, double dead_volume)
     : length_squared_(g.piston_length * g.piston_length),
+      joint_across_(g.joint_circle_radius),
+      joint_along_(g.joint_circle_radius * std::cos(g.tilt)),
+      joint_centre_(g.axis_offset * std::sin(g.tilt)),
+      bore_radius_(g.bore_circle_radius),
       area_(kPi / 4 * g.bore_diameter * g.bore_diameter),
       dead_volume_(dead_volume) {
   // In S2 the joint is off the axis of its bore by ((Rd-Ra) sin, (Rd - Ra cos(alpha)) cos - b
@@ -50,6 +54,17 @@ Chamber::Height Chamber::height(double u) const {
 Chamber::Volume Chamber::volume(double theta) const {
   const Height at = height(std::cos(theta));
   return {dead_volume_ + area_ * (highest_ - at.value), area_ * at.slope * std::sin(theta)};
+}
+
+Chamber::Turned Chamber::volume(double theta, double psi) const {
+  const double ct = std::cos(theta), st = std::sin(theta);
+  const double cp = std::cos(psi), sp = std::sin(psi);
+  const double across = bore_radius_ * sp - joint_across_ * st;
+  const double along = bore_radius_ * cp - joint_along_ * ct - joint_centre_;
+  const double root = std::sqrt(length_squared_ - across * across - along * along);
+  return {dead_volume_ + area_ * (highest_ - (rise_ * ct + root)),
+          area_ * (rise_ * st + (along * joint_along_ * st - across * joint_across_ * ct) / root),
+          area_ * bore_radius_ * (across * cp - along * sp) / root};
 }
 
 }  // namespace bentaxis::hydraulics

@@ -16,8 +16,16 @@ class Chamber {
     double value = 0;  ///< m3
     double slope = 0;  ///< dV/dtheta, m3 per rad
   };
-  /// At the chamber's own angle theta_k, rad.
+  /// At the chamber's own angle theta_k, rad: shaft and block turn alike.
   Volume volume(double theta) const;
+
+  struct Turned {
+    double value = 0;     ///< m3
+    double by_joint = 0;  ///< dV/dtheta, m3 per rad
+    double by_bore = 0;   ///< dV/dpsi
+  };
+  /// The joint, which turns with the shaft, at theta_k and the bore at psi_k, rad.
+  Turned volume(double theta, double psi) const;
 
   /// Piston area x stroke, m3: largest minus least volume.
   double swept() const { return area_ * (highest_ - lowest_); }
@@ -31,6 +39,8 @@ class Chamber {
 
   // z_B = rise_ u + root, root^2 = length^2 - (c0_ + c1_ u + c2_ u^2).
   double rise_, length_squared_, c0_, c1_, c2_;
+  // Of the joint's circle, seen along the block's axis: half axes and centre; radius of the bores'.
+  double joint_across_, joint_along_, joint_centre_, bore_radius_;
   double area_, dead_volume_;
   double highest_ = 0, lowest_ = 0;
 };

@@ -86,7 +86,7 @@ int integral_rates(realtype x, N_Vector y, N_Vector dq, void* user) {
   if (problem.energies) {
     const PowerBudget power = network.power(x, data(y), problem.flows);
     const double work = network.seconds_per_degree() / problem.work_scale;
-    for (int i = 0; i < kPlaces; ++i) to[i] = power[static_cast<Place>(i)] * work;
+    for (int i = 0; i < network.place_count(); ++i) to[i] = power[static_cast<Place>(i)] * work;
     return 0;
   }
   std::fill(to, to + kIntegrals, 0.0);
@@ -207,7 +207,7 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
   }
   const bool integrate = integrals != nullptr || energy != nullptr;
   if (integrate) {
-    const int count = energy != nullptr ? kPlaces : kIntegrals;
+    const int count = energy != nullptr ? network_.place_count() : kIntegrals;
     cv.integrals = N_VNew_Serial(count, cv.context);
     cv.sampled_integrals = N_VNew_Serial(count, cv.context);
     if (cv.integrals == nullptr || cv.sampled_integrals == nullptr) throw std::bad_alloc();
@@ -268,7 +268,7 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
     if (sensitivity != nullptr) check(CVodeSensReInit(cv.memory, CV_SIMULTANEOUS, cv.sensitivity));
   }
   if (energy != nullptr)
-    for (int i = 0; i < kPlaces; ++i)
+    for (int i = 0; i < network_.place_count(); ++i)
       (*energy)[static_cast<Place>(i)] = data(cv.integrals)[i] * problem.work_scale;
   else if (integrals != nullptr)
     *integrals = in_units(problem, data(cv.integrals));

@@ -19,19 +19,10 @@ constexpr double kSameEdge = 1e-9;
 // Of a delivery line: beyond, a search takes minutes.
 constexpr int kMostModes = 48;
 
-double seconds_per_degree(const Case& the_case) {
-  const double speed = the_case.operation.speed_rpm;
-  const auto refuse = [&](const std::string& why) {
-    throw InputError(the_case.file.string() + ": [operation] speed_rpm = " + number_text(speed) +
-                     ": must be > 0 with [pressure] kind = \"hydraulic\": " + why);
-  };
-  if (speed == 0) refuse("at standstill there is no periodic pressure");
-  if (speed < 0)
-    refuse(
-        "backwards the pump takes oil from the delivery line (motoring), which has "
-        "a load and no supply here");
-  return 1 / (6 * speed);
-}
+// Largest delivery pressure of a case, Pa.
+constexpr double kHighestPressure = 1e9;
+// What motion in time is measured by where the case says standstill, 1/min.
+constexpr double kUsualSpeed = 1500;
 
 const HydraulicData& data_of(const Case& the_case) {
   if (!the_case.hydraulics)
@@ -40,11 +31,30 @@ const HydraulicData& data_of(const Case& the_case) {
   return *the_case.hydraulics;
 }
 
+LoadData load_of(const Case& the_case) { return data_of(the_case).load.value_or(LoadData()); }
+
+double seconds_per_degree(const Case& the_case, Network::Use use) {
+  const double speed = the_case.operation.speed_rpm;
+  if (use == Network::Use::time) return 1 / (6 * (speed != 0 ? std::abs(speed) : kUsualSpeed));
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(the_case.file.string() + ": [operation] speed_rpm = " + number_text(speed) +
+                     ": refused with [pressure] kind = \"hydraulic\": " + why);
+  };
+  if (speed == 0) refuse("at standstill there is no periodic pressure");
+  const bool supplied = the_case.pressure.ports.delivery == 0 ||
+                        load_of(the_case).kind == LoadKind::constant_pressure;
+  if (speed < 0 && !supplied && !load_of(the_case).sets_pressure())
+    refuse(
+        "backwards the pump takes oil from the delivery line (motoring), and no size of a load "
+        "gives "
+        "delivery_bar there: a supply does ([load] kind = \"constant_pressure\"), or a size of "
+        "[load] is to be given, in a [loop] say");
+  return 1 / (6 * std::abs(speed));
+}
+
 bool finite(const double* from, const double* to) {
   return std::all_of(from, to, [](double x) { return std::isfinite(x); });
 }
-
-LoadData load_of(const Case& the_case) { return data_of(the_case).load.value_or(LoadData()); }
 
 double kinematic_viscosity(const HydraulicData& data) {
   return data.oil ? Viscosity(*data.oil, data.density).kinematic() : 0;
@@ -52,8 +62,10 @@ double kinematic_viscosity(const HydraulicData& data) {
 
 }  // namespace
 
-Network::Network(const Case& the_case)
-    : n_(validate(the_case).pump.geometry.pistons),
+Network::Network(const Case& the_case, Use use)
+    : use_(use),
+      direction_(use == Use::period && the_case.operation.speed_rpm < 0 ? -1 : 1),
+      n_(validate(the_case).pump.geometry.pistons),
       fixed_end_(the_case.pressure.ports.delivery == 0 ||
                  load_of(the_case).kind == LoadKind::constant_pressure),
       fluid_(data_of(the_case)),
@@ -62,7 +74,7 @@ Network::Network(const Case& the_case)
                 the_case.pump.geometry.bore_circle_radius),
       suction_(*the_case.hydraulics, the_case.hydraulics->suction,
                the_case.pump.geometry.bore_circle_radius),
-      seconds_per_degree_(hydraulics::seconds_per_degree(the_case)),
+      seconds_per_degree_(hydraulics::seconds_per_degree(the_case, use)),
       delivery_volume_(the_case.hydraulics->delivery_volume),
       orifice_{the_case.hydraulics->discharge_coefficient,
                the_case.hydraulics->transition_pressure * the_case.hydraulics->transition_pressure},
@@ -77,7 +89,9 @@ Network::Network(const Case& the_case)
       case_potential_(fluid_.potential(fluid_.log_pressure(the_case.hydraulics->case_pressure))),
       suction_potential_(fluid_.potential(suction_s_)),
       fixed_potential_(fluid_.potential(delivery_s_)),
-      load_(load_of(the_case), orifice_, fluid_, suction_state_.density * load_of(the_case).flow),
+      load_(load_of(the_case), orifice_, fluid_, suction_state_.density * load_of(the_case).flow,
+            the_case.hydraulics->loop.has_value()),
+      loop_(the_case.hydraulics->loop.has_value()),
       fixed_(fixed_end_ && !the_case.hydraulics->delivery_line),
       sought_(!fixed_end_ && load_.sought()),
       release_time_(the_case.hydraulics->release_time),
@@ -91,7 +105,7 @@ Network::Network(const Case& the_case)
                      ": the pistons have no stroke, so that there is no displacement to compute a "
                      "hydraulic pressure from");
   const HydraulicData& data = *the_case.hydraulics;
-  if (load_.kind() == LoadKind::flow && !fixed_end_ &&
+  if (use == Use::period && load_.kind() == LoadKind::flow && !fixed_end_ && !backwards() &&
       !(data.load->flow > 0 && data.load->flow * suction_state_.density < ideal_mass_flow()))
     throw InputError(the_case.file.string() +
                      ": [load] flow_l_per_min = " + number_text(data.load->flow / kLitrePerMinute) +
@@ -105,6 +119,12 @@ Network::Network(const Case& the_case)
     suction_at_ = states_;
     states_ += 2;
   }
+  if (loop_) {
+    suction_volume_ = data.loop->volume;
+    charge_area_ = data.loop->charge_area;
+    charge_opening_ = data.loop->opening;
+    suction_at_ = states_++;
+  }
   if (data.delivery_line) {
     using End = TransmissionLine::End;
     pipe_.emplace(*data.delivery_line, fixed_end_ ? End::given_pressure : End::given_flow,
@@ -117,6 +137,11 @@ Network::Network(const Case& the_case)
     pipe_at_ = states_;
     states_ += pipe_->size();
   }
+  if (data.accumulator) {
+    accumulator_.emplace(*data.accumulator, fluid_);
+    inlet_area_ = data.accumulator->inlet_area;
+    accumulator_at_ = states_++;
+  }
   if (data.cavitation == Cavitation::rate && data.dissolved_air > 0) {
     air_at_ = states_;
     states_ += n_;
@@ -124,7 +149,8 @@ Network::Network(const Case& the_case)
   // All chambers meet an edge at the same angle within the period.
   for (const auto* port : {&delivery_, &suction_})
     for (const double edge : port->edges_deg()) {
-      const double within = std::fmod(edge, period_deg());
+      const double turned = std::fmod(edge, period_deg());
+      const double within = backwards() ? period_deg() - turned : turned;
       if (within > kSameEdge && within < period_deg() - kSameEdge) edges_deg_.push_back(within);
     }
   std::sort(edges_deg_.begin(), edges_deg_.end());
@@ -133,23 +159,69 @@ Network::Network(const Case& the_case)
                    edges_deg_.end());
 }
 
+Network::Moment Network::at(double x) const {
+  return {direction_ * x, seconds_per_degree_, direction_ * kRadPerDegree, {}, {}, true};
+}
+
+Network::Moment Network::at(const AxisMotion& shaft, const AxisMotion& block) {
+  return {block.angle / kRadPerDegree, 1, 1, shaft, block, false};
+}
+
+Chamber::Volume Network::volume(const Moment& now, int k) const {
+  if (now.locked) return chamber_.volume(radians(chamber_deg(now.block_deg, k)));
+  const double behind = 2 * kPi * k / n_;
+  const Chamber::Turned turned =
+      chamber_.volume(now.shaft.angle - behind, now.block.angle - behind);
+  return {turned.value, turned.by_joint * now.shaft.speed + turned.by_bore * now.block.speed};
+}
+
 double Network::ideal_mass_flow() const {
   return suction_state_.density * displacement() / (360 * seconds_per_degree_);
 }
 
 double Network::load_size_for(double mass_flow) const {
-  return load_.sought() ? load_.size_for(mass_flow, fixed_state_) : load_.size();
+  return load_.sought() ? load_.size_for(mass_flow, fixed_state_, loop_ ? suction_state_ : outside_)
+                        : load_.size();
 }
 
 std::vector<double> Network::uniform(double chambers, double delivery, double mass_flow) const {
   std::vector<double> y(states_, chambers);
   if (!fixed_) y[n_] = delivery;
-  if (suction_line_) {
-    y[suction_at_] = suction_s_;
-    y[suction_at_ + 1] = mass_flow / ideal_mass_flow();
-  }
+  if (has_suction_volume()) y[suction_at_] = suction_s_;
+  if (suction_line_) y[suction_at_ + 1] = mass_flow / ideal_mass_flow();
+  if (accumulator_) y[accumulator_at_] = delivery;
   if (pipe_) pipe_->uniform(fluid_.state(delivery).pressure, mass_flow, y.data() + pipe_at_);
   if (air_at_ > 0) std::fill(y.begin() + air_at_, y.end(), fluid_.equilibrium(chambers).value);
+  return y;
+}
+
+double Network::expected_log_pressure(double share) const {
+  if (!loop_ || load_.sought()) return delivery_s_;
+  constexpr int kHalvings = 50;
+  double low = suction_s_, high = fluid_.log_pressure(kHighestPressure);
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (low + high) / 2;
+    const double flow = load_.flow(fluid_.state(middle), suction_state_, load_.size()).value;
+    (flow < share * ideal_mass_flow() ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+void Network::exchange_sides(double* y) const {
+  const double suction = y[suction_at_], delivery = y[n_];
+  for (int k = 0; k < n_; ++k) y[k] = y[k] == suction ? delivery : suction;
+  y[suction_at_] = delivery;
+  y[n_] = suction;
+  if (accumulator_) y[accumulator_at_] = suction;
+  if (pipe_)
+    pipe_->uniform(fluid_.state(suction).pressure, -pipe_->inflow(y + pipe_at_), y + pipe_at_);
+}
+
+std::vector<double> Network::at_rest(const std::vector<double>& chambers, double delivery) const {
+  std::vector<double> y = uniform(delivery, delivery, 0);
+  std::copy(chambers.begin(), chambers.end(), y.begin());
+  for (int k = 0; k < n_ && air_at_ > 0; ++k)
+    y[air_at_ + k] = fluid_.equilibrium(chambers[k]).value;
   return y;
 }
 
@@ -158,16 +230,32 @@ double Network::load_gauge(const double* y) const {
   return pipe_ ? pipe_->end_pressure(y + pipe_at_) - fluid_.atmosphere() : delivery_gauge(y);
 }
 
-double Network::to_load(const double* y, const Fluid::State& line, double load_size) const {
-  if (!pipe_) return load_.flow(line, load_size).value;
+Load::Flow Network::to_load(const double* y, const Fluid::State& line, const Fluid::State& source,
+                            double load_size) const {
+  const Fluid::State& outside = loop_ ? source : outside_;
+  if (!pipe_) return load_.flow(line, outside, load_size);
   const double* modes = y + pipe_at_;
-  if (fixed_end_) return pipe_->outflow(modes);
-  return load_.flow(pipe_->end_side(modes), load_size).value;
+  if (!fixed_end_) return load_.flow(pipe_->end_side(modes), outside, load_size);
+  Load::Flow flow;
+  flow.value = pipe_->outflow(modes);
+  return flow;
+}
+
+Fluid::State Network::source_of(const double* y) const {
+  return has_suction_volume() ? fluid_.state(y[suction_at_]) : suction_state_;
+}
+
+MassFlow Network::charge_into(const Fluid::State& side) const {
+  if (!loop_ || side.pressure >= suction_state_.pressure) return {};
+  const double share = (suction_state_.pressure - side.pressure) / charge_opening_;
+  MassFlow flow = orifice_.flow(charge_area_ * std::min(share, 1.0), suction_state_, side);
+  if (share < 1) flow.by_second -= flow.value / share * side.pressure / charge_opening_;
+  return flow;
 }
 
 Network::Sources Network::sources(const double* y) const {
   if (air_at_ == 0) return {};
-  return {fluid_.equilibrium(suction_line_ ? y[suction_at_] : suction_s_),
+  return {fluid_.equilibrium(has_suction_volume() ? y[suction_at_] : suction_s_),
           fluid_.equilibrium(fixed_ ? delivery_s_ : y[n_]), fluid_.equilibrium(case_s_)};
 }
 
@@ -193,8 +281,8 @@ Network::AirRate Network::release(double s, double air_out) const {
 }
 
 Network::AirRate Network::air_rate(double s, double air_out, const Fluid::Mixture& at,
-                                   double volume, const ChamberFlows& flows,
-                                   const Sources& from) const {
+                                   double volume, const ChamberFlows& flows, const Sources& from,
+                                   double seconds) const {
   const double per_mass = 1 / (at.density * volume);
   AirRate rate = release(s, air_out);
   double brought = 0, by_air = 0, by_pressure = 0;
@@ -220,70 +308,83 @@ Network::AirRate Network::air_rate(double s, double air_out, const Fluid::Mixtur
   rate.by_air += per_mass * (by_air + brought * at.swelling);
   for (double* one :
        {&rate.value, &rate.by_pressure, &rate.by_air, &rate.by_suction, &rate.by_delivery})
-    *one *= seconds_per_degree_;
+    *one *= seconds;
   return rate;
 }
 
-bool Network::rates(double x, const double* y, double load_size, double* dy) const {
+bool Network::rates(const Moment& now, const double* y, double load_size, double* dy) const {
   const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
-  const Fluid::State source = suction_line_ ? fluid_.state(y[suction_at_]) : suction_state_;
+  const Fluid::State source = source_of(y);
   const Sources from = sources(y);
   double delivered = 0, taken = 0;
   for (int k = 0; k < n_; ++k) {
-    const double angle = angle_deg(x, k);
-    const Chamber::Volume volume = chamber_.volume(radians(angle));
+    const double angle = chamber_deg(now.block_deg, k);
+    const Chamber::Volume volume = this->volume(now, k);
     const Fluid::Mixture at = mixture(y, k);
     const ChamberFlows flows = chamber_flows(angle, volume.value, at, source, line);
     const double mass = flows.in.value - flows.out.value - flows.lost.value;
     delivered += flows.out.value;
     taken += flows.in.value;
-    dy[k] = at.stiffness *
-            (seconds_per_degree_ * mass / at.density - kRadPerDegree * volume.slope) / volume.value;
+    dy[k] = at.stiffness * (now.seconds * mass / at.density - now.turning * volume.slope) /
+            volume.value;
     if (air_at_ > 0) {
-      dy[air_at_ + k] = air_rate(y[k], y[air_at_ + k], at, volume.value, flows, from).value;
+      dy[air_at_ + k] =
+          air_rate(y[k], y[air_at_ + k], at, volume.value, flows, from, now.seconds).value;
       dy[k] += at.stiffness * at.swelling * dy[air_at_ + k];
     }
     if (!std::isfinite(dy[k])) return false;
   }
   if (suction_line_) {
     const double flow = y[suction_at_ + 1] * ideal_mass_flow();
-    dy[suction_at_] = source.stiffness * seconds_per_degree_ * (flow - taken) /
-                      (source.density * suction_volume_);
+    dy[suction_at_] =
+        source.stiffness * now.seconds * (flow - taken) / (source.density * suction_volume_);
     dy[suction_at_ + 1] =
-        seconds_per_degree_ * suction_line_->rate(source.pressure, flow) / ideal_mass_flow();
+        now.seconds * suction_line_->rate(source.pressure, flow) / ideal_mass_flow();
   }
   if (fixed_) return finite(dy + n_, dy + size());
-  const double load = to_load(y, line, load_size);
-  const double leaves = pipe_ ? pipe_->inflow(y + pipe_at_) : load;
-  dy[n_] = line.stiffness * seconds_per_degree_ * (delivered - leaves) /
-           (line.density * delivery_volume_);
-  dy[size() - 1] = (line.pressure - outside_.pressure) / (mean_scale_ * period_deg());
+  const double load = to_load(y, line, source, load_size).value;
+  double leaves = pipe_ ? pipe_->inflow(y + pipe_at_) : load;
+  if (loop_) {
+    dy[suction_at_] = source.stiffness * now.seconds * (load + charge_into(source).value - taken) /
+                      (source.density * suction_volume_);
+    leaves -= charge_into(line).value;
+  }
+  if (accumulator_) {
+    const Fluid::State gas = fluid_.state(y[accumulator_at_]);
+    const Accumulator::Oil oil = accumulator_->oil(y[accumulator_at_]);
+    const double in = orifice_.flow(inlet_area_, line, gas).value;
+    dy[accumulator_at_] =
+        now.seconds * in / (gas.density * (oil.volume / gas.stiffness + oil.first));
+    leaves += in;
+  }
+  dy[n_] = line.stiffness * now.seconds * (delivered - leaves) / (line.density * delivery_volume_);
+  if (use_ == Use::period)
+    dy[size() - 1] = (line.pressure - outside_.pressure) / (mean_scale_ * period_deg());
   if (pipe_) {
     double* modes = dy + pipe_at_;
     pipe_->rates(y + pipe_at_, line.pressure, fixed_end_ ? fixed_state_.pressure : load, modes);
-    for (int i = 0; i < pipe_->size(); ++i) modes[i] *= seconds_per_degree_;
+    for (int i = 0; i < pipe_->size(); ++i) modes[i] *= now.seconds;
   }
   return finite(dy + n_, dy + size());
 }
 
-void Network::jacobian(double x, const double* y, double load_size, double* by_state,
+void Network::jacobian(const Moment& now, const double* y, double load_size, double* by_state,
                        double* by_load) const {
   const int size = this->size();
   std::fill(by_state, by_state + size * size, 0.0);
-  std::fill(by_load, by_load + size, 0.0);
+  if (by_load != nullptr) std::fill(by_load, by_load + size, 0.0);
   const auto entry = [&](int row, int column) -> double& { return by_state[column * size + row]; };
   const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
-  const Fluid::State source = suction_line_ ? fluid_.state(y[suction_at_]) : suction_state_;
-  const double line_factor =
-      line.stiffness * seconds_per_degree_ / (line.density * delivery_volume_);
+  const Fluid::State source = source_of(y);
+  const double line_factor = line.stiffness * now.seconds / (line.density * delivery_volume_);
   const double source_factor =
-      suction_line_ ? source.stiffness * seconds_per_degree_ / (source.density * suction_volume_)
-                    : 0;
+      has_suction_volume() ? source.stiffness * now.seconds / (source.density * suction_volume_)
+                           : 0;
   const Sources from = sources(y);
   double delivered = 0, taken = 0;
   for (int k = 0; k < n_; ++k) {
-    const double angle = angle_deg(x, k);
-    const Chamber::Volume volume = chamber_.volume(radians(angle));
+    const double angle = chamber_deg(now.block_deg, k);
+    const Chamber::Volume volume = this->volume(now, k);
     const Fluid::Mixture at = mixture(y, k);
     const ChamberFlows flows = chamber_flows(angle, volume.value, at, source, line);
     const auto& [in, out, lost, in_by_air, out_by_air, lost_by_air] = flows;
@@ -291,12 +392,11 @@ void Network::jacobian(double x, const double* y, double load_size, double* by_s
     const double by_own = in.by_second - out.by_first - lost.by_first;
     delivered += out.value;
     taken += in.value;
-    entry(k, k) =
-        (at.d_stiffness * (seconds_per_degree_ * mass / at.density - kRadPerDegree * volume.slope) +
-         at.stiffness * seconds_per_degree_ * (by_own - mass / at.stiffness) / at.density) /
-        volume.value;
-    const double by_mass = at.stiffness * seconds_per_degree_;
-    if (suction_line_) {
+    entry(k, k) = (at.d_stiffness * (now.seconds * mass / at.density - now.turning * volume.slope) +
+                   at.stiffness * now.seconds * (by_own - mass / at.stiffness) / at.density) /
+                  volume.value;
+    const double by_mass = at.stiffness * now.seconds;
+    if (has_suction_volume()) {
       entry(k, suction_at_) = by_mass * in.by_first / (at.density * volume.value);
       entry(suction_at_, k) = -source_factor * in.by_second;
       entry(suction_at_, suction_at_) -= source_factor * in.by_first;
@@ -308,12 +408,12 @@ void Network::jacobian(double x, const double* y, double load_size, double* by_s
     }
     if (air_at_ == 0) continue;
     const int a = air_at_ + k;
-    const AirRate air = air_rate(y[k], y[a], at, volume.value, flows, from);
+    const AirRate air = air_rate(y[k], y[a], at, volume.value, flows, from, now.seconds);
     entry(a, k) = air.by_pressure;
     entry(a, a) = air.by_air;
     // ds/dx is stiffness x (drive + swelling x d(air out)/dx).
     const double drive =
-        (seconds_per_degree_ * mass / at.density - kRadPerDegree * volume.slope) / volume.value;
+        (now.seconds * mass / at.density - now.turning * volume.slope) / volume.value;
     const double swells = at.stiffness * at.swelling;
     entry(k, k) += (at.d_stiffness * at.swelling + at.stiffness * at.d_swelling) * air.value +
                    swells * air.by_pressure;
@@ -321,7 +421,7 @@ void Network::jacobian(double x, const double* y, double load_size, double* by_s
                   by_mass * (in_by_air - out_by_air - lost_by_air + mass * at.swelling) /
                       (at.density * volume.value) +
                   at.stiffness * at.swelling_by_air * air.value + swells * air.by_air;
-    if (suction_line_) {
+    if (has_suction_volume()) {
       entry(a, suction_at_) = air.by_suction;
       entry(k, suction_at_) += swells * air.by_suction;
       entry(suction_at_, a) = -source_factor * in_by_air;
@@ -339,76 +439,119 @@ void Network::jacobian(double x, const double* y, double load_size, double* by_s
     const double flow = y[m] * ideal_mass_flow();
     entry(s, s) += source_factor * (flow - taken) * (source.d_stiffness - 1) / source.stiffness;
     entry(s, m) = source_factor * ideal_mass_flow();
-    entry(m, s) =
-        seconds_per_degree_ * suction_line_->by_port() * source.pressure / ideal_mass_flow();
-    entry(m, m) = seconds_per_degree_ * suction_line_->by_flow(flow);
+    entry(m, s) = now.seconds * suction_line_->by_port() * source.pressure / ideal_mass_flow();
+    entry(m, m) = now.seconds * suction_line_->by_flow(flow);
   }
   if (fixed_) return;
-  entry(size - 1, n_) = line.pressure / (mean_scale_ * period_deg());
+  if (use_ == Use::period) entry(size - 1, n_) = line.pressure / (mean_scale_ * period_deg());
+  // What is given at the far end of a pipe follows from the pressure there, which is that of every
+  // mode.
+  const Load::Flow load = fixed_end_ ? Load::Flow() : to_load(y, line, source, load_size);
+  double leaves = pipe_ ? pipe_->inflow(y + pipe_at_) : load.value;
+  if (loop_) {
+    const int s = suction_at_;
+    const MassFlow low = charge_into(source), high = charge_into(line);
+    entry(s, s) += source_factor *
+                   (load.by_outside + low.by_second +
+                    (load.value + low.value - taken) * (source.d_stiffness - 1) / source.stiffness);
+    entry(n_, n_) += line_factor * high.by_second;
+    leaves -= high.value;
+    if (by_load != nullptr) by_load[s] = source_factor * load.by_size;
+    if (pipe_) {
+      for (int j = 0; j < pipe_->pressures(); ++j)
+        entry(s, pipe_at_ + j) = source_factor * load.by_side;
+      for (int i = 0; i < pipe_->size(); ++i)
+        entry(pipe_at_ + i, s) = now.seconds * pipe_->by_end(i) * load.by_outside;
+    } else {
+      entry(s, n_) += source_factor * load.by_side;
+      entry(n_, s) = -line_factor * load.by_outside;
+    }
+  }
+  if (accumulator_) {
+    const int a = accumulator_at_;
+    const Fluid::State gas = fluid_.state(y[a]);
+    const Accumulator::Oil oil = accumulator_->oil(y[a]);
+    const MassFlow in = orifice_.flow(inlet_area_, line, gas);
+    const double soft = oil.volume / gas.stiffness + oil.first;
+    const double hardens =
+        (oil.first - oil.volume * gas.d_stiffness / gas.stiffness) / gas.stiffness + oil.second;
+    const double factor = now.seconds / (gas.density * soft);
+    entry(a, n_) = factor * in.by_first;
+    entry(a, a) = factor * (in.by_second - in.value * (1 / gas.stiffness + hardens / soft));
+    entry(n_, n_) -= line_factor * in.by_first;
+    entry(n_, a) = -line_factor * in.by_second;
+    leaves += in.value;
+  }
+  entry(n_, n_) += line_factor * ((pipe_ ? 0 : -load.by_side) +
+                                  (delivered - leaves) * (line.d_stiffness - 1) / line.stiffness);
   if (!pipe_) {
-    const Load::Flow load = load_.flow(line, load_size);
-    entry(n_, n_) += line_factor * (-load.by_side + (delivered - load.value) *
-                                                        (line.d_stiffness - 1) / line.stiffness);
-    by_load[n_] = -line_factor * load.by_size;
+    if (by_load != nullptr) by_load[n_] = -line_factor * load.by_size;
     return;
   }
-  const double* modes = y + pipe_at_;
-  entry(n_, n_) +=
-      line_factor * ((delivered - pipe_->inflow(modes)) * (line.d_stiffness - 1) / line.stiffness);
-  // What is given at the far end follows from the pressure there, which is that of every mode.
-  const Load::Flow load = fixed_end_ ? Load::Flow() : load_.flow(pipe_->end_side(modes), load_size);
   for (int i = 0; i < pipe_->size(); ++i) {
     const int row = pipe_at_ + i;
     for (int j = 0; j < pipe_->size(); ++j)
       entry(row, pipe_at_ + j) =
-          seconds_per_degree_ *
+          now.seconds *
           (pipe_->by_state(i, j) + (j < pipe_->pressures() ? pipe_->by_end(i) * load.by_side : 0));
-    entry(row, n_) = seconds_per_degree_ * pipe_->by_start(i) * line.pressure;
-    by_load[row] = seconds_per_degree_ * pipe_->by_end(i) * load.by_size;
+    entry(row, n_) = now.seconds * pipe_->by_start(i) * line.pressure;
+    if (by_load != nullptr) by_load[row] = now.seconds * pipe_->by_end(i) * load.by_size;
   }
   for (int j = pipe_->pressures(); j < pipe_->size(); ++j)
     entry(n_, pipe_at_ + j) = -line_factor * pipe_->inflow_by(j - pipe_->pressures());
 }
 
-void Network::flows(double x, const double* y, double load_size, Flows& flows) const {
+void Network::flows(const Moment& now, const double* y, double load_size, Flows& flows) const {
   flows.suction.resize(n_);
   flows.delivery.resize(n_);
   flows.leakage.resize(n_);
   const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
-  const Fluid::State source = suction_line_ ? fluid_.state(y[suction_at_]) : suction_state_;
+  const Fluid::State source = source_of(y);
   flows.load = 0;
+  flows.taken = 0;
   flows.power = 0;
   for (int k = 0; k < n_; ++k) {
-    const double angle = angle_deg(x, k);
-    const Chamber::Volume volume = chamber_.volume(radians(angle));
+    const double angle = chamber_deg(now.block_deg, k);
+    const Chamber::Volume volume = this->volume(now, k);
     const Fluid::State at = mixture(y, k);
     flows.delivery[k] = orifice_.flow(delivery_.area(angle), at, line).value;
     flows.suction[k] = orifice_.flow(suction_.area(angle), source, at).value;
     flows.leakage[k] = leakage_.flow(at, volume.value).value;
     flows.load += flows.delivery[k];
-    flows.power -= fluid_.gauge(y[k]) * volume.slope * kRadPerDegree / seconds_per_degree_;
+    flows.taken += flows.suction[k];
+    flows.power -= fluid_.gauge(y[k]) * volume.slope * now.turning / now.seconds;
   }
-  if (!fixed_) flows.load = to_load(y, line, load_size);
+  flows.relief = flows.accumulator = 0;
+  if (!fixed_) {
+    const Load::Flow load = to_load(y, line, source, load_size);
+    flows.load = load.value;
+    flows.relief = load.relief;
+  }
+  if (suction_line_) flows.taken = y[suction_at_ + 1] * ideal_mass_flow();
+  if (loop_) flows.taken = charge_into(source).value + charge_into(line).value;
+  if (accumulator_)
+    flows.accumulator = orifice_.flow(inlet_area_, line, fluid_.state(y[accumulator_at_])).value;
 }
 
 double Network::load_flow(double x, const double* y, double load_size) const {
-  if (!fixed_) return to_load(y, fluid_.state(y[n_]), load_size);
+  if (!fixed_) return to_load(y, fluid_.state(y[n_]), source_of(y), load_size).value;
   double sum = 0;
   for (int k = 0; k < n_; ++k)
     sum += orifice_.flow(delivery_.area(angle_deg(x, k)), fluid_.state(y[k]), fixed_state_).value;
   return sum;
 }
 
-PowerBudget Network::power(double x, const double* y, const Flows& flows) const {
+PowerBudget Network::power(const Moment& now, const double* y, const Flows& flows) const {
   PowerBudget power;
   power[Place::pistons] = flows.power;
   const double line = fixed_ ? fixed_potential_ : fluid_.potential(y[n_]);
-  const double source = suction_line_ ? fluid_.potential(y[suction_at_]) : suction_potential_;
+  const double source =
+      has_suction_volume() ? fluid_.potential(y[suction_at_]) : suction_potential_;
   const Sources from = sources(y);
-  double taken = 0;
+  const double taken = flows.taken;
   for (int k = 0; k < n_; ++k) {
     const Fluid::Mixture at = mixture(y, k);
-    const double volume = chamber_.volume(radians(angle_deg(x, k))).value;
+    const double volume = this->volume(now, k).value;
     const double in = flows.suction[k], out = flows.delivery[k], lost = flows.leakage[k];
     // What comes in brings the air that is out where it comes from.
     const double air = air_at_ > 0 ? y[air_at_ + k] : 0;
@@ -429,31 +572,69 @@ PowerBudget Network::power(double x, const double* y, const Flows& flows) const 
     power[Place::plate_gap] += parts.plate_gap * drop;
     power[Place::ring_slot] += parts.ring_slot * drop;
     power[Place::drain] += lost * case_potential_;
-    taken += in;
   }
   // In a line the oil has one density: its potential there is linear in the pressure.
   if (suction_line_) {
-    taken = y[suction_at_ + 1] * ideal_mass_flow();
     const double drop = fluid_.state(y[suction_at_]).pressure - suction_state_.pressure;
     power[Place::suction_line] = suction_line_->lost(taken);
     power[Place::line_density] +=
         taken * (suction_potential_ + drop / suction_state_.density - source);
   }
   power[Place::tank] = taken * suction_potential_;
-  power[Place::load] = flows.load * line;
+  double front = line;  // of the load
   if (pipe_) {
     const double* modes = y + pipe_at_;
     const auto within = [&](double pressure) {
       return fixed_potential_ + (pressure - fixed_state_.pressure) / fixed_state_.density;
     };
-    const double end = fixed_end_ ? fixed_state_.pressure : pipe_->end_pressure(modes);
-    power[Place::load] = flows.load * within(end);
+    front = within(fixed_end_ ? fixed_state_.pressure : pipe_->end_pressure(modes));
     power[Place::delivery_line] = pipe_->friction_power(modes);
     power[Place::damped_waves] = pipe_->damped_power(modes);
     power[Place::line_density] +=
         pipe_->inflow(modes) * (line - within(fluid_.state(y[n_]).pressure));
   }
+  if (loop_) {
+    front -= source;
+    power[Place::charge_valves] =
+        charge_into(source_of(y)).value * (suction_potential_ - source) +
+        charge_into(fluid_.state(y[n_])).value * (suction_potential_ - line);
+  }
+  power[Place::load] = (flows.load - flows.relief) * front;
+  power[Place::relief_valve] = flows.relief * front;
+  if (accumulator_)
+    power[Place::accumulator_inlet] =
+        flows.accumulator * (line - fluid_.potential(y[accumulator_at_]));
   return power;
+}
+
+Network::Stored Network::stored(const Moment& now, const double* y) const {
+  Stored all;
+  const auto add = [&](double volume, double density, double potential, double s) {
+    all.mass += volume * density;
+    all.energy += volume * (density * potential - fluid_.gauge(s));
+  };
+  for (int k = 0; k < n_; ++k)
+    add(volume(now, k).value, mixture(y, k).density,
+        air_at_ > 0 ? fluid_.potential(y[k], y[air_at_ + k]) : fluid_.potential(y[k]), y[k]);
+  const auto add_volume = [&](double volume, double s) {
+    add(volume, fluid_.state(s).density, fluid_.potential(s), s);
+  };
+  if (!fixed_) add_volume(delivery_volume_, y[n_]);
+  if (accumulator_) {
+    const double a = y[accumulator_at_];
+    add_volume(accumulator_->oil(a).volume, a);
+    all.energy += accumulator_->energy(a);
+  }
+  if (has_suction_volume()) add_volume(suction_volume_, y[suction_at_]);
+  if (suction_line_) {
+    all.energy += suction_line_->kinetic_energy(y[suction_at_ + 1] * ideal_mass_flow());
+  }
+  if (pipe_) {
+    const double mass = pipe_->mass(y + pipe_at_);
+    all.mass += mass;
+    all.energy += mass * fixed_potential_ + pipe_->energy(y + pipe_at_);
+  }
+  return all;
 }
 
 std::vector<Place> Network::places() const {
@@ -472,7 +653,15 @@ std::vector<Place> Network::places() const {
   }
   if (air_at_ > 0) all.push_back(Place::air);
   if (pipe_ || suction_line_) all.push_back(Place::line_density);
+  if (load_.has_relief() && !fixed_end_) all.push_back(Place::relief_valve);
+  if (accumulator_) all.push_back(Place::accumulator_inlet);
+  if (loop_) all.push_back(Place::charge_valves);
   return all;
+}
+
+int Network::place_count() const {
+  const auto last = [](Place place) { return static_cast<int>(place) + 1; };
+  return std::max(last(Place::line_density), last(places().back()));
 }
 
 }  // namespace bentaxis::hydraulics

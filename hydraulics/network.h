@@ -5,8 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "accumulator.h"
 #include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/results/instant.h"
 #include "chamber.h"
 #include "fluid.h"
 #include "leakage.h"
@@ -18,29 +20,52 @@
 
 namespace bentaxis::hydraulics {
 
-/// Rates of change of all pressures with the shaft angle x (degrees, which is where edges are
-/// exact) at constant speed.
+/// Rates of change of all pressures: with the shaft angle x (degrees, which is where edges are
+/// exact) at constant speed, or with time while shaft and block turn anyhow.
 ///
 /// State: s_1..s_N of the chambers, s = ln(P/P0); then, of what there is, s_d of the delivery
 /// volume, s_s of the volume at the suction port and the flow of the suction line over the ideal
-/// one, the modes of the delivery line; where air takes time to come out (Cavitation::rate) the
-/// share of the dissolved air that is out in each chamber; and with a delivery volume the mean so
-/// far of its gauge pressure over the pressure asked for. Chamber k stands at x - 360 (k-1)/N
-/// degrees. Balance of mass of a volume with d(density)/density = dP/K:
+/// one, the modes of the delivery line, s of the accumulator; where air takes time to come out
+/// (Cavitation::rate) the share of the dissolved air that is out in each chamber; and, of a period,
+/// with a delivery volume the mean so far of its gauge pressure over the pressure asked for.
+/// Chamber k stands at x - 360 (k-1)/N degrees. Balance of mass of a volume with d(density)/density
+/// = dP/K:
 ///
-///   ds/dx = (K/P) (dt/dx sum(mass flows)/(density V) - (dV/dx)/V).
+///   ds/dx = (K/P) (dt/dx sum(mass flows)/(density V) - (dV/dx)/V),
+///
+/// in time x is the time itself and dV/dx = dV/dtheta theta' + dV/dpsi psi'.
 ///
 /// A delivery line at constant pressure (0 among them, an open line) without a pipe before it has
 /// no state: the delivery port stays at that pressure and takes what comes.
 class Network {
  public:
-  /// @throws InputError where a case file that says the same would be refused; at standstill,
-  /// backwards, and where the pistons have no stroke
-  explicit Network(const Case& the_case);
+  /// What the equations are for.
+  enum class Use {
+    period,  ///< a periodic state at constant speed: per degree, with the mean as a state
+    time,    ///< any motion: per second
+  };
+  /// @throws InputError where a case file that says the same would be refused; where the pistons
+  /// have no stroke; of a period at standstill, and backwards without a supply or a given load
+  explicit Network(const Case& the_case, Use use = Use::period);
+
+  /// Where shaft and block stand, and how they move while the states change.
+  struct Moment {
+    double block_deg = 0;     ///< chambers meet the ports at the block's angle
+    double seconds = 1;       ///< time per unit of what rates are by
+    double turning = 1;       ///< what a volume's slope is times, for the same unit
+    AxisMotion shaft, block;  ///< where they are not locked
+    bool locked = true;       ///< both at block_deg, a volume's slope is by the angle
+  };
+  /// At constant speed, per degree.
+  Moment at(double x) const;
+  /// Per second.
+  static Moment at(const AxisMotion& shaft, const AxisMotion& block);
 
   int pistons() const { return n_; }
   /// Whether the delivery port is held at a pressure, without a delivery volume in the state.
   bool fixed_line() const { return fixed_; }
+  /// Whether the delivery side is held at a pressure, behind a delivery line or without.
+  bool fixed_end() const { return fixed_end_; }
   /// Whether the size of the load is one more unknown, for which the mean delivery pressure is
   /// given.
   bool load_sought() const { return sought_; }
@@ -50,17 +75,25 @@ class Network {
   /// What comes back after a period, the first of the state: all but the mean.
   int states() const { return states_; }
   /// Length of the state.
-  int size() const { return fixed_ ? states_ : states_ + 1; }
+  int size() const { return fixed_ || use_ == Use::time ? states_ : states_ + 1; }
   /// 360/N: after that angle every chamber stands where the one before it stood.
   double period_deg() const { return 360.0 / n_; }
   /// Angles in (0, period) where any area has an edge, rising.
   const std::vector<double>& edges_deg() const { return edges_deg_; }
 
   /// d(state)/dx. False where a value is not finite.
-  bool rates(double x, const double* y, double load_size, double* dy) const;
-  /// d(rates)/d(state), column-major size() x size(); and d(rates)/d(ln load_size), size().
-  void jacobian(double x, const double* y, double load_size, double* by_state,
+  bool rates(const Moment& now, const double* y, double load_size, double* dy) const;
+  bool rates(double x, const double* y, double load_size, double* dy) const {
+    return rates(at(x), y, load_size, dy);
+  }
+  /// d(rates)/d(state), column-major size() x size(); and d(rates)/d(ln load_size), size(), where
+  /// it is not null.
+  void jacobian(const Moment& now, const double* y, double load_size, double* by_state,
                 double* by_load) const;
+  void jacobian(double x, const double* y, double load_size, double* by_state,
+                double* by_load) const {
+    jacobian(at(x), y, load_size, by_state, by_load);
+  }
 
   /// Mass flows at one state, kg/s; positive as named.
   struct Flows {
@@ -68,17 +101,32 @@ class Network {
     std::vector<double> delivery;  ///< from each chamber into the delivery port
     std::vector<double> leakage;   ///< from each chamber to the case
     double load = 0;               ///< into the load; fixed line: all of the delivery
+    double relief = 0;             ///< of that: over the relief valve beside the load
+    double taken = 0;              ///< from the tank, or from the charge supply
+    double accumulator = 0;        ///< into the accumulator
     double power = 0;              ///< of the pistons on the oil: -sum p dV/dt, W, p gauge
   };
-  void flows(double x, const double* y, double load_size, Flows& flows) const;
+  void flows(const Moment& now, const double* y, double load_size, Flows& flows) const;
+  void flows(double x, const double* y, double load_size, Flows& flows) const {
+    this->flows(at(x), y, load_size, flows);
+  }
 
   /// Mass flow into the load alone, kg/s.
   double load_flow(double x, const double* y, double load_size) const;
 
   /// Power by place at one state, W, from its flows.
-  PowerBudget power(double x, const double* y, const Flows& flows) const;
-  /// The places that this circuit has.
+  PowerBudget power(const Moment& now, const double* y, const Flows& flows) const;
+  PowerBudget power(double x, const double* y, const Flows& flows) const {
+    return power(at(x), y, flows);
+  }
+  /// What the circuit holds: with the power by place, d(energy)/dt is sources less all else.
+  struct Stored {
+    double energy = 0, mass = 0;  ///< J, kg
+  };
+  Stored stored(const Moment& now, const double* y) const;
+  /// The places that this circuit has, and of how many from the first on they are.
   std::vector<Place> places() const;
+  int place_count() const;
 
   const Fluid& fluid() const { return fluid_; }
   const Chamber& chamber() const { return chamber_; }
@@ -87,6 +135,10 @@ class Network {
   double seconds_per_degree() const { return seconds_per_degree_; }
   double suction_log_pressure() const { return suction_s_; }
   double delivery_log_pressure() const { return delivery_s_; }  ///< of the mean asked for
+  /// Of the high side as a search may begin: the one asked for; in a closed loop, which forgets too
+  /// high a one by leakage alone, that at which a load of given size takes a share of the ideal
+  /// flow.
+  double expected_log_pressure(double share) const;
   double delivery_pressure() const { return delivery_pressure_; }
   /// What the mean in the state is a multiple of, Pa.
   double mean_scale() const { return mean_scale_; }
@@ -94,11 +146,17 @@ class Network {
   double delivery_gauge(const double* y) const {
     return fluid_.gauge(fixed_ ? delivery_s_ : y[n_]);
   }
+  /// Whether the suction port has a pressure of its own.
+  bool has_suction_volume() const { return suction_at_ > 0; }
   bool has_suction_line() const { return suction_line_.has_value(); }
+  bool has_loop() const { return loop_; }
+  bool has_accumulator() const { return accumulator_.has_value(); }
+  /// Gauge pressure in the accumulator.
+  double accumulator_gauge(const double* y) const { return fluid_.gauge(y[accumulator_at_]); }
   bool has_delivery_line() const { return pipe_.has_value(); }
   /// Gauge pressure in the suction port.
   double suction_gauge(const double* y) const {
-    return fluid_.gauge(suction_line_ ? y[suction_at_] : suction_s_);
+    return fluid_.gauge(has_suction_volume() ? y[suction_at_] : suction_s_);
   }
   /// Place in the state of the air that is out, of chambers 1..N; 0: it is no state.
   int air_at() const { return air_at_; }
@@ -123,18 +181,32 @@ class Network {
   /// States with these pressures s in all chambers and on the delivery side, and a mass flow in the
   /// lines.
   std::vector<double> uniform(double chambers, double delivery, double mass_flow) const;
+  /// Of a closed loop: gives one side the pressure of the other, chambers too.
+  void exchange_sides(double* y) const;
+  /// States at rest with these pressures s.
+  std::vector<double> at_rest(const std::vector<double>& chambers, double delivery) const;
   /// Displacement of the pump, m3 per revolution.
   double displacement() const { return n_ * chamber_.swept(); }
-  double angle_deg(double x, int k) const { return x - period_deg() * k; }  ///< k from 0
+  /// Whether a period turns the shaft backwards: x is what it has turned by, at -x it stands.
+  bool backwards() const { return direction_ < 0; }
+  /// Angle of chamber k, from 0, at x of a period.
+  double angle_deg(double x, int k) const { return chamber_deg(direction_ * x, k); }
+  /// The same where the block stands at an angle.
+  double chamber_deg(double block_deg, int k) const { return block_deg - period_deg() * k; }
+  /// Which chamber k, from 0, is after a period: it has come to where that one began.
+  int next_of(int k) const { return (k + n_ - direction_) % n_; }
 
  private:
-  double to_load(const double* y, const Fluid::State& line, double load_size) const;
+  Load::Flow to_load(const double* y, const Fluid::State& line, const Fluid::State& source,
+                     double load_size) const;
+  Fluid::State source_of(const double* y) const;  // the suction port
+  MassFlow charge_into(const Fluid::State& side) const;
   // The air that is out where oil comes from.
   struct Sources {
     Fluid::AirOut suction, delivery, outside;
   };
   Sources sources(const double* y) const;
-  // d(air out)/dx of a chamber and its derivatives.
+  // d(air out)/dx of a chamber and its derivatives; `seconds` is dt/dx.
   struct AirRate {
     double value = 0, by_pressure = 0, by_air = 0, by_suction = 0, by_delivery = 0;
   };
@@ -146,7 +218,11 @@ class Network {
   ChamberFlows chamber_flows(double angle_deg, double volume, const Fluid::Mixture& at,
                              const Fluid::State& source, const Fluid::State& line) const;
   AirRate air_rate(double s, double air_out, const Fluid::Mixture& at, double volume,
-                   const ChamberFlows& flows, const Sources& from) const;
+                   const ChamberFlows& flows, const Sources& from, double seconds) const;
+  Chamber::Volume volume(const Moment& now, int k) const;
+
+  Use use_;
+  int direction_;
 
   int n_;
   bool fixed_end_;  // the far end of the delivery side is held at a pressure
@@ -162,8 +238,11 @@ class Network {
   Load load_;
   std::optional<TransmissionLine> pipe_;
   std::optional<SuctionLine> suction_line_;
-  bool fixed_, sought_;
-  int suction_at_ = 0, pipe_at_ = 0, air_at_ = 0, states_ = 0;  // places in the state
+  std::optional<Accumulator> accumulator_;
+  double inlet_area_ = 0, charge_area_ = 0, charge_opening_ = 0;
+  bool loop_, fixed_, sought_;
+  int suction_at_ = 0, pipe_at_ = 0, air_at_ = 0, accumulator_at_ = 0;  // places in the state
+  int states_ = 0;
   double release_time_, dissolution_time_, case_s_;
   std::vector<double> edges_deg_;
 };

@@ -31,7 +31,7 @@ std::vector<double> PeriodMap::relabelled(const std::vector<double>& end) const 
   const int n = network_.pistons();
   std::vector<double> next(end.begin(), end.begin() + network_.states());
   for (const int first : network_.by_chamber())
-    for (int k = 0; k < n; ++k) next[first + (k + n - 1) % n] = end[first + k];
+    for (int k = 0; k < n; ++k) next[first + network_.next_of(k)] = end[first + k];
   return next;
 }
 
@@ -55,7 +55,7 @@ PeriodMap::Vector PeriodMap::residual(const Vector& z, double tolerance, Matrix*
     for (int i = n; i < network_.states(); ++i) jacobian->row(i) = end_by_start.row(i);
     for (const int first : network_.by_chamber())
       for (int k = 0; k < n; ++k)
-        jacobian->row(first + (k + n - 1) % n) = end_by_start.row(first + k);
+        jacobian->row(first + network_.next_of(k)) = end_by_start.row(first + k);
     if (sized_) jacobian->row(unknowns() - 1) = end_by_start.row(size - 1);
     for (int i = 0; i < network_.states(); ++i) (*jacobian)(i, i) -= 1;
   }

@@ -34,7 +34,7 @@ class PeriodMap {
   std::vector<double> states(const Vector& z) const;
 
   /// States at the end of a period in the order of the chambers that stand there next: chamber k
-  /// has come to where chamber k-1 began.
+  /// has come to where chamber k-1 began, backwards where chamber k+1 did.
   std::vector<double> relabelled(const std::vector<double>& end) const;
 
   /// What is left: per state its change over the period, and where the load is sought the mean over

@@ -27,6 +27,9 @@ constexpr Description kDescriptions[kPlaces] = {
     {PowerUse::loss, "damped_waves", "delivery line, waves above its bandwidth"},
     {PowerUse::loss, "air", "air that comes out and dissolves late"},
     {PowerUse::approximation, "line_density", "lines: one density in them, another at their ends"},
+    {PowerUse::loss, "relief_valve", "relief valve beside the load"},
+    {PowerUse::loss, "accumulator_inlet", "inlet of the accumulator"},
+    {PowerUse::loss, "charge_valves", "check valves of the charge supply"},
 };
 
 const Description& of(Place place) { return kDescriptions[static_cast<int>(place)]; }

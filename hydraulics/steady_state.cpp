@@ -27,6 +27,7 @@ using Matrix = PeriodMap::Matrix;
 // Of the first, coarse search, whose sensitivities the fine one goes on using.
 constexpr double kCoarse = 1e-5;
 constexpr int kSettlingPeriods = 3;
+constexpr double kSharesInLoop[] = {0.7, 0.9, 0.5, 0.3};
 // Change of ln P in a period up to which a pressure says what is about reachable.
 constexpr double kNearlyPeriodic = 0.1;
 // Of all effort that an integrator may spend, what tighter tolerances may take.
@@ -42,13 +43,13 @@ constexpr double kStalled = 3;
 constexpr int kFewestRows = 720, kMostRows = 7200;
 
 // Chambers as they come to stand at theta = 0 when half of them fill and half deliver.
-Vector first_guess(const Network& network, const std::optional<Start>& start) {
+// `share` is what of the ideal flow a load may take at first.
+Vector first_guess(const Network& network, const std::optional<Start>& start, double share = 1) {
   const int n = network.pistons();
   const Fluid& fluid = network.fluid();
   const double flow = network.ideal_mass_flow();
-  auto states = network.uniform(
-      network.delivery_log_pressure(),
-      start ? fluid.log_pressure(start->line) : network.delivery_log_pressure(), flow);
+  const double high = network.expected_log_pressure(share);
+  auto states = network.uniform(high, start ? fluid.log_pressure(start->line) : high, flow);
   for (int k = 0; k < n; ++k) {
     const bool fills = k == 0 || 360.0 * k / n > 180;  // the chamber stands at -360 k/N
     if (start)
@@ -56,8 +57,9 @@ Vector first_guess(const Network& network, const std::optional<Start>& start) {
     else if (fills)
       states[k] = network.suction_log_pressure();
   }
+  if (network.backwards() && network.has_loop() && !start) network.exchange_sides(states.data());
   if (network.load_sought())
-    states.push_back(std::log(start ? start->load_size : network.load_size_for(flow)));
+    states.push_back(std::log(start ? start->load_size : network.load_size_for(share * flow)));
   return Eigen::Map<const Vector>(states.data(), static_cast<Eigen::Index>(states.size()));
 }
 
@@ -73,7 +75,8 @@ struct Found {
 void settle(const Network& network, PeriodMap& map, Vector& z, bool line_given) {
   for (int i = 0; i < kSettlingPeriods; ++i) {
     z.head(network.states()) += map.residual(z, kCoarse).head(network.states());
-    if (!network.fixed_line() && !line_given)
+    const bool asked_for = !network.has_loop() || network.load_sought();
+    if (!network.fixed_line() && !line_given && !network.backwards() && asked_for)
       z[network.pistons()] = network.delivery_log_pressure();
   }
 }
@@ -86,6 +89,24 @@ Found find(const Network& network, PeriodMap& map, const Vector& guess, bool lin
   search(map, found.z, std::max(kCoarse, tolerance), jacobian, found.iterations, alive);
   found.chord.compute(jacobian);
   return found;
+}
+
+// A closed loop has kinks where check valves shut: what is not found from one start is from
+// another.
+Found search_from(const Network& network, PeriodMap& map, const std::optional<Start>& start,
+                  double tolerance, const std::function<void()>& alive) {
+  if (network.has_loop() && !start)
+    for (const double share : kSharesInLoop) {
+      try {
+        Found found =
+            find(network, map, first_guess(network, start, share), false, tolerance, alive);
+        const double coarse = std::max(kCoarse, tolerance);
+        if (size_of(map.residual(found.z, coarse)) <= kStalled * map.noise() * coarse) return found;
+      } catch (const ComputationError&) {
+        // The next one.
+      }
+    }
+  return find(network, map, first_guess(network, start), start.has_value(), tolerance, alive);
 }
 
 // Finer integrations change the answer little: the coarse derivatives serve on. Afterwards `states`
@@ -166,14 +187,14 @@ void summarize(const Case& the_case, const Network& network, const Integrals& in
   const double time = network.period_deg() * network.seconds_per_degree();
   s.density = density;
   s.displacement = network.displacement();
-  s.ideal_flow = s.displacement / (n * time);
+  s.ideal_flow = (network.backwards() ? -1 : 1) * s.displacement / (n * time);
   s.mass_flow = integrals.load / time;
   s.flow = s.mass_flow / density;
   s.volumetric_efficiency = s.flow / s.ideal_flow;
   s.leakage = integrals.leakage / time / density;
   s.overshoot = s.chamber_greatest - s.delivery_mean;
   s.undershoot = the_case.pressure.ports.suction - s.chamber_least;
-  s.work = integrals.work * n;
+  s.work = (network.backwards() ? -1 : 1) * integrals.work * n;
   s.mass_in = integrals.suction * n;
   s.mass_out = (integrals.delivery + integrals.leakage) * n;
   for (const Bridge& bridge : bridges(network.suction(), network.delivery()))
@@ -196,6 +217,7 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
     turn.see(step);
     timing.see(step);
   });
+  turn.finish();
   ComputedPressure curve = turn.curve(kInterpolation * the_case.hydraulics->curve_error);
   // What the state still moves by, and everything that an integration ten times coarser misses.
   const Vector left = found.chord.solve(f);
@@ -212,7 +234,8 @@ void solve(const Case& the_case, const Network& network, PeriodMap& map, double 
   Summary& s = result.summary;
   s.load = network.load().kind();
   s.atmosphere = network.fluid().atmosphere();
-  s.load_size = network.fixed_line() ? 0 : map.load_size(found.z);
+  const bool has_size = !network.fixed_line() && network.load().kind() != LoadKind::flow;
+  s.load_size = has_size ? map.load_size(found.z) : 0;
   s.delivery_mean = map.mean_delivery();
   turn.summarize(integrals, s);
   result.orders = turn.orders(kOrders);
@@ -298,7 +321,7 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
   double tolerance = the_case.hydraulics->tolerance;
   Found found;
   try {
-    found = find(network, map, first_guess(network, start), start.has_value(), tolerance, alive);
+    found = search_from(network, map, start, tolerance, alive);
     solve(the_case, network, map, tolerance, found, alive, result);
     integrator.spend_at_most(integrator.share_of_effort() + kShareForRefinement);
     const auto error = [&] { return result.computed->error / result.computed->peak; };
@@ -308,7 +331,7 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
       tolerance = std::max(tolerance / 10, kFinest);
       if (!improve(the_case, network, map, tolerance, found, alive, result)) break;
     }
-    if (!network.fixed_line() && !(result.summary.mass_flow > 0))
+    if (network.load_sought() && !(result.summary.mass_flow > 0))
       throw ComputationError("hydraulics: nothing is left for the load");
   } catch (const ComputationError& error) {
     if (network.load().kind() == LoadKind::flow && !network.fixed_line())
@@ -360,12 +383,13 @@ ResultTable transient_from_rest(const Case& the_case, double load_size, int revo
             const double x = network.period_deg() * next / samples;
             if (x > step.to) break;
             const double* state = step.state(x);
-            table.theta_deg.push_back(static_cast<double>(period) * network.period_deg() + x);
+            table.theta_deg.push_back((network.backwards() ? -1 : 1) *
+                                      (static_cast<double>(period) * network.period_deg() + x));
             table.values.push_back(fluid.gauge(state[chamber]) / kPascalPerBar);
             table.values.push_back(network.delivery_gauge(state) / kPascalPerBar);
           }
         }));
-    chamber = (chamber + n - 1) % n;
+    chamber = network.next_of(chamber);
     if (progress) progress(static_cast<double>(period + 1) / static_cast<double>(periods));
   }
   return table;

@@ -28,6 +28,8 @@ class SuctionLine {
   }
   /// Power that the flow m loses in the pipe, W.
   double lost(double m) const { return m * (loss_ * m * std::abs(m) + laminar_ * m) / density_; }
+  /// Of the oil in the pipe, J.
+  double kinetic_energy(double m) const { return m * m / (2 * density_ * area_per_length_); }
   double by_port() const { return -area_per_length_; }
   double by_flow(double m) const {
     return -area_per_length_ * (2 * loss_ * std::abs(m) + laminar_);

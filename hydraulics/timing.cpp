@@ -94,10 +94,13 @@ std::vector<TimingRecord::Node> TimingRecord::turn() const {
   const int n = network_.pistons();
   std::vector<Node> turn;
   turn.reserve(nodes_.size());
+  const bool backwards = network_.backwards();
   for (int segment = 0; segment < n; ++segment)
     for (std::size_t i = 0; i < x_.size(); ++i) {
-      turn.push_back(nodes_[i * n + (n - segment) % n]);
-      turn.back().theta_deg = network_.period_deg() * segment + x_[i];
+      const std::size_t node = backwards ? x_.size() - 1 - i : i;
+      const double x = backwards ? network_.period_deg() - x_[node] : x_[node];
+      turn.push_back(nodes_[node * n + (n - segment - (backwards ? 1 : 0)) % n]);
+      turn.back().theta_deg = network_.period_deg() * segment + x;
     }
   return turn;
 }

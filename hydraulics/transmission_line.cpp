@@ -112,6 +112,20 @@ double TransmissionLine::damped_power(const double* y) const {
   return power_scale() * sum;
 }
 
+double TransmissionLine::energy(const double* y) const {
+  double sum = 0;
+  for (int i = 0; i < flows_; ++i) {
+    const double p = i < pressures_ ? y[i] : 0, m = y[pressures_ + i];
+    sum += (p * p + m * m) / scale_of(i);
+  }
+  return power_scale() * sum / 2;
+}
+
+double TransmissionLine::mass(const double* y) const {
+  const double per_mode = 2 * flow_scale_ / rate_;  // A L reference/c^2
+  return per_mode * (y[0] + density_ * wave_speed_ * wave_speed_ / reference_);
+}
+
 double TransmissionLine::by_state(int i, int j) const {
   const bool pressure = i < pressures_, by_pressure = j < pressures_;
   const int row = pressure ? i : i - pressures_, column = by_pressure ? j : j - pressures_;

@@ -62,6 +62,10 @@ class TransmissionLine {
   double friction_power(const double* y) const;
   double damped_power(const double* y) const;
 
+  /// That energy of the modes, J, and the mass in the pipe, kg.
+  double energy(const double* y) const;
+  double mass(const double* y) const;
+
   int pressures() const { return pressures_; }  ///< modes of pressure, the first ones of the state
   double wave_speed() const { return wave_speed_; }
   /// Characteristic impedance c/A, Pa s/kg.

@@ -53,7 +53,7 @@ std::vector<Channel> turn_channels(const Network& network) {
   for (const auto& f : flows)
     all.push_back(channel(std::string("m") + f.name + "_g_per_s",
                           std::string("mass flow ") + f.meaning, "g/s", 1e-3, f.piston));
-  if (network.has_suction_line())
+  if (network.has_suction_volume())
     all.push_back(
         channel("p_suction_bar", "pressure in the suction port, gauge", "bar", kPascalPerBar, 0));
   if (network.has_delivery_line())
@@ -110,7 +110,7 @@ double ripple(const std::vector<double>& passed) {
     least = std::min(least, mass);
     greatest = std::max(greatest, mass);
   }
-  return (greatest - least) / (passed.back() * kPerWindow / static_cast<double>(steps));
+  return (greatest - least) / std::abs(passed.back() * kPerWindow / static_cast<double>(steps));
 }
 
 // Share of a straight way from a to b that lies below a limit.
@@ -146,8 +146,10 @@ TurnRecord::TurnRecord(const Network& network, double load_size, int rows)
   const double period = network.period_deg();
   for (int i = 0; i < rows; ++i) {
     const int segment = static_cast<int>(static_cast<long long>(i) * n / rows);
-    const double x = 360.0 * i / rows - period * segment;
-    places_.push_back({std::clamp(x, 0.0, period * (1 - 1e-15)), i, (n - segment) % n});
+    const double past = 360.0 * i / rows - period * segment;
+    const double x = network.backwards() ? period - past : past;
+    const int chamber = (n - segment - (network.backwards() ? 1 : 0)) % n;
+    places_.push_back({std::clamp(x, 0.0, period * (1 - 1e-15)), i, chamber});
     angles_.push_back(360.0 * i / rows);
   }
   std::stable_sort(places_.begin(), places_.end(),
@@ -188,12 +190,12 @@ void TurnRecord::add_row(const Integrator::Step& step) {
   *to++ = network_.suction().area(angle);
   *to++ = network_.delivery().area(angle);
   for (const double m : mass) *to++ = m;
-  if (network_.has_suction_line()) *to++ = network_.suction_gauge(y);
+  if (network_.has_suction_volume()) *to++ = network_.suction_gauge(y);
   if (network_.has_delivery_line()) *to++ = network_.load_gauge(y);
   if (network_.air_at() > 0) *to++ = network_.air_out(y, k);
   const Fluid::State at = network_.mixture(y, k);
   network_.rates(place.x, y, load_size_, state_.data());
-  *to++ = at.pressure * state_[k];
+  *to++ = (network_.backwards() ? -1 : 1) * at.pressure * state_[k];
   *to++ = at.stiffness * at.pressure;
   *to++ = against(flows_.suction[k]) / density;
   *to++ = against(flows_.delivery[k]) / density;
@@ -220,6 +222,31 @@ void TurnRecord::see(const Integrator::Step& step) {
     loaded_[i] = passed.load;
   }
   if (step.at_edge) edges_.push_back(x_.size());
+}
+
+void TurnRecord::finish() {
+  if (!network_.backwards()) return;
+  const int n = network_.pistons();
+  const auto turn_round = [&](std::vector<double>& values, double sign) {
+    const std::size_t width = values.size() / x_.size();
+    std::vector<double> turned(values.size());
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      for (std::size_t j = 0; j < width; ++j) {
+        const auto chamber = static_cast<int>(j);
+        const std::size_t to =
+            width > 1 && chamber < n ? static_cast<std::size_t>((chamber + 1) % n) : j;
+        turned[(x_.size() - 1 - i) * width + to] = sign * values[i * width + j];
+      }
+    values = std::move(turned);
+  };
+  for (double& x : x_) x = network_.period_deg() - x;
+  turn_round(x_, 1);
+  turn_round(s_, 1);
+  turn_round(slope_, -1);
+  turn_round(load_flow_, 1);
+  turn_round(load_pressure_, 1);
+  for (std::size_t& edge : edges_) edge = x_.size() - edge;
+  std::reverse(edges_.begin(), edges_.end());
 }
 
 void TurnRecord::add_pieces(std::size_t first, std::size_t last, int k, double error,
@@ -332,7 +359,7 @@ void TurnRecord::summarize(const Integrals& over_period, Summary& summary) const
   for (std::size_t i = 0; i < x_.size(); ++i) {
     for (int k = 0; k < n; ++k) {
       const double p = fluid.gauge(s(i, k));
-      const double angle = wrap_degrees(network_.angle_deg(x_[i], k));
+      const double angle = wrap_degrees(network_.chamber_deg(x_[i], k));
       if (p < summary.chamber_least) summary.chamber_least = p, summary.chamber_least_deg = angle;
       if (p > summary.chamber_greatest)
         summary.chamber_greatest = p, summary.chamber_greatest_deg = angle;

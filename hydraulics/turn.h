@@ -25,6 +25,10 @@ class TurnRecord {
   /// For Integrator::over_period.
   void see(const Integrator::Step& step);
 
+  /// After the last step. Backwards: from here on nodes are those of a turn forwards, the last one
+  /// first; period - x is their x, and chamber k stands where forwards chamber k+1 does.
+  void finish();
+
   /// The curve of one chamber over the turn through as few of the collected states as keep the
   /// others within `error` of their own absolute pressure from it, with their slopes; monotone
   /// where the states are. Its `error` is that of the interpolation alone.

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "bentaxis/results/oil.h"
+
 namespace bentaxis::hydraulics {
 
 /// Places of the circuit. Oil that flows from one pressure to another loses the mass flow times the
@@ -12,7 +14,7 @@ namespace bentaxis::hydraulics {
 enum class Place {
   pistons,            ///< what the pistons do on the oil, gauge pressure
   tank,               ///< what the oil taken in carries: none at a suction pressure of 0
-  load,               ///< what goes into the load
+  load,               ///< what goes into the load; in a closed loop less what comes out of it
   drain,              ///< what leakage carries into the case: none at a case pressure of 0
   suction_line,       ///< loss of the pipe to the suction port
   suction_port,       ///< loss of what flows from the suction port into the chambers
@@ -27,8 +29,11 @@ enum class Place {
   damped_waves,       ///< what the delivery line's model takes out of waves above its bandwidth
   air,                ///< of dissolved air that comes out and dissolves late (cavitation = "rate")
   line_density,       ///< no loss: oil in the lines has one density there, another at their ends
+  relief_valve,       ///< loss over the relief valve beside the load
+  accumulator_inlet,  ///< loss of what flows into the accumulator and out of it
+  charge_valves,      ///< loss of what a charge supply feeds into a closed loop
 };
-constexpr int kPlaces = 17;
+constexpr int kPlaces = 20;
 
 /// By place, W or J.
 class PowerBudget {
@@ -40,8 +45,7 @@ class PowerBudget {
   std::array<double, kPlaces> values_ = {};
 };
 
-/// What a place does with power.
-enum class PowerUse { source, delivered, loss, approximation };
+using bentaxis::PowerUse;
 PowerUse use_of(Place place);
 const char* name_of(PowerUse use);
 /// For readers: "delivery port, backflow"; and as a part of a column's name: "delivery_backflow".

@@ -19,7 +19,7 @@ class Network;
 /// What an engineer reads off a turn. SI, pressures gauge.
 struct Summary {
   double displacement = 0;           ///< m3 per revolution, N A stroke
-  double ideal_flow = 0;             ///< m3/s, displacement x speed
+  double ideal_flow = 0;             ///< m3/s, displacement x speed, below 0 backwards
   double density = 0;                ///< kg/m3, in the suction port: that of all volume flows here
   double mass_flow = 0;              ///< kg/s, mean, to the load
   double flow = 0;                   ///< m3/s, the same / density
@@ -36,7 +36,9 @@ struct Summary {
   double chamber_greatest = 0, chamber_greatest_deg = 0;  ///< Pa
   double overshoot = 0;                                   ///< Pa, chamber_greatest - delivery_mean
   double undershoot = 0;                                  ///< Pa, suction pressure - chamber_least
-  double work = 0;  ///< J per turn, of the pistons on the oil at gauge pressure: sum of -p dV
+  /// J per turn forwards, of the pistons on the oil at gauge pressure: sum of -p dV; times the
+  /// speed it is their power.
+  double work = 0;
   double mass_in = 0, mass_out = 0;  ///< kg per turn: suction port; delivery port and leakage
   /// Degrees of a turn in which a chamber is open to both ports (negative overlap), or to neither.
   double both_open_deg = 0, both_closed_deg = 0;
@@ -108,7 +110,8 @@ struct Start {
 /// chamber k must have the pressure chamber k-1 began with. Unknowns are the pressures at theta = 0
 /// and the size of the load where that is sought; the last equation is the mean delivery pressure
 /// asked for. Derivatives are the forward sensitivities of the same integration.
-/// @throws InputError at standstill, backwards (motoring), without stroke, or if the case has no
+/// @throws InputError at standstill, backwards (motoring) where neither a supply nor a load of
+/// given size is at the delivery port, without stroke, or if the case has no
 ///         [hydraulics]
 /// @throws ComputationError where no state is found, e.g. because leakage takes all of the flow
 SteadyState steady_state(const Case& the_case, const std::optional<Start>& start = {},

@@ -1,0 +1,194 @@
+#include "bentaxis/hydraulics/oil_in_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/time_signal.h"
+#include "bentaxis/pump/units.h"
+#include "network.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+double sum_over_chambers(const std::vector<double>& v) {
+  return std::accumulate(v.begin(), v.end(), 0.0);
+}
+
+class OilInTime : public Oil {
+ public:
+  OilInTime(const Case& the_case, const OilStart& start)
+      : network_(the_case, Network::Use::time),
+        density_(network_.fluid().state(network_.suction_log_pressure()).density),
+        load_size_(size_of(network_, start)),
+        share_(share_of(the_case)),
+        start_(start.states.empty() ? at_rest() : start.states) {
+    if (start_.size() != static_cast<std::size_t>(network_.size()))
+      throw InputError(the_case.file.string() + ": the oil has " + std::to_string(network_.size()) +
+                       " states, and its start " + std::to_string(start_.size()));
+  }
+
+  int pistons() const override { return network_.pistons(); }
+  int states() const override { return network_.size(); }
+  std::vector<double> start() const override { return start_; }
+  // ln of pressures; what the lines have is over pressures and flows of the same kind.
+  std::vector<double> scales() const override { return std::vector<double>(start_.size(), 1.0); }
+  std::vector<double> knots() const override {
+    return share_ ? share_->knots() : std::vector<double>();
+  }
+
+  std::vector<double> edges_deg() const override {
+    constexpr double kOne = 1e-9;  // degrees
+    std::vector<double> edges;
+    for (const auto* port : {&network_.delivery(), &network_.suction()})
+      for (const double edge : port->edges_deg())
+        for (int k = 0; k < pistons(); ++k) {
+          const double at = std::fmod(edge + network_.period_deg() * k, 360);
+          edges.push_back(at > 360 - kOne ? 0 : at);
+        }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(
+        std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kOne; }),
+        edges.end());
+    return edges;
+  }
+
+  std::vector<int> order_after_period() const override {
+    std::vector<int> order(start_.size());
+    std::iota(order.begin(), order.end(), 0);
+    for (const int first : network_.by_chamber())
+      for (int k = 0; k < pistons(); ++k) order[first + k] = first + (k + 1) % pistons();
+    return order;
+  }
+
+  bool rates(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
+             double* dy) const override {
+    return network_.rates(Network::at(shaft, block), y, load_size(time), dy);
+  }
+
+  void jacobian(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
+                double* by_state) const override {
+    network_.jacobian(Network::at(shaft, block), y, load_size(time), by_state, nullptr);
+  }
+
+  void loads(double, const AxisMotion&, const double* y, OilLoads& loads) const override {
+    loads.chamber_pressure.resize(pistons());
+    for (int k = 0; k < pistons(); ++k) loads.chamber_pressure[k] = network_.fluid().gauge(y[k]);
+    loads.ports = {network_.suction_gauge(y), network_.delivery_gauge(y)};
+  }
+
+  std::vector<OilPlace> places() const override {
+    std::vector<OilPlace> all;
+    for (const Place place : network_.places())
+      all.push_back({key_of(place), name_of(place), use_of(place)});
+    return all;
+  }
+
+  void powers(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
+              double* power, double& mass_in, double& mass_out) const override {
+    const Network::Moment now = Network::at(shaft, block);
+    Network::Flows flows;
+    network_.flows(now, y, load_size(time), flows);
+    const PowerBudget budget = network_.power(now, y, flows);
+    for (const Place place : network_.places()) *power++ = budget[place];
+    mass_in = flows.taken;
+    mass_out = (network_.has_loop() ? 0 : flows.load) + sum_over_chambers(flows.leakage);
+  }
+
+  void stored(double, const AxisMotion& shaft, const AxisMotion& block, const double* y,
+              double& energy, double& mass) const override {
+    const Network::Stored all = network_.stored(Network::at(shaft, block), y);
+    energy = all.energy;
+    mass = all.mass;
+  }
+
+  std::vector<OilColumn> columns() const override {
+    std::vector<OilColumn> all;
+    for (int k = 1; k <= pistons(); ++k)
+      all.push_back({"p_" + std::to_string(k) + "_bar",
+                     "pressure in chamber " + std::to_string(k) + ", gauge"});
+    all.push_back({"p_suction_bar", "pressure in the suction port, gauge"});
+    all.push_back({"p_delivery_bar", "pressure in the delivery volume, gauge"});
+    if (network_.has_delivery_line())
+      all.push_back({"p_load_bar", "pressure at the end of the delivery line, gauge"});
+    if (network_.has_accumulator())
+      all.push_back({"p_accumulator_bar", "pressure in the accumulator, gauge"});
+    all.push_back({"flow_suction_l_per_min", network_.has_loop()
+                                                 ? "from the charge supply, at suction density"
+                                                 : "taken in, at suction density"});
+    all.push_back({"flow_delivery_l_per_min", "into the load, at suction density"});
+    all.push_back({"leakage_l_per_min", "leakage of all chambers, at suction density"});
+    if (network_.load().has_relief() && !network_.fixed_end())
+      all.push_back(
+          {"flow_relief_l_per_min", "over the relief valve beside the load, at suction density"});
+    return all;
+  }
+
+  void row(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
+           double* values) const override {
+    Network::Flows flows;
+    network_.flows(Network::at(shaft, block), y, load_size(time), flows);
+    for (int k = 0; k < pistons(); ++k) *values++ = network_.fluid().gauge(y[k]) / kPascalPerBar;
+    *values++ = network_.suction_gauge(y) / kPascalPerBar;
+    *values++ = network_.delivery_gauge(y) / kPascalPerBar;
+    if (network_.has_delivery_line()) *values++ = network_.load_gauge(y) / kPascalPerBar;
+    if (network_.has_accumulator()) *values++ = network_.accumulator_gauge(y) / kPascalPerBar;
+    const auto add_flow = [&](double mass) { *values++ = mass / density_ / kLitrePerMinute; };
+    add_flow(flows.taken);
+    add_flow(flows.load - flows.relief);
+    add_flow(sum_over_chambers(flows.leakage));
+    if (network_.load().has_relief() && !network_.fixed_end()) add_flow(flows.relief);
+  }
+
+ private:
+  static double size_of(const Network& network, const OilStart& start) {
+    if (!network.load_sought()) return network.load().size();
+    return start.load_size > 0 ? start.load_size : network.load().closed();
+  }
+
+  static std::optional<TimeSignal> share_of(const Case& the_case) {
+    const auto& load = the_case.hydraulics->load;
+    if (!load || load->share.time.empty()) return std::nullopt;
+    return TimeSignal(load->share);
+  }
+
+  double load_size(double time) const {
+    return share_ ? network_.load().shared(load_size_, share_->value(time)) : load_size_;
+  }
+
+  std::vector<double> at_rest() const {
+    const double suction = network_.suction_log_pressure();
+    const double open = network_.has_loop() ? suction : 0;
+    const double delivery = network_.fixed_end() ? network_.delivery_log_pressure() : open;
+    std::vector<double> chambers(pistons(), suction);
+    for (int k = 0; k < pistons(); ++k) {
+      const double angle = network_.angle_deg(0, k);
+      if (network_.delivery().area(angle) > network_.suction().area(angle)) chambers[k] = delivery;
+    }
+    return network_.at_rest(chambers, delivery);
+  }
+
+  Network network_;
+  double density_;  // of all volume flows
+  double load_size_;
+  std::optional<TimeSignal> share_;  // of that
+  std::vector<double> start_;
+};
+
+}  // namespace
+
+OilStart running(const SteadyState& state) {
+  return {state.corrected_load_size, state.corrected_states};
+}
+
+OilStart at_rest(const SteadyState& state) { return {state.corrected_load_size, {}}; }
+
+std::unique_ptr<Oil> oil_in_time(const Case& the_case, const OilStart& start) {
+  return std::make_unique<OilInTime>(the_case, start);
+}
+
+}  // namespace bentaxis::hydraulics
