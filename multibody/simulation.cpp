@@ -6,41 +6,15 @@
 #include <vector>
 
 #include "bentaxis/multibody/model.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/pump/validate.h"
 #include "bentaxis/results/stopwatch.h"
+#include "integration/case_drive.h"
 #include "integration/motion_run.h"
 #include "reactions/solver_guard.h"
-#include "scene_facts.h"
 
 namespace bentaxis::multibody {
 
 namespace {
-
-void check(const Case& the_case, const Assumptions& assumptions) {
-  validate(the_case);
-  const DriveSpec& drive = bentaxis::drive_of(the_case);
-  refuse_ring_off_b(the_case.pump);
-  if (assumptions.gear == BlockDrive::imposed)
-    throw InputError(
-        "multibody model: a block whose motion is imposed has none to simulate: use the gear in "
-        "mesh");
-  const bool compliant = the_case.pump.gear.contact == ToothContact::compliant;
-  const bool speed_changes = drive.kind != DriveKind::speed || !drive.curve.time.empty();
-  const std::string file = the_case.file.empty() ? "" : the_case.file.string() + ": ";
-  const auto need = [&](double inertia, const char* key) {
-    if (!(inertia > 0))
-      throw InputError(file + "[" + key +
-                       "] axial_inertia_kg_mm2 = 0: must be > 0 where the speed may change");
-  };
-  if (!has_equation_of_motion(the_case.pump, assumptions.inertia))
-    throw InputError(file +
-                     "[piston]: without inertia about A (mass 0, or all of it at A) pistons have "
-                     "no equation of motion in Simbody: use the analytic model");
-  if (speed_changes) need(the_case.pump.shaft.axial_inertia, "shaft");
-  if (speed_changes || compliant) need(the_case.pump.block.axial_inertia, "block");
-}
 
 // What is built, where it differs from a pump that is evaluated at instants.
 std::vector<std::pair<std::string, std::string>> facts_of(const Case& the_case,
@@ -72,7 +46,7 @@ double accuracy_for(double error) { return std::clamp(3e-4 * error, 1e-12, 1e-4)
 Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                     const PressureTrace& pressure, const SimulationOptions& options,
                     const Progress& progress, const SimulationMethod& method) {
-  check(the_case, assumptions);
+  require_simulable(the_case, assumptions);
   const Stopwatch stopwatch;
   const IntegrationOptions integration{method.integrator,
                                        options.accuracy.value_or(accuracy_for(options.error))};

@@ -99,7 +99,7 @@ double Equations::block_angle(double time, const State& y) const {
   return shaft(time, y).angle - y[kLag];
 }
 
-State Equations::start(const SimulationOptions& options) {
+State Equations::start(const SimulationOptions& options) const {
   State y = {};
   if (drive_.kind != DriveKind::speed) y[kTurnRate] = options.start_speed;
   if (law_) y[kLag] = options.start_lag;
@@ -109,7 +109,8 @@ State Equations::start(const SimulationOptions& options) {
     if (drive_.kind != DriveKind::speed) y[kTurnRate] += options.disturbance * scale[kTurnRate];
   }
   if (drive_.kind == DriveKind::motor && start_speed_ != 0)
-    y[kTwist] = drive_.torque / drive_.motor->coupling_stiffness;
+    y[kTwist] =
+        (curve_ ? curve_->value(start_speed_) : drive_.torque) / drive_.motor->coupling_stiffness;
   return y;
 }
 
@@ -146,7 +147,7 @@ State Equations::scales() const {
 }
 
 std::vector<double> Equations::knots() const {
-  return curve_ ? curve_->knots() : std::vector<double>();
+  return curve_ && drive_.kind != DriveKind::motor ? curve_->knots() : std::vector<double>();
 }
 
 void Equations::set_speeds(double time, const State& y) {
@@ -164,6 +165,11 @@ void Equations::set_pressures(double block_angle) {
 }
 
 void Equations::at_own_angle(double time, const State& y) { set_pressures(block_angle(time, y)); }
+
+double Equations::motor_torque(double rotor_speed) const {
+  return curve_ ? curve_->value(rotor_speed)
+                : drive_.torque - drive_.motor->torque_slope * (rotor_speed - omega_);
+}
 
 double Equations::spring_force(double approach) const {
   const double share = approach / kToothApproach;
@@ -184,7 +190,33 @@ Motion Equations::motion(double time, const State& y) {
   constexpr double kHair = 1e-10;
   set_pressures(std::clamp(instant_.block.angle, from_angle + kHair,
                            std::max(to_angle - kHair, from_angle + kHair)));
+  return accelerate(time, y);
+}
 
+void Equations::set_loads(const OilLoads& loads) {
+  instant_.chamber_pressure = loads.chamber_pressure;
+  instant_.ports = loads.ports;
+}
+
+Teeth Equations::teeth_at(const State& y) const {
+  Teeth now;
+  if (!law_) return now;
+  for (const int flank : {1, -1}) {
+    if (!(approach(y, flank) > 0)) continue;
+    const bool pushes = 1 + law_->dissipation * approach_rate(y, flank) > 0;
+    (pushes ? now.pressing : now.idle) = flank;
+  }
+  return now;
+}
+
+Motion Equations::motion_under_loads(double time, const State& y) {
+  set_speeds(time, y);
+  teeth = teeth_at(y);
+  return accelerate(time, y);
+}
+
+// Of the instant, whose speeds and pressures are set.
+Motion Equations::accelerate(double time, const State& y) {
   Motion m;
   const bool speed_given = drive_.kind == DriveKind::speed;
   const double given = instant_.shaft.acceleration;
@@ -235,6 +267,20 @@ Motion Equations::motion(double time, const State& y) {
 
 void Equations::rates(double time, const State& y, State& dy) {
   const Motion m = motion(time, y);
+  add_rates(y, m, dy);
+}
+
+void Equations::rates_under_loads(double time, const State& y, State& dy) {
+  const Motion m = motion_under_loads(time, y);
+  add_rates(y, m, dy);
+}
+
+double Equations::pressure_power(double time, const State& y) {
+  set_speeds(time, y);
+  return loads_.pressure_power(instant_);
+}
+
+void Equations::add_rates(const State& y, const Motion& m, State& dy) {
   dy.fill(0);
   const double shaft_speed = m.shaft.speed;
   double loads = loads_.power(instant_, m.drive_torque);
@@ -263,7 +309,7 @@ void Equations::rates(double time, const State& y, State& dy) {
   if (drive_.kind == DriveKind::motor) {
     const MotorData& motor = *drive_.motor;
     const double rotor_speed = shaft_speed + y[kTwistRate];
-    const double torque = drive_.torque - motor.torque_slope * (rotor_speed - omega_);
+    const double torque = motor_torque(rotor_speed);
     const double rotor = (torque - m.drive_torque) / motor.rotor_inertia;
     dy[kTwist] = y[kTwistRate];
     dy[kTwistRate] = rotor - m.shaft.acceleration;
@@ -272,6 +318,18 @@ void Equations::rates(double time, const State& y, State& dy) {
   }
   dy[kWorkOfLoads] = loads;
   dy[kWorkOfDrive] = drive;
+}
+
+void Equations::row(double time, const State& y, const Motion& m, std::vector<double>& state,
+                    std::vector<double>& row, MotionChecks& checks) const {
+  row.assign(model_.layout().size(), not_computed());
+  model_.evaluate(instant_, row, &checks);
+  // By the lag's own digits.
+  if (law_) checks.tooth_law = m.tooth_force;
+  state = {time, m.shaft.angle / kRadPerDegree, (m.shaft.angle - y[kLag]) / kRadPerDegree,
+           m.shaft.speed / kRadPerSecondPerRpm, m.block.speed / kRadPerSecondPerRpm};
+  if (drive_.kind == DriveKind::motor)
+    state.push_back((m.shaft.speed + y[kTwistRate]) / kRadPerSecondPerRpm);
 }
 
 double Equations::kinetic_energy(double time, const State& y) {

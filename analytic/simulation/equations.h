@@ -8,25 +8,13 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/pump/time_signal.h"
+#include "bentaxis/results/mechanics.h"
 #include "closed_form/gear.h"
 #include "simulation/loads.h"
 
 namespace bentaxis::analytic::simulation {
 
-/// What is integrated. Angles and rates that a case does not have stay 0.
-enum : std::size_t {
-  kTurn,         ///< theta less the start's speed times time, rad
-  kTurnRate,     ///< rad/s
-  kLag,          ///< theta - psi, rad
-  kLagRate,      ///< rad/s
-  kTwist,        ///< of the coupling, phi - theta, rad
-  kTwistRate,    ///< rad/s
-  kWorkOfLoads,  ///< J
-  kWorkOfDrive,  ///< J
-  kImpulse,      ///< Ns, of the flank that presses
-  kStates
-};
-using State = std::array<double, kStates>;
+using State = MotionVector;
 
 /// How the teeth stand: which flank presses, if any.
 struct Teeth {
@@ -53,7 +41,7 @@ class Equations {
   const closed_form::ToothLaw& law() const { return *law_; }
   long evaluations() const { return evaluations_; }
 
-  State start(const SimulationOptions& options);
+  State start(const SimulationOptions& options) const;
   /// What each state is measured by: an error of one part in this scale changes reactions by the
   /// same part of their peak, or so.
   State scales() const;
@@ -70,12 +58,24 @@ class Equations {
   }
   double approach_rate(const State& y, int flank) const { return flank * law_->arm * y[kLagRate]; }
   double block_angle(double time, const State& y) const;
+  AxisMotion shaft(double time, const State& y) const;
   double speed(double time, const State& y) const { return shaft(time, y).speed; }
 
+  /// Pressures are those of the trace in the interval, teeth as `teeth` says.
   void rates(double time, const State& y, State& dy);
+  /// Pressures are what set_loads() was given last, teeth as the approaches say.
+  void rates_under_loads(double time, const State& y, State& dy);
+  Motion motion_under_loads(double time, const State& y);
+  void set_loads(const OilLoads& loads);
+  /// Power of the pressures on the pistons there, W.
+  double pressure_power(double time, const State& y);
   /// Everything at an instant; `instant()` then is the model's argument there.
   Motion motion(double time, const State& y);
   const Instant& instant() const { return instant_; }
+  /// A row of results at the instant of the motion that was found last.
+  /// @param state  values of trajectory_columns() in their units
+  void row(double time, const State& y, const Motion& m, std::vector<double>& state,
+           std::vector<double>& row, MotionChecks& checks) const;
   /// Pressures at the block's angle itself instead of those of the interval.
   void at_own_angle(double time, const State& y);
 
@@ -88,11 +88,14 @@ class Equations {
     double drive_torque, tooth_force;  // both as the motion needs them
   };
   Response respond(const Model& model, double shaft_acceleration, double block_acceleration);
-  AxisMotion shaft(double time, const State& y) const;
+  Motion accelerate(double time, const State& y);
+  void add_rates(const State& y, const Motion& m, State& dy);
+  Teeth teeth_at(const State& y) const;
   void set_speeds(double time, const State& y);
   void set_pressures(double block_angle);
   double spring_force(double approach) const;
   double flank_force(double approach, double rate) const;
+  double motor_torque(double rotor_speed) const;
 
   const DriveSpec& drive_;
   const PressureTrace& pressure_;

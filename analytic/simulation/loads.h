@@ -15,6 +15,8 @@ class Loads {
   /// Of pressure, ring friction and weight on the pistons, of Cc, Cs and the torque's share of
   /// (38): all but what the drive feeds in, W. The rest of the weight does no work.
   double power(const Instant& instant, double drive_torque) const;
+  /// Of the pressures on the pistons alone, W.
+  double pressure_power(const Instant& instant) const;
 
  private:
   PreparedPump pump_;

@@ -36,19 +36,19 @@ class Stepper {
 
   bool attempt(double time, const State& y, const State& dy, double& h, State& out) {
     State from, slope;
-    for (std::size_t i = 0; i < kStates; ++i) {
+    for (std::size_t i = 0; i < kMotionStates; ++i) {
       from[i] = y[i] / scale_[i];
       slope[i] = dy[i] / scale_[i];
     }
     const auto system = [this](const State& x, State& dx, double t) {
       State at, rate;
-      for (std::size_t i = 0; i < kStates; ++i) at[i] = x[i] * scale_[i];
+      for (std::size_t i = 0; i < kMotionStates; ++i) at[i] = x[i] * scale_[i];
       equations_.rates(t, at, rate);
-      for (std::size_t i = 0; i < kStates; ++i) dx[i] = rate[i] / scale_[i];
+      for (std::size_t i = 0; i < kMotionStates; ++i) dx[i] = rate[i] / scale_[i];
     };
     const double asked = h;
     const auto result = method_.try_step(system, from, slope, time, out, h);
-    for (std::size_t i = 0; i < kStates; ++i) out[i] *= scale_[i];
+    for (std::size_t i = 0; i < kMotionStates; ++i) out[i] *= scale_[i];
     const bool finite =
         std::all_of(out.begin(), out.end(), [](double v) { return std::isfinite(v); });
     if (!finite || !std::isfinite(h)) {
@@ -428,17 +428,9 @@ class Simulation {
   void add_row(Trajectory& trajectory) {
     Motion m = equations_.motion(time_, y_);
     equations_.at_own_angle(time_, y_);
-    const Model& model = equations_.model();
-    row_.assign(model.layout().size(), not_computed());
     MotionChecks checks{};
-    model.evaluate(equations_.instant(), row_, &checks);
-    // By the lag's own digits.
-    if (equations_.compliant()) checks.tooth_law = m.tooth_force;
-    std::vector<double> state = {
-        time_, m.shaft.angle / kRadPerDegree, (m.shaft.angle - y_[kLag]) / kRadPerDegree,
-        m.shaft.speed / kRadPerSecondPerRpm, m.block.speed / kRadPerSecondPerRpm};
-    if (equations_.drive().kind == DriveKind::motor)
-      state.push_back((m.shaft.speed + y_[kTwistRate]) / kRadPerSecondPerRpm);
+    std::vector<double> state;
+    equations_.row(time_, y_, m, state, row_, checks);
     append_trajectory_row(trajectory.table, state, row_, checks);
     trajectory.lag.push_back(y_[kLag]);
 

@@ -12,7 +12,6 @@
 #include "bentaxis/results/worst.h"
 #include "loads/friction.h"
 #include "reactions/channels.h"
-#include "reactions/motion_checks.h"
 #include "reactions/solver_guard.h"
 
 namespace bentaxis::multibody {
@@ -67,10 +66,10 @@ MotionRun::MotionRun(const Case& the_case, const Assumptions& assumptions,
                      const PressureTrace& pressure, const IntegrationOptions& options,
                      long most_steps)
     : case_(the_case),
-      spec_(*the_case.drive),
+      drive_(the_case),
+      spec_(drive_.spec()),
       pressure_(pressure),
-      curve_(spec_.curve.time.empty() ? std::nullopt : std::optional<TimeSignal>(spec_.curve)),
-      system_(the_case.pump, assumptions, drive_in_time()),
+      system_(the_case.pump, assumptions, drive_.in_time()),
       stepper_(system_.system(), options, most_steps),
       edges_(pressure_edges(pressure, the_case.pump.geometry.pistons)),
       accuracy_(options.accuracy) {
@@ -92,36 +91,15 @@ MotionRun::MotionRun(const Case& the_case, const Assumptions& assumptions,
   stepper_.foresee(spec_.duration);
 }
 
-DriveInTime MotionRun::drive_in_time() const {
-  const double omega = rad_per_second(case_.operation.speed_rpm);
-  DriveInTime drive;
-  if (spec_.kind == DriveKind::speed) {
-    drive.turning = [this, omega](double time) {
-      if (!curve_) return AxisMotion{omega * time, omega, 0};
-      return AxisMotion{curve_->integral(time), curve_->value(time), curve_->slope(time)};
-    };
-    return drive;
-  }
-  const auto torque = [this](double time) { return curve_ ? curve_->value(time) : spec_.torque; };
-  drive.torque = TorqueInTime{torque, std::nullopt, omega, case_.pump.friction.shaft_torque_factor};
-  if (spec_.kind == DriveKind::motor) drive.torque->motor = spec_.motor;
-  return drive;
-}
-
-double MotionRun::start_speed() const {
-  if (spec_.kind == DriveKind::speed && curve_) return curve_->value(0);
-  return spec_.start_speed.value_or(rad_per_second(case_.operation.speed_rpm));
-}
-
 void MotionRun::place_at_start() {
-  const double speed = start_speed();
+  const double speed = drive_.start_speed();
   // Shaft and block stand at 0: on an edge there they are past it in the direction they turn.
   segment_ = edges_.empty() || (edges_.front() <= kOnEdge && speed >= 0) ? 0 : -1;
   system_.inputs().rest_speed = 0;
   Placement placement(system_);
   placement.place({0, speed, 0}, {0, speed, 0});
   if (system_.drive_torque() != nullptr)
-    system_.drive_torque()->start(system_.dynamics(), speed, speed == 0 ? 0 : spec_.torque);
+    system_.drive_torque()->start(system_.dynamics(), speed, drive_.start_torque());
   system_.system().realize(system_.dynamics(), Stage::Velocity);
 }
 
@@ -281,9 +259,8 @@ void MotionRun::advance_to(double time) {
 void MotionRun::run(Trajectory& trajectory, const Progress& progress) {
   const std::vector<double> rows = trajectory_times(spec_);
   std::vector<double> knots;
-  if (curve_)
-    for (const double knot : curve_->knots())
-      if (knot > 0 && knot < spec_.duration) knots.push_back(knot);
+  for (const double knot : drive_.knots())
+    if (knot > 0 && knot < spec_.duration) knots.push_back(knot);
   stepper_.alive = [&] {
     if (progress) progress(std::min(1.0, stepper_.time() / spec_.duration));
   };
@@ -365,26 +342,16 @@ void MotionRun::read(double time, Trajectory& trajectory) {
   std::vector<double> values(layout.size(), not_computed());
   std::vector<double> pressure(static_cast<std::size_t>(n));
   system_.inputs().chamber_pressure(0, system_.bodies().block.getOneQ(state, 0), pressure);
-  Reactions reactions;
-  reactions_from_multipliers(system_, state, reactions);
-  for (int k = 0; k < n; ++k)
-    read_piston_channels(system_, reactions, k, k, pressure[k], layout, values);
   const SimTK::Vector& udot = state.getUDot();
   // Of a given speed the sign is that of what was given: at rest the integration's own is
   // round-off.
-  const AxisMotion shaft{
-      radians(theta),
-      spec_.kind == DriveKind::speed ? drive_in_time().turning(time).speed : shaft_speed(state),
-      udot[system_.bodies().shaft.getFirstUIndex(state) + 2]};
+  const AxisMotion shaft{radians(theta),
+                         drive_.gives_speed() ? drive_.turning(time).speed : shaft_speed(state),
+                         udot[system_.bodies().shaft.getFirstUIndex(state) + 2]};
   const AxisMotion block{radians(psi_deg(state)), block_speed(state),
                          udot[system_.bodies().block.getFirstUIndex(state)]};
-  read_pump_channels(system_, state, reactions, {state, shaft.speed}, {shaft, block}, pressure,
-                     layout, values);
-  const MotionChecks checks{system_.teeth() != nullptr ? reactions.tooth : not_computed(),
-                            ring_power(system_, reactions, state),
-                            power_balance(system_, state, reactions, udot)};
-  values[layout.power_residual()] =
-      shaft.speed == 0 ? not_computed() : checks.power_balance / shaft.speed;
+  MotionChecks checks{};
+  read_motion_row(system_, state, {shaft, block}, pressure, layout, values, checks);
   if (system_.has_rigid_gear()) system_.gear().setting().negative = false;
 
   std::vector<double> columns = {time, theta, psi_deg(state), rpm(shaft_speed(state)),

@@ -4,11 +4,10 @@
 #include <SimTKsimbody.h>
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "bentaxis/multibody/simulation.h"
-#include "bentaxis/pump/time_signal.h"
+#include "integration/case_drive.h"
 #include "integration/event_stepper.h"
 #include "placement/placement.h"
 #include "scene/pump_system.h"
@@ -34,8 +33,6 @@ class MotionRun {
     std::function<void()> happen;  ///< puts the loads on the branch that follows
   };
 
-  DriveInTime drive_in_time() const;
-  double start_speed() const;
   void place_at_start();
   double psi_deg(const SimTK::State& state) const;
   double block_speed(const SimTK::State& state) const;
@@ -58,9 +55,9 @@ class MotionRun {
   void account(TrajectoryRecord& record);
 
   const Case& case_;
+  CaseDrive drive_;
   const DriveSpec& spec_;
   const PressureTrace& pressure_;
-  std::optional<TimeSignal> curve_;
   PumpSystem system_;
   EventStepper stepper_;
   // Block angles in [0, 360) at which a chamber's pressure has an edge, and the present segment

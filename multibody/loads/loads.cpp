@@ -21,6 +21,24 @@ AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions,
   return load;
 }
 
+double pressure_power(const PumpParameters& pump, const PumpBodies& bodies,
+                      const std::vector<double>& pressure, const State& state) {
+  const Vec3 z2(bodies.block_frame.z());
+  double power = 0;
+  for (std::size_t k = 0; k < bodies.pistons.size(); ++k) {
+    const SimTK::Transform& place = bodies.pistons[k].getBodyTransform(state);
+    const SpatialVec& rate = bodies.pistons[k].getBodyVelocity(state);
+    const SpatialVec& block_rate = bodies.block.getBodyVelocity(state);
+    const Vec3 ring = pump.geometry.piston_length * Vec3(place.z());  // B from A
+    const Vec3 on_block = place.p() + ring - bodies.block.getBodyOriginLocation(state);
+    const double force = axial_load(pump, {false}, pressure[k], 0, 0).pressure;
+    power += force * SimTK::dot(z2, rate[1] + rate[0] % ring) +
+             pump.block.bottom_area * pressure[k] *
+                 SimTK::dot(z2, block_rate[1] + block_rate[0] % on_block);
+  }
+  return power;
+}
+
 namespace {
 
 class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
@@ -98,11 +116,26 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
   const FilmLoad& film_load_now() const {
     if (inputs_.ports.delivery != film_ports_.delivery ||
         inputs_.ports.suction != film_ports_.suction || !film_known_) {
-      film_ = film_load(*pump_.port_plate, inputs_.ports);
+      film_ =
+          inputs_.ports_change ? superposed_film() : film_load(*pump_.port_plate, inputs_.ports);
       film_ports_ = inputs_.ports;
       film_known_ = true;
     }
     return film_;
+  }
+
+  FilmLoad superposed_film() const {
+    constexpr double kUnit = 1e5;  // Pa
+    if (!of_suction_) {
+      of_suction_ = film_load(*pump_.port_plate, {kUnit, 0});
+      of_delivery_ = film_load(*pump_.port_plate, {0, kUnit});
+    }
+    const auto sum = [&](double FilmLoad::*part) {
+      return ((*of_suction_).*part * inputs_.ports.suction +
+              (*of_delivery_).*part * inputs_.ports.delivery) /
+             kUnit;
+    };
+    return {sum(&FilmLoad::force_z), sum(&FilmLoad::moment_x), sum(&FilmLoad::moment_y)};
   }
 
   const PumpParameters& pump_;
@@ -112,6 +145,7 @@ class PumpLoadsImplementation : public SimTK::Force::Custom::Implementation {
   LoadedBodies loaded_;
   mutable std::vector<double> pressure_;
   mutable FilmLoad film_;
+  mutable std::optional<FilmLoad> of_suction_, of_delivery_;
   mutable PortPressures film_ports_;
   mutable bool film_known_ = false;
 };

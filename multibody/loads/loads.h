@@ -22,6 +22,9 @@ struct LoadInputs {
   /// rad, which does not wrap.
   std::function<void(double theta, double psi, std::vector<double>& pressure)> chamber_pressure;
   PortPressures ports;
+  /// They change from one evaluation to the next: the film is not integrated anew but put together
+  /// from the loads of either port, in which it is linear.
+  bool ports_change = false;
   /// Torque about z1 on the shaft at angle theta where the shaft runs free; empty where driven.
   std::function<double(double theta)> shaft_torque;
   double rest_speed =
@@ -64,5 +67,10 @@ struct AxialLoad {
 /// @param direction  0, or the way the piston is taken to move where dry friction jumps
 AxialLoad axial_load(const PumpParameters& pump, const Assumptions& assumptions, double pressure,
                      double velocity, double rest_speed, double direction = 0);
+
+/// Power of the chamber pressures on all that moves, W.
+/// @param state  realized to Velocity
+double pressure_power(const PumpParameters& pump, const PumpBodies& bodies,
+                      const std::vector<double>& pressure, const SimTK::State& state);
 
 }  // namespace bentaxis::multibody

@@ -183,7 +183,7 @@ bool Placement::guess_placement() {
   return true;
 }
 
-void Placement::place(const AxisMotion& shaft, const AxisMotion& block) {
+void Placement::place(const AxisMotion& shaft, const AxisMotion& block, double rotor_speed) {
   placed_shaft_ = shaft;
   placed_block_ = block;
   if (!(guess_placement() && solve_placement())) {
@@ -197,6 +197,8 @@ void Placement::place(const AxisMotion& shaft, const AxisMotion& block) {
   u = 0;
   u[bodies_.shaft.getFirstUIndex(dynamics_) + 2] = shaft.speed;
   u[bodies_.block.getFirstUIndex(dynamics_)] = block.speed;
+  if (pump_.drive_torque() != nullptr)
+    pump_.drive_torque()->set_rotor_speed(dynamics_, rotor_speed);
   const double rate_error = solver_.solve_speeds(dynamics_);
   if (!(rate_error <= kAssemblyTolerance * speed_scale(shaft, block)))
     throw ComputationError("multibody model: no speeds found that keep the pistons in their bores" +

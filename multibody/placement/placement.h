@@ -33,8 +33,9 @@ class Placement {
   /// Puts the dynamics state at a given motion of shaft and block: positions and speeds, guessed,
   /// then brought to where the constraint equations hold to round-off. Leaves it realized to
   /// Velocity.
+  /// @param rotor_speed  rad/s, of a motor's rotor where there is one
   /// @throws ComputationError where no assembly is found.
-  void place(const AxisMotion& shaft, const AxisMotion& block);
+  void place(const AxisMotion& shaft, const AxisMotion& block, double rotor_speed = 0);
 
   /// Accelerations of all mobilities as the constraint equations have them at the last placement.
   void constrained_accelerations(SimTK::Vector& udot);

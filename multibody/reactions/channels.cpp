@@ -109,4 +109,19 @@ void read_channels(const PumpSystem& pump, const State& state, const WorkRate& r
   read_pump_channels(pump, state, reactions, rate, motion, pressure, layout, values);
 }
 
+void read_motion_row(const PumpSystem& pump, const State& state, const AxisMotions& motion,
+                     const std::vector<double>& pressure, const ChannelLayout& layout,
+                     std::vector<double>& values, MotionChecks& checks) {
+  Reactions reactions;
+  reactions_from_multipliers(pump, state, reactions);
+  for (int k = 0; k < layout.pistons(); ++k)
+    read_piston_channels(pump, reactions, k, k, pressure[k], layout, values);
+  const double speed = motion.shaft.speed;
+  read_pump_channels(pump, state, reactions, {state, speed}, motion, pressure, layout, values);
+  checks = {pump.teeth() != nullptr ? reactions.tooth : not_computed(),
+            ring_power(pump, reactions, state),
+            power_balance(pump, state, reactions, state.getUDot())};
+  values[layout.power_residual()] = speed == 0 ? not_computed() : checks.power_balance / speed;
+}
+
 }  // namespace bentaxis::multibody

@@ -7,6 +7,7 @@
 
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/motion.h"
 #include "reactions/reactions.h"
 
 namespace bentaxis::multibody {
@@ -43,5 +44,11 @@ void read_pump_channels(const PumpSystem& pump, const SimTK::State& state,
 void read_channels(const PumpSystem& pump, const SimTK::State& state, const WorkRate& rate,
                    const AxisMotions& motion, const std::vector<double>& pressure,
                    const ChannelLayout& layout, std::vector<double>& values);
+
+/// All channels of a pump that is simulated, and the checks.
+/// @param state  dynamics state realized by realize_with_flank()
+void read_motion_row(const PumpSystem& pump, const SimTK::State& state, const AxisMotions& motion,
+                     const std::vector<double>& pressure, const ChannelLayout& layout,
+                     std::vector<double>& values, MotionChecks& checks);
 
 }  // namespace bentaxis::multibody

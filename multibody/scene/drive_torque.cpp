@@ -48,6 +48,7 @@ class DriveTorque::Element : public SimTK::Force::Custom::Implementation {
   void set_twist(State& state, double twist) const { forces_.updZ(state)[twist_] = twist / unit(); }
   double rotor_speed(const State& state) const { return speed(state, rotor_); }
   void set_rotor_speed(State& state, double speed) const { rotor_.setOneU(state, 0, speed); }
+  int rotor_u(const State& state) const { return rotor_.getFirstUIndex(state); }
 
  private:
   double unit() const { return kUnitTorque / drive_.motor->coupling_stiffness; }
@@ -56,8 +57,7 @@ class DriveTorque::Element : public SimTK::Force::Custom::Implementation {
     return body.getBodyAngularVelocity(state)[2];
   }
   double motor_torque(const State& state) const {
-    return drive_.torque(state.getTime()) -
-           drive_.motor->torque_slope * (speed(state, rotor_) - drive_.omega);
+    return drive_.motor_torque(speed(state, rotor_));
   }
 
   const SimTK::GeneralForceSubsystem& forces_;
@@ -88,10 +88,19 @@ double DriveTorque::rotor_speed(const State& state) const { return element_->rot
 double DriveTorque::torque(const State& state) const { return element_->torque(state); }
 double DriveTorque::power(const State& state) const { return element_->power(state); }
 
+int DriveTorque::rotor_u(const State& state) const { return element_->rotor_u(state); }
+
+void DriveTorque::set_rotor_speed(State& state, double speed) const {
+  if (drive_.motor) element_->set_rotor_speed(state, speed);
+}
+void DriveTorque::set_twist(State& state, double twist) const {
+  if (drive_.motor) element_->set_twist(state, twist);
+}
+
 void DriveTorque::start(State& state, double speed, double torque) const {
   if (!drive_.motor) return;
-  element_->set_rotor_speed(state, speed);
-  element_->set_twist(state, torque / drive_.motor->coupling_stiffness);
+  set_rotor_speed(state, speed);
+  set_twist(state, torque / drive_.motor->coupling_stiffness);
 }
 
 double DriveTorque::elastic_energy(const State& state) const {

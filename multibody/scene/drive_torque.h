@@ -12,10 +12,10 @@ namespace bentaxis::multibody {
 
 /// The data of such a drive.
 struct TorqueInTime {
-  std::function<double(double time)> torque;  ///< Nm: Td, or of a motor at its speed `omega`
+  std::function<double(double time)> torque;               ///< Td, Nm, where no motor drives
+  std::function<double(double rotor_speed)> motor_torque;  ///< on the rotor, Nm
   std::optional<MotorData> motor;
-  double omega = 0;  ///< rad/s, of [operation]
-  double kept = 1;   ///< Ct: the share of Td that turns the shaft (38)
+  double kept = 1;  ///< Ct: the share of Td that turns the shaft (38)
 };
 
 /// The force element of a drive and, where there is a motor, its rotor: a body that turns about z1.
@@ -29,6 +29,11 @@ class DriveTorque {
   bool has_rotor() const { return drive_.motor.has_value(); }
   /// Speed of the rotor, rad/s.
   double rotor_speed(const SimTK::State& state) const;
+  void set_rotor_speed(SimTK::State& state, double speed) const;
+  double rotor_inertia() const { return drive_.motor->rotor_inertia; }  ///< kg m2
+  int rotor_u(const SimTK::State& state) const;                         ///< index of its speed
+  /// Of the coupling, rad.
+  void set_twist(SimTK::State& state, double twist) const;
   /// Sets speed of the rotor and torque in the coupling.
   void start(SimTK::State& state, double speed, double torque) const;
   /// Td, Nm. State realized to Velocity.

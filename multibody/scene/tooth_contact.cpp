@@ -34,6 +34,18 @@ double tooth_force(const ToothCompliance& teeth, double advance, double rate) {
   return flank_force(teeth, advance - play, rate) - flank_force(teeth, -advance - play, -rate);
 }
 
+ToothBranch tooth_branch_at(const ToothCompliance& teeth, double advance, double rate) {
+  for (const int flank : {1, -1})
+    if (flank * advance - teeth.backlash / 2 > 0)
+      return {flank, !(1 + teeth.dissipation * flank * rate > 0)};
+  return {};
+}
+
+double flank_energy(const ToothCompliance& teeth, double approach) {
+  const double pressed = std::max(0.0, approach);
+  return elastic_force(teeth, pressed) * pressed / (teeth.exponent + 1);
+}
+
 class CompliantTeeth::Element : public SimTK::Force::Custom::Implementation {
  public:
   Element(const SimTK::GeneralForceSubsystem& forces, const ToothCompliance& teeth, double unit,
@@ -66,6 +78,9 @@ class CompliantTeeth::Element : public SimTK::Force::Custom::Implementation {
   }
 
   double advance(const State& state) const { return unit_ * forces_.getZ(state)[first_]; }
+  void set_advance(State& state, double advance) const {
+    forces_.updZ(state)[first_] = advance / unit_;
+  }
   double impulse(const State& state) const { return kUnitForce * forces_.getZ(state)[first_ + 1]; }
   double rate(const State& state) const {
     return dot(gear_.line_for(1), velocity(state, shaft_) - velocity(state, block_));
@@ -111,6 +126,9 @@ CompliantTeeth::CompliantTeeth(SimTK::GeneralForceSubsystem& forces, const Tooth
 }
 
 double CompliantTeeth::advance(const State& state) const { return element_->advance(state); }
+void CompliantTeeth::set_advance(State& state, double advance) const {
+  element_->set_advance(state, advance);
+}
 double CompliantTeeth::rate(const State& state) const { return element_->rate(state); }
 double CompliantTeeth::force(const State& state) const { return element_->force(state); }
 double CompliantTeeth::impulse(const State& state) const { return element_->impulse(state); }
@@ -123,10 +141,7 @@ double CompliantTeeth::approach_rate(const State& state, int flank) const {
 
 double CompliantTeeth::elastic_energy(const State& state) const {
   double energy = 0;
-  for (const int flank : {1, -1}) {
-    const double pressed = std::max(0.0, approach(state, flank));
-    energy += elastic_force(teeth_, pressed) * pressed / (teeth_.exponent + 1);
-  }
+  for (const int flank : {1, -1}) energy += flank_energy(teeth_, approach(state, flank));
   return energy;
 }
 

@@ -29,6 +29,12 @@ struct ToothBranch {
   bool released = false;  ///< so fast apart that the flank, still pressed in, follows no more
 };
 
+/// The branch that holds at a state. @param advance, rate  as of tooth_force()
+ToothBranch tooth_branch_at(const ToothCompliance& teeth, double advance, double rate);
+
+/// Energy that the spring of a flank holds, J; none where it does not touch.
+double flank_energy(const ToothCompliance& teeth, double approach);
+
 /// Compliant teeth between shaft and block, as a force element.
 ///
 /// How far the shaft's teeth are ahead is a variable of its own, the integral of the bodies'
@@ -45,6 +51,7 @@ class CompliantTeeth {
   /// Of the shaft's teeth before the block's, m, from the middle of the gap; and its rate, m/s.
   /// @param state  realized to Velocity, of the rate
   double advance(const SimTK::State& state) const;
+  void set_advance(SimTK::State& state, double advance) const;
   double rate(const SimTK::State& state) const;
   /// How far a flank is pressed in, m, and how fast.
   double approach(const SimTK::State& state, int flank) const;

@@ -28,15 +28,18 @@ class WorkMeter::Implementation : public SimTK::Force::Custom::Implementation {
     first_ = forces_.allocateZ(state, Vector(2, Real(0)));
   }
   void realizeAcceleration(const State& state) const override {
+    Vector& rate = forces_.updZDot(state);
+    rate[first_] = power_of_loads(state) / unit_;
+    rate[first_ + 1] = drives_(state) / unit_;
+  }
+  double power_of_loads(const State& state) const {
     const auto& forces = system_.getRigidBodyForces(state, SimTK::Stage::Dynamics);
     double loads = 0;
     for (SimTK::MobilizedBodyIndex i(1); i < matter_.getNumBodies(); ++i) {
       const SpatialVec& v = matter_.getMobilizedBody(i).getBodyVelocity(state);
       loads += SimTK::dot(forces[i][0], v[0]) + SimTK::dot(forces[i][1], v[1]);
     }
-    Vector& rate = forces_.updZDot(state);
-    rate[first_] = loads / unit_;
-    rate[first_ + 1] = drives_(state) / unit_;
+    return loads;
   }
   double value(const State& state, int which) const {
     return unit_ * forces_.getZ(state)[first_ + which];
@@ -61,5 +64,8 @@ WorkMeter::WorkMeter(const SimTK::MultibodySystem& system,
 
 double WorkMeter::of_loads(const State& state) const { return implementation_->value(state, 0); }
 double WorkMeter::of_drives(const State& state) const { return implementation_->value(state, 1); }
+double WorkMeter::power_of_loads(const State& state) const {
+  return implementation_->power_of_loads(state);
+}
 
 }  // namespace bentaxis::multibody

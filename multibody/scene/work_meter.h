@@ -22,6 +22,8 @@ class WorkMeter {
   /// Work since time 0, J.
   double of_loads(const SimTK::State& state) const;
   double of_drives(const SimTK::State& state) const;
+  /// Power of all applied loads, W. @param state  realized to Dynamics
+  double power_of_loads(const SimTK::State& state) const;
 
  private:
   class Implementation;

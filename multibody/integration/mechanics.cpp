@@ -1,0 +1,375 @@
+#include "bentaxis/multibody/mechanics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/trajectory.h"
+#include "integration/case_drive.h"
+#include "integration/free_motion.h"
+#include "loads/friction.h"
+#include "placement/placement.h"
+#include "reactions/channels.h"
+#include "reactions/solver_guard.h"
+
+namespace bentaxis::multibody {
+
+using SimTK::Stage;
+using SimTK::State;
+
+namespace {
+
+// Where all bodies are, and how fast.
+struct Posture {
+  double time = 0;
+  AxisMotion shaft, block;
+  double rotor_speed = 0;
+  double lag = 0, lag_rate = 0;  // theta - psi, with digits of its own
+  double twist = 0;
+
+  bool moves_as(const Posture& other) const {
+    return time == other.time && shaft == other.shaft && block == other.block &&
+           rotor_speed == other.rotor_speed;
+  }
+};
+
+class MultibodyMechanics : public Mechanics {
+ public:
+  MultibodyMechanics(const Case& the_case, const Assumptions& assumptions)
+      : pump_(the_case.pump),
+        drive_(the_case),
+        system_(pump_, assumptions, drive_.in_time()),
+        placement_(system_),
+        free_motion_(system_, placement_),
+        layout_(pump_.geometry.pistons),
+        arm_(system_.gear().arm()) {
+    system_.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
+      p = loads_.chamber_pressure;
+    };
+    system_.inputs().ports_change = true;
+    scales_ = find_scales(the_case);
+  }
+
+  const ChannelLayout& layout() const override { return layout_; }
+  MotionVector start() const override {
+    MotionVector y = {};
+    if (has_motor()) y[kTwist] = drive_.start_torque() / motor().coupling_stiffness;
+    return y;
+  }
+  MotionVector scales() const override { return scales_; }
+  bool shaft_is_free() const override { return !drive_.gives_speed(); }
+  bool compliant() const override { return system_.teeth() != nullptr; }
+  bool has_motor() const override { return drive_.is_motor(); }
+  std::vector<double> knots() const override { return drive_.knots(); }
+
+  AxisMotion shaft(double time, const MotionVector& y) const override {
+    if (drive_.gives_speed()) {
+      const AxisMotion given = drive_.turning(time);
+      return {given.angle, given.speed, 0};
+    }
+    const double speed = drive_.start_speed();
+    return {speed * time + y[kTurn], speed + y[kTurnRate], 0};
+  }
+  AxisMotion block(double time, const MotionVector& y) const override {
+    const AxisMotion motion = shaft(time, y);
+    return {motion.angle - y[kLag], motion.speed - y[kLagRate], 0};
+  }
+  double approach(const MotionVector& y, int flank) const override {
+    return flank * arm_ * y[kLag] - teeth().backlash / 2;
+  }
+  double approach_rate(const MotionVector& y, int flank) const override {
+    return flank * arm_ * y[kLagRate];
+  }
+
+  void rates(double time, const MotionVector& y, const OilLoads& loads, MotionVector& dy) override {
+    translate_simbody_errors([&] { find_rates(posture(time, y), y, loads, dy); });
+  }
+  double pressure_power(double time, const MotionVector& y, const OilLoads& loads) override {
+    require_pressures(loads);
+    double power = 0;
+    translate_simbody_errors([&] {
+      place(posture(time, y));
+      power = multibody::pressure_power(pump_, system_.bodies(), loads.chamber_pressure,
+                                        system_.dynamics());
+    });
+    return power;
+  }
+  void row(double time, const MotionVector& y, const OilLoads& loads, std::vector<double>& state,
+           std::vector<double>& row, MotionChecks& checks) override {
+    translate_simbody_errors([&] { find_row(posture(time, y), loads, state, row, checks); });
+  }
+  double kinetic_energy(double time, const MotionVector& y) override {
+    double energy = 0;
+    translate_simbody_errors([&] { energy = kinetic_energy_in(posture(time, y)); });
+    return energy;
+  }
+  double potential_energy(const MotionVector& y) const override {
+    double energy = 0;
+    if (compliant())
+      for (const int flank : {1, -1}) energy += flank_energy(teeth(), approach(y, flank));
+    if (has_motor()) energy += motor().coupling_stiffness * y[kTwist] * y[kTwist] / 2;
+    return energy;
+  }
+
+ private:
+  const ToothCompliance& teeth() const { return *pump_.gear.compliance; }
+  const MotorData& motor() const { return *drive_.spec().motor; }
+
+  Posture posture(double time, const MotionVector& y) const {
+    Posture now;
+    now.time = time;
+    now.shaft = shaft(time, y);
+    now.block = block(time, y);
+    if (drive_.gives_speed())
+      now.shaft.acceleration = now.block.acceleration = drive_.turning(time).acceleration;
+    if (has_motor()) now.rotor_speed = now.shaft.speed + y[kTwistRate];
+    now.lag = y[kLag];
+    now.lag_rate = y[kLagRate];
+    now.twist = y[kTwist];
+    return now;
+  }
+
+  void require_pressures(const OilLoads& loads) const;
+  void place(const Posture& now);
+  void load(const OilLoads& loads);
+  void accelerate(const Posture& now, const OilLoads& loads);
+  void find_rates(const Posture& now, const MotionVector& y, const OilLoads& loads,
+                  MotionVector& dy);
+  void add_work_rates(const Posture& now, const MotionVector& y, MotionVector& dy) const;
+  void find_row(const Posture& now, const OilLoads& loads, std::vector<double>& state,
+                std::vector<double>& row, MotionChecks& checks);
+  double kinetic_energy_in(const Posture& now);
+  MotionVector find_scales(const Case& the_case);
+
+  const PumpParameters& pump_;
+  CaseDrive drive_;
+  PumpSystem system_;
+  Placement placement_;
+  FreeMotion free_motion_;
+  ChannelLayout layout_;
+  double arm_;  // m, of the teeth's line of action about the block's axis
+  OilLoads loads_;
+  FreeMotion::Accelerations found_;
+  std::optional<Posture> placed_;
+  MotionVector scales_{};
+};
+
+void MultibodyMechanics::require_pressures(const OilLoads& loads) const {
+  if (loads.chamber_pressure.size() != static_cast<std::size_t>(layout_.pistons()))
+    throw InputError("multibody model: " + std::to_string(loads.chamber_pressure.size()) +
+                     " chamber pressures for " + std::to_string(layout_.pistons()) + " pistons");
+}
+
+// Leaves the dynamics state realized to Velocity, with forces to be found anew.
+void MultibodyMechanics::place(const Posture& now) {
+  State& state = system_.dynamics();
+  if (!placed_ || !placed_->moves_as(now)) {
+    placed_.reset();
+    state.setTime(now.time);
+    placement_.place(now.shaft, now.block, now.rotor_speed);
+    const double fastest = std::max(std::abs(now.shaft.speed), std::abs(now.block.speed));
+    // At standstill what speeds there are is round-off.
+    system_.inputs().rest_speed = fastest == 0 ? std::numeric_limits<double>::infinity()
+                                               : rest_speed_at(pump_.geometry, fastest);
+    placed_ = now;
+  }
+  state.invalidateAllCacheAtOrAbove(Stage::Dynamics);
+  if (compliant()) {
+    system_.teeth()->set_advance(state, arm_ * now.lag);
+    system_.tooth_branch() = tooth_branch_at(teeth(), arm_ * now.lag, arm_ * now.lag_rate);
+  }
+  if (has_motor()) system_.drive_torque()->set_twist(state, now.twist);
+}
+
+void MultibodyMechanics::load(const OilLoads& loads) {
+  require_pressures(loads);
+  loads_.chamber_pressure = loads.chamber_pressure;
+  system_.inputs().ports = loads.ports;
+}
+
+void MultibodyMechanics::accelerate(const Posture& now, const OilLoads& loads) {
+  load(loads);
+  place(now);
+  found_ = free_motion_.solve(shaft_is_free());
+  if (!std::isfinite(found_.shaft + found_.block + found_.rotor + found_.torque_on_shaft))
+    throw ComputationError("multibody model: no accelerations at " + short_text(now.time) + " s");
+}
+
+void MultibodyMechanics::find_rates(const Posture& now, const MotionVector& y,
+                                    const OilLoads& loads, MotionVector& dy) {
+  accelerate(now, loads);
+  const State& state = system_.dynamics();
+  dy.fill(0);
+  if (shaft_is_free()) {
+    dy[kTurn] = y[kTurnRate];
+    dy[kTurnRate] = found_.shaft;
+  }
+  if (compliant()) {
+    dy[kLag] = y[kLagRate];
+    dy[kLagRate] = found_.shaft - found_.block;
+    dy[kImpulse] = std::abs(system_.teeth()->force(state));
+  }
+  if (has_motor()) {
+    dy[kTwist] = y[kTwistRate];
+    dy[kTwistRate] = found_.rotor - found_.shaft;
+  }
+  add_work_rates(now, y, dy);
+}
+
+// What is left to the loads is what dissipates or enters: springs are accounted for by their
+// energy.
+void MultibodyMechanics::add_work_rates(const Posture& now, const MotionVector& y,
+                                        MotionVector& dy) const {
+  const State& state = system_.dynamics();
+  double drive = shaft_is_free() ? system_.drive_torque()->power(state)
+                                 : found_.torque_on_shaft * now.shaft.speed;
+  double total = system_.work().power_of_loads(state);
+  if (drive_.gives_speed()) total += drive;  // a torque that is applied is among the loads
+  // What turns the shaft is Ct Td (38): the rest of Td's work is lost, to friction that is a load.
+  if (!has_motor()) drive /= pump_.friction.shaft_torque_factor;
+  double elastic = 0;
+  if (compliant())
+    for (const int flank : {1, -1})
+      elastic += flank_force(teeth(), approach(y, flank), 0) * approach_rate(y, flank);
+  if (has_motor()) elastic += motor().coupling_stiffness * y[kTwist] * y[kTwistRate];
+  dy[kWorkOfLoads] = total - drive + elastic;
+  dy[kWorkOfDrive] = drive;
+}
+
+void MultibodyMechanics::find_row(const Posture& now, const OilLoads& loads,
+                                  std::vector<double>& state, std::vector<double>& row,
+                                  MotionChecks& checks) {
+  load(loads);
+  place(now);
+  State& dynamics = system_.dynamics();
+  realize_with_flank(system_, dynamics);
+  require_accurate_forces(estimated_force_error(system_, dynamics), now.shaft.angle);
+  AxisMotion shaft = now.shaft;
+  AxisMotion block = now.block;
+  shaft.acceleration = system_.bodies().shaft.getOneUDot(dynamics, 2);
+  block.acceleration = system_.bodies().block.getOneUDot(dynamics, 0);
+  row.assign(layout_.size(), not_computed());
+  read_motion_row(system_, dynamics, {shaft, block}, loads.chamber_pressure, layout_, row, checks);
+  if (system_.has_rigid_gear()) {
+    system_.gear().setting().negative = false;
+    placed_.reset();
+  }
+  const auto rpm = [](double speed) { return speed / kRadPerSecondPerRpm; };
+  state = {now.time, shaft.angle / kRadPerDegree, block.angle / kRadPerDegree, rpm(shaft.speed),
+           rpm(block.speed)};
+  if (has_motor()) state.push_back(rpm(now.rotor_speed));
+}
+
+double MultibodyMechanics::kinetic_energy_in(const Posture& now) {
+  place(now);
+  return system_.system().calcKineticEnergy(system_.dynamics());
+}
+
+// Sizes of what acts and of what it moves, the largest of a turn.
+MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
+  constexpr int kAngles = 12;
+  constexpr double kAngle = 0.1;          // rad, over which pressures change
+  constexpr double kLeastPressure = 1e5;  // Pa
+  constexpr double kLeastTorque = 1e-6;   // Nm
+  constexpr double kOneTouch = 1e-3;      // s
+  constexpr double kTouchShare = 0.1;
+  const PortPressures& ports = the_case.pressure.ports;
+  const double most = std::max({std::abs(ports.delivery), std::abs(ports.suction), kLeastPressure});
+  const auto pistons = static_cast<std::size_t>(layout_.pistons());
+  const double start = drive_.start_speed();
+
+  double torque = kLeastTorque;
+  double tooth = 0;              // N, that keeps the block with the shaft
+  double both = 0;               // kg m2
+  double lag = SimTK::Infinity;  // kg m2, inertia that the teeth work against
+  for (int i = 0; i < kAngles; ++i) {
+    const double angle = 2 * kPi * i / kAngles;
+    const auto turning = [&](double shaft_speed, double block_speed) {
+      Posture now;
+      now.shaft = {angle, shaft_speed, 0};
+      now.block = {angle, block_speed, 0};
+      return now;
+    };
+    // The energy of their spin is the pistons' at any speed.
+    const double spin = kinetic_energy_in(turning(0, 0));
+    const auto inertia = [&](double shaft_speed, double block_speed) {
+      return 2 * (kinetic_energy_in(turning(shaft_speed, block_speed)) - spin);
+    };
+    const double shaft = inertia(1, 0);
+    const double block = inertia(0, 1);
+    const double all = inertia(1, 1);
+    const double mixed = (all - shaft - block) / 2;
+    both = std::max(both, all);
+    lag = std::min(lag, drive_.gives_speed() ? block : (shaft * block - mixed * mixed) / all);
+    // Chambers that shrink are at the higher pressure.
+    OilLoads loads{std::vector<double>(pistons, 0.0), ports};
+    double pumped = 0;
+    for (std::size_t k = 0; k < pistons; ++k) {
+      std::vector<double> alone(pistons, 0.0);
+      alone[k] = most;
+      const double power = multibody::pressure_power(pump_, system_.bodies(), alone,
+                                                     system_.dynamics());  // at 1 rad/s
+      if (power < 0) loads.chamber_pressure[k] = most;
+      pumped += std::max(0.0, -power);
+    }
+    torque = std::max(torque, pumped);
+    // What acts at the start's speed, its inertia's share too; compliant teeth are apart.
+    accelerate(turning(start, start), loads);
+    const double on_block = mixed * found_.shaft + block * found_.block;
+    const double on_shaft = shaft * found_.shaft + mixed * found_.block;
+    const double drive =
+        shaft_is_free() ? system_.torque_on_shaft(system_.dynamics()) : found_.torque_on_shaft;
+    torque = std::max(torque, std::abs(on_shaft + on_block - drive));
+    tooth = std::max(tooth, std::abs(on_block) / arm_);
+  }
+  const DriveSpec& spec = drive_.spec();
+  if (!drive_.gives_speed()) {
+    torque = std::max(torque, std::abs(spec.torque));
+    for (const double value : spec.curve.value) torque = std::max(torque, std::abs(value));
+  }
+  placed_.reset();
+
+  MotionVector scale;
+  scale.fill(1);
+  scale[kTurn] = kAngle;
+  const double omega = rad_per_second(the_case.operation.speed_rpm);
+  if (shaft_is_free())
+    scale[kTurnRate] =
+        kAngle * std::max({std::abs(omega), std::abs(start), std::sqrt(torque * kAngle / both)});
+  if (compliant()) {
+    // Teeth that meet carry a good part of what the drive gives.
+    tooth = std::max(tooth, kTouchShare * torque / arm_);
+    const double approach = kToothApproach * std::pow(tooth / (teeth().stiffness * kToothApproach),
+                                                      1 / teeth().exponent);
+    const double stiffness = teeth().exponent * tooth / approach * arm_ * arm_;  // Nm/rad
+    scale[kLag] = std::min(kAngle, tooth * arm_ / stiffness);
+    scale[kLagRate] = scale[kLag] * std::sqrt(stiffness / lag);
+    scale[kImpulse] = tooth * kOneTouch;
+  }
+  if (has_motor()) {
+    const double stiffness = motor().coupling_stiffness;
+    scale[kTwist] = std::min(kAngle, torque / stiffness);
+    scale[kTwistRate] =
+        scale[kTwist] * std::sqrt(stiffness * (1 / motor().rotor_inertia + 1 / both));
+  }
+  scale[kWorkOfLoads] = scale[kWorkOfDrive] = torque;  // of 1 rad
+  return scale;
+}
+
+}  // namespace
+
+std::unique_ptr<Mechanics> mechanics(const Case& the_case, const Assumptions& assumptions) {
+  require_simulable(the_case, assumptions);
+  require_smooth_friction(the_case);
+  std::unique_ptr<Mechanics> mechanics;
+  translate_simbody_errors(
+      [&] { mechanics = std::make_unique<MultibodyMechanics>(the_case, assumptions); });
+  return mechanics;
+}
+
+}  // namespace bentaxis::multibody
