@@ -1,0 +1,301 @@
+#include "course.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::coupled {
+namespace {
+
+constexpr long kMostSteps = 20000000;  // some minutes of the closed form
+constexpr std::size_t kMostEvents = 1000000;
+// A step that is expected to reach an edge goes beyond it by this part of itself.
+constexpr double kBeyond = 1e-6;
+constexpr double kOutside = 1e-9;   // rad, beyond an end of the interval
+constexpr double kOnTouch = 1e-15;  // m: as good as touching
+constexpr int kMostShortSteps = 1000;
+constexpr double kRounding = std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double tolerance,
+               bool balances)
+    : name_(std::move(name)),
+      system_(mechanics, oil, balances),
+      integrator_(system_, tolerance),
+      edges_deg_(oil.edges_deg()),
+      knots_(mechanics.knots()) {
+  const std::vector<double> of_oil = oil.knots();
+  knots_.insert(knots_.end(), of_oil.begin(), of_oil.end());
+  std::sort(knots_.begin(), knots_.end());
+  integrals_.assign(static_cast<std::size_t>(system_.integrals()), 0.0);
+}
+
+void Course::fail(const std::string& why) const {
+  throw ComputationError(name_ + " model with oil: the simulation stops at " + number_text(time_) +
+                         " s: " + why);
+}
+
+void Course::start(double time, const SystemState& state) {
+  time_ = step_start_ = time;
+  state_ = state;
+  std::fill(integrals_.begin(), integrals_.end(), 0.0);
+  find_interval();
+  start_teeth();
+  system_.forget();
+  restart_ = true;
+}
+
+double Course::edge(std::ptrdiff_t index) const {
+  const auto count = static_cast<std::ptrdiff_t>(edges_deg_.size());
+  std::ptrdiff_t turns = index / count;
+  std::ptrdiff_t left = index % count;
+  if (left < 0) {
+    left += count;
+    --turns;
+  }
+  return radians(edges_deg_[static_cast<std::size_t>(left)] + 360 * static_cast<double>(turns));
+}
+
+void Course::set_interval() {
+  system_.from = edge(edge_ - 1);
+  system_.to = edge(edge_);
+}
+
+// The interval between edges in which the block stands, or which it enters.
+void Course::find_interval() {
+  if (edges_deg_.empty()) return;
+  const AxisMotion block = this->block(time_, state_);
+  const double degrees = block.angle / kRadPerDegree;
+  const double turn = std::floor(degrees / 360);
+  edge_ = std::upper_bound(edges_deg_.begin(), edges_deg_.end(), degrees - 360 * turn) -
+          edges_deg_.begin() +
+          static_cast<std::ptrdiff_t>(turn) * static_cast<std::ptrdiff_t>(edges_deg_.size());
+  set_interval();
+  // On an edge it enters what lies ahead. Where it stands still, the first step will tell.
+  if (std::abs(block.angle - system_.from) <= kOutside && block.speed < 0) --edge_;
+  if (std::abs(block.angle - system_.to) <= kOutside && block.speed > 0) ++edge_;
+  set_interval();
+}
+
+void Course::start_teeth() {
+  touching_ = 0;
+  Mechanics& mechanics = system_.mechanics();
+  if (!mechanics.compliant()) return;
+  for (const int flank : {1, -1}) {
+    const double x = mechanics.approach(state_.motion, flank);
+    double rate = mechanics.approach_rate(state_.motion, flank);
+    if (x < -kOnTouch) continue;
+    if (x <= kOnTouch && rate == 0) {
+      // Without force between the flanks: which way they begin to move.
+      std::vector<double> dy(system_.scale().size());
+      system_.scaled(state_, y_);
+      if (!system_.rates(time_, y_.data(), dy.data())) continue;
+      MotionVector moving{};
+      for (std::size_t i = 0; i < system_.active().size(); ++i)
+        if (system_.active()[i] == kLagRate) moving[kLagRate] = dy[i] * system_.scale()[i];
+      rate = mechanics.approach_rate(moving, flank);
+    }
+    if (x <= kOnTouch && rate <= 0) continue;
+    contact_changes(flank, true);
+    return;
+  }
+}
+
+void Course::contact_changes(int flank, bool touch) {
+  if (touch == (touching_ == flank)) return;
+  if (touch && touching_ != 0) contact_changes(touching_, false);
+  if (events_.size() >= kMostEvents)
+    fail("after " + std::to_string(kMostEvents) + " touches of the teeth");
+  close_contact();
+  touching_ = touch ? flank : 0;
+  ToothEvent event;
+  event.time_s = time_;
+  event.touch = touch;
+  event.flank = flank;
+  event.shaft_speed = shaft(time_, state_).speed;
+  event.block_speed = block(time_, state_).speed;
+  event.approach_speed = system_.mechanics().approach_rate(state_.motion, flank);
+  if (touch) {
+    touch_ = events_.size();
+    impulse_ = state_.motion[kImpulse];
+  }
+  events_.push_back(event);
+}
+
+void Course::close_contact() {
+  if (touch_ < events_.size()) events_[touch_].impulse = state_.motion[kImpulse] - impulse_;
+  touch_ = kNone;
+}
+
+void Course::state_at(double time, SystemState& state) const {
+  if (time == time_ || step_start_ == time_) {
+    state = state_;
+    return;
+  }
+  sampled_y_.resize(system_.scale().size());
+  integrator_.state_at(time, sampled_y_.data());
+  state = state_;
+  system_.unscaled(sampled_y_.data(), state);
+}
+
+void Course::integrals_at(double time, std::vector<double>& integrals) const {
+  integrals = integrals_;
+  if (step_start_ != time_ && !integrals.empty()) integrator_.integrals_at(time, integrals.data());
+  for (std::size_t i = 0; i < integrals.size(); ++i)
+    integrals[i] *= system_.integral_scale(static_cast<int>(i));
+}
+
+double Course::time_at(double block_angle) const {
+  double low = step_start_, high = time_;
+  state_at(low, sampled_);
+  const double sign = block(high, state_).angle >= block(low, sampled_).angle ? 1 : -1;
+  double at = high;
+  SystemState there;
+  for (int i = 0; i < 100; ++i) {
+    state_at(at, there);
+    const AxisMotion b = block(at, there);
+    const double left = block_angle - b.angle;
+    if (left == 0 || high - low <= kRounding * high) break;
+    (sign * left < 0 ? high : low) = at;
+    const double next = at + left / b.speed;
+    if (std::abs(next - at) <= kRounding * at) break;
+    at = next > low && next < high ? next : (low + high) / 2;
+  }
+  return at;
+}
+
+// A flank that touched and left within the step: it is then taken back to the touch, until which
+// nothing acted between them.
+bool Course::hidden_touch() {
+  const Mechanics& mechanics = system_.mechanics();
+  if (!mechanics.compliant() || touching_ != 0) return false;
+  SystemState at;
+  for (const int flank : {1, -1}) {
+    double low = step_start_, high = time_;
+    state_at(low, at);
+    if (mechanics.approach(at.motion, flank) >= 0 ||
+        mechanics.approach_rate(at.motion, flank) <= 0 ||
+        mechanics.approach(state_.motion, flank) >= 0 ||
+        mechanics.approach_rate(state_.motion, flank) >= 0)
+      continue;
+    double nearest = low;
+    const double first = low;
+    for (int i = 0; i < 60; ++i) {
+      nearest = (low + high) / 2;
+      state_at(nearest, at);
+      (mechanics.approach_rate(at.motion, flank) > 0 ? low : high) = nearest;
+    }
+    if (mechanics.approach(at.motion, flank) <= 0) continue;
+    low = first;
+    high = nearest;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      state_at(middle, at);
+      (mechanics.approach(at.motion, flank) > 0 ? high : low) = middle;
+    }
+    state_at(high, at);
+    if (!integrals_.empty()) integrator_.integrals_at(high, integrals_.data());
+    state_ = at;
+    time_ = high;
+    contact_changes(flank, true);
+    return true;
+  }
+  return false;
+}
+
+// Where the step should end: a step over an edge would be refused, so it is cut where the edge is
+// expected.
+double Course::horizon(double end) const {
+  double stop = end;
+  const auto knot = std::upper_bound(knots_.begin(), knots_.end(), time_);
+  if (knot != knots_.end()) stop = std::min(stop, *knot);
+  if (edges_deg_.empty()) return stop;
+  const AxisMotion b = block(time_, state_);
+  const double left = b.speed > 0 ? system_.to - b.angle : system_.from - b.angle;
+  if (b.speed == 0 || left / b.speed <= 0) return stop;
+  const double ahead = left / b.speed * (1 + kBeyond);
+  const double least = 1e3 * kRounding * (time_ + std::abs(end));
+  return std::min(stop, time_ + std::max(ahead, least));
+}
+
+void Course::keep_going() {
+  if (integrator_.steps() > kMostSteps)
+    fail("after " + std::to_string(kMostSteps) +
+         " steps: motion or pressures are too fast for the time that is asked for; simulate less "
+         "of it (duration_s), or with a larger error");
+  if (time_ - step_start_ > 1e2 * kRounding * time_) {
+    short_steps_ = 0;
+    integrator_.forget_complaint();
+  } else if (++short_steps_ > kMostShortSteps) {
+    fail(integrator_.complaint().empty()
+             ? "motion or pressures change faster there than steps above round-off can follow"
+             : integrator_.complaint());
+  }
+}
+
+void Course::advance(double end) {
+  if (restart_) {
+    system_.scaled(state_, y_);
+    integrator_.start(time_, y_, integrals_);
+    restart_ = false;
+  }
+  keep_going();
+  const double stop = horizon(end);
+  const double before = time_;
+  Integrator::Reached reached{};
+  try {
+    reached = integrator_.step(stop);
+  } catch (const ComputationError& error) {
+    fail(error.what());
+  }
+  step_start_ = before;
+  time_ = integrator_.time();
+  y_.resize(system_.scale().size());
+  integrator_.state_at(time_, y_.data());
+  system_.unscaled(y_.data(), state_);
+  if (!integrals_.empty()) integrator_.integrals_at(time_, integrals_.data());
+
+  if (touching_ == 0 && system_.mechanics().compliant()) {
+    restart_ = hidden_touch();
+    apart_ += time_ - before;
+    if (restart_) {
+      system_.forget();
+      return;
+    }
+  }
+  if (std::binary_search(knots_.begin(), knots_.end(), time_)) restart_ = true;
+  if (!edges_deg_.empty()) {
+    const double angle = block(time_, state_).angle;
+    const std::vector<int>& passed = integrator_.passed();
+    int side = 0;
+    if (reached == Integrator::Reached::guard)
+      side = passed[System::kTo] != 0 ? 1 : passed[System::kFrom] != 0 ? -1 : 0;
+    if (side != 0) {
+      edge_ += side;
+      set_interval();
+      restart_ = true;
+    } else if (angle > system_.to + kOutside || angle < system_.from - kOutside) {
+      find_interval();
+      restart_ = true;
+    }
+  }
+  if (reached == Integrator::Reached::guard && system_.mechanics().compliant()) {
+    const std::vector<int>& passed = integrator_.passed();
+    for (const bool touch : {false, true})
+      for (const int flank : {1, -1}) {
+        const int way = passed[flank > 0 ? System::kFlankPlus : System::kFlankMinus];
+        if (way == 0 || touch != (way > 0)) continue;
+        contact_changes(flank, touch);
+        system_.forget();
+        restart_ = true;
+      }
+  }
+}
+
+}  // namespace bentaxis::coupled

@@ -1,0 +1,78 @@
+// Follows motion and oil through edges of the ports, knots of curves and touches of the teeth.
+// Internal.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bentaxis/results/trajectory.h"
+#include "system.h"
+
+namespace bentaxis::coupled {
+
+class Course {
+ public:
+  /// @param name      of the model, for messages
+  /// @param balances  as for System
+  Course(std::string name, Mechanics& mechanics, const Oil& oil, double tolerance, bool balances);
+
+  void start(double time, const SystemState& state);
+  /// One step, to `end` at most. What happens at its end is taken account of by the next one, so
+  /// that everything between is still to be had from state_at().
+  /// @throws ComputationError naming the time
+  void advance(double end);
+  double time() const { return time_; }
+  double step_start() const { return step_start_; }
+
+  /// At a time of the last step.
+  void state_at(double time, SystemState& state) const;
+  void integrals_at(double time, std::vector<double>& integrals) const;  ///< SI
+  /// The time of the last step at which the block has got to an angle between those at its ends.
+  double time_at(double block_angle) const;
+
+  /// The flank that touched at last has its impulse until now.
+  void close_contact();
+  const std::vector<ToothEvent>& events() const { return events_; }
+  double time_apart() const { return apart_; }  ///< s, without touch of a flank
+  long steps() const { return integrator_.steps(); }
+  long evaluations() const { return system_.evaluations(); }
+  const System& system() const { return system_; }
+  AxisMotion shaft(double time, const SystemState& s) const {
+    return system_.mechanics().shaft(time, s.motion);
+  }
+  AxisMotion block(double time, const SystemState& s) const {
+    return system_.mechanics().block(time, s.motion);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const;
+  double edge(std::ptrdiff_t index) const;
+  void set_interval();
+  void find_interval();
+  void start_teeth();
+  void contact_changes(int flank, bool touch);
+  bool hidden_touch();
+  double horizon(double end) const;
+  void keep_going();
+
+  std::string name_;
+  System system_;
+  Integrator integrator_;
+  std::vector<double> edges_deg_, knots_;
+  std::ptrdiff_t edge_ = 0;  // that ends the interval, counted over turns
+  bool restart_ = false;     // before the next step
+  double time_ = 0, step_start_ = 0, apart_ = 0;
+  SystemState state_;  // at time_
+  std::vector<double> y_, integrals_;
+  int touching_ = 0;  // a flank
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::size_t touch_ = kNone;  // event of its
+  double impulse_ = 0;         // then
+  std::vector<ToothEvent> events_;
+  int short_steps_ = 0;
+  mutable SystemState sampled_;
+  mutable std::vector<double> sampled_y_;
+};
+
+}  // namespace bentaxis::coupled

@@ -1,0 +1,73 @@
+#include "bentaxis/coupled/prescribed_oil.h"
+
+#include <algorithm>
+
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::coupled {
+namespace {
+
+class PrescribedOil : public Oil {
+ public:
+  PrescribedOil(int pistons, const PressureTrace& pressure, const PortPressures& ports)
+      : pistons_(pistons), pressure_(pressure), ports_(ports) {
+    for (const double edge : pressure.edges_deg())
+      for (int k = 0; k < pistons; ++k)
+        edges_deg_.push_back(wrap_degrees(edge + 360.0 * k / pistons));
+    std::sort(edges_deg_.begin(), edges_deg_.end());
+    constexpr double kSame = 1e-9;
+    edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end(),
+                                 [](double a, double b) { return b - a < kSame; }),
+                     edges_deg_.end());
+    if (edges_deg_.size() > 1 && edges_deg_.front() + 360 - edges_deg_.back() < kSame)
+      edges_deg_.pop_back();
+  }
+
+  int pistons() const override { return pistons_; }
+  int states() const override { return 0; }
+  std::vector<double> start() const override { return {}; }
+  std::vector<double> scales() const override { return {}; }
+  std::vector<double> edges_deg() const override { return edges_deg_; }
+  std::vector<double> knots() const override { return {}; }
+  std::vector<int> order_after_period() const override { return {}; }
+
+  bool rates(double, const AxisMotion&, const AxisMotion&, const double*, double*) const override {
+    return true;
+  }
+  void jacobian(double, const AxisMotion&, const AxisMotion&, const double*,
+                double*) const override {}
+  void loads(double, const AxisMotion& block, const double*, OilLoads& loads) const override {
+    loads.chamber_pressure.resize(static_cast<std::size_t>(pistons_));
+    const double degrees = block.angle / kRadPerDegree;
+    for (int k = 0; k < pistons_; ++k)
+      loads.chamber_pressure[k] = pressure_(piston_angle_deg(degrees, k + 1, pistons_));
+    loads.ports = ports_;
+  }
+
+  std::vector<OilPlace> places() const override { return {}; }
+  void powers(double, const AxisMotion&, const AxisMotion&, const double*, double*, double& mass_in,
+              double& mass_out) const override {
+    mass_in = mass_out = 0;
+  }
+  void stored(double, const AxisMotion&, const AxisMotion&, const double*, double& energy,
+              double& mass) const override {
+    energy = mass = 0;
+  }
+  std::vector<OilColumn> columns() const override { return {}; }
+  void row(double, const AxisMotion&, const AxisMotion&, const double*, double*) const override {}
+
+ private:
+  int pistons_;
+  const PressureTrace& pressure_;
+  PortPressures ports_;
+  std::vector<double> edges_deg_;
+};
+
+}  // namespace
+
+std::unique_ptr<Oil> prescribed_oil(int pistons, const PressureTrace& pressure,
+                                    const PortPressures& ports) {
+  return std::make_unique<PrescribedOil>(pistons, pressure, ports);
+}
+
+}  // namespace bentaxis::coupled

@@ -1,0 +1,156 @@
+// A motion from its start, row by row.
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/coupled/simulation.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/results/stopwatch.h"
+#include "bentaxis/results/worst.h"
+#include "course.h"
+#include "table.h"
+
+namespace bentaxis::coupled {
+namespace {
+
+// Fills the rows of a trajectory, and the balances up to each of them.
+class Rows {
+ public:
+  Rows(Mechanics& mechanics, const Oil& oil, const System& system, const SystemState& start,
+       Trajectory& trajectory)
+      : mechanics_(mechanics), oil_(oil), system_(system), trajectory_(trajectory) {
+    kinetic_ = mechanics.kinetic_energy(0, start.motion);
+    potential_ = mechanics.potential_energy(start.motion);
+    work_of_loads_ = start.motion[kWorkOfLoads];
+    work_of_drive_ = start.motion[kWorkOfDrive];
+    loads_.chamber_pressure.assign(static_cast<std::size_t>(oil.pistons()), 0.0);
+    if (oil.states() == 0) return;
+    OilHistory& history = trajectory.oil.emplace();
+    history.columns = oil.columns();
+    for (const OilPlace& place : oil.places()) history.energies.push_back({place, 0});
+    stored(0, start, energy_, mass_);
+  }
+
+  void add(double time, const SystemState& s, const std::vector<double>& integrals) {
+    const AxisMotion block = mechanics_.block(time, s.motion);
+    oil_.loads(time, block, s.oil.data(), loads_);
+    state_.clear();
+    row_.assign(mechanics_.layout().size(), not_computed());
+    MotionChecks checks{};
+    mechanics_.row(time, s.motion, loads_, state_, row_, checks);
+    append_trajectory_row(trajectory_.table, state_, row_, checks);
+    trajectory_.lag.push_back(s.motion[kLag]);
+
+    TrajectoryRecord& record = trajectory_.record;
+    record.work_of_loads = s.motion[kWorkOfLoads] - work_of_loads_;
+    record.work_of_drives = s.motion[kWorkOfDrive] - work_of_drive_;
+    record.kinetic_energy_gained = mechanics_.kinetic_energy(time, s.motion) - kinetic_;
+    record.potential_energy_gained = mechanics_.potential_energy(s.motion) - potential_;
+    record.work_residual = record.work_of_loads + record.work_of_drives -
+                           record.kinetic_energy_gained - record.potential_energy_gained;
+    keep_worst(record.worst_work_residual, record.work_residual);
+    if (trajectory_.oil) add_oil(time, s, integrals);
+  }
+
+ private:
+  void stored(double time, const SystemState& s, double& energy, double& mass) const {
+    oil_.stored(time, mechanics_.shaft(time, s.motion), mechanics_.block(time, s.motion),
+                s.oil.data(), energy, mass);
+  }
+
+  void add_oil(double time, const SystemState& s, const std::vector<double>& integrals) {
+    OilHistory& history = *trajectory_.oil;
+    const std::size_t columns = history.columns.size();
+    history.values.resize(history.values.size() + columns);
+    oil_.row(time, mechanics_.shaft(time, s.motion), mechanics_.block(time, s.motion), s.oil.data(),
+             history.values.data() + history.values.size() - columns);
+    double energy = 0, mass = 0;
+    stored(time, s, energy, mass);
+    history.energy_gained = energy - energy_;
+    history.energy_residual = -history.energy_gained;
+    for (std::size_t i = 0; i < history.energies.size(); ++i) {
+      OilEnergy& by = history.energies[i];
+      by.energy = integrals[i];
+      history.energy_residual += by.place.use == PowerUse::source ? by.energy : -by.energy;
+    }
+    history.mass_in = integrals[static_cast<std::size_t>(system_.mass_in())];
+    history.mass_out = integrals[static_cast<std::size_t>(system_.mass_out())];
+    history.mass_gained = mass - mass_;
+    history.mass_residual = history.mass_in - history.mass_out - history.mass_gained;
+    history.pressure_work = integrals[static_cast<std::size_t>(system_.pressure_work())];
+    if (!history.energies.empty())
+      history.exchange_residual = history.pressure_work + history.energies.front().energy;
+    keep_worst(history.worst_energy_residual, history.energy_residual);
+    keep_worst(history.worst_mass_residual, history.mass_residual);
+    keep_worst(history.worst_exchange_residual, history.exchange_residual);
+  }
+
+  Mechanics& mechanics_;
+  const Oil& oil_;
+  const System& system_;
+  Trajectory& trajectory_;
+  double kinetic_ = 0, potential_ = 0, work_of_loads_ = 0, work_of_drive_ = 0;
+  double energy_ = 0, mass_ = 0;
+  OilLoads loads_;
+  std::vector<double> state_, row_;
+};
+
+}  // namespace
+
+std::string method_text(double tolerance) {
+  return "BDF of variable order with Newton's method (CVODES), motion and oil together, " +
+         rounded_text(tolerance) + " per step of what each state's scale is";
+}
+
+Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
+                    const DriveSpec& drive, const SystemState& start,
+                    const std::vector<double>& times, double tolerance, const Progress& progress) {
+  const Stopwatch watch;
+  Trajectory trajectory;
+  trajectory.table = trajectory_table(name, mechanics.layout(), drive);
+  Course course(name, mechanics, oil, tolerance, true);
+  course.start(0, start);
+  Rows rows(mechanics, oil, course.system(), start, trajectory);
+  SystemState at = start;
+  std::vector<double> integrals;
+  const double end = times.back();
+  constexpr long kStepsBetweenSigns = 64;
+  for (const double time : times) {
+    while (course.time() < time) {
+      if (progress && course.steps() % kStepsBetweenSigns == 0) progress(course.time() / end);
+      course.advance(end);
+    }
+    course.state_at(time, at);
+    course.integrals_at(time, integrals);
+    rows.add(time, at, integrals);
+  }
+  course.close_contact();
+  TrajectoryRecord& record = trajectory.record;
+  record.steps = course.steps();
+  record.evaluations = course.evaluations();
+  record.seconds = watch.seconds();
+  record.share_out_of_contact = mechanics.compliant() && end > 0 ? course.time_apart() / end : 0;
+  record.events = course.events();
+  record.choice = method_text(tolerance);
+  return trajectory;
+}
+
+Trajectory simulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
+                    const DriveSpec& drive, const Options& options, const Progress& progress) {
+  SystemState start{mechanics.start(), oil.start()};
+  if (options.disturbance != 0) {
+    const MotionVector scales = mechanics.scales();
+    const auto move = [&](std::size_t angle, std::size_t rate) {
+      for (const std::size_t index : {angle, rate})
+        start.motion[index] += options.disturbance * scales[index];
+    };
+    if (mechanics.shaft_is_free()) move(kTurn, kTurnRate);
+    if (mechanics.compliant()) move(kLag, kLagRate);
+    if (mechanics.has_motor()) move(kTwist, kTwistRate);
+    const std::vector<double> of_oil = oil.scales();
+    for (std::size_t i = 0; i < of_oil.size(); ++i) start.oil[i] += options.disturbance * of_oil[i];
+  }
+  const std::vector<double> times = options.times.empty() ? trajectory_times(drive) : options.times;
+  return tabulate(name, mechanics, oil, drive, start, times, options.tolerance, progress);
+}
+
+}  // namespace bentaxis::coupled
