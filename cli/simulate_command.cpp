@@ -19,6 +19,7 @@ struct Options {
   CaseOption the_case;
   ReportPlace place;
   std::string model;  ///< "": both
+  std::string oil;    ///< "": it follows the motion
   study::SimulationChoice choice;
 };
 
@@ -31,16 +32,26 @@ int simulate(const Options& options, const CommandParser& command) {
       throw InputError(std::string(option) +
                        ": changes nothing: only the multibody model is "
                        "integrated by Simbody");
+  if (options.oil == "periodic") choice.oil = study::OilInTime::periodic;
   Case read = options.the_case.read();
   drive_of(read);
+  const bool with_oil =
+      read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows;
+  for (const char* option : {"--integrator", "--accuracy"})
+    if (command.given(option) && (with_oil || choice.steady))
+      throw InputError(std::string(option) +
+                       ": changes nothing: with oil, and for a periodic motion, one method "
+                       "integrates what both models find; --error sets its tolerance");
   ReportFolders folders(options.place);
-  const study::SimulationResult result =
-      study::simulate(study::prepare(std::move(read), progress_of), choice, progress_of);
+  const study::SimulationResult result = study::simulate(
+      study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);
   std::vector<TextFile> curves;
-  if (result.analytic)
-    curves.emplace_back("simulation_analytic.csv", to_csv(result.analytic->table));
-  if (result.multibody)
-    curves.emplace_back("simulation_multibody.csv", to_csv(result.multibody->table));
+  for (const auto& [name, run] :
+       {std::pair{"analytic", &result.analytic}, std::pair{"multibody", &result.multibody}}) {
+    if (!*run) continue;
+    curves.emplace_back(std::string("simulation_") + name + ".csv", to_csv((*run)->table));
+    if ((*run)->oil) curves.emplace_back(std::string("oil_") + name + ".csv", oil_csv(**run));
+  }
   const auto paths = folders.write("report", study::simulation_document(result, versions()),
                                    study::simulation_curves(result), curves);
   std::printf("%s\n", study::simulation_text(result).c_str());
@@ -59,6 +70,15 @@ Command add_simulate_command(CommandParser program) {
   command.option("--model", options->model, "one model alone; nothing is compared then")
       .one_of({"analytic", "multibody"})
       .text("analytic|multibody [both]");
+  command
+      .option("--oil", options->oil,
+              "of a hydraulic case: \"coupled\", oil that follows the motion, or \"periodic\", the "
+              "pressure of the constant speed of [operation], one curve for both models")
+      .one_of({"coupled", "periodic"})
+      .text("coupled|periodic [coupled]");
+  command.flag("--steady", options->choice.steady,
+               "find the motion that repeats itself every N-th of a turn, and its stability, "
+               "instead of what follows the start; rows over one turn");
   Option accuracy = command.option("--accuracy", options->choice.accuracy,
                                    "multibody: relative accuracy per step of Simbody's integrator");
   accuracy.accuracy().text("NUMBER [found for --error]");

@@ -14,7 +14,8 @@ report::CaseSection case_section(const Case& the_case) {
   return {the_case.file.filename().string(), the_case.entries};
 }
 
-std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion) {
+std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion,
+                                               bool oil_follows) {
   const std::string once = motion ? ", asked by each model at its own block angle"
                                   : ", evaluated once per sample and given to both models";
   std::string trace = "ideal trace" + once;
@@ -26,11 +27,21 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
                  : fmt::format("hydraulic model, periodic cubic spline through {} points",
                                the_case.pressure.points)) +
             once + (motion ? "; that of the constant speed of [operation]" : "");
+  const report::CommonInput pressure =
+      oil_follows
+          ? report::
+                CommonInput{"oil and its integration",
+                            "one set of equations of the oil and one integrator, run with each "
+                            "model's own motion",
+                            "balances of energy and mass; work of pressures and of pistons, one "
+                            "found by the model and one by the oil; the periodic state of "
+                            "constant speed, found by another search; another tolerance"}
+          : report::CommonInput{
+                "chamber pressure", trace,
+                "high-precision curves (computed with their own trace); mean torque "
+                "of a frictionless pump = displacement x pressure / 2 pi"};
   std::vector<report::CommonInput> inputs = {
-      {"chamber pressure", trace,
-       "high-precision curves (computed with their own trace); mean torque of a frictionless pump "
-       "= "
-       "displacement x pressure / 2 pi"},
+      pressure,
       {"geometry, masses, loads of the case file", "read and converted to SI once",
        "high-precision curves, which read the case file with another parser"},
       {"law of the port-plate film", "full pressure between r2 and r3, linear to 0 at r1 and r4",
@@ -72,7 +83,7 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
                     "stored trajectories of a third integration; work balance of each model"});
   if (!drive.curve.time.empty())
     inputs.push_back(
-        {"course over time",
+        {drive.kind == DriveKind::motor ? "the motor's torque over its speed" : "course over time",
          "one monotone cubic through " + drive.curve.file.filename().string() + " for both models",
          "its values, slopes and integral in the tests"});
   inputs.push_back(

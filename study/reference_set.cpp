@@ -22,6 +22,9 @@ std::vector<ReferencePlace> references_below(const fs::path& root) {
 std::vector<fs::path> files_of(const Case& the_case) {
   std::vector<fs::path> files;
   if (the_case.pressure.kind == PressureKind::curve) files.push_back(the_case.pressure.file);
+  if (the_case.hydraulics && the_case.hydraulics->load &&
+      !the_case.hydraulics->load->share.file.empty())
+    files.push_back(the_case.hydraulics->load->share.file);
   if (the_case.hydraulics)
     for (const PlatePort* port : {&the_case.hydraulics->delivery, &the_case.hydraulics->suction})
       if (!port->table.file.empty()) files.push_back(port->table.file);

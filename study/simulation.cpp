@@ -8,49 +8,106 @@
 
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/multibody/simulation.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/worst.h"
+#include "coupled_pump.h"
 
 namespace bentaxis::study {
 namespace {
 
 constexpr double kDisturbance = 1e-9;
+// With oil: its integration is not that fine.
+constexpr double kDisturbanceWithOil = 1e-5;
+// Of the wanted error, what a step of an integration with oil may err by.
+constexpr double kStepShare = 1e-3;
+// Tolerances of two runs that tell the error, and what a change from one to the other is at least
+// of the error of the tighter: of a method of order 2, whose error falls as the tolerance's power
+// 2/3.
+constexpr double kLooser = 10;
+constexpr double kChangeOverError = 3.6;
+constexpr double kSteadyShare = 1e-4;  // likewise, of a periodic motion: it is short
+constexpr double kFinestStep = 1e-12;
 // A disturbance of the wanted error that has grown to this of peak leaves nothing to be judged.
 constexpr double kNothingToJudge = 0.1;
 // The analytic model is cheap: it is integrated so much better that it is the truth beside Simbody.
 constexpr double kAnalyticShare = 0.01;
 constexpr double kAnalyticError = 1e-8;
+constexpr double kOneTime = 1e-12;  // of the duration: times nearer than that are one
 // A run longer than this is not repeated for the table of efforts.
 constexpr double kCheap = 1.0;  // s
 
-std::map<std::string, double> peaks_of(const ResultTable& table) {
+// What is compared: reactions, and of the oil that follows the motion its pressures and flows.
+// Flows are shown and not judged: through an open port they are what a pressure difference of
+// nearly nothing makes of them, errors of the pressures a thousand times larger.
+struct Compared {
+  std::string group, unit;
+  bool judged = true;
+};
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// "p_1_bar" is one of a group "p", "p_delivery_bar" a group of its own.
+Compared compared_column(const std::string& name) {
+  const auto without = [&](const char* end) {
+    return name.substr(0, name.size() - std::string(end).size());
+  };
+  if (ends_with(name, "_l_per_min")) return {without("_l_per_min"), "l/min", false};
+  if (ends_with(name, "_bar")) {
+    const std::string group = without("_bar");
+    const bool chamber = group.size() > 2 && group[2] >= '0' && group[2] <= '9';
+    return {chamber ? "p" : group, "bar", true};
+  }
+  return {};
+}
+
+// use(what it is, value) of everything compared in a row.
+template <class Use>
+void for_each_value(const Trajectory& run, std::size_t row, const Use& use) {
+  const ResultTable& table = run.table.results;
+  for (std::size_t c = 0; c < table.columns(); ++c)
+    if (table.channels[c].kind == ChannelKind::reaction)
+      use(Compared{table.channels[c].group, table.channels[c].unit, true}, table.at(row, c));
+  if (!run.oil) return;
+  for (std::size_t c = 0; c < run.oil->columns.size(); ++c)
+    if (const Compared what = compared_column(run.oil->columns[c].name); !what.group.empty())
+      use(what, run.oil->value(row, c));
+}
+
+std::map<std::string, double> peaks_of(const Trajectory& run) {
   std::map<std::string, double> peaks;
-  for (const Channel& channel : table.channels)
-    if (channel.kind == ChannelKind::reaction && peaks.count(channel.group) == 0)
-      peaks[channel.group] = table.peak(channel.group);
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    for_each_value(run, row, [&](const Compared& what, double value) {
+      double& peak = peaks[what.group];
+      peak = std::max(peak, std::abs(value));
+    });
   return peaks;
 }
 
-// Difference of a reaction over its peak.
+// Difference of a value over its peak.
 template <class Use>
 void for_each_difference(const Trajectory& a, const Trajectory& b,
                          const std::map<std::string, double>& peaks, std::size_t row,
                          const Use& use) {
-  const ResultTable& table = a.table.results;
-  for (std::size_t c = 0; c < table.columns(); ++c) {
-    const Channel& channel = table.channels[c];
-    if (channel.kind != ChannelKind::reaction) continue;
-    const double peak = peaks.at(channel.group);
-    if (peak > 0) use(channel, std::abs(table.at(row, c) - b.table.results.at(row, c)) / peak);
-  }
+  std::vector<double> others;
+  for_each_value(b, row, [&](const Compared&, double value) { others.push_back(value); });
+  std::size_t next = 0;
+  for_each_value(a, row, [&](const Compared& what, double value) {
+    const double other = others[next++];
+    const double peak = peaks.at(what.group);
+    if (peak > 0) use(what, std::abs(value - other) / peak);
+  });
 }
 
 double largest_difference(const Trajectory& a, const Trajectory& b,
                           const std::map<std::string, double>& peaks, std::size_t row) {
   double largest = 0;
-  for_each_difference(a, b, peaks, row,
-                      [&](const Channel&, double share) { keep_worst(largest, share); });
+  for_each_difference(a, b, peaks, row, [&](const Compared& what, double share) {
+    if (what.judged) keep_worst(largest, share);
+  });
   return largest;
 }
 
@@ -60,8 +117,13 @@ class Study {
       : r_(result), progress_of_(progress_of) {}
 
   void run() {
-    if (r_.choice.only != Model::multibody) run_analytic();
-    if (r_.choice.only != Model::analytic) run_multibody();
+    if (r_.oil_follows || r_.choice.steady) {
+      pump_.emplace(r_.ready, r_.oil_follows);
+      r_.choice.steady ? run_steady() : run_with_oil();
+    } else {
+      if (r_.choice.only != Model::multibody) run_analytic();
+      if (r_.choice.only != Model::analytic) run_multibody();
+    }
     if (r_.analytic && r_.multibody) compare();
     check();
   }
@@ -72,9 +134,114 @@ class Study {
                               r_.ready.pressure, options, progress_of_(part));
   }
 
+  double tolerance() const { return std::max(kFinestStep, kStepShare * r_.choice.error); }
+
+  // Both models to one tolerance: at which a looser run says that the error of the integration,
+  // which they share, is below what is allowed. The analytic model costs little and finds it.
+  void run_with_oil() {
+    const bool analytic = r_.choice.only != Model::multibody;
+    const Model first = analytic ? Model::analytic : Model::multibody;
+    double tolerance = this->tolerance();
+    Trajectory run = with_oil(first, tolerance, "with oil");
+    Trajectory loose = with_oil(first, kLooser * tolerance, "looser");
+    peaks_ = peaks_of(run);
+    if (analytic) {
+      coupled::Options disturbed;
+      disturbed.tolerance = tolerance;
+      r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
+      note_growth(run, pump_->simulate(first, disturbed, progress_of_("sensitivity")));
+    } else {
+      r_.growth.assign(run.lag.size(), 1.0);
+    }
+    const auto error = [&] { return change_of(loose, run) / kChangeOverError; };
+    while (error() > 1 && tolerance > kFinestStep) {
+      tolerance = std::max(kFinestStep, tolerance / kLooser);
+      loose = std::move(run);
+      run = with_oil(first, tolerance, "tighter");
+    }
+    r_.integration_change = apart(run, loose);
+    r_.checks.push_back({to_string(first),
+                         "error of the integration, of what is allowed: from another tolerance", "",
+                         error(), 0, 1, 1});
+    add_effort(first, kLooser * tolerance, loose, r_.integration_change);
+    add_effort(first, tolerance, run, r_.integration_change / kChangeOverError);
+    if (!analytic) {
+      r_.growth.clear();
+      r_.multibody = std::move(run);
+      return;
+    }
+    r_.analytic = std::move(run);
+    if (r_.choice.only == Model::analytic) return;
+    r_.multibody = with_oil(Model::multibody, tolerance, "with oil");
+    add_effort(Model::multibody, tolerance, *r_.multibody, apart(*r_.analytic, *r_.multibody));
+    r_.multibody_choice = fmt::format(
+        "Simbody's accelerations at every state, integrated as the analytic model's, "
+        "{:g} per step",
+        tolerance);
+  }
+
+  Trajectory with_oil(Model model, double tolerance, const std::string& part) const {
+    coupled::Options options;
+    options.tolerance = tolerance_ = tolerance;
+    return pump_->simulate(model, options, progress_of_(to_string(model) + ", " + part));
+  }
+
+  void run_steady() {
+    coupled::Options options;
+    options.tolerance = std::max(kFinestStep, kSteadyShare * r_.choice.error);
+    const auto find = [&](Model model) {
+      if (r_.choice.only && *r_.choice.only != model) return std::optional<Trajectory>();
+      coupled::SteadyMotion found =
+          pump_->steady(model, options, progress_of_(to_string(model) + ", periodic motion"));
+      r_.periodic[static_cast<int>(model)] =
+          PeriodicMotion{found.period_s, found.speed, found.iterations, found.residual,
+                         std::move(found.multipliers)};
+      return std::optional(std::move(found.turn));
+    };
+    r_.analytic = find(Model::analytic);
+    r_.multibody = find(Model::multibody);
+    if (!r_.analytic) return;
+    peaks_ = peaks_of(*r_.analytic);
+    if (r_.multibody) compare_periods();
+    // Nothing grows: both are where the motion returns to.
+    r_.growth.assign(r_.analytic->lag.size(), 1.0);
+    r_.judged_until_s = r_.analytic->table.state(r_.growth.size() - 1, 0);
+  }
+
+  // Rows are at equal shares of either period: the periods themselves must agree too.
+  void compare_periods() {
+    const PeriodicMotion& a = *r_.periodic[0];
+    const PeriodicMotion& m = *r_.periodic[1];
+    const auto add = [&](const char* name, const char* unit, double difference, double scale,
+                         double tolerance) {
+      r_.checks.push_back({"both", name, unit, std::abs(difference), 0, scale, tolerance});
+    };
+    add("period of an N-th of a turn, difference of the models", "s", m.period_s - a.period_s,
+        a.period_s, r_.choice.error);
+    // Multipliers are differences of motions: of some digits less.
+    constexpr double kOfMultiplier = 1e-3;
+    if (!a.multipliers.empty() && a.multipliers.size() == m.multipliers.size())
+      add("largest Floquet multiplier, difference of its magnitude", "",
+          std::abs(m.multipliers[0]) - std::abs(a.multipliers[0]), 1, kOfMultiplier);
+  }
+
+  void note_growth(const Trajectory& run, const Trajectory& disturbed) {
+    double growth = 1;
+    for (std::size_t row = 0; row < run.lag.size(); ++row) {
+      growth = std::max(growth, largest_difference(run, disturbed, peaks_, row) / r_.disturbance);
+      r_.growth.push_back(growth);
+    }
+    const std::size_t judged = judged_rows();
+    r_.judged_until_s = judged == 0 ? 0 : run.table.state(judged - 1, 0);
+  }
+
   std::size_t judged_rows() const {
     std::size_t rows = 0;
-    while (rows < r_.growth.size() && r_.allowed(rows) <= kNothingToJudge) ++rows;
+    // Nor where the disturbance itself, which is larger with oil, has come to that: growth is then
+    // no longer known.
+    while (rows < r_.growth.size() && r_.allowed(rows) <= kNothingToJudge &&
+           r_.growth[rows] * r_.disturbance <= kNothingToJudge)
+      ++rows;
     return rows;
   }
 
@@ -90,18 +257,10 @@ class Study {
     analytic::SimulationOptions options;
     options.error = std::min(kAnalyticError, kAnalyticShare * r_.choice.error);
     r_.analytic = analytic(options, "analytic");
-    peaks_ = peaks_of(r_.analytic->table.results);
+    peaks_ = peaks_of(*r_.analytic);
     analytic::SimulationOptions disturbed = options;
     r_.disturbance = disturbed.disturbance = kDisturbance;
-    const Trajectory beside = analytic(disturbed, "sensitivity");
-    double growth = 1;
-    for (std::size_t row = 0; row < r_.analytic->lag.size(); ++row) {
-      growth =
-          std::max(growth, largest_difference(*r_.analytic, beside, peaks_, row) / kDisturbance);
-      r_.growth.push_back(growth);
-    }
-    const std::size_t judged = judged_rows();
-    r_.judged_until_s = judged == 0 ? 0 : r_.analytic->table.state(judged - 1, 0);
+    note_growth(*r_.analytic, analytic(disturbed, "sensitivity"));
     if (r_.analytic->record.seconds > kCheap) {
       add_effort(Model::analytic, options.error, *r_.analytic, not_computed());
       return;
@@ -165,10 +324,11 @@ class Study {
 
   // Of what is allowed; without the analytic model of the wanted error.
   double change_of(const Trajectory& a, const Trajectory& b) const {
-    const auto peaks = peaks_of(b.table.results);
+    const auto peaks = peaks_of(b);
+    const std::size_t judged = judged_rows();
     double change = 0;
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
-      if (row < r_.growth.size() && r_.allowed(row) > kNothingToJudge) break;
+      if (!r_.growth.empty() && row >= judged) break;
       const double allowed = row < r_.growth.size() ? r_.allowed(row) : r_.choice.error;
       keep_worst(change, largest_difference(a, b, peaks, row) / allowed);
     }
@@ -180,19 +340,24 @@ class Study {
                r_.analytic ? apart(*r_.analytic, run) : not_computed());
   }
 
+  std::string method_of(Model model) const {
+    if (pump_) return "BDF, with oil";
+    return model == Model::analytic
+               ? "extrapolation"
+               : multibody::integrator_names()[static_cast<std::size_t>(r_.choice.integrator)];
+  }
+
   void add_effort(Model model, double asked, const Trajectory& run, double error) {
-    r_.effort.push_back(
-        {model,
-         model == Model::analytic
-             ? "extrapolation"
-             : multibody::integrator_names()[static_cast<std::size_t>(r_.choice.integrator)],
-         asked, error, run.record.seconds, run.record.steps, run.record.evaluations});
+    r_.effort.push_back({model, method_of(model), asked, error, run.record.seconds,
+                         run.record.steps, run.record.evaluations});
   }
 
   void compare() {
     const Trajectory& a = *r_.analytic;
     const Trajectory& m = *r_.multibody;
-    const Trajectory turned = at_angles_of(m);
+    // Rows of a periodic motion are at equal shares of its period.
+    const std::optional<Trajectory> turned =
+        r_.choice.steady ? std::nullopt : std::optional(at_angles_of(m));
     std::map<std::string, GroupDifference> groups;
     const std::size_t judged = judged_rows();
     double fastest = 0;
@@ -200,27 +365,36 @@ class Study {
       r_.difference.push_back(largest_difference(a, m, peaks_, row));
       fastest = std::max(fastest, std::abs(a.table.state(row, 3)));
       if (row >= judged) continue;
-      for_each_difference(a, m, peaks_, row, [&](const Channel& channel, double share) {
-        GroupDifference& group = groups[channel.group];
-        group.group = channel.group;
-        group.unit = channel.unit;
-        group.peak = peaks_.at(channel.group);
+      for_each_difference(a, m, peaks_, row, [&](const Compared& what, double share) {
+        GroupDifference& group = groups[what.group];
+        group.group = what.group;
+        group.unit = what.unit;
+        group.peak = peaks_.at(what.group);
+        if (!turned) group.over_angle = not_computed();
         if (std::isnan(share) || share > group.in_time) {
           group.in_time = share;
           group.time_s = a.table.state(row, 0);
         }
-        keep_worst(group.of_allowed, share / r_.allowed(row));
-      });
-      for_each_difference(turned, m, peaks_, row, [&](const Channel& channel, double share) {
-        keep_worst(groups[channel.group].over_angle, share);
+        if (what.judged)
+          keep_worst(group.of_allowed, share / r_.allowed(row));
+        else
+          group.of_allowed = not_computed();
       });
       keep_worst(r_.speed_difference, a.table.state(row, 3) - m.table.state(row, 3));
       keep_worst(r_.lag_difference, a.lag[row] - m.lag[row]);
+      if (!turned) continue;
+      for_each_difference(*turned, m, peaks_, row, [&](const Compared& what, double share) {
+        keep_worst(groups[what.group].over_angle, share);
+      });
     }
     if (fastest > 0) r_.speed_difference /= fastest;
     for (const auto& [name, group] : groups) r_.groups.push_back(group);
+    // Judged ones first, then the others.
+    const auto key = [](const GroupDifference& g) {
+      return is_computed(g.of_allowed) ? std::pair{1, g.of_allowed} : std::pair{0, g.in_time};
+    };
     std::sort(r_.groups.begin(), r_.groups.end(),
-              [](const auto& x, const auto& y) { return x.of_allowed > y.of_allowed; });
+              [&](const auto& x, const auto& y) { return key(x) > key(y); });
     match_events();
   }
 
@@ -239,7 +413,11 @@ class Study {
       options.times.push_back(
           std::max(earliest, std::abs(late) < spacing / 4 ? time + late : time));
     }
-    return analytic(options, "analytic, over the angle");
+    if (!pump_) return analytic(options, "analytic, over the angle");
+    coupled::Options with_oil;
+    with_oil.tolerance = tolerance_;
+    with_oil.times = options.times;
+    return pump_->simulate(Model::analytic, with_oil, progress_of_("analytic, over the angle"));
   }
 
   void match_events() {
@@ -294,7 +472,7 @@ class Study {
           std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
                     std::abs(record.kinetic_energy_gained), kLeastTurn * table.peak("Td")});
       // Simbody's work is integrated with its motion, to the same error.
-      const double tolerance = model == Model::analytic
+      const double tolerance = model == Model::analytic && !pump_
                                    ? kAnalyticError
                                    : std::max(r_.choice.error, r_.choice.accuracy.value_or(0));
       r_.checks.push_back({to_string(model), "work less energy gained", "J",
@@ -315,15 +493,87 @@ class Study {
       constexpr double kPowerTolerance = 1e-8;
       r_.checks.push_back({to_string(model), "power of all loads less the change of kinetic energy",
                            "W", worst, angle, std::max(scale, 1e-3), kPowerTolerance});
+      if (t.oil) check_oil(to_string(model), t, work);
     }
+  }
+
+  // Held to the error that the integration was asked for.
+  void check_oil(const std::string& model, const Trajectory& t, double work) {
+    const OilHistory& oil = *t.oil;
+    double passed = work;
+    for (const OilEnergy& energy : oil.energies) passed = std::max(passed, std::abs(energy.energy));
+    const double mass = std::max(mass_passed(t), 1e-9);
+    const double tolerance = r_.choice.error;
+    const auto add = [&](const char* name, const char* unit, double worst, double scale) {
+      r_.checks.push_back({model, name, unit, worst, 0, scale, tolerance});
+    };
+    add("energy of the oil: sources less what is delivered, lost and stored", "J",
+        oil.worst_energy_residual, passed);
+    add("mass of the oil: in less out and stored", "kg", oil.worst_mass_residual, mass);
+    add("work of the pressures on the pistons and of the pistons on the oil", "J",
+        oil.worst_exchange_residual, passed);
   }
 
   SimulationResult& r_;
   const PartProgress& progress_of_;
   std::map<std::string, double> peaks_;
+  std::optional<CoupledPump> pump_;  // with oil, or for a periodic motion
+  mutable double tolerance_ = 0;     // of its last run
 };
 
 }  // namespace
+
+namespace {
+
+bool needs_periodic_oil(const Case& the_case) {
+  const LoadData load = the_case.hydraulics->load.value_or(LoadData());
+  const bool held =
+      the_case.pressure.ports.delivery == 0 || load.kind == LoadKind::constant_pressure;
+  return starts_periodic(the_case) || (!held && !load.sets_pressure());
+}
+
+// What changes in time leaves no motion that repeats itself.
+void refuse_course(const Case& the_case) {
+  const auto refuse = [&](const char* key, const std::filesystem::path& file) {
+    throw InputError(fmt::format(
+        "{}{} = \"{}\": must be left out for a periodic motion (--steady): it changes in time",
+        the_case.file.empty() ? "" : the_case.file.string() + ": ", key, file.generic_string()));
+  };
+  const DriveSpec& drive = *the_case.drive;
+  if (drive.kind != DriveKind::motor && !drive.curve.time.empty())
+    refuse("[drive] file", drive.curve.file);
+  if (the_case.hydraulics && the_case.hydraulics->load &&
+      !the_case.hydraulics->load->share.time.empty())
+    refuse("[load] file", the_case.hydraulics->load->share.file);
+}
+
+std::string periodic_headline(const SimulationResult& r) {
+  const auto of = [&](Model model) -> const std::optional<PeriodicMotion>& {
+    return r.periodic[static_cast<int>(model)];
+  };
+  const PeriodicMotion& motion = of(Model::analytic) ? *of(Model::analytic) : *of(Model::multibody);
+  const std::string about =
+      fmt::format("{:.6g} rpm, {}", motion.speed / kRadPerSecondPerRpm,
+                  motion.multipliers.empty()
+                      ? "without states that could be disturbed"
+                      : fmt::format("{}: of a disturbance {:.3g} is left after an N-th of a turn",
+                                    motion.stable() ? "stable" : "unstable",
+                                    std::abs(motion.multipliers.front())));
+  if (r.choice.only)
+    return fmt::format("periodic motion of the {} model found: {}", to_string(*r.choice.only),
+                       about);
+  const GroupDifference& w = *r.worst();
+  return fmt::format(
+      "{}: largest difference {:.1e} of peak ({}), {:g} allowed; {}",
+      r.agrees() ? "Both models find the same periodic motion" : "The periodic motions differ",
+      w.in_time, w.group, r.choice.error, about);
+}
+
+}  // namespace
+
+bool PeriodicMotion::stable() const {
+  return multipliers.empty() || std::abs(multipliers.front()) < 1;
+}
 
 const GroupDifference* SimulationResult::worst() const {
   return groups.empty() ? nullptr : &groups.front();
@@ -352,6 +602,7 @@ bool SimulationResult::agrees() const {
 }
 
 std::string SimulationResult::headline() const {
+  if (choice.steady) return periodic_headline(*this);
   if (choice.only)
     return fmt::format("{} s simulated by the {} model; work and power {}",
                        number_text(ready.the_case.drive->duration), to_string(*choice.only),
@@ -361,7 +612,7 @@ std::string SimulationResult::headline() const {
            "motion altogether";
   const GroupDifference& w = *worst();
   const std::string sensitive =
-      judged_until_s < ready.the_case.drive->duration
+      judged_until_s < (1 - kOneTime) * ready.the_case.drive->duration
           ? fmt::format(
                 ". Later than {:.4g} s nothing is judged: disturbances grow {:.0e} times by the "
                 "end",
@@ -379,12 +630,34 @@ std::string SimulationResult::headline() const {
   return text;
 }
 
+ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
+                             const PartProgress& progress_of) {
+  drive_of(the_case);
+  const bool hydraulic = the_case.pressure.kind == PressureKind::hydraulic;
+  if (!hydraulic && choice.oil == OilInTime::periodic)
+    throw InputError(
+        "--oil periodic changes nothing: the pressure of the case is not \"hydraulic\"");
+  if (choice.steady) {
+    refuse_course(the_case);
+    // From rest the search would have no period to begin with: it begins at the speed of
+    // [operation].
+    if (the_case.drive->start_speed == 0.0) the_case.drive->start_speed.reset();
+  }
+  if (!hydraulic || choice.oil == OilInTime::periodic || needs_periodic_oil(the_case))
+    return prepare(std::move(the_case), progress_of);
+  ReadyCase ready;
+  ready.the_case = std::move(the_case);
+  return ready;
+}
+
 SimulationResult simulate(ReadyCase ready, const SimulationChoice& choice,
                           const PartProgress& progress_of) {
   check_fits_memory(ready.the_case, drive_of(ready.the_case));
   SimulationResult result;
   result.ready = std::move(ready);
   result.choice = choice;
+  result.oil_follows = result.ready.the_case.pressure.kind == PressureKind::hydraulic &&
+                       choice.oil == OilInTime::follows;
   Study(result, progress_of).run();
   return result;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/plausibility_section.h"
@@ -47,6 +48,19 @@ Values state_of(const Trajectory& run, std::size_t column) {
   return values;
 }
 
+// Columns of the oil in a unit; of chambers none.
+std::vector<std::string> columns_of(const SimulationResult& r, const std::string& unit, bool all) {
+  std::vector<std::string> names;
+  for (const OilColumn& column : runs_of(r).front().second->oil->columns) {
+    const std::string& name = column.name;
+    const bool chamber = !all && name.size() > 2 && name[2] >= '0' && name[2] <= '9';
+    if (name.size() > unit.size() && !chamber &&
+        name.compare(name.size() - unit.size(), unit.size(), unit) == 0)
+      names.push_back(name);
+  }
+  return names;
+}
+
 // ---- Figures
 
 std::vector<Figure> figures_of(const SimulationResult& r) {
@@ -61,8 +75,15 @@ std::vector<Figure> figures_of(const SimulationResult& r) {
   if (compliant(r)) add("lag", "Lag of the block, theta - psi", "mrad", {"lag"});
   add("rcs", "Gear tooth force Rcs on the block, by the shaft, at O4, along z4", "N", {"Rcs_z4_N"});
   add("td", "Drive torque Td", "Nm", {"Td_z1_Nm"});
-  add("pressure", "Chamber pressure of piston 1, which both models take at the block's angle",
+  add("pressure",
+      r.oil_follows ? "Chamber pressure of piston 1"
+                    : "Chamber pressure of piston 1, which both models take at the block's angle",
       "bar", {"p_1_bar"});
+  if (r.oil_follows) {
+    add("ports", "Pressures of the ports", "bar", columns_of(r, "_bar", false));
+    add("flows", "Flows: into the load, from suction, leakage", "l/min",
+        columns_of(r, "_l_per_min", true));
+  }
   add("rs", "Joint force Rs on piston 1, in S2", "N", {"Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N"});
   add("rc", "Bore force Rc on piston 1, in S2", "N", {"Rc_1_x2_N", "Rc_1_y2_N"});
   add("rb1", "Tapered bearing force Rb1 on the shaft, in S1", "N",
@@ -133,14 +154,20 @@ report::Section difference_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Difference of the two trajectories";
   section.text =
-      "At equal times, and at equal shaft angles: there the analytic model is asked when its shaft "
-      "is where Simbody's is. Allowed is the wanted error times the growth of a disturbance until "
-      "then.";
+      r.choice.steady
+          ? "Over one turn, at equal shares of either model's own period."
+          : "At equal times, and at equal shaft angles: there the analytic model is asked when its "
+            "shaft is where Simbody's is. Allowed is the wanted error times the growth of a "
+            "disturbance until then.";
   section.facts = {
-      {"speed of the shaft, of its largest", fmt::format("{:.1e}", r.speed_difference)},
-      {"lag theta - psi", fmt::format("{:.1e} rad", r.lag_difference)},
-      {"judged until", fmt::format("{:.6g} s", r.judged_until_s)},
-      {"growth of a disturbance until the end", fmt::format("{:.3g}", r.growth.back())}};
+      {"speed of the shaft, of its largest", fmt::format("{:.1e}", r.speed_difference)}};
+  if (compliant(r))
+    section.facts.emplace_back("lag theta - psi", fmt::format("{:.1e} rad", r.lag_difference));
+  if (!r.choice.steady) {
+    section.facts.emplace_back("judged until", fmt::format("{:.6g} s", r.judged_until_s));
+    section.facts.emplace_back("growth of a disturbance until the end",
+                               fmt::format("{:.3g}", r.growth.back()));
+  }
   section.table.columns = {"group",
                            "unit",
                            "peak",
@@ -148,6 +175,10 @@ report::Section difference_section(const SimulationResult& r) {
                            "at, s",
                            "over the angle, of peak",
                            "of what is allowed"};
+  if (is_computed(r.integration_change))
+    section.facts.emplace_back(
+        "change at a tolerance ten times looser, of peak",
+        fmt::format("{:.1e} (the error of the integration is below that)", r.integration_change));
   for (const GroupDifference& g : r.groups)
     section.table.rows.push_back(
         {g.group, g.unit, g.peak, g.in_time, g.time_s, g.over_angle, g.of_allowed});
@@ -181,6 +212,96 @@ report::Section work_section(const SimulationResult& r) {
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].emplace_back(values[i]);
   }
   section.table.rows = std::move(rows);
+  return section;
+}
+
+const char* words_of(PowerUse use) {
+  switch (use) {
+    case PowerUse::source:
+      return "source";
+    case PowerUse::delivered:
+      return "delivered";
+    case PowerUse::loss:
+      return "lost";
+    default:
+      return "approximation";
+  }
+}
+
+// From the motor to the load, of both models.
+report::Section energy_section(const SimulationResult& r) {
+  report::Section section;
+  section.title = "Energy from the drive to the load";
+  section.text =
+      "What came in, what was stored, where the rest went. Friction of pistons, block and shaft is "
+      "what the loads did less the work of the pressures, weight (nothing over a turn) and the "
+      "torque's own share (38), which feeds in where the torque drives backwards, among them; the "
+      "oil's own are integrated place by place. Pistons do on the oil what the pressures do on "
+      "them, which the models find from "
+      "their own velocities and the oil from the volumes of its chambers.";
+  section.table.columns = {"energy, J", "use"};
+  std::vector<std::vector<Cell>> rows;
+  const auto put = [&](std::size_t row, const std::string& name, const char* use, double value) {
+    if (row == rows.size()) rows.push_back({name, std::string(use)});
+    rows[row].emplace_back(value);
+  };
+  for (const auto& [name, run] : runs_of(r)) {
+    section.table.columns.push_back(name);
+    const TrajectoryRecord& t = run->record;
+    const OilHistory& oil = *run->oil;
+    std::size_t row = 0;
+    put(row++, "work of the drive", "source", t.work_of_drives);
+    for (const OilEnergy& e : oil.energies)
+      if (e.place.use == PowerUse::source && e.place.key != "pistons")
+        put(row++, e.place.name, "source", e.energy);
+    put(row++, "motion of shaft, block, pistons, rotor", "stored", t.kinetic_energy_gained);
+    put(row++, "teeth and coupling", "stored", t.potential_energy_gained);
+    put(row++, "oil", "stored", oil.energy_gained);
+    put(row++, "friction, viscous torques, damping", "lost", oil.pressure_work - t.work_of_loads);
+    for (const OilEnergy& e : oil.energies)
+      if (e.place.use != PowerUse::source)
+        put(row++, e.place.name, words_of(e.place.use), e.energy);
+    put(row++, "left over: mechanics", "must vanish", t.work_residual);
+    put(row++, "left over: oil", "must vanish", oil.energy_residual);
+    put(row++, "left over: between pistons and oil", "must vanish", oil.exchange_residual);
+    put(row++, "mass of the oil left over, kg", "must vanish", oil.mass_residual);
+  }
+  section.table.rows = std::move(rows);
+  return section;
+}
+
+// Multipliers that say something; the others are of states that forget a disturbance at once.
+constexpr double kForgotten = 1e-6;
+
+report::Section periodic_section(const SimulationResult& r) {
+  report::Section section;
+  section.title = "Periodic motion and its stability";
+  section.text =
+      "The motion repeats itself after every N-th of a turn, pistons numbered again. Of a small "
+      "disturbance each Floquet multiplier's share is left after that time; below 1 it dies out. "
+      "The decay time is that in which it falls to 1/e.";
+  for (const Model model : kModels) {
+    const auto& motion = r.periodic[static_cast<int>(model)];
+    if (!motion) continue;
+    section.facts.emplace_back(
+        to_string(model),
+        fmt::format(
+            "period {:.9g} s, {:.9g} rpm, {}; {} Newton steps, {:.1e} left of a state's scale",
+            motion->period_s, motion->speed / kRadPerSecondPerRpm,
+            motion->stable() ? "stable" : "unstable", motion->iterations, motion->residual));
+  }
+  section.table.columns = {"model", "multiplier, magnitude", "its angle, deg", "decay time, s"};
+  for (const Model model : kModels) {
+    const auto& motion = r.periodic[static_cast<int>(model)];
+    if (!motion) continue;
+    for (const std::complex<double>& m : motion->multipliers) {
+      const double size = std::abs(m);
+      if (size < kForgotten) continue;
+      section.table.rows.push_back(
+          {to_string(model), size, std::arg(m) / kRadPerDegree,
+           size < 1 ? -motion->period_s / std::log(size) : not_computed()});
+    }
+  }
   return section;
 }
 
@@ -245,7 +366,7 @@ report::Section effort_section(const SimulationResult& r) {
 }
 
 std::vector<report::Warning> warnings_of(const SimulationResult& r) {
-  if (!r.ready.hydraulics) return {};
+  if (!r.ready.hydraulics || r.oil_follows) return {};
   return {{"pressure of constant speed",
            fmt::format("the chamber pressure is the periodic one of {:g} rpm at every speed of the "
                        "motion; the oil does not follow it.",
@@ -270,15 +391,22 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =
-      "Two derivations of the motion, each integrated by its own method, against each other in "
-      "time. Agreement says that both follow the same description; whether a pump does is another "
-      "question (docs/limits.md).";
+      r.oil_follows || r.choice.steady
+          ? "Two derivations of the mechanics, coupled to the same oil and integrated by the same "
+            "method. Agreement says that both follow the same description; the error of the "
+            "integration is that of another tolerance, the oil's are its balances; whether a pump "
+            "does so is another question (docs/limits.md)."
+          : "Two derivations of the motion, each integrated by its own method, against each other "
+            "in time. Agreement says that both follow the same description; whether a pump does "
+            "is another question (docs/limits.md).";
   document.warnings = warnings_of(r);
-  if (!r.choice.only) document.common = common_inputs(the_case, true);
+  if (!r.choice.only) document.common = common_inputs(the_case, true, r.oil_follows);
   document.checks = r.checks;
   document.models.emplace();
   document.runs.emplace();
+  if (r.choice.steady) document.runs->push_back(periodic_section(r));
   if (!r.groups.empty()) document.runs->push_back(difference_section(r));
+  if (r.oil_follows) document.runs->push_back(energy_section(r));
   document.runs->push_back(work_section(r));
   if (compliant(r)) document.runs->push_back(teeth_section(r));
   if (!r.effort.empty()) document.runs->push_back(effort_section(r));
@@ -295,7 +423,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
     document.models->push_back(std::move(model));
   }
   document.figures = figures_of(r);
-  if (!r.difference.empty()) document.figures->push_back(difference_figure(r));
+  if (!r.difference.empty() && !r.choice.steady) document.figures->push_back(difference_figure(r));
   if (auto figure = effort_figure(r)) document.figures->push_back(std::move(*figure));
   return document;
 }
@@ -317,6 +445,14 @@ report::Curves simulation_curves(const SimulationResult& r) {
       if (channel.kind != ChannelKind::check)
         table.columns.emplace_back(channel.name,
                                    report::values_of(run->table.results, channel.name));
+    if (run->oil)
+      for (std::size_t c = 0; c < run->oil->columns.size(); ++c) {
+        if (report::find(table.columns, run->oil->columns[c].name) != nullptr) continue;
+        Values values;
+        for (std::size_t row = 0; row < run->lag.size(); ++row)
+          values.push_back(run->oil->value(row, c));
+        table.columns.emplace_back(run->oil->columns[c].name, std::move(values));
+      }
     curves.tables.push_back(std::move(table));
   }
   if (curves.tables.size() == 2)
@@ -337,11 +473,14 @@ report::Curves simulation_curves(const SimulationResult& r) {
 std::string simulation_text(const SimulationResult& r) {
   std::string text = r.ready.the_case.name + "\n" + r.headline() + "\n\n";
   if (!r.groups.empty()) {
-    text += fmt::format("{:<6} {:>14} {:>14} {:>16} {:>12}\n", "group", "peak", "of peak, time",
-                        "of peak, angle", "of allowed");
+    text += fmt::format("{:<13} {:<17} {:>13} {:>16} {:>12}\n", "group", "       peak",
+                        r.choice.steady ? "of peak" : "of peak, time",
+                        r.choice.steady ? "" : "of peak, angle", "of allowed");
     for (const GroupDifference& g : r.groups)
-      text += fmt::format("{:<6} {:>11.5g} {:<2} {:>14.1e} {:>16.1e} {:>12.2g}\n", g.group, g.peak,
-                          g.unit, g.in_time, g.over_angle, g.of_allowed);
+      text += fmt::format(
+          "{:<13} {:>11.5g} {:<5} {:>13.1e} {:>16} {:>12}\n", g.group, g.peak, g.unit, g.in_time,
+          is_computed(g.over_angle) ? fmt::format("{:.1e}", g.over_angle) : "",
+          is_computed(g.of_allowed) ? fmt::format("{:.2g}", g.of_allowed) : "not judged");
     text += "\n";
   }
   for (const auto& [name, run] : runs_of(r)) {
@@ -358,6 +497,15 @@ std::string simulation_text(const SimulationResult& r) {
   }
   if (const std::string times = race(r); !times.empty())
     text += fmt::format("for an error of {:g} of peak: {}\n", r.choice.error, times);
+  if (r.oil_follows)
+    for (const auto& [name, run] : runs_of(r)) {
+      const OilHistory& oil = *run->oil;
+      text += fmt::format("{}: left over of the oil's energy {:.1e} J, of its mass {:.1e} kg\n",
+                          name, oil.worst_energy_residual, oil.worst_mass_residual);
+    }
+  if (is_computed(r.integration_change))
+    text += fmt::format("at a tolerance ten times looser results change by {:.1e} of peak\n",
+                        r.integration_change);
   if (!r.multibody_choice.empty()) text += "chosen " + r.multibody_choice + "\n";
   for (const report::Warning& warning : warnings_of(r))
     text += fmt::format("warning: {}: {}\n", warning.name, warning.text);

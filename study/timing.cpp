@@ -172,7 +172,8 @@ std::vector<TimingRow> timing_rows(const Case& the_case, const hydraulics::Stead
       below("below-vapour", "chamber below vapour pressure: oil boils", t.below_vapour, s.vapour,
             s)};
   add_connections(t, stroke, rows);
-  rows.push_back(backflow(t, stroke));
+  // Backwards oil comes out of the delivery port: that is no backflow.
+  if (the_case.operation.speed_rpm > 0) rows.push_back(backflow(t, stroke));
   rows.push_back(trapped(t, s));
   TimingRow over =
       row("overshoot", "greatest chamber pressure above mean delivery", bar(s.overshoot), "bar");
@@ -210,6 +211,10 @@ std::string timing_text(const std::vector<TimingRow>& rows) {
 }
 
 SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& progress) {
+  if (!(the_case.operation.speed_rpm > 0))
+    throw InputError(the_case.file.string() +
+                     ": [operation] speed_rpm = " + number_text(the_case.operation.speed_rpm) +
+                     ": must be > 0 for a speed at which suction follows");
   SuctionSpeed found;
   found.limit = limit;
   Case at = the_case;

@@ -12,8 +12,10 @@ namespace bentaxis::study {
 report::CaseSection case_section(const Case& the_case);
 
 /// What both models are given, and what would catch a mistake in it.
-/// @param motion  of a simulation of its [drive]; otherwise at constant speed
-std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion);
+/// @param motion       of a simulation of its [drive]; otherwise at constant speed
+/// @param oil_follows  in it the oil is simulated too
+std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion,
+                                               bool oil_follows = false);
 
 /// Displacement, stroke, ideal flow and torque, ..
 std::vector<report::DerivedQuantity> derived_section(const Case& the_case);

@@ -1,21 +1,32 @@
 // A case's motion in time by both models, and what their difference means.
 #pragma once
 
+#include <complex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/multibody/integrated.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/results/trajectory.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
 
+/// What the chambers' pressures are in a simulation of a hydraulic case.
+enum class OilInTime {
+  follows,   ///< states of their own, integrated with the motion
+  periodic,  ///< the periodic ones of the speed of [operation], over the block's angle: the same
+             ///< curve for both models
+};
+
 struct SimulationChoice {
-  std::optional<Model> only;       ///< none: both, compared
-  double error = 1e-6;             ///< of every reaction, of its peak: wanted and tolerated
-  std::optional<double> accuracy;  ///< of Simbody's steps instead of one found for `error`
+  OilInTime oil = OilInTime::follows;  ///< of hydraulic cases
+  bool steady = false;                 ///< the periodic motion instead of that from the start
+  std::optional<Model> only;           ///< none: both, compared
+  double error = 1e-6;                 ///< of every reaction, of its peak: wanted and tolerated
+  std::optional<double> accuracy;      ///< of Simbody's steps instead of one found for `error`
   multibody::Integrator integrator = multibody::Integrator::runge_kutta_merson;
 };
 
@@ -25,7 +36,9 @@ struct GroupDifference {
   double peak = 0;
   double in_time = 0, time_s = 0;  ///< at equal times, largest, and when
   double over_angle = 0;           ///< at equal shaft angles
-  double of_allowed = 0;  ///< largest difference in time over what is allowed then: 1 is the limit
+  /// Largest difference in time over what is allowed then: 1 is the limit; not_computed() of flows,
+  /// which are not judged.
+  double of_allowed = 0;
 };
 
 /// Touches of both models that belong together.
@@ -47,9 +60,24 @@ struct Effort {
   long steps = 0, evaluations = 0;
 };
 
+/// A periodic motion: of an N-th of a turn.
+struct PeriodicMotion {
+  double period_s = 0;
+  double speed = 0;  ///< rad/s, mean
+  int iterations = 0;
+  double residual = 0;  ///< largest change of a state over a period, of its scale
+  std::vector<std::complex<double>> multipliers;  ///< Floquet's, largest magnitude first
+  bool stable() const;
+};
+
 struct SimulationResult {
   ReadyCase ready;
   SimulationChoice choice;
+  bool oil_follows = false;                   ///< the oil is simulated too
+  std::optional<PeriodicMotion> periodic[2];  ///< by model, where it was asked for
+  /// Of a simulation with oil: largest change of any reaction or pressure of the analytic model, of
+  /// peak, at a tolerance ten times looser; not_computed() elsewhere.
+  double integration_change = not_computed();
   std::optional<Trajectory> analytic, multibody;
 
   // With the analytic model: how much a disturbance of the start grows.
@@ -77,6 +105,12 @@ struct SimulationResult {
   bool agrees() const;  ///< of one model alone: its checks hold
   std::string headline() const;
 };
+
+/// Makes a case ready for simulate(): as prepare(), but where the oil follows the motion the
+/// periodic pressure is only computed where the load's size or the start come from it.
+/// @throws InputError where `choice` says something that has no effect
+ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
+                             const PartProgress& progress_of = silent());
 
 /// Simulates a case that is ready by one model or both.
 /// @throws InputError, ComputationError
