@@ -43,13 +43,13 @@ struct Problem {
   }
   void rates(double time, const double* y, double* dy) {
     State at, rate;
-    for (std::size_t i = 0; i < kStates; ++i) at[i] = y[i] * scale[i];
+    for (std::size_t i = 0; i < kMotionStates; ++i) at[i] = y[i] * scale[i];
     equations.rates(time, at, rate);
-    for (std::size_t i = 0; i < kStates; ++i) dy[i] = rate[i] / scale[i];
+    for (std::size_t i = 0; i < kMotionStates; ++i) dy[i] = rate[i] / scale[i];
   }
   State start() const {
     State y = pieces.front().state;
-    for (std::size_t i = 0; i < kStates; ++i) y[i] /= scale[i];
+    for (std::size_t i = 0; i < kMotionStates; ++i) y[i] /= scale[i];
     return y;
   }
   // Runs a method over the pieces: advance(from, to) takes the state from one time to another.
@@ -105,7 +105,7 @@ void extrapolation(Problem& problem, double* y, double tolerance) {
   problem.over_pieces(y, [&](double time, double end) {
     while (time < end) {
       State from, slope, to;
-      std::copy(y, y + kStates, from.begin());
+      std::copy(y, y + kMotionStates, from.begin());
       system(from, slope, time);
       double step = std::min(next, end - time);
       const double taken = step;
@@ -124,7 +124,7 @@ void extrapolation(Problem& problem, double* y, double tolerance) {
 void multistep(int kind, Problem& problem, double* y, double tolerance) {
   SUNContext context = nullptr;
   check(SUNContext_Create(nullptr, &context));
-  const N_Vector state = N_VMake_Serial(kStates, y, context);
+  const N_Vector state = N_VMake_Serial(kMotionStates, y, context);
   void* const memory = CVodeCreate(kind, context);
   check(CVodeInit(memory, rates_for_sundials, 0, state));
   check(CVodeSStolerances(memory, kRounding, tolerance));
@@ -137,7 +137,7 @@ void multistep(int kind, Problem& problem, double* y, double tolerance) {
     fixed_point = SUNNonlinSol_FixedPoint(state, 0, context);
     check(CVodeSetNonlinearSolver(memory, fixed_point));
   } else {
-    matrix = SUNDenseMatrix(kStates, kStates, context);
+    matrix = SUNDenseMatrix(kMotionStates, kMotionStates, context);
     linear = SUNLinSol_Dense(state, matrix, context);
     check(CVodeSetLinearSolver(memory, linear, matrix));
   }
@@ -159,7 +159,7 @@ void multistep(int kind, Problem& problem, double* y, double tolerance) {
 void runge_kutta(ARKODE_ERKTableID table, Problem& problem, double* y, double tolerance) {
   SUNContext context = nullptr;
   check(SUNContext_Create(nullptr, &context));
-  const N_Vector state = N_VMake_Serial(kStates, y, context);
+  const N_Vector state = N_VMake_Serial(kMotionStates, y, context);
   void* const memory = ERKStepCreate(rates_for_sundials, 0, state, context);
   check(ERKStepSStolerances(memory, kRounding, tolerance));
   check(ERKStepSetUserData(memory, &problem));

@@ -94,6 +94,22 @@ const std::vector<Circuit> kCircuits = {
       "leakage.piston_gap_kind=engaged", "leakage.eccentricity=0.8", "leakage.plate_gap_um=8",
       "leakage.ring_slot_um=50", "leakage.ring_slot_width_mm=0.3", "leakage.ring_slot_length_mm=2",
       "hydraulics.leakage_l_per_min_per_bar=0"}},
+    {"orifice, given", {"load.area_mm2=9"}},
+    {"laminar, given", {"load.kind=laminar", "load.conductance_l_per_min_per_bar=0.35"}},
+    {"relief valve beside an orifice", {"load.relief_bar=270", "load.opening_mm2_per_bar=0.3"}},
+    {"relief valve beside a given flow",
+     {"load.kind=flow", "load.flow_l_per_min=60", "load.relief_bar=200"}},
+    {"accumulator",
+     {"accumulator.gas_volume_l=0.5", "accumulator.precharge_bar=200",
+      "accumulator.inlet_area_mm2=60"}},
+    {"accumulator below its precharge",
+     {"accumulator.gas_volume_l=0.5", "accumulator.precharge_bar=300"}},
+    {"loop", {"loop.volume_l=0.5", "pressure.suction_bar=20"}},
+    {"loop, relief valve", {"loop.volume_l=0.5", "pressure.suction_bar=20", "load.relief_bar=250"}},
+    {"loop, relief valve, delivery line, accumulator",
+     {"loop.volume_l=0.5", "pressure.suction_bar=20", "load.relief_bar=250",
+      "delivery_line.length_m=1", "delivery_line.diameter_mm=20", "accumulator.gas_volume_l=0.2",
+      "accumulator.precharge_bar=150"}},
     {"all",
      {"oil.temperature_C=60", "leakage.piston_gap_um=15", "leakage.piston_gap_length_mm=10",
       "leakage.piston_gap_kind=engaged", "leakage.eccentricity=0.8", "suction_line.length_m=1",
@@ -423,14 +439,16 @@ TEST(Circuit, MassThatEntersLeavesAndTheMeanIsTheOneAskedFor) {
 void expect_closed(const Case& the_case, const std::string& name) {
   const SteadyState state = steady_state(the_case);
   const PowerBudget power = power_by_place(state);
-  EXPECT_LT(std::abs(left_over(power)), scaled(kEnergyBalance) * power[Place::pistons]) << name;
+  EXPECT_LT(std::abs(left_over(power)), scaled(kEnergyBalance) * std::abs(power[Place::pistons]))
+      << name;
   // The p-V diagram of the curve, and the work by the integral that goes with it: within the error
   // stated of the curve, which counts once on each way of the piston.
   const double turns_per_second = the_case.operation.speed_rpm / 60;
   const double chambers = the_case.pump.geometry.pistons;
   for (const double work : {chambers * state.indicated_work, state.summary.work})
-    EXPECT_NEAR(turns_per_second * work, power[Place::pistons],
-                scaled(2) * turns_per_second * state.summary.displacement * state.computed->error)
+    EXPECT_NEAR(
+        turns_per_second * work, power[Place::pistons],
+        scaled(2) * std::abs(turns_per_second) * state.summary.displacement * state.computed->error)
         << name;
   double lost = 0;
   for (int i = 0; i < kPlaces; ++i) {
@@ -458,6 +476,14 @@ TEST(Power, WhatGoesInComesOut) {
            {"cavitation, isothermal, boiling early",
             {"hydraulics.cavitation=equilibrium", "hydraulics.air_exponent=1",
              "hydraulics.vapour_bar=0.05"}},
+           {"motor", {"operation.speed_rpm=-1600", "load.kind=constant_pressure"}},
+           {"motor at the end of a line, air takes time",
+            {"operation.speed_rpm=-900", "load.kind=constant_pressure",
+             "hydraulics.cavitation=rate", "hydraulics.saturation_bar=2",
+             "delivery_line.length_m=1", "delivery_line.diameter_mm=20"}},
+           {"loop, backwards",
+            {"operation.speed_rpm=-1600", "loop.volume_l=0.5", "pressure.suction_bar=20",
+             "load.area_mm2=9", "load.relief_bar=250", "load.opening_mm2_per_bar=0.1"}},
            {"no vapour", {"hydraulics.cavitation=equilibrium", "hydraulics.vapour_bar=0"}},
            {"air takes time", {"hydraulics.cavitation=rate"}},
            {"air takes time, both lines, boosted case",
@@ -699,6 +725,15 @@ TEST(Circuit, GivenFlowBeyondTheDisplacementIsRefused) {
 }
 
 // No key is read and forgotten: 5 % of each moves the pressure by more than the error of the curve.
+std::string refusal(const std::vector<std::string>& changes) {
+  try {
+    Network{rated(changes)};
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
 TEST(Circuit, EveryKeyCounts) {
   const auto expect_changes = [](std::vector<std::string> base,
                                  const std::vector<std::string>& changes) {
@@ -735,9 +770,115 @@ TEST(Circuit, EveryKeyCounts) {
                        "delivery_line.wave_speed_m_per_s=1200",
                        "delivery_line.bandwidth_Hz=500",
                        "load.opening_mm2_per_bar=1.05"});
+  const auto with = [](const std::string& name) {
+    return std::find_if(kCircuits.begin(), kCircuits.end(),
+                        [&](const Circuit& circuit) { return circuit.name == name; })
+        ->changes;
+  };
+  expect_changes(with("orifice, given"), {"load.area_mm2=9.05"});
+  expect_changes(with("laminar, given"), {"load.conductance_l_per_min_per_bar=0.351"});
+  expect_changes(with("relief valve beside an orifice"),
+                 {"load.relief_bar=269", "load.opening_mm2_per_bar=0.32"});
+  expect_changes(with("accumulator"),
+                 {"accumulator.gas_volume_l=0.55", "accumulator.precharge_bar=190",
+                  "accumulator.gas_exponent=1.3", "accumulator.inlet_area_mm2=55"});
+  expect_changes(with("loop"), {"loop.volume_l=0.4", "loop.charge_area_mm2=40",
+                                "loop.charge_opening_bar=1.5", "pressure.suction_bar=19"});
   expect_changes(kCircuits[2].changes, {"load.cracking_bar=201"});
   expect_changes(kCircuits[3].changes, {"load.full_area_mm2=9.1"});
   expect_changes(kCircuits[5].changes, {"load.flow_l_per_min=90.1"});
+}
+
+// ---- Backwards
+// ---------------------------------------------------------------------------------------
+
+// A chamber's volume is the same at theta and -theta, so that a pump that turns backwards over the
+// mirror image of its plate is the pump.
+TEST(Backwards, OverTheMirroredPlateIsForwards) {
+  const OpeningTable suction = {{}, {10, 40, 150, 182, 270}, {0, 90e-6, 80e-6, 0, 0}};
+  const OpeningTable delivery = {{}, {5, 100, 190, 225, 330, 350}, {0, 0, 0, 85e-6, 90e-6, 0}};
+  const auto mirrored = [](const OpeningTable& table) {
+    OpeningTable other;
+    for (std::size_t i = table.theta_deg.size(); i-- > 0;) {
+      other.theta_deg.push_back(360 - table.theta_deg[i]);
+      other.area.push_back(table.area[i]);
+    }
+    return other;
+  };
+  for (const std::vector<std::string>& changes : std::vector<std::vector<std::string>>{
+           {"load.kind=constant_pressure"},
+           {"load.area_mm2=9", "suction_line.length_m=1", "suction_line.diameter_mm=40",
+            "hydraulics.cavitation=rate"}}) {
+    Case forwards = rated(changes);
+    forwards.hydraulics->suction.table = suction;
+    forwards.hydraulics->delivery.table = delivery;
+    Case backwards = forwards;
+    backwards.operation.speed_rpm *= -1;
+    backwards.hydraulics->suction.table = mirrored(suction);
+    backwards.hydraulics->delivery.table = mirrored(delivery);
+    const SteadyState a = steady_state(forwards), b = steady_state(backwards);
+    const double error = a.computed->error + b.computed->error;
+    for (double angle = 0; angle < 360; angle += 0.7)
+      EXPECT_NEAR(a.computed->gauge(angle), b.computed->gauge(-angle), error) << angle;
+    EXPECT_NEAR(b.summary.work, -a.summary.work, scaled(1e-7) * a.summary.work);
+    EXPECT_NEAR(b.summary.flow, a.summary.flow, scaled(1e-7) * a.summary.flow);
+    EXPECT_NEAR(b.summary.ideal_flow, -a.summary.ideal_flow, 1e-15);
+    EXPECT_NEAR(wrap_degrees(-b.summary.chamber_greatest_deg), a.summary.chamber_greatest_deg, 0.2);
+    EXPECT_NEAR(b.timing.backflow, a.timing.backflow, 1e-3 * a.timing.backflow + 1e-12);
+    // Row i of one is row -i of the other; rates change their sign.
+    const std::size_t rows = a.table.theta_deg.size();
+    for (const char* name : {"p_1_bar", "p_delivery_bar", "Qd_1_l_per_min", "ms_1_g_per_s",
+                             "V_1_cm3", "ad_1_mm2", "dp_1_bar_per_deg", "power_pistons_W"}) {
+      const auto there = column(a.table, name), back = column(b.table, name);
+      double peak = 0;
+      for (const double value : there) peak = std::max(peak, std::abs(value));
+      const double sign = std::string(name) == "dp_1_bar_per_deg" ? -1 : 1;
+      for (std::size_t i = 0; i < rows; ++i)
+        EXPECT_NEAR(there[i], sign * back[(rows - i) % rows], 1e-5 * peak) << name << " " << i;
+    }
+    for (std::size_t i = 0; i < a.orders.size(); ++i)
+      EXPECT_NEAR(a.orders[i].flow, b.orders[i].flow, 1e-6 * a.summary.mass_flow);
+  }
+}
+
+// A loop keeps too much oil for long: its search must not depend on where it begins.
+TEST(ClosedLoop, IsFoundFromAnywhereAndTurnsRound) {
+  const std::vector<std::string> changes = {"loop.volume_l=0.5", "pressure.suction_bar=20",
+                                            "load.area_mm2=9"};
+  const double usual = steady_state(rated(changes)).summary.delivery_mean;
+  for (const char* more :
+       {"pressure.delivery_bar=50", "pressure.delivery_bar=200", "pressure.delivery_bar=400"}) {
+    auto other = changes;
+    other.emplace_back(more);
+    EXPECT_NEAR(steady_state(rated(other)).summary.delivery_mean, usual, scaled(1e-7) * usual);
+  }
+  for (const char* more :
+       {"operation.speed_rpm=-1500", "operation.speed_rpm=-400", "operation.speed_rpm=2300",
+        "load.area_mm2=0", "load.relief_bar=150", "loop.charge_area_mm2=5"}) {
+    auto other = changes;
+    other.emplace_back(more);
+    const Case the_case = rated(other);
+    const SteadyState state = steady_state(the_case);
+    EXPECT_LT(state.summary.flow / state.summary.ideal_flow, 1) << more;
+    EXPECT_GT(state.summary.flow / state.summary.ideal_flow, 0.5) << more;
+    const double high = state.summary.chamber_greatest;
+    EXPECT_EQ(state.summary.delivery_mean > high / 2, the_case.operation.speed_rpm > 0) << more;
+  }
+}
+
+TEST(Backwards, WithASupplyThePumpIsAMotor) {
+  const Case pump = rated({"load.kind=constant_pressure"});
+  const Case motor = rated({"load.kind=constant_pressure", "operation.speed_rpm=-1600"});
+  const SteadyState a = steady_state(pump), b = steady_state(motor);
+  EXPECT_GT(power_by_place(a)[Place::pistons], 0);
+  EXPECT_LT(power_by_place(b)[Place::pistons], 0);
+  EXPECT_LT(b.summary.flow, 0);
+  // It takes more than it displaces, and gives less than an ideal motor of that pressure.
+  EXPECT_GT(b.summary.flow / b.summary.ideal_flow, 1);
+  EXPECT_LT(b.summary.work, b.summary.displacement * 275e5);
+  EXPECT_GT(b.summary.work, 0.9 * b.summary.displacement * 275e5);
+  EXPECT_THAT(refusal({"operation.speed_rpm=-1600"}), HasSubstr("motoring"));
+  EXPECT_THAT(refusal({"operation.speed_rpm=-1600", "load.kind=laminar"}), HasSubstr("motoring"));
 }
 
 // ---- Suction line
@@ -823,15 +964,6 @@ TEST(HardCircuit, EveryRunEndsAndSaysWhy) {
   }
 }
 
-std::string refusal(const std::vector<std::string>& changes) {
-  try {
-    Network{rated(changes)};
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
 TEST(BadCircuit, IsRefusedByItsKey) {
   EXPECT_THAT(refusal({"leakage.piston_gap_um=10", "leakage.piston_gap_length_mm=5"}),
               HasSubstr("leakage.piston_gap_um=10: needs the table [oil]"));
@@ -846,6 +978,16 @@ TEST(BadCircuit, IsRefusedByItsKey) {
   EXPECT_THAT(refusal({"oil.temperature_C=60", "leakage.eccentricity=1.1"}),
               HasSubstr("eccentricity"));
   EXPECT_EQ(refusal({"load.kind=laminar"}), "not refused");
+  EXPECT_THAT(refusal({"accumulator.gas_volume_l=1"}), HasSubstr("precharge_bar"));
+  EXPECT_THAT(refusal({"accumulator.gas_volume_l=1", "accumulator.precharge_bar=100",
+                       "load.kind=constant_pressure"}),
+              HasSubstr("accumulator.gas_volume_l=1: the delivery volume is held at a pressure"));
+  EXPECT_THAT(refusal({"loop.volume_l=1", "pressure.delivery_bar=0"}),
+              HasSubstr("loop.volume_l=1: a closed loop needs a load between its sides"));
+  EXPECT_THAT(
+      refusal({"loop.volume_l=1", "suction_line.length_m=1", "suction_line.diameter_mm=40"}),
+      HasSubstr("leave out [suction_line]"));
+  EXPECT_THAT(refusal({"load.area_mm2=-1"}), HasSubstr("area_mm2"));
 }
 
 // A case with every table reads back to itself.
@@ -856,6 +998,13 @@ TEST(CaseFile, TheCircuitSurvivesWriting) {
     EXPECT_THAT(text, HasSubstr(table));
   EXPECT_EQ(case_text(parse_case(text, "x.toml")), text);
   EXPECT_NEAR(the_case.hydraulics->suction_line->volume * 2, kPi / 4 * 0.04 * 0.04 * 1, 1e-15);
+  const std::string more =
+      case_text(rated({"loop.volume_l=0.5", "accumulator.gas_volume_l=0.2",
+                       "accumulator.precharge_bar=150", "load.area_mm2=9", "load.relief_bar=20"}));
+  for (const char* line : {"[loop]\nvolume_l = 0.5", "gas_volume_l = 0.2", "precharge_bar = 150",
+                           "area_mm2 = 9", "relief_bar = 20"})
+    EXPECT_THAT(more, HasSubstr(line));
+  EXPECT_EQ(case_text(parse_case(more, "x.toml")), more);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fails if one model links the other, or reaches into its folder past the include path. That a target finds
+# Fails if one model links the other, or reaches into its folder past the include path, or what couples them knows one. That a target finds
 # no headers but those of what it links is the build's doing (cmake/BentaxisTarget.cmake).
 # usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY MULTIBODY_LIBRARY
 set -euo pipefail
@@ -21,6 +21,9 @@ forbid_symbol() {  # library, forbidden namespace
 
 forbid_include "$source_dir/analytic" multibody || status=1
 forbid_include "$source_dir/multibody" analytic || status=1
+for room in analytic multibody hydraulics; do
+  forbid_include "$source_dir/coupled" $room || status=1
+done
 forbid_symbol "$analytic" multibody || status=1
 forbid_symbol "$multibody" analytic || status=1
 

@@ -250,6 +250,25 @@ TEST(SimulatedMotion, AMotorStartsFromRestWithItsCouplingUnwound) {
   EXPECT_NEAR(turning.table.results.at(0, td), 292.5, 1e-10);
 }
 
+// Torque over speed from points on a line is the slope's law, also in the coupling at the start.
+TEST(SimulatedMotion, AMotorsCurveOverSpeedIsItsTorque) {
+  Case the_case = stored_case("motor_driven", 3);
+  const Trajectory by_slope = simulate(the_case, 1e-7);
+  DriveSpec& drive = *the_case.drive;
+  for (const double speed : {-50., 0., 120., 300.}) {
+    drive.curve.time.push_back(speed);
+    drive.curve.value.push_back(drive.torque -
+                                drive.motor->torque_slope * (speed - rad_per_second(1500)));
+  }
+  drive.torque = 0;
+  drive.motor->torque_slope = 0;
+  const Trajectory by_curve = simulate(the_case, 1e-7);
+  EXPECT_GT(by_slope.table.state(3, 5), by_slope.table.state(0, 5) + 0.1);  // rpm
+  for (std::size_t row = 0; row <= 3; ++row)
+    for (const std::size_t column : {3, 4, 5})
+      EXPECT_NEAR(by_curve.table.state(row, column), by_slope.table.state(row, column), 1e-9);
+}
+
 // Touches and leavings by turns, the force between them and none outside; the impulse is the
 // force's integral.
 TEST(SimulatedMotion, EventsTellWhenTeethTouch) {

@@ -573,7 +573,7 @@ std::vector<std::filesystem::path> case_files() {
   for (const char* folder : {"cases", "reference_data"})
     for (const auto& entry : std::filesystem::recursive_directory_iterator(source / folder))
       if (entry.path().filename() == "case.toml" ||
-          entry.path().parent_path().filename() == "cases")
+          (entry.path().parent_path().filename() == "cases" && entry.path().extension() == ".toml"))
         files.push_back(entry.path());
   return files;
 }

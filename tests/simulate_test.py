@@ -114,7 +114,7 @@ class RestTest(SimulateTest):
         case = (base.REPO / "cases" / "bap63_rated_hydraulic.toml").read_text()
         path = self.folder / "case.toml"
         path.write_text(case + "\n[drive]\ntorque_Nm = 200\nkind = \"torque\"\nduration_s = 0.001\nsamples = 2\n")
-        self.assertIn("pressure of constant speed", self.simulate(path, "--model", "analytic").stdout)
+        self.assertIn("pressure of constant speed", self.simulate(path, "--model", "analytic", "--oil", "periodic").stdout)
         self.assertEqual([w["name"] for w in self.report()["warnings"]], ["pressure of constant speed"])
         shared = lambda: {row["input"]: row["value"] for row in self.report()["common"]}
         self.simulate(self.case("constant_torque", duration_s=0.001, samples=2), "--error", 1e-4)
@@ -125,6 +125,65 @@ class RestTest(SimulateTest):
 
     def test_what_cannot_move_is_bad_input(self):
         self.refused(self.case(duration_s=0.002, samples=2), "case.toml", "[piston]", options=("--set", "piston.mass_kg=0"))
+
+    def with_oil(self, **drive):
+        """The start-up against a relief valve, short."""
+        drive = {"duration_s": 0.02, "samples": 20, **drive}
+        return base.REPO / "cases" / "bap63_start_up.toml", [x for key, value in drive.items() for x in ("--set", f"drive.{key}={value}")]
+
+    def test_oil_follows_the_motion(self):
+        case, options = self.with_oil()
+        text = self.simulate(case, *options, "--error", 1e-5).stdout
+        self.assertIn("move alike", text)
+        self.assertNotIn("pressure of constant speed", text)
+        oil = self.table("out/oil_analytic.csv")
+        self.assertEqual(len(oil), 21)
+        motion = self.table("out/simulation_analytic.csv")
+        self.assertEqual([row["time_s"] for row in oil], [row["time_s"] for row in motion])
+        self.assertEqual([row["p_1_bar"] for row in oil], [row["p_1_bar"] for row in motion])
+        # From atmospheric pressure, not from that of running.
+        self.assertEqual(float(oil[0]["p_delivery_bar"]), 0)
+        self.assertGreater(float(oil[-1]["p_delivery_bar"]), 1)
+        self.assertTrue((self.folder / "out" / "oil_multibody.csv").exists())
+        report = self.report()
+        self.assertIn("oil and its integration", [row["input"] for row in report["common"]])
+        runs = {run["title"]: run for run in report["runs"]}
+        energy = {row[0]: row[2:] for row in runs["Energy from the drive to the load"]["table"]["rows"]}
+        self.assertGreater(energy["work of the drive"][0], 0.01)
+        for model in (0, 1):
+            left = energy["left over: oil"][model]
+            self.assertLess(abs(left), 1e-6 * energy["work of the drive"][model])
+        self.assertEqual({c["model"] for c in report["checks"] if c["name"].startswith("mass of the oil")}, {"analytic", "multibody"})
+        groups = [row[0] for row in runs["Difference of the two trajectories"]["table"]["rows"]]
+        for group in ("p", "p_delivery", "flow_suction", "Rs", "Td"):
+            self.assertIn(group, groups)
+
+    def test_models_that_assume_otherwise_differ_with_oil_too(self):
+        case, options = self.with_oil()
+        text = self.simulate(case, *options, "--error", 1e-5, "--set", "assumptions.multibody.piston_friction=false", status=OUT_OF_TOLERANCE).stdout
+        self.assertIn("models differ", text)
+
+    def test_periodic_motion(self):
+        case, options = self.with_oil(samples=40)
+        text = self.simulate(case, *options, "--steady", "--model", "analytic").stdout
+        self.assertIn("rpm, stable", text)
+        rows = self.table("out/simulation_analytic.csv")
+        # One turn that ends as it began, at about the speed that the motor and the valve were made for.
+        self.assertEqual(len(rows), 41)
+        self.assertAlmostEqual(float(rows[-1]["psi_deg"]), 360, 6)
+        self.assertAlmostEqual(float(rows[0]["shaft_rpm"]), float(rows[-1]["shaft_rpm"]), 4)
+        self.assertAlmostEqual(6 * 1500 * float(rows[-1]["time_s"]), 360, 2)
+        sections = {run["title"]: run for run in self.report()["runs"]}
+        self.assertIn("Periodic motion and its stability", sections)
+
+    def test_options_without_effect_on_oil_are_refused(self):
+        case, options = self.with_oil()
+        for more, words in ((("--accuracy", 1e-6), "--accuracy"), (("--integrator", "rk3"), "--integrator")):
+            self.refused(case, words, options=(*options, *more))
+        self.refused(self.case(duration_s=0.001, samples=2), "--oil periodic", options=("--oil", "periodic"))
+        self.refused(self.case("constant_torque", duration_s=0.001, samples=2), "--accuracy", options=("--steady", "--accuracy", 1e-6))
+        for case, key in (("bap63_load_step", "[load] file"), ("bap63_reversal", "[drive] file")):
+            self.refused(base.REPO / "cases" / f"{case}.toml", f"{case}.toml", key, "--steady", options=("--steady",))
 
     def test_given_pressures_stand_there_once(self):
         columns = ["theta_deg", "psi_deg", "theta_rpm", "psi_rpm", "theta_rad_per_s2", "psi_rad_per_s2"]

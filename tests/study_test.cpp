@@ -517,6 +517,8 @@ TEST(ReferenceSet, FilesOfACaseAreThoseThatItReads) {
   the_case.drive->curve.file = "speed.csv";
   EXPECT_EQ(study::files_of(the_case),
             (std::vector<std::filesystem::path>{"pressure.csv", "opening.csv", "speed.csv"}));
+  the_case.hydraulics->load.emplace().share.file = "share.csv";
+  EXPECT_EQ(study::files_of(the_case).size(), 4U);
 }
 
 // Imposed gear, a smaller scene, a film force of zero: absent channels, all of them expected.
