@@ -10,18 +10,10 @@ namespace {
 class PrescribedOil : public Oil {
  public:
   PrescribedOil(int pistons, const PressureTrace& pressure, const PortPressures& ports)
-      : pistons_(pistons), pressure_(pressure), ports_(ports) {
-    for (const double edge : pressure.edges_deg())
-      for (int k = 0; k < pistons; ++k)
-        edges_deg_.push_back(wrap_degrees(edge + 360.0 * k / pistons));
-    std::sort(edges_deg_.begin(), edges_deg_.end());
-    constexpr double kSame = 1e-9;
-    edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end(),
-                                 [](double a, double b) { return b - a < kSame; }),
-                     edges_deg_.end());
-    if (edges_deg_.size() > 1 && edges_deg_.front() + 360 - edges_deg_.back() < kSame)
-      edges_deg_.pop_back();
-  }
+      : pistons_(pistons),
+        pressure_(pressure),
+        ports_(ports),
+        edges_deg_(block_edges_deg(pressure, pistons)) {}
 
   int pistons() const override { return pistons_; }
   int states() const override { return 0; }

@@ -79,4 +79,17 @@ double PressureTrace::ideal(double theta_k_deg) const {
   return ports_.suction + (ports_.delivery - ports_.suction) * share;
 }
 
+std::vector<double> block_edges_deg(const PressureTrace& pressure, int pistons) {
+  std::vector<double> edges;
+  for (const double edge : pressure.edges_deg())
+    for (int k = 0; k < pistons; ++k) edges.push_back(wrap_degrees(edge + 360.0 * k / pistons));
+  std::sort(edges.begin(), edges.end());
+  constexpr double kSame = 1e-9;
+  edges.erase(
+      std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kSame; }),
+      edges.end());
+  if (edges.size() > 1 && edges.front() + 360 - edges.back() < kSame) edges.pop_back();
+  return edges;
+}
+
 }  // namespace bentaxis

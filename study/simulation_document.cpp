@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
@@ -215,19 +216,6 @@ report::Section work_section(const SimulationResult& r) {
   return section;
 }
 
-const char* words_of(PowerUse use) {
-  switch (use) {
-    case PowerUse::source:
-      return "source";
-    case PowerUse::delivered:
-      return "delivered";
-    case PowerUse::loss:
-      return "lost";
-    default:
-      return "approximation";
-  }
-}
-
 // From the motor to the load, of both models.
 report::Section energy_section(const SimulationResult& r) {
   report::Section section;
@@ -257,10 +245,10 @@ report::Section energy_section(const SimulationResult& r) {
     put(row++, "motion of shaft, block, pistons, rotor", "stored", t.kinetic_energy_gained);
     put(row++, "teeth and coupling", "stored", t.potential_energy_gained);
     put(row++, "oil", "stored", oil.energy_gained);
-    put(row++, "friction, viscous torques, damping", "lost", oil.pressure_work - t.work_of_loads);
+    put(row++, "friction, viscous torques, damping", "loss", oil.pressure_work - t.work_of_loads);
     for (const OilEnergy& e : oil.energies)
       if (e.place.use != PowerUse::source)
-        put(row++, e.place.name, words_of(e.place.use), e.energy);
+        put(row++, e.place.name, hydraulics::name_of(e.place.use), e.energy);
     put(row++, "left over: mechanics", "must vanish", t.work_residual);
     put(row++, "left over: oil", "must vanish", oil.energy_residual);
     put(row++, "left over: between pistons and oil", "must vanish", oil.exchange_residual);

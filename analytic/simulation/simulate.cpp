@@ -111,19 +111,8 @@ class Simulation {
         progress_(progress),
         pieces_(pieces),
         tolerance_(std::max(kTightest, options.accuracy.value_or(options.error * kStepShare))),
-        stepper_(equations_, equations_.scales(), tolerance_) {
-    const int pistons = the_case.pump.geometry.pistons;
-    for (const double edge : pressure.edges_deg())
-      for (int k = 0; k < pistons; ++k)
-        edges_deg_.push_back(wrap_degrees(edge + 360.0 * k / pistons));
-    std::sort(edges_deg_.begin(), edges_deg_.end());
-    constexpr double kSame = 1e-9;
-    edges_deg_.erase(std::unique(edges_deg_.begin(), edges_deg_.end(),
-                                 [](double a, double b) { return b - a < kSame; }),
-                     edges_deg_.end());
-    if (edges_deg_.size() > 1 && edges_deg_.front() + 360 - edges_deg_.back() < kSame)
-      edges_deg_.pop_back();
-  }
+        stepper_(equations_, equations_.scales(), tolerance_),
+        edges_deg_(block_edges_deg(pressure, the_case.pump.geometry.pistons)) {}
 
   Trajectory run() {
     const Stopwatch watch;

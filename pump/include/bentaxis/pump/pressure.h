@@ -80,6 +80,9 @@ class PressureTrace {
   std::vector<double> edges_deg_;
 };
 
+/// Block angles in [0, 360), rising, at which any of the chambers passes an edge of the trace.
+std::vector<double> block_edges_deg(const PressureTrace& pressure, int pistons);
+
 /// Angle of piston k (from 1) when the shaft stands at theta: theta - 360 (k-1)/N, degrees.
 inline double piston_angle_deg(double theta_deg, int piston, int pistons) {
   return theta_deg - 360.0 * (piston - 1) / pistons;
