@@ -16,12 +16,12 @@ namespace bentaxis::test {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path source_folder = BENTAXIS_SOURCE_DIR;
+const fs::path kSourceFolder = BENTAXIS_SOURCE_DIR;
 using study::Model;
 
 std::vector<std::string> hydraulic_cases() {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(source_folder / "cases"))
+  for (const auto& entry : fs::directory_iterator(kSourceFolder / "cases"))
     if (entry.path().extension() == ".toml" &&
         read_case(entry.path()).pressure.kind == PressureKind::hydraulic)
       names.push_back(entry.path().stem().string());
@@ -31,9 +31,9 @@ std::vector<std::string> hydraulic_cases() {
 
 // A shipped case, short; one without a drive is driven by the motor of another.
 study::ReadyCase short_case(const std::string& name, double duration, int samples) {
-  Case the_case = read_case(source_folder / "cases" / (name + ".toml"));
+  Case the_case = read_case(kSourceFolder / "cases" / (name + ".toml"));
   if (!the_case.drive) {
-    the_case.drive = read_case(source_folder / "cases" / "bap63_motor_start.toml").drive;
+    the_case.drive = read_case(kSourceFolder / "cases" / "bap63_motor_start.toml").drive;
     the_case.drive->start_speed.reset();
   }
   the_case.drive->duration = duration;
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, ShippedCase, testing::ValuesIn(hydraulic_cases()
 // A shipped case as it stands, through all that happens in it.
 Trajectory whole_case(const std::string& name, double tolerance) {
   const study::ReadyCase ready =
-      study::prepare_simulation(read_case(source_folder / "cases" / (name + ".toml")), {});
+      study::prepare_simulation(read_case(kSourceFolder / "cases" / (name + ".toml")), {});
   return study::CoupledPump(ready, true).simulate(Model::analytic, within(tolerance));
 }
 
@@ -179,8 +179,8 @@ TEST(WholeCase, MotoringTakesItsEnergyFromTheOil) {
 // Impacts magnify whatever is left of an integration: where that is so nothing is judged, and the
 // models are not said to differ.
 TEST(WithOil, RattleIsJudgedAsFarAsErrorsAllow) {
-  Case the_case = read_case(source_folder / "cases" / "bap63_rated_hydraulic.toml");
-  const Case rattle = read_case(source_folder / "cases" / "bap63_tooth_rattle.toml");
+  Case the_case = read_case(kSourceFolder / "cases" / "bap63_rated_hydraulic.toml");
+  const Case rattle = read_case(kSourceFolder / "cases" / "bap63_tooth_rattle.toml");
   the_case.pump.gear = rattle.pump.gear;
   the_case.pump.friction.block_viscous = 0;
   the_case.drive = rattle.drive;
@@ -197,8 +197,8 @@ TEST(WithOil, RattleIsJudgedAsFarAsErrorsAllow) {
 
 // The tolerance is lowered until the error of the integration is what was asked for.
 TEST(WithOil, ErrorOfTheIntegrationIsHeld) {
-  Case the_case = read_case(source_folder / "cases" / "bap63_motoring.toml");
-  the_case.pump.gear = read_case(source_folder / "cases" / "bap63_tooth_rattle.toml").pump.gear;
+  Case the_case = read_case(kSourceFolder / "cases" / "bap63_motoring.toml");
+  the_case.pump.gear = read_case(kSourceFolder / "cases" / "bap63_tooth_rattle.toml").pump.gear;
   the_case.drive->duration = 0.01;
   the_case.drive->samples = 100;
   study::SimulationChoice choice;
@@ -230,7 +230,7 @@ std::string group_of(const std::string& column) {
 // A third implementation's start of oil and motion together. Its steps are explicit and its own
 // error, by other steps, is 1e-8 of peak at most; so is what is allowed.
 TEST(ReferenceWithOil, BothModelsMeetIt) {
-  const fs::path folder = source_folder / "reference_data" / "motion" / "start_with_oil";
+  const fs::path folder = kSourceFolder / "reference_data" / "motion" / "start_with_oil";
   const NumericTable reference = read_numeric_csv(folder / "reference.csv");
   const study::ReadyCase ready = study::prepare_simulation(read_case(folder / "case.toml"), {});
   const study::CoupledPump pump(ready, true);
