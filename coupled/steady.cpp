@@ -28,8 +28,14 @@ constexpr double kToleranceForSlopes = 1e-11;
 constexpr double kLoose = 1e-8;
 constexpr double kSlow = 0.3;         // convergence that asks for new derivatives
 constexpr double kNearEnough = 1e-4;  // of the scales: multipliers are those of there
-constexpr double kEnd = 3;            // of the tolerance: a residual that needs no further step
-constexpr double kNoise = 300;        // of it: a residual that may stay
+constexpr double kEnd = 10;           // of the tolerance: a step that need not be taken
+constexpr double kNoise = 300;  // of that of an integration: a residual that may be its errors
+// A state is off by what an integration over a period is, amplified where disturbances decay
+// slowly: the integration is as much finer, as far as double precision goes.
+constexpr double kOfPeriod = 10;  // of its tolerance: errors over a period
+constexpr double kFineEnough = 2;
+constexpr double kFiner = 0.1;
+constexpr double kFinest = 1e-13;
 constexpr double kAtSection = 1e-12;  // rad
 // Modes that come back as they went, as the mass in a closed circuit, are left where they are.
 constexpr double kNeutral = 1e-6;
@@ -169,18 +175,21 @@ class PeriodMap {
 struct Point {
   Eigen::VectorXd u, residual;
   Passage passage;
+  double step = 0;   // the largest part of the one that would be next, of the scales
+  double error = 0;  // with what the integration's errors amount to
   double size() const { return u.size() == 0 ? 0 : residual.norm(); }
   double largest() const { return u.size() == 0 ? 0 : residual.lpNorm<Eigen::Infinity>(); }
 };
 
 class Newton {
  public:
-  Newton(PeriodMap& map, double tolerance) : map_(map), tolerance_(tolerance) {}
+  Newton(PeriodMap& map, double tolerance)
+      : map_(map), tolerance_(tolerance), integration_(tolerance) {}
 
   Point at(const Eigen::VectorXd& u) {
     Point p;
     p.u = u;
-    p.passage = map_.pass(map_.state(u), tolerance_);
+    p.passage = map_.pass(map_.state(u), integration_);
     p.residual = map_.scaled(p.passage.state) - u;
     return p;
   }
@@ -215,32 +224,43 @@ class Newton {
 
   // @return whether it has converged; `p` becomes the best point
   bool run(Point& p) {
+    if (p.u.size() == 0) return true;
     bool fresh = false, tight = false;
     for (; iterations_ < kMostIterations; ++iterations_) {
-      if (p.largest() <= kEnd * tolerance_) return true;
       if (by_state_.size() == 0) {
-        by_state_ = derivative(p.u, tight);
-        tight_at_ = tight ? p.u : Eigen::VectorXd();
+        find_slopes(p.u, tight);
         fresh = tight = true;
       }
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-      solver.setThreshold(kNeutral);
-      solver.compute(Eigen::MatrixXd::Identity(p.u.size(), p.u.size()) - by_state_);
-      const Eigen::VectorXd step = solver.solve(p.residual);
+      Eigen::VectorXd step = step_from(p);
+      const bool noise = p.largest() <= kNoise * integration_;
+      if ((noise || p.step <= kEnd * tolerance_) && !has_slopes_of(p)) {
+        find_slopes(p.u, true);
+        fresh = true;
+        step = step_from(p);
+      }
+      if (noise || p.step <= kEnd * tolerance_) {
+        const double enough = std::max(kFinest, tolerance_ / std::max(1.0, amplification_));
+        if (integration_ > kFineEnough * enough && integrate_finer(p, enough)) continue;
+        if (p.step <= kEnd * tolerance_) return true;
+      }
       std::optional<Point> next;
       for (double damping = 1; damping >= kLeastDamping; damping /= 2) {
         next = try_at(p.u + damping * step);
         if (next && next->size() < (1 - damping / 4) * p.size()) break;
         next.reset();
-        if (p.largest() <= kNoise * tolerance_) break;
+        if (noise) break;
+      }
+      if (!next && noise) {
+        // What is left are errors of the integration.
+        if (integrate_finer(p, kFiner * integration_)) continue;
+        return p.largest() <= kNoise * tolerance_;
       }
       if (!next) {
-        if (p.largest() <= kNoise * tolerance_) return true;
         if (fresh && tight_at_.size() > 0) return false;
         by_state_.resize(0, 0);
         continue;
       }
-      if (next->size() > kSlow * p.size() && next->largest() > kNoise * tolerance_)
+      if (next->size() > kSlow * p.size() && next->largest() > kNoise * integration_)
         by_state_.resize(0, 0);
       fresh = false;
       p = std::move(*next);
@@ -250,9 +270,7 @@ class Newton {
 
   std::vector<std::complex<double>> multipliers(const Point& p) {
     if (p.u.size() == 0) return {};
-    if (by_state_.size() == 0 || tight_at_.size() == 0 ||
-        (tight_at_ - p.u).lpNorm<Eigen::Infinity>() > kNearEnough)
-      by_state_ = derivative(p.u, true);
+    if (!has_slopes_of(p)) find_slopes(p.u, true);
     const Eigen::VectorXcd values = by_state_.eigenvalues();
     std::vector<std::complex<double>> result(values.data(), values.data() + values.size());
     std::sort(result.begin(), result.end(),
@@ -262,11 +280,48 @@ class Newton {
 
   int iterations() const { return iterations_; }
   const std::string& why() const { return why_; }
-  void start_again() { by_state_.resize(0, 0); }
+  void start_again() {
+    by_state_.resize(0, 0);
+    integration_ = tolerance_;
+  }
 
  private:
+  void find_slopes(const Eigen::VectorXd& u, bool tight) {
+    by_state_ = derivative(u, tight);
+    tight_at_ = tight ? u : Eigen::VectorXd();
+  }
+  bool has_slopes_of(const Point& p) const {
+    return by_state_.size() > 0 && tight_at_.size() > 0 &&
+           (tight_at_ - p.u).lpNorm<Eigen::Infinity>() <= kNearEnough;
+  }
+  Eigen::VectorXd step_from(Point& p) {
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+    solver.setThreshold(kNeutral);
+    solver.compute(Eigen::MatrixXd::Identity(p.u.size(), p.u.size()) - by_state_);
+    amplification_ = solver.pseudoInverse().rowwise().norm().maxCoeff();
+    Eigen::VectorXd step = solver.solve(p.residual);
+    p.step = step.lpNorm<Eigen::Infinity>();
+    p.error = p.step + kOfPeriod * amplification_ * integration_;
+    return step;
+  }
+
+  // @return whether it can be
+  bool integrate_finer(Point& p, double tolerance) {
+    if (tolerance < kFinest) return false;
+    const double before = integration_;
+    integration_ = tolerance;
+    std::optional<Point> finer = try_at(p.u);
+    if (finer)
+      p = std::move(*finer);
+    else
+      integration_ = before;
+    return finer.has_value();
+  }
+
   PeriodMap& map_;
   double tolerance_;
+  double integration_;        // its tolerance
+  double amplification_ = 0;  // of errors over a period, to those of the state
   Eigen::MatrixXd by_state_;
   Eigen::VectorXd tight_at_;  // where it is by central differences
   int iterations_ = 0;
@@ -292,13 +347,13 @@ SteadyMotion steady(const std::string& name, Mechanics& mechanics, const Oil& oi
   Point p;
   bool converged = false;
   for (int attempt = 0; attempt < kAttempts && !converged; ++attempt) {
+    newton.start_again();
     for (int i = 0; i < kTurnsAhead * oil.pistons(); ++i) {
       start = map.pass(start, options.tolerance).state;
       p = newton.at(map.scaled(start));
       if (i >= oil.pistons() && p.largest() < kSettled) break;
       start = p.passage.state;
     }
-    newton.start_again();
     converged = newton.run(p);
     start = p.passage.state;
   }
@@ -313,6 +368,7 @@ SteadyMotion steady(const std::string& name, Mechanics& mechanics, const Oil& oi
   result.speed = map.direction() * map.step_angle() / p.passage.period;
   result.iterations = newton.iterations();
   result.residual = p.largest();
+  result.error = p.error;
   result.tolerance = options.tolerance;
   result.multipliers = newton.multipliers(p);
   const SystemState found = map.state(p.u);

@@ -537,6 +537,32 @@ TEST(Steady, QuadraticDragHasItsKnownCycleAndMultiplier) {
   }
 }
 
+// A heavy rotor loses a thousandth of a disturbance over a period: it is a thousand times as far
+// off as what changes over one.
+TEST(Steady, SlowDecayDoesNotHideTheError) {
+  const PressureTrace pressure = no_pressure();
+  const auto oil = coupled::prescribed_oil(kPistons, pressure, {});
+  for (const double tolerance : {1e-7, 1e-9}) {
+    OneShaft shaft;
+    shaft.inertia = 10;
+    const double decay = -std::log(0.999) / (2 * kPi / kPistons);
+    shaft.drag = decay * shaft.inertia / 2;
+    shaft.torque = shaft.drag * 50 * 50;
+    shaft.swing = 4000;
+    shaft.start_speed = 47;
+    const SteadyMotion motion = steady("toy", shaft, *oil, drive_for(1, 20), within(tolerance));
+    EXPECT_NEAR(motion.multipliers[0].real(), 0.999, scaled(1e-6));
+    const double square =
+        50 * 50 + 2 * shaft.swing / shaft.inertia * decay / (decay * decay + kPistons * kPistons);
+    const double off = std::abs(shaft.shaft(0, motion.motion).speed - std::sqrt(square)) /
+                       shaft.scales()[kTurnRate];
+    EXPECT_LT(off, scaled(30) * tolerance);
+    EXPECT_LT(off, scaled(3) * motion.error);
+    EXPECT_LE(motion.error, 30 * tolerance);
+    EXPECT_LT(motion.residual, motion.error);
+  }
+}
+
 // At a given speed the map of a linear oil is affine: its derivative by plain Runge-Kutta steps.
 TEST(Steady, LinearOilAtGivenSpeedHasItsOwnMultipliers) {
   for (const double speed : {50.0, -50.0}) {

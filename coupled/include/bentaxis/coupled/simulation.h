@@ -33,11 +33,15 @@ Trajectory simulate(const std::string& name, Mechanics& mechanics, const Oil& oi
 
 /// A motion that repeats itself after every N-th of the block's turn.
 struct SteadyMotion {
-  Trajectory turn;       ///< one turn of the block, rows at equal times from its start
-  double period_s = 0;   ///< of an N-th of a turn
-  double speed = 0;      ///< rad/s, mean, of the block
-  int iterations = 0;    ///< Newton steps
-  double residual = 0;   ///< largest change of a state over a period, of its scale
+  Trajectory turn;      ///< one turn of the block, rows at equal times from its start
+  double period_s = 0;  ///< of an N-th of a turn
+  double speed = 0;     ///< rad/s, mean, of the block
+  int iterations = 0;   ///< Newton steps
+  double residual = 0;  ///< largest change of a state over a period, of its scale
+  /// How far the state may be from the periodic one, of its scale: the Newton step that would be
+  /// next, and errors of the integration, which slow decay amplifies. About 30 tolerances at most,
+  /// or what double precision leaves where a disturbance decays very slowly.
+  double error = 0;
   double tolerance = 0;  ///< as in Options
   /// Floquet multipliers of an N-th of a turn, largest magnitude first; that of a shift in time,
   /// which is 1, is left out. A disturbance has shrunk by their magnitude after it.
