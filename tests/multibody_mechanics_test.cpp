@@ -313,7 +313,58 @@ TEST(MultibodyMechanics, RemembersNothing) {
     mechanics->pressure_power(motion.time, motion.y, others);
     mechanics->rates(motion.time, motion.y, motion.loads, again);
     EXPECT_EQ(first, again);
+    // One that is asked for the first time. What is not computed is no number, and equals nothing.
+    const auto asked_first = [&] {
+      return multibody::mechanics(motion.the_case, motion.assumptions);
+    };
+    asked_first()->rates(motion.time, y, motion.loads, fresh_dy);
+    EXPECT_EQ(dy, fresh_dy);
+    const auto row_of = [&](Mechanics& asked) {
+      asked.row(motion.time, y, others, state, row, checks);
+      std::replace_if(
+          row.begin(), row.end(), [](double v) { return !is_computed(v); }, -1.0);
+      return row;
+    };
+    EXPECT_EQ(row_of(*mechanics), row_of(*asked_first()));
+    EXPECT_EQ(mechanics->kinetic_energy(motion.time + 0.1, y),
+              asked_first()->kinetic_energy(motion.time + 0.1, y));
+    EXPECT_EQ(mechanics->pressure_power(motion.time, motion.y, others),
+              asked_first()->pressure_power(motion.time, motion.y, others));
+    EXPECT_EQ(mechanics->scales(), asked_first()->scales());
   }
+}
+
+// Forces whose squares are no numbers are refused, with no trace of the flank that carried them.
+TEST(MultibodyMechanics, FailedRowsAreForgotten) {
+  RandomPump random(157);
+  int rigid = 0;
+  for (int n = 0; n < 60; ++n) {
+    const RandomMotion motion(random);
+    if (motion.compliant) continue;
+    ++rigid;
+    const auto mechanics = multibody::mechanics(motion.the_case, motion.assumptions);
+    OilLoads strange = motion.loads;
+    for (double& p : strange.chamber_pressure) p *= 1e290;
+    std::vector<double> state, row;
+    MotionChecks checks{};
+    EXPECT_THROW(mechanics->row(motion.time, motion.y, strange, state, row, checks),
+                 ComputationError);
+    const auto fresh = multibody::mechanics(motion.the_case, motion.assumptions);
+    MotionVector dy, fresh_dy;
+    mechanics->rates(motion.time, motion.y, motion.loads, dy);
+    fresh->rates(motion.time, motion.y, motion.loads, fresh_dy);
+    EXPECT_EQ(dy, fresh_dy);
+    EXPECT_EQ(mechanics->kinetic_energy(motion.time, motion.y),
+              fresh->kinetic_energy(motion.time, motion.y));
+    EXPECT_EQ(mechanics->pressure_power(motion.time, motion.y, motion.loads),
+              fresh->pressure_power(motion.time, motion.y, motion.loads));
+    mechanics->row(motion.time, motion.y, motion.loads, state, row, checks);
+    std::vector<double> fresh_row;
+    fresh->row(motion.time, motion.y, motion.loads, state, fresh_row, checks);
+    for (std::size_t c = 0; c < row.size(); ++c)
+      EXPECT_TRUE(row[c] == fresh_row[c] || (!is_computed(row[c]) && !is_computed(fresh_row[c])));
+  }
+  EXPECT_GT(rigid, 5);
 }
 
 TEST(MultibodyMechanics, StartsAsTheDriveSays) {

@@ -247,6 +247,16 @@ void MultibodyMechanics::find_row(const Posture& now, const OilLoads& loads,
   load(loads);
   place(now);
   State& dynamics = system_.dynamics();
+  // However the row ends: the flank that carries is not known beforehand.
+  struct FlankIsForgotten {
+    MultibodyMechanics& of;
+    ~FlankIsForgotten() {
+      if (!of.system_.has_rigid_gear()) return;
+      of.system_.gear().setting().negative = false;
+      of.placed_.reset();
+    }
+  };
+  const FlankIsForgotten forgotten{*this};
   realize_with_flank(system_, dynamics);
   require_accurate_forces(estimated_force_error(system_, dynamics), now.shaft.angle);
   AxisMotion shaft = now.shaft;
@@ -255,10 +265,6 @@ void MultibodyMechanics::find_row(const Posture& now, const OilLoads& loads,
   block.acceleration = system_.bodies().block.getOneUDot(dynamics, 0);
   row.assign(layout_.size(), not_computed());
   read_motion_row(system_, dynamics, {shaft, block}, loads.chamber_pressure, layout_, row, checks);
-  if (system_.has_rigid_gear()) {
-    system_.gear().setting().negative = false;
-    placed_.reset();
-  }
   const auto rpm = [](double speed) { return speed / kRadPerSecondPerRpm; };
   state = {now.time, shaft.angle / kRadPerDegree, block.angle / kRadPerDegree, rpm(shaft.speed),
            rpm(block.speed)};
