@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
+#include <latch>
 #include <map>
 #include <numeric>
+#include <thread>
 
 #include "bentaxis/analytic/mechanics.h"
 #include "bentaxis/analytic/simulation.h"
@@ -15,6 +18,7 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/hydraulics/steady_state.h"
+#include "bentaxis/multibody/mechanics.h"
 #include "bentaxis/pump/error.h"
 #include "support.h"
 #include "system.h"
@@ -426,14 +430,43 @@ TEST(Integration, RowsAndHistoryAreOfTheSameInstants) {
   EXPECT_NE(some.record.choice.find("BDF"), std::string::npos);
 }
 
+// A torque that begins to rise at a knot of its own, and what it was asked for.
+class RisingTorque : public OneShaft {
+ public:
+  double rises_at = 0.0333;
+  bool tells = true;  // of the knot
+  std::vector<double> times;
+
+  RisingTorque() : OneShaft(starting_pump()) {}
+  std::vector<double> knots() const override {
+    return tells ? std::vector<double>{rises_at} : std::vector<double>{};
+  }
+  void rates(double time, const MotionVector& y, const OilLoads& loads, MotionVector& dy) override {
+    times.push_back(time);
+    torque = 40 + 1e4 * std::max(0.0, time - rises_at);
+    OneShaft::rates(time, y, loads, dy);
+  }
+  // A step ended there, and no other reached over it.
+  bool stopped_at(double knot) const {
+    const auto beyond =
+        std::find_if(times.begin(), times.end(), [&](double t) { return t > knot; });
+    return beyond != times.end() && std::find(times.begin(), beyond, knot) != beyond &&
+           std::all_of(beyond, times.end(), [&](double t) { return t >= knot; });
+  }
+};
+
 TEST(Integration, KnotsEndSteps) {
   LinearOil oil;
-  oil.knot_times = {0.0333, 0.05};
-  OneShaft shaft = starting_pump(), same = starting_pump();
+  oil.knot_times = {0.05};
+  RisingTorque shaft, silent;
   const Trajectory with = simulate("toy", shaft, oil, drive_for(0.1, 5), within(1e-10));
+  EXPECT_TRUE(shaft.stopped_at(shaft.rises_at));
+  EXPECT_TRUE(shaft.stopped_at(0.05));
   oil.knot_times = {};
-  const Trajectory without = simulate("toy", same, oil, drive_for(0.1, 5), within(1e-10));
-  EXPECT_GT(with.record.steps, without.record.steps);
+  silent.tells = false;
+  const Trajectory without = simulate("toy", silent, oil, drive_for(0.1, 5), within(1e-10));
+  EXPECT_FALSE(silent.stopped_at(shaft.rises_at));
+  EXPECT_FALSE(silent.stopped_at(0.05));
   EXPECT_LT(worst_apart(angles(with), angles(without)), scaled(1e-7));
 }
 
@@ -927,6 +960,57 @@ TEST(PumpWithOil, PeriodicMotionIsWhereALongRunComesTo) {
                                state.computed->peak * 1e5);
   EXPECT_LT(pressures, scaled(1e-7));
   EXPECT_LT(worst, scaled(1e-6));
+}
+
+// To the last bit: nothing is shared but the case, which does not change.
+TEST(PumpWithOil, SimulationsInTwoThreadsAreAsAlone) {
+  const Case the_case = rated_pump(DriveKind::motor);
+  const auto state = hydraulics::steady_state(the_case);
+  using Simulation = std::function<Trajectory()>;
+  const auto follow = [&](Mechanics& mechanics, double until) {
+    const auto oil = hydraulics::oil_in_time(the_case, hydraulics::at_rest(state));
+    Options options;
+    for (int i = 0; i <= 10; ++i) options.times.push_back(until * i / 10);
+    return simulate("a", mechanics, *oil, *the_case.drive, options);
+  };
+  // About as long as each other.
+  const Simulation analytic = [&] {
+    return follow(*analytic::mechanics(the_case, the_case.analytic), 0.02);
+  };
+  const Simulation multibody = [&] {
+    return follow(*multibody::mechanics(the_case, the_case.multibody), 0.002);
+  };
+  const auto expect_same = [](const Trajectory& a, const Trajectory& b) {
+    EXPECT_EQ(a.table.states, b.table.states);
+    EXPECT_EQ(a.oil->values, b.oil->values);
+    EXPECT_EQ(a.record.steps, b.record.steps);
+    ASSERT_EQ(a.table.results.values.size(), b.table.results.values.size());
+    for (std::size_t i = 0; i < a.table.results.values.size(); ++i) {
+      const double x = a.table.results.values[i], y = b.table.results.values[i];
+      ASSERT_TRUE(x == y || (!is_computed(x) && !is_computed(y))) << i;
+    }
+  };
+  const Trajectory by_analytic = analytic();
+  const Trajectory by_multibody = multibody();
+  EXPECT_GT(by_analytic.record.steps, 100);
+  const auto both = [&](const Simulation& one, const Trajectory& alone, const Simulation& other,
+                        const Trajectory& other_alone) {
+    Trajectory a, b;
+    {
+      std::latch start(2);
+      const auto go = [&](const Simulation& simulation, Trajectory& to) {
+        start.arrive_and_wait();
+        to = simulation();
+      };
+      const std::jthread first([&] { go(one, a); });
+      const std::jthread second([&] { go(other, b); });
+    }
+    expect_same(a, alone);
+    expect_same(b, other_alone);
+  };
+  both(analytic, by_analytic, multibody, by_multibody);
+  both(analytic, by_analytic, analytic, by_analytic);
+  both(multibody, by_multibody, multibody, by_multibody);
 }
 
 }  // namespace
