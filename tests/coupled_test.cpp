@@ -596,6 +596,23 @@ TEST(Steady, SlowDecayDoesNotHideTheError) {
   }
 }
 
+// Likewise a large accumulator, among states that are fast.
+TEST(Steady, SlowDecayOfOneStateIsSeenAmongOthers) {
+  LinearOil oil;
+  oil.delivery_softness = 3e-9;
+  OneShaft shaft;
+  shaft.given_speed = 50;
+  DriveSpec drive = drive_for(1, 10);
+  drive.kind = DriveKind::speed;
+  const SteadyMotion exact = steady("toy", shaft, oil, drive, within(1e-10));
+  for (const double tolerance : {1e-6, 1e-8}) {
+    const SteadyMotion motion = steady("toy", shaft, oil, drive, within(tolerance));
+    EXPECT_GT(motion.multipliers[0].real(), 0.998);
+    EXPECT_LT(worst_apart(motion.oil, exact.oil) / oil.scales()[0], scaled(30) * tolerance);
+    EXPECT_LE(motion.error, 30 * tolerance);
+  }
+}
+
 // At a given speed the map of a linear oil is affine: its derivative by plain Runge-Kutta steps.
 TEST(Steady, LinearOilAtGivenSpeedHasItsOwnMultipliers) {
   for (const double speed : {50.0, -50.0}) {
