@@ -100,7 +100,7 @@ class ExportTest(ImportTest):
 class OwnRecordTest(ImportTest):
     """Records made of the program's own curves, so that what a mapping must say is known."""
 
-    def record(self, heading, columns, shift_deg=0):
+    def record(self, heading, columns, shift_deg=0, digits=17):
         """Writes columns (names with their signs) of the analytic turn, begun shift_deg later."""
         self.run_program("run", base.REPO / "cases" / "bap63_rated.toml", "--model", "analytic", "--out", "own")
         with (self.folder / "own" / "analytic.csv").open() as file:
@@ -109,7 +109,7 @@ class OwnRecordTest(ImportTest):
         lines = [",".join(["angle [deg]", *heading])]
         for i, row in enumerate(rows):
             at = rows[(first + i) % len(rows)]
-            lines.append(",".join([row["theta_deg"], *(repr(sign * float(at[name])) for name, sign in columns)]))
+            lines.append(",".join([row["theta_deg"], *(f"{sign * float(at[name]):.{digits}g}" for name, sign in columns)]))
         file = self.folder / "record.csv"
         file.write_text("\n".join(lines) + "\n")
         return file
@@ -120,6 +120,14 @@ class OwnRecordTest(ImportTest):
         signs = dict(re.findall(r'^ours = "(\w+)".*\n(?:.*\n)*?sign = (-?1)', self.description(), re.M))
         self.assertEqual(signs.get("Td_z1_Nm"), "-1", self.description())
         self.regress(DONE)
+
+    def test_the_tolerance_proposed_is_that_of_the_digits(self):
+        for digits in (3, 4):
+            shutil.rmtree(self.folder / "ref", ignore_errors=True)
+            self.new(self.record(["torque [Nm]", "tooth [N]"], [("Td_z1_Nm", 1), ("Rcs_z4_N", 1)], digits=digits), "--accept")
+            relative = float(re.search(r"^relative = (\S+)", self.description(), re.M)[1])
+            # Half a unit of the last digit is 0.5 to 5 times 10^-digits of the peak; and some room.
+            self.assertTrue(0.5 <= relative * 10 ** digits <= 20, relative)
 
     def test_the_number_behind_the_piston_counts(self):
         names = [(k, axis) for k in range(1, 6) for axis in "xyz"]
