@@ -194,7 +194,7 @@ class Study {
       coupled::SteadyMotion found =
           pump_->steady(model, options, progress_of_(to_string(model) + ", periodic motion"));
       r_.periodic[static_cast<int>(model)] =
-          PeriodicMotion{found.period_s, found.speed, found.iterations, found.residual,
+          PeriodicMotion{found.period_s, found.speed, found.iterations, found.error,
                          std::move(found.multipliers)};
       return std::optional(std::move(found.turn));
     };

@@ -274,9 +274,9 @@ report::Section periodic_section(const SimulationResult& r) {
     section.facts.emplace_back(
         to_string(model),
         fmt::format(
-            "period {:.9g} s, {:.9g} rpm, {}; {} Newton steps, {:.1e} left of a state's scale",
+            "period {:.9g} s, {:.9g} rpm, {}; {} Newton steps, states off by {:.1e} of their scales",
             motion->period_s, motion->speed / kRadPerSecondPerRpm,
-            motion->stable() ? "stable" : "unstable", motion->iterations, motion->residual));
+            motion->stable() ? "stable" : "unstable", motion->iterations, motion->error));
   }
   section.table.columns = {"model", "multiplier, magnitude", "its angle, deg", "decay time, s"};
   for (const Model model : kModels) {
