@@ -13,6 +13,10 @@ namespace bentaxis::coupled {
 namespace {
 
 constexpr long kMostSteps = 20000000;  // some minutes of the closed form
+// What a simulation would take is foreseen after so many steps; it is given up early where that is
+// so many times too much.
+constexpr long kStepsToForesee = 200000;
+constexpr double kHopeless = 3;
 constexpr std::size_t kMostEvents = 1000000;
 // A step that is expected to reach an edge goes beyond it by this part of itself.
 constexpr double kBeyond = 1e-6;
@@ -37,8 +41,9 @@ Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double to
 }
 
 void Course::fail(const std::string& why) const {
-  throw ComputationError(name_ + " model with oil: the simulation stops at " + number_text(time_) +
-                         " s: " + why);
+  const double speed = shaft(time_, state_).speed / kRadPerSecondPerRpm;
+  throw ComputationError(name_ + " model with oil: the simulation stops at " + rounded_text(time_) +
+                         " s, the shaft at " + rounded_text(speed) + " rpm: " + why);
 }
 
 void Course::start(double time, const SystemState& state) {
@@ -225,6 +230,12 @@ double Course::horizon(double end) const {
 }
 
 void Course::keep_going() {
+  if (integrator_.steps() > kStepsToForesee && time_ > 0) {
+    const double expected = static_cast<double>(integrator_.steps()) * duration_ / time_;
+    if (expected > kHopeless * static_cast<double>(kMostSteps))
+      fail("at this rate it would take " + rounded_text(expected) + " steps, more than " +
+           std::to_string(kMostSteps) + ": simulate less of it (duration_s)");
+  }
   if (integrator_.steps() > kMostSteps)
     fail("after " + std::to_string(kMostSteps) +
          " steps: motion or pressures are too fast for the time that is asked for; simulate less "

@@ -31,6 +31,8 @@ class Course {
   /// The time of the last step at which the block has got to an angle between those at its ends.
   double time_at(double block_angle) const;
 
+  /// Time that is to be simulated in all, s: the steps it would take are foreseen from it.
+  void foresee(double duration) { duration_ = duration; }
   /// The flank that touched at last has its impulse until now.
   void close_contact();
   const std::vector<ToothEvent>& events() const { return events_; }
@@ -56,6 +58,7 @@ class Course {
   double horizon(double end) const;
   void keep_going();
 
+  double duration_ = 0;
   std::string name_;
   System system_;
   Integrator integrator_;

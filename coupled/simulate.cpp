@@ -109,6 +109,7 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oi
   trajectory.table = trajectory_table(name, mechanics.layout(), drive);
   Course course(name, mechanics, oil, tolerance, true);
   course.start(0, start);
+  course.foresee(times.back());
   Rows rows(mechanics, oil, course.system(), start, trajectory);
   SystemState at = start;
   std::vector<double> integrals;

@@ -118,7 +118,7 @@ class PeriodMap {
       if (course.time() >= end) {
         if (period_ > 0) break;
         fail("the block does not turn by an N-th of a turn within " + number_text(limit_) +
-             " s (duration_s)");
+             " s (duration_s): what drives the shaft may not turn it at all");
       }
       course.advance(end);
       course.state_at(course.time(), at);

@@ -237,16 +237,16 @@ TimeCurve read_time_curve(const std::filesystem::path& file, const std::string& 
       refuse_value(file, table, i, 0, "<= 0 (a simulation starts at 0)");
     if (i > 0 && !(at > curve.time.back()))
       refuse_value(file, table, i, 0,
-                   "> " + number_text(curve.time.back()) + (in_time ? " (times" : " (speeds") +
-                       " increase strictly)");
+                   "> " + number_text(curve.time.back()) + ", the one before it (" +
+                       (in_time ? "times" : "speeds") + " increase strictly)");
     if (!negative && !(table.rows[i][1] >= 0)) refuse_value(file, table, i, 1, ">= 0");
     curve.time.push_back(at);
     curve.value.push_back(table.rows[i][1]);
   }
   constexpr std::size_t kFewestPoints = 4;
   if (curve.time.size() < kFewestPoints)
-    throw InputError(file.string() + ": has " + std::to_string(curve.time.size()) +
-                     " points, must be at least 4");
+    throw InputError(file.string() + ": points: " + std::to_string(curve.time.size()) +
+                     ", must be at least 4");
   return curve;
 }
 

@@ -193,9 +193,8 @@ class Study {
       if (r_.choice.only && *r_.choice.only != model) return std::optional<Trajectory>();
       coupled::SteadyMotion found =
           pump_->steady(model, options, progress_of_(to_string(model) + ", periodic motion"));
-      r_.periodic[static_cast<int>(model)] =
-          PeriodicMotion{found.period_s, found.speed, found.iterations, found.error,
-                         std::move(found.multipliers)};
+      r_.periodic[static_cast<int>(model)] = PeriodicMotion{
+          found.period_s, found.speed, found.iterations, found.error, std::move(found.multipliers)};
       return std::optional(std::move(found.turn));
     };
     r_.analytic = find(Model::analytic);
@@ -468,9 +467,10 @@ class Study {
       // Where nothing moves there is no work: then that of the largest torque over 1e-6 rad.
       const ResultTable& table = t.table.results;
       constexpr double kLeastTurn = 1e-6;
-      const double work =
-          std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
-                    std::abs(record.kinetic_energy_gained), kLeastTurn * table.peak("Td")});
+      constexpr double kLeastWork = 1e-12;  // J: nor is there a torque
+      const double work = std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
+                                    std::abs(record.kinetic_energy_gained),
+                                    kLeastTurn * table.peak("Td"), kLeastWork});
       // Simbody's work is integrated with its motion, to the same error.
       const double tolerance = model == Model::analytic && !pump_
                                    ? kAnalyticError
@@ -500,7 +500,8 @@ class Study {
   // Held to the error that the integration was asked for.
   void check_oil(const std::string& model, const Trajectory& t, double work) {
     const OilHistory& oil = *t.oil;
-    double passed = work;
+    constexpr double kLeastEnergy = 1e-6;  // J: where nothing moves
+    double passed = std::max(work, kLeastEnergy);
     for (const OilEnergy& energy : oil.energies) passed = std::max(passed, std::abs(energy.energy));
     const double mass = std::max(mass_passed(t), 1e-9);
     const double tolerance = r_.choice.error;

@@ -273,10 +273,10 @@ report::Section periodic_section(const SimulationResult& r) {
     if (!motion) continue;
     section.facts.emplace_back(
         to_string(model),
-        fmt::format(
-            "period {:.9g} s, {:.9g} rpm, {}; {} Newton steps, states off by {:.1e} of their scales",
-            motion->period_s, motion->speed / kRadPerSecondPerRpm,
-            motion->stable() ? "stable" : "unstable", motion->iterations, motion->error));
+        fmt::format("period {:.9g} s, {:.9g} rpm, {}; {} Newton steps, states off by {:.1e} of "
+                    "their scales",
+                    motion->period_s, motion->speed / kRadPerSecondPerRpm,
+                    motion->stable() ? "stable" : "unstable", motion->iterations, motion->error));
   }
   section.table.columns = {"model", "multiplier, magnitude", "its angle, deg", "decay time, s"};
   for (const Model model : kModels) {
@@ -353,8 +353,45 @@ report::Section effort_section(const SimulationResult& r) {
   return section;
 }
 
+// A course that a pump does not survive, or that the oil's law was not made for.
+std::vector<report::Warning> doubts_of(const SimulationResult& r) {
+  constexpr double kNearVacuum = 0.1;  // of the atmosphere
+  constexpr double kOverspeed = 3;     // of the speed of [operation]
+  const auto& [name, run] = runs_of(r).front();
+  const Case& the_case = r.ready.the_case;
+  double lowest = 0, lowest_at = 0, fastest = 0, fastest_at = 0;
+  for (std::size_t row = 0; row < run->lag.size(); ++row) {
+    const double time = run->table.state(row, 0), speed = run->table.state(row, 3);
+    for (int k = 0; k < the_case.pump.geometry.pistons; ++k)
+      if (const double p = run->oil->value(row, k); p < lowest) {
+        lowest = p;
+        lowest_at = time;
+      }
+    if (std::abs(speed) > std::abs(fastest)) {
+      fastest = speed;
+      fastest_at = time;
+    }
+  }
+  std::vector<report::Warning> warnings;
+  const double atmosphere = the_case.hydraulics->atmosphere / kPascalPerBar;
+  if (lowest < (kNearVacuum - 1) * atmosphere)
+    warnings.push_back({"course-vacuum",
+                        fmt::format("a chamber falls to {:.4g} bar gauge at {:.4g} s: it does not "
+                                    "fill, and what is computed there is the law of the air",
+                                    lowest, lowest_at)});
+  const double usual = std::abs(the_case.operation.speed_rpm);
+  if (usual > 0 && std::abs(fastest) > kOverspeed * usual)
+    warnings.push_back(
+        {"course-overspeed",
+         fmt::format("the shaft gets to {:.5g} rpm at {:.4g} s, more than {:g} times the speed of "
+                     "[operation]: is there a torque without an inertia or a load?",
+                     fastest, fastest_at, kOverspeed)});
+  return warnings;
+}
+
 std::vector<report::Warning> warnings_of(const SimulationResult& r) {
-  if (!r.ready.hydraulics || r.oil_follows) return {};
+  if (r.oil_follows) return doubts_of(r);
+  if (!r.ready.hydraulics) return {};
   return {{"pressure of constant speed",
            fmt::format("the chamber pressure is the periodic one of {:g} rpm at every speed of the "
                        "motion; the oil does not follow it.",

@@ -176,6 +176,23 @@ class RestTest(SimulateTest):
         sections = {run["title"]: run for run in self.report()["runs"]}
         self.assertIn("Periodic motion and its stability", sections)
 
+    def test_a_pump_at_rest_with_oil_balances(self):
+        case = base.REPO / "cases" / "bap63_motoring.toml"
+        self.simulate(case, "--model", "analytic", "--set", "pressure.delivery_bar=0", "--set", "drive.duration_s=0.01", "--set", "drive.samples=4")
+        self.assertIs(self.report()["verdict"]["agrees"], True)
+
+    def test_a_course_without_end_and_one_beyond_any_pump(self):
+        case, options = self.with_oil(duration_s=1e6)
+        error = self.simulate(case, *options, "--model", "analytic", "--error", 1e-4, status=COMPUTATION_FAILED).stderr
+        self.assertIn("duration_s", error)
+        self.assertIn("rpm", error)
+        case, options = self.with_oil(duration_s=0.012, kind="torque", torque_Nm=2000, file="")
+        self.assertIn("course-overspeed", self.simulate(case, *options, "--model", "analytic", "--error", 1e-4).stdout)
+        self.assertEqual({w["name"] for w in self.report()["warnings"]}, {"course-overspeed", "course-vacuum"})
+        case, options = self.with_oil()
+        self.simulate(case, *options, "--model", "analytic", "--error", 1e-4)
+        self.assertEqual(self.report()["warnings"], [])
+
     def test_options_without_effect_on_oil_are_refused(self):
         case, options = self.with_oil()
         for more, words in ((("--accuracy", 1e-6), "--accuracy"), (("--integrator", "rk3"), "--integrator")):

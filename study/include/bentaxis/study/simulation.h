@@ -65,7 +65,7 @@ struct PeriodicMotion {
   double period_s = 0;
   double speed = 0;  ///< rad/s, mean
   int iterations = 0;
-  double error = 0;  ///< how far a state is off, of its scale
+  double error = 0;                               ///< how far a state is off, of its scale
   std::vector<std::complex<double>> multipliers;  ///< Floquet's, largest magnitude first
   bool stable() const;
 };
