@@ -357,7 +357,7 @@ report::Section effort_section(const SimulationResult& r) {
 std::vector<report::Warning> doubts_of(const SimulationResult& r) {
   constexpr double kNearVacuum = 0.1;  // of the atmosphere
   constexpr double kOverspeed = 3;     // of the speed of [operation]
-  const auto& [name, run] = runs_of(r).front();
+  const auto [name, run] = runs_of(r).front();
   const Case& the_case = r.ready.the_case;
   double lowest = 0, lowest_at = 0, fastest = 0, fastest_at = 0;
   for (std::size_t row = 0; row < run->lag.size(); ++row) {
