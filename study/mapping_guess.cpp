@@ -15,133 +15,14 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
-#include "bentaxis/pump/units.h"
+#include "mapping_guess_pieces.h"
 
 namespace bentaxis::study {
+namespace mapping {
 namespace {
 
-using compare::AngleMap;
-using compare::Axes;
-using Series = std::vector<double>;  // over the turn at equal steps
-
-// The coarse search for the phase has this many angles in the turn.
-constexpr std::size_t kCoarse = 180;
-// A record across a wider gap is none of a turn.
-constexpr double kShortestRecord = 330;
-// A curve that differs by more than this share of itself from every channel is none of them.
-constexpr double kNoChannel = 0.5;
 // Frames at right angles that leave more than this are held against frames at Euler angles.
 constexpr double kPoorFrame = 0.02;
-constexpr int kEulerStep = 5;  // deg
-// Another unit than the one that a column's name says is thought of beyond this factor.
-constexpr double kWrongUnit = 1.5;
-// Units that are tried where none is said: far enough apart that no error of a model leads from one
-// to the next.
-constexpr std::array<const char*, 14> kGuessedUnits = {
-    "N", "kN", "MN", "lbf", "Nm", "kNm", "Nmm", "lbf in", "m", "mm", "um", "bar", "MPa", "Pa"};
-
-double dot(const Series& a, const Series& b) {
-  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-Series centred(Series values) {
-  const double mean =
-      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  for (double& value : values) value -= mean;
-  return values;
-}
-
-// About the mean and of length 1; zero where the curve is constant.
-Series normalised(const Series& values) {
-  const double size = std::sqrt(dot(values, values));
-  Series out = centred(values);
-  const double length = std::sqrt(dot(out, out));
-  for (double& value : out) value = length > 1e-9 * size ? value / length : 0;
-  return out;
-}
-
-Series length_of(const std::array<Series, 3>& vector) {
-  Series out(std::max({vector[0].size(), vector[1].size(), vector[2].size()}), 0);
-  for (const auto& component : vector)
-    for (std::size_t i = 0; i < component.size(); ++i) out[i] += component[i] * component[i];
-  for (double& value : out) value = std::sqrt(value);
-  return out;
-}
-
-// ---- Names --------------------------------------------------------------------------------------
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-bool is_word_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '?'; }
-
-std::vector<std::string> words_of(const std::string& name) {
-  std::vector<std::string> words;
-  std::string word;
-  for (const char c : name + " ") {
-    if (is_word_letter(c)) {
-      word += c;
-    } else if (!word.empty()) {
-      words.push_back(lower(word));
-      word.clear();
-    }
-  }
-  return words;
-}
-
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-// Places in a name that may be the letter of an axis: a word's last letter but for one digit behind
-// it ("FX", "x2", "Force_y"), or columns 1 to 3 of a matrix. The name with '?' there, and the axis.
-std::vector<std::pair<std::string, int>> axis_readings(const std::string& name) {
-  std::vector<std::pair<std::string, int>> readings;
-  for (std::size_t i = name.size(); i-- > 0;) {
-    const auto at = std::string("xyzXYZ").find(name[i]);
-    if (at == std::string::npos) continue;
-    std::size_t end = i + 1;
-    if (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0) ++end;
-    if (end < name.size() && is_word_letter(name[end])) continue;
-    std::string key = name;
-    key[i] = '?';
-    readings.emplace_back(key, static_cast<int>(at % 3));
-  }
-  const auto matrix = name.rfind("(:,");
-  if (matrix != std::string::npos && matrix + 5 == name.size() && name[matrix + 3] >= '1' &&
-      name[matrix + 3] <= '3') {
-    std::string key = name;
-    key[matrix + 3] = '?';
-    readings.emplace_back(key, name[matrix + 3] - '1');
-  }
-  return readings;
-}
-
-// The number of a piston that a name has; 0 = none. Never that of an axis.
-int piston_in(const std::string& name, int pistons) {
-  int first = 0;
-  for (const bool of_piston : {true, false}) {
-    bool near = false;  // behind a word for pistons
-    for (const auto& word : words_of(name)) {
-      if (word.find('?') != std::string::npos) continue;
-      near = near || word.find("pist") != std::string::npos || word.find("kolben") == 0 ||
-             word.find("cyl") == 0 || word.find("chamber") == 0;
-      const auto digits = word.find_last_not_of("0123456789") + 1;
-      if (digits >= word.size() || word.size() - digits > 3) continue;
-      const int number = std::stoi(word.substr(digits));
-      if (number < 1 || number > pistons || (of_piston && !near)) continue;
-      if (first == 0) first = number;
-    }
-    if (first != 0) return first;
-  }
-  return 0;
-}
-
-// ---- What the model offers
-// -----------------------------------------------------------------------
 
 struct ModelVector {
   std::string ours, quantity, frame, unit;
@@ -158,38 +39,12 @@ struct ModelChannel {
   Series values;
 };
 
-bool is_quantity(const std::vector<std::string>& words, const std::string& quantity) {
-  return contains(words, lower(quantity));
-}
-
-// ---- The guess ----------------------------------------------------------------------------------
-
-struct Group {
-  std::string key;
-  std::array<std::optional<std::size_t>, 3> columns;
-  std::string unit;
-  std::size_t count() const {
-    return static_cast<std::size_t>(
-        std::count_if(columns.begin(), columns.end(), [](const auto& c) { return c.has_value(); }));
-  }
-};
-
 struct FrameChoice {
   std::string axes_of;
   Axes axes = compare::kNoTurn;
   std::string euler;  // sequence, where it was turned by such angles
   std::array<double, 3> angles{};
   bool plain() const { return axes == compare::kNoTurn; }
-};
-
-// A vector or a channel that stands for a group or column.
-struct Match {
-  std::size_t index = std::numeric_limits<std::size_t>::max();
-  int sign = 1;
-  std::string unit;
-  double cost = 2;            // rms of the difference over rms of theirs
-  bool signs_differ = false;  // it would fit with other signs of single components
-  bool found() const { return index != std::numeric_limits<std::size_t>::max(); }
 };
 
 struct Assignment {
@@ -208,7 +63,7 @@ class Guesser {
   }
 
   MappingGuess guess() {
-    const auto choices = angle_choices();
+    const auto choices = angle_choices(table_, degrees_per_second_);
     double least = std::numeric_limits<double>::max();
     std::optional<Found> best;
     for (const AngleMap& choice : choices) {
@@ -274,88 +129,6 @@ class Guesser {
     });
   }
 
-  // Columns that can be the angle, with their units; only those of the best rank.
-  std::vector<AngleMap> angle_choices() {
-    std::map<int, std::vector<AngleMap>> by_rank;
-    for (std::size_t c = 0; c < table_.header.size(); ++c) {
-      const auto words = words_of(table_.header[c]);
-      const std::string unit = known_unit(table_.units[c]);
-      const auto says = [&](std::initializer_list<const char*> list) {
-        return std::any_of(list.begin(), list.end(),
-                           [&](const char* word) { return contains(words, word); });
-      };
-      const bool angle = says({"theta", "angle", "phi", "rotation", "deg", "degrees", "winkel",
-                               "drehwinkel", "alpha", "rot", "psi", "az"});
-      const bool time = says({"time", "t", "zeit", "temps", "tempo", "s", "sec", "ms"});
-      const auto add = [&](const std::string& name, int rank) {
-        AngleMap map;
-        map.column = table_.header[c];
-        map.unit = name;
-        map.is_time = compare::seconds_per(name) > 0;
-        map.degrees_per_unit =
-            map.is_time ? compare::seconds_per(name) : compare::degrees_per(name);
-        if (is_record(map, c)) by_rank[rank].push_back(map);
-      };
-      const bool angle_unit = compare::degrees_per(unit) > 0;
-      const bool time_unit = compare::seconds_per(unit) > 0;
-      if (angle_unit) add(unit, angle ? 0 : 1);
-      if (time_unit) add(unit, 2);
-      if (!unit.empty() && !angle_unit && !time_unit) continue;
-      for (const char* name : {"deg", "rad", "turn"})
-        if (unit.empty() || !time_unit) add(name, angle ? 3 : time ? 6 : 5);
-      for (const char* name : {"s", "ms"})
-        if (unit.empty() || !angle_unit) add(name, time ? 4 : angle ? 6 : 5);
-    }
-    if (by_rank.empty())
-      throw InputError(table_.file.string() +
-                       ": no column can be the shaft's angle or the time of a whole turn: it must "
-                       "rise or fall strictly over at least 330 deg");
-    return by_rank.begin()->second;
-  }
-
-  // Whether a column makes a turn; completes where the turn begins and the rounding.
-  bool is_record(AngleMap& map, std::size_t column) const {
-    constexpr double kMostTurns = 1000;
-    const double scale = map.degrees_per_unit * (map.is_time ? degrees_per_second_ : 1);
-    std::vector<double> angles;
-    double turns = 0, largest = 0;
-    for (const auto& row : table_.rows) {
-      if (!is_computed(row[column])) return false;
-      largest = std::max(largest, std::abs(row[column]));
-      const double angle = scale * row[column];
-      if (!angles.empty() && !map.is_time) {
-        const double step = angle + turns - angles.back();
-        if (std::abs(step) > 180 && std::abs(step) <= 360 + 1e-9) turns += step > 0 ? -360 : 360;
-      }
-      angles.push_back(angle + turns);
-    }
-    if (angles.size() < 6) return false;
-    const bool rises = angles.back() > angles.front();
-    for (std::size_t i = 1; i < angles.size(); ++i)
-      if (rises ? !(angles[i] > angles[i - 1]) : !(angles[i] < angles[i - 1])) return false;
-    const double span = std::abs(angles.back() - angles.front());
-    if (span < kShortestRecord || span > kMostTurns * 360 ||
-        span / static_cast<double>(angles.size() - 1) > 30)
-      return false;
-    const int digits = table_.digits[column];
-    if (digits > 0 && digits < 12) {
-      // Half a unit of the last digit; but 0, 0.5, 1, .. are exact, which equal steps show.
-      double uneven = 0;
-      const double step = (angles.back() - angles.front()) / static_cast<double>(angles.size() - 1);
-      for (std::size_t i = 0; i < angles.size(); ++i)
-        uneven =
-            std::max(uneven, std::abs(angles[i] - angles.front() - step * static_cast<double>(i)));
-      map.rounding_deg =
-          std::min(uneven, std::abs(scale) / 2 *
-                               std::pow(10.0, std::floor(std::log10(largest)) - digits + 1));
-      if (map.rounding_deg < 1e-9) map.rounding_deg = 0;
-    }
-    // The last turn of a longer record: by then it has settled.
-    const double same = std::max(1e-9, 2 * map.rounding_deg);
-    if (span > 360 + same) map.turn_from_deg = rises ? angles.back() - 360 : angles.back();
-    return true;
-  }
-
   // Splines through the columns over their own angle.
   void take_turn(const AngleMap& map) {
     const std::size_t angle = column_of(map.column);
@@ -368,6 +141,7 @@ class Guesser {
     splines_.assign(table_.header.size(), std::nullopt);
     ignored_.clear();
     constant_.assign(table_.header.size(), false);
+    std::vector<bool> has_curve(table_.header.size(), false);
     for (std::size_t c = 0; c < table_.header.size(); ++c) {
       if (c == angle) continue;
       std::vector<double> y;
@@ -376,25 +150,18 @@ class Guesser {
         ignored_.emplace_back(table_.header[c], "has empty fields");
         continue;
       }
-      // Along the record: time and angles rise or fall all the way, which no periodic curve does.
-      double low = y[0], high = y[0];
-      bool rises = true, falls = true;
-      for (std::size_t i = 1; i < table_.rows.size(); ++i) {
-        rises = rises && table_.rows[i][c] > table_.rows[i - 1][c];
-        falls = falls && table_.rows[i][c] < table_.rows[i - 1][c];
-      }
-      for (const double value : y) {
-        low = std::min(low, value);
-        high = std::max(high, value);
-      }
-      if (rises || falls) {
+      if (runs_along(table_, c)) {
         ignored_.emplace_back(table_.header[c], "runs along with the angle");
         continue;
       }
-      constant_[c] = high - low <= 1e-9 * std::max(std::abs(low), std::abs(high));
+      has_curve[c] = true;
+      constant_[c] = is_constant(y);
       splines_[c].emplace(turn.theta_deg, y);
     }
-    find_groups();
+    Grouping found = find_groups(table_, has_curve, constant_);
+    groups_ = std::move(found.groups);
+    singles_ = std::move(found.singles);
+    ignored_.insert(ignored_.end(), found.ignored.begin(), found.ignored.end());
   }
 
   std::size_t column_of(const std::string& name) const {
@@ -402,97 +169,11 @@ class Guesser {
                                     table_.header.begin());
   }
 
-  void find_groups() {
-    groups_.clear();
-    singles_.clear();
-    std::map<std::string, Group> by_key;
-    for (std::size_t c = 0; c < table_.header.size(); ++c) {
-      if (!splines_[c]) continue;
-      for (const auto& [key, axis] : axis_readings(table_.header[c])) {
-        Group& group = by_key[key];
-        group.key = key;
-        group.columns[static_cast<std::size_t>(axis)] = c;
-        if (group.unit.empty()) group.unit = known_unit(table_.units[c]);
-      }
-    }
-    std::set<std::size_t> taken;
-    // Whole vectors first, in the order of the file.
-    std::vector<Group> list;
-    for (auto& [key, group] : by_key) list.push_back(group);
-    const auto first_of = [](const Group& g) {
-      std::size_t first = std::numeric_limits<std::size_t>::max();
-      for (const auto& column : g.columns)
-        if (column) first = std::min(first, *column);
-      return first;
-    };
-    std::sort(list.begin(), list.end(), [&](const Group& a, const Group& b) {
-      return std::pair(3 - a.count(), first_of(a)) < std::pair(3 - b.count(), first_of(b));
-    });
-    for (const Group& group : list) {
-      bool free = group.count() >= 2, moves = false;
-      for (const auto& column : group.columns) {
-        free = free && (!column || taken.count(*column) == 0);
-        moves = moves || (column && !constant_[*column]);
-      }
-      if (!free || !moves) continue;
-      groups_.push_back(group);
-      for (const auto& column : group.columns)
-        if (column) taken.insert(*column);
-    }
-    for (std::size_t c = 0; c < table_.header.size(); ++c) {
-      if (!splines_[c] || taken.count(c) > 0) continue;
-      if (constant_[c])
-        ignored_.emplace_back(table_.header[c], "is constant");
-      else if (const auto of = std::find_if(groups_.begin(), groups_.end(),
-                                            [&](const Group& g) { return is_length(c, g); });
-               of != groups_.end())
-        ignored_.emplace_back(table_.header[c], "is the length of " + of->key);
-      else
-        singles_.push_back(c);
-    }
-  }
-
-  // Whether a column is the length of a vector of the file.
-  bool is_length(std::size_t column, const Group& group) const {
-    constexpr double kSame = 1e-4;
-    for (const auto& row : table_.rows) {
-      double square = 0;
-      for (const auto& part : group.columns)
-        if (part) square += row[*part] * row[*part];
-      if (!(std::abs(std::sqrt(square) - row[column]) <= kSame * std::abs(row[column])))
-        return false;
-    }
-    return true;
-  }
-
   Series sampled(std::size_t column, double sign, double phase, std::size_t count) const {
     Series out;
     for (std::size_t i = 0; i < count; ++i)
       out.push_back((*splines_[column])(
           sign * (360.0 * static_cast<double>(i) / static_cast<double>(count) - phase)));
-    return out;
-  }
-
-  // The model's curve at the angles of the coarse search.
-  Series coarse(const Series& fine) const {
-    Series out;
-    for (std::size_t i = 0; i < kCoarse; ++i) out.push_back(fine[i * n_ / kCoarse]);
-    return out;
-  }
-
-  // Components of a vector of the model in the axes of another frame.
-  std::array<Series, 3> in_axes(const ModelVector& vector, const std::string& frame) const {
-    std::array<Series, 3> out;
-    const Axes& to = frames_.at(frame);
-    const Axes& from = frames_.at(vector.frame);
-    for (std::size_t j = 0; j < 3; ++j) {
-      out[j].assign(n_, 0);
-      for (std::size_t i = 0; i < 3; ++i) {
-        double cosine = 0;
-        for (std::size_t l = 0; l < 3; ++l) cosine += to[j][l] * from[i][l];
-        for (std::size_t row = 0; row < n_; ++row) out[j][row] += cosine * vector.parts[i][row];
-      }
-    }
     return out;
   }
 
@@ -537,7 +218,9 @@ class Guesser {
       add(length_of(vector.parts), vector.unit, true);
       for (const char* frame : {"S1", "S2"})
         if (vector.frame != frame)
-          for (const auto& part : in_axes(vector, frame)) add(part, vector.unit, false);
+          for (const auto& part :
+               in_axes(vector.parts, frames_.at(vector.frame), frames_.at(frame)))
+            add(part, vector.unit, false);
     }
 
     const auto series = [&](const Feature& feature, double sign, double phase, std::size_t count) {
@@ -561,9 +244,7 @@ class Guesser {
           const Series& ours = targets[t].coarse;
           for (std::size_t shift = 0; shift < kCoarse; ++shift) {
             // theirs(theta - phase), phase = shift steps
-            double r = 0;
-            for (std::size_t i = 0; i < shift; ++i) r += ours[i] * theirs[i + kCoarse - shift];
-            for (std::size_t i = shift; i < kCoarse; ++i) r += ours[i] * theirs[i - shift];
+            const double r = shifted_product(ours, theirs, shift);
             const double value = targets[t].length ? (r > 0 ? r * r : 0) : r * r;
             if (value > best[shift]) {
               best[shift] = value;
@@ -609,127 +290,19 @@ class Guesser {
     return result;
   }
 
-  // Golden section.
-  static double least_of(const std::function<double(double)>& f, double low, double high) {
-    const double ratio = (std::sqrt(5.0) - 1) / 2;
-    double a = high - ratio * (high - low), b = low + ratio * (high - low);
-    double fa = f(a), fb = f(b);
-    for (int i = 0; i < 36; ++i) {
-      if (fa < fb) {
-        high = b;
-        b = a;
-        fb = fa;
-        a = high - ratio * (high - low);
-        fa = f(a);
-      } else {
-        low = a;
-        a = b;
-        fa = fb;
-        b = low + ratio * (high - low);
-        fb = f(b);
-      }
-    }
-    return (low + high) / 2;
-  }
-
-  // The unit whose factor (theirs over ours, in our unit) is nearest to one that fits.
-  std::string unit_for(double fit, const std::string& ours, double unit_in_si,
-                       const std::string& said) const {
-    const auto distance = [&](const std::string& name) {
-      return std::abs(std::log(std::abs(fit) * compare::find_unit(name)->si / unit_in_si));
-    };
-    const auto* known = compare::find_unit(said);
-    if (known != nullptr && known->family == ours && distance(said) < std::log(kWrongUnit))
-      return said;
-    std::string best;
-    for (const char* name : kGuessedUnits)
-      if (compare::find_unit(name)->family == ours &&
-          (best.empty() || distance(name) < distance(best)))
-        best = name;
-    if (known != nullptr && known->family == ours && distance(best) > std::log(kWrongUnit))
-      return said;
-    return best;
-  }
-
-  // Scalar products of a group's columns with a vector's components: enough for every frame.
-  struct Products {
-    std::array<std::array<double, 3>, 3> theirs_ours{};
-    std::array<std::array<double, 3>, 3> ours_ours{};
-  };
-
   // How well a vector in some axes is the group: of both signs the better or the one wanted (0 =
   // either).
-  Match match(const Group& group, double square, const Products& p, const Axes& axes,
-              const ModelVector& vector, int wanted) const {
+  static Match match(const Group& group, double square, const Products& p, const Axes& axes,
+                     const ModelVector& vector, int wanted) {
     double product = 0, own = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (!group.columns[j]) continue;
-      for (std::size_t i = 0; i < 3; ++i) {
-        product += axes[j][i] * p.theirs_ours[j][i];
-        for (std::size_t k = 0; k < 3; ++k) own += axes[j][i] * axes[j][k] * p.ours_ours[i][k];
-      }
-    }
-    Match m;
-    if (own <= 0 || product == 0) return m;
-    m.sign = wanted != 0 ? wanted : product < 0 ? -1 : 1;
-    m.unit = unit_for(product / own, vector.unit, vector.unit_in_si, group.unit);
-    if (m.unit.empty()) return m;
-    const double factor = m.sign * vector.unit_in_si / compare::find_unit(m.unit)->si;
-    m.cost =
-        std::sqrt(std::max(0.0, square - 2 * factor * product + factor * factor * own) / square);
-    return m;
-  }
-
-  // The same with the better sign of each component: what is found so has a wrong sign somewhere,
-  // and must be compared, not left out.
-  double cost_without_signs(const Products& p, const Axes& axes, double factor,
-                            const std::array<Series, 3>& theirs) const {
-    double difference = 0, square = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (theirs[j].empty()) continue;
-      double product = 0, own = 0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        product += axes[j][i] * p.theirs_ours[j][i];
-        for (std::size_t k = 0; k < 3; ++k) own += axes[j][i] * axes[j][k] * p.ours_ours[i][k];
-      }
-      const double theirs_square = dot(theirs[j], theirs[j]);
-      difference += theirs_square - 2 * factor * std::abs(product) + factor * factor * own;
-      square += theirs_square;
-    }
-    return std::sqrt(std::max(0.0, difference) / square);
+    for (std::size_t j = 0; j < 3; ++j)
+      if (group.columns[j]) add_component(p, axes, j, product, own);
+    return match_of(square, product, own, vector.unit, vector.unit_in_si, group.unit, wanted);
   }
 
   Axes to_own(const FrameChoice& frame, const ModelVector& vector) const {
     if (frame.axes_of.empty() || frame.axes_of == vector.frame) return frame.axes;
-    const Axes& from = frames_.at(frame.axes_of);
-    const Axes& to = frames_.at(vector.frame);
-    Axes axes{};
-    for (std::size_t j = 0; j < 3; ++j)
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-          for (std::size_t l = 0; l < 3; ++l)
-            axes[j][i] += frame.axes[j][k] * from[k][l] * to[i][l];
-    return axes;
-  }
-
-  static const std::vector<Axes>& right_angles() {
-    static const std::vector<Axes> all = [] {
-      std::vector<Axes> list;
-      std::array<std::size_t, 3> order = {0, 1, 2};
-      do {
-        for (int signs = 0; signs < 8; ++signs) {
-          Axes axes{};
-          for (std::size_t j = 0; j < 3; ++j) axes[j][order[j]] = (signs >> j & 1) != 0 ? -1 : 1;
-          const double determinant =
-              axes[0][0] * (axes[1][1] * axes[2][2] - axes[1][2] * axes[2][1]) -
-              axes[0][1] * (axes[1][0] * axes[2][2] - axes[1][2] * axes[2][0]) +
-              axes[0][2] * (axes[1][0] * axes[2][1] - axes[1][1] * axes[2][0]);
-          if (determinant > 0) list.push_back(axes);
-        }
-      } while (std::next_permutation(order.begin(), order.end()));
-      return list;
-    }();
-    return all;
+    return carried(frame.axes, frames_.at(frame.axes_of), frames_.at(vector.frame));
   }
 
   Assignment assign(double sign, double phase) const {
@@ -922,29 +495,6 @@ class Guesser {
     }
   }
 
-  // compare::turned_axes with its sines looked up.
-  static Axes turned(const char* sequence, int a, int b, int c) {
-    static const auto table = [] {
-      std::array<std::pair<double, double>, 360> t;
-      for (int i = 0; i < 360; ++i)
-        t[static_cast<std::size_t>(i)] = {std::cos(radians(i)), std::sin(radians(i))};
-      return t;
-    }();
-    Axes axes = compare::kNoTurn;
-    const int angles[] = {a, b, c};
-    for (int turn = 0; turn < 3; ++turn) {
-      const auto axis = static_cast<std::size_t>(sequence[turn] - 'X');
-      const std::size_t p = (axis + 1) % 3, q = (axis + 2) % 3;
-      const auto [cosine, sine] = table[static_cast<std::size_t>(angles[turn])];
-      const auto first = axes[p], second = axes[q];
-      for (std::size_t i = 0; i < 3; ++i) {
-        axes[p][i] = cosine * first[i] + sine * second[i];
-        axes[q][i] = cosine * second[i] - sine * first[i];
-      }
-    }
-    return axes;
-  }
-
   // One numbering of the pistons for the file: number in the name = first + direction x ours. What
   // does not follow it is set right, so that pistons which were mixed up stay so.
   void renumber(Assignment& a) const {
@@ -958,7 +508,7 @@ class Guesser {
         if (const int said = piston_in(groups_[g].key, pistons_); said > 0)
           votes.push_back({g, said, vectors_[a.groups[g].index].piston});
     if (votes.empty()) return;
-    const auto numbering = best_numbering(votes);
+    const auto numbering = best_numbering(numbers_of(votes), pistons_);
     for (const Vote& vote : votes) {
       const int wanted = numbering(vote.said);
       a.numbered += wanted == vote.said;
@@ -973,26 +523,10 @@ class Guesser {
   }
 
   template <class Votes>
-  std::function<int(int)> best_numbering(const Votes& votes) const {
-    // Numbered against the rotation: only where enough pistons show it, for of two or three it
-    // could be that two were mixed up.
-    constexpr std::size_t kShowReversal = 4;
-    std::set<int> different;
-    for (const auto& vote : votes) different.insert(vote.said);
-    int most = -1, first = 0, direction = 1;
-    for (const int d : {1, -1})
-      for (int m = 0; m < pistons_; ++m) {
-        int count = 0;
-        for (const auto& vote : votes)
-          count += (d * (vote.said - 1) + m + pistons_) % pistons_ + 1 == vote.found;
-        if (count > most && (d > 0 || different.size() >= kShowReversal)) {
-          most = count;
-          first = m;
-          direction = d;
-        }
-      }
-    return
-        [=, this](int said) { return (direction * (said - 1) + first + pistons_) % pistons_ + 1; };
+  static std::vector<std::pair<int, int>> numbers_of(const Votes& votes) {
+    std::vector<std::pair<int, int>> numbers;
+    for (const auto& vote : votes) numbers.emplace_back(vote.said, vote.found);
+    return numbers;
   }
 
   // Columns that belong to no vector: each one channel.
@@ -1011,16 +545,9 @@ class Guesser {
       const ModelChannel& ours = channels_[channel];
       const double product = dot(theirs, ours.values), own = dot(ours.values, ours.values);
       const double square = dot(theirs, theirs);
-      Match m;
+      Match m = match_of(square, product, own, ours.channel.unit, ours.channel.unit_in_si,
+                         known_unit(table_.units[column]), wanted);
       m.index = channel;
-      if (own <= 0 || product == 0) return m;
-      m.sign = wanted != 0 ? wanted : product < 0 ? -1 : 1;
-      m.unit = unit_for(product / own, ours.channel.unit, ours.channel.unit_in_si,
-                        known_unit(table_.units[column]));
-      if (m.unit.empty()) return m;
-      const double factor = m.sign * ours.channel.unit_in_si / compare::find_unit(m.unit)->si;
-      m.cost =
-          std::sqrt(std::max(0.0, square - 2 * factor * product + factor * factor * own) / square);
       return m;
     };
     for (const std::size_t column : singles_) {
@@ -1046,7 +573,7 @@ class Guesser {
           votes.push_back({a.columns.size() - 1, said, channels_[found.index].channel.piston});
     }
     if (!votes.empty()) {
-      const auto numbering = best_numbering(votes);
+      const auto numbering = best_numbering(numbers_of(votes), pistons_);
       for (const Vote& vote : votes) {
         const int wanted = numbering(vote.said);
         a.numbered += wanted == vote.said;
@@ -1082,15 +609,6 @@ class Guesser {
     for (const Match& m : a.columns) a.cost += std::min(m.cost, 1.0);
   }
 
-  // Whether the words of a column's name are those of a channel: quantity, piston, axis.
-  bool named(const std::vector<std::string>& words, const Channel& channel) const {
-    if (channel.quantity == "Td" && contains(words, "torque")) return true;
-    auto needed = words_of(channel.name);
-    needed.pop_back();  // the unit may differ
-    return std::all_of(needed.begin(), needed.end(),
-                       [&](const auto& word) { return contains(words, word); });
-  }
-
   MappingGuess finish(const Found& found);
 
   const ForeignTable& table_;
@@ -1115,18 +633,6 @@ struct Pairing {
   std::vector<std::size_t> columns;
   std::vector<Series> curves;  // of the model, in their unit, sign and axes
 };
-
-// The roundest of the angles near `best` that cost as little.
-double roundest(const std::function<double(double)>& cost, double best) {
-  constexpr double kAsGood = 0.2;  // of the logarithm of the mean square difference
-  const double least = cost(best);
-  for (const double step : {90.0, 45.0, 30.0, 10.0, 5.0, 1.0, 0.5, 0.25, 0.1, 0.05, 0.01, 0.005,
-                            1e-3, 1e-4, 1e-5, 1e-6}) {
-    const double round = std::round(best / step) * step;
-    if (std::abs(round - best) < 2 && cost(round) <= least + kAsGood) return round;
-  }
-  return best;
-}
 
 MappingGuess Guesser::finish(const Found& found) {
   // Another piston's angle is the same turn: the numbers in the names say which, else the smallest
@@ -1168,8 +674,8 @@ MappingGuess Guesser::finish(const Found& found) {
     const int digits = table_.digits[column] > 0 ? table_.digits[column] : most_digits;
     if (digits > 0) guess.digits = guess.digits == 0 ? digits : std::min(guess.digits, digits);
     if (largest == 0 || digits == 0 || peak == 0) return;
-    const double half = std::pow(10.0, std::floor(std::log10(largest)) - digits + 1) / 2;
-    guess.rounding = std::max(guess.rounding, half * in_our_unit / peak);
+    guess.rounding =
+        std::max(guess.rounding, half_of_last_digit(largest, digits) * in_our_unit / peak);
   };
   const auto ignore = [&](std::size_t column, const std::string& why) {
     guess.ignored.emplace_back(table_.header[column], why);
@@ -1345,6 +851,7 @@ MappingGuess Guesser::finish(const Found& found) {
 }
 
 }  // namespace
+}  // namespace mapping
 
 std::size_t MappingGuess::recognised() const {
   std::size_t count = curve.columns.size();
@@ -1356,7 +863,7 @@ std::size_t MappingGuess::recognised() const {
 
 MappingGuess guess_mapping(const ForeignTable& table, const ResultTable& model,
                            const compare::FrameAxes& frames, double degrees_per_second) {
-  return Guesser(table, model, frames, degrees_per_second).guess();
+  return mapping::Guesser(table, model, frames, degrees_per_second).guess();
 }
 
 }  // namespace bentaxis::study

@@ -1,0 +1,554 @@
+// The guess of a foreign record's mapping: its pieces by hand, and whole records made of known
+// curves by a known mapping, which must be found again.
+#include "bentaxis/study/mapping_guess.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "mapping_guess_pieces.h"
+
+namespace bentaxis::study::mapping {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+
+// ---- Curves
+
+TEST(MappingCurves, MeanAndLength) {
+  EXPECT_EQ(dot({2, -3, 5}, {7, 11, 13}), 46);
+  EXPECT_THAT(centred({1, 2, 6}), ElementsAre(-2, -1, 3));
+  const double length = std::sqrt(14.0);
+  EXPECT_THAT(normalised({1, 2, 6}),
+              ElementsAre(DoubleNear(-2 / length, 1e-15), DoubleNear(-1 / length, 1e-15),
+                          DoubleNear(3 / length, 1e-15)));
+  EXPECT_THAT(length_of({Series{2, 1}, Series{}, Series{-3, 2}}),
+              ElementsAre(DoubleNear(std::sqrt(13.0), 1e-15), DoubleNear(std::sqrt(5.0), 1e-15)));
+}
+
+TEST(MappingCurves, WhatMovesByRoundOffIsConstant) {
+  // About the mean: 1 and -1 of a size of sqrt(2) x 1e9, or half of that.
+  EXPECT_THAT(normalised({1.02e9 + 1, 1.02e9 - 1}), ElementsAre(0, 0));
+  EXPECT_THAT(normalised({0.98e9 + 1, 0.98e9 - 1}),
+              ElementsAre(DoubleNear(std::sqrt(0.5), 1e-9), DoubleNear(-std::sqrt(0.5), 1e-9)));
+  EXPECT_TRUE(is_constant({-4, -4}));
+  EXPECT_TRUE(is_constant({0, 0}));
+  EXPECT_TRUE(is_constant({2000, 2000 + 1.995e-6}));
+  EXPECT_FALSE(is_constant({2000, 2000 + 2.005e-6}));
+  EXPECT_TRUE(is_constant({-2000, -2000 + 1.995e-6}));  // of the larger magnitude
+  EXPECT_FALSE(is_constant({-2, 2}));
+}
+
+TEST(MappingCurves, CoarseAnglesOfAFinerTurn) {
+  Series fine(450);
+  for (std::size_t i = 0; i < fine.size(); ++i) fine[i] = static_cast<double>(i);
+  const Series out = coarse(fine);
+  ASSERT_EQ(out.size(), 180U);
+  EXPECT_EQ(out[0], 0);
+  EXPECT_EQ(out[1], 2);
+  EXPECT_EQ(out[2], 5);
+  EXPECT_EQ(out[179], 447);
+}
+
+TEST(MappingCurves, ShiftedProductGoesRoundTheTurn) {
+  Series ours(kCoarse, 0), theirs(kCoarse, 0);
+  ours[4] = 3;
+  ours[100] = 5;
+  theirs[177] = 7;   // 7 steps later it is at 4
+  theirs[93] = 11;   // and this at 100
+  theirs[179] = 13;  // 1 step later at 0
+  EXPECT_EQ(shifted_product(ours, theirs, 7), 3 * 7 + 5 * 11);
+  EXPECT_EQ(shifted_product(ours, theirs, 0), 0);
+  ours[0] = 17;
+  EXPECT_EQ(shifted_product(ours, theirs, 1), 17 * 13);
+  theirs[0] = 19;
+  EXPECT_EQ(shifted_product(ours, theirs, 0), 17 * 19);
+  EXPECT_EQ(shifted_product(ours, theirs, 4), 3 * 19);
+}
+
+TEST(MappingCurves, GoldenSectionFindsTheLeast) {
+  int calls = 0;
+  const auto f = [&](double x) {
+    ++calls;
+    return std::abs(x - 1.2345);
+  };
+  EXPECT_NEAR(least_of(f, -2, 3), 1.2345, 5 * std::pow(0.6180339887498949, 36));
+  EXPECT_EQ(calls, 38);
+  EXPECT_NEAR(least_of([](double x) { return x; }, -2, 3), -2, 1e-6);
+  EXPECT_NEAR(least_of([](double x) { return -x; }, -2, 3), 3, 1e-6);
+}
+
+TEST(MappingCurves, TheRoundestOfAnglesThatFitAsWell) {
+  const auto flat = [](double) { return 1.0; };
+  EXPECT_EQ(roundest(flat, 88.1), 90);
+  EXPECT_EQ(roundest(flat, 88), 88);  // 2 deg off already is another angle; 90, 45, .. 10, 5 are
+  EXPECT_EQ(roundest(flat, 46.5), 45);
+  EXPECT_EQ(roundest(flat, 31.5), 30);
+  EXPECT_EQ(roundest(flat, -19), -20);
+  EXPECT_EQ(roundest(flat, 24), 25);
+  EXPECT_EQ(roundest(flat, 22.6), 23);
+  // Only what costs at most 0.2 more, and the finest of the list.
+  const auto steep = [](double x) { return 1e9 * std::abs(x - 17.3456789); };
+  EXPECT_EQ(roundest(steep, 17.3456789), 17.3456789);
+  const auto near = [](double allowed) {
+    return [=](double x) { return std::abs(x - 17.3456789) / allowed * 0.2; };
+  };
+  EXPECT_NEAR(roundest(near(0.6), 17.3456789), 17, 1e-12);
+  EXPECT_NEAR(roundest(near(0.2), 17.3456789), 17.5, 1e-12);
+  EXPECT_NEAR(roundest(near(0.1), 17.3456789), 17.25, 1e-12);
+  EXPECT_NEAR(roundest(near(0.06), 17.3456789), 17.3, 1e-12);
+  EXPECT_NEAR(roundest(near(0.03), 17.3456789), 17.35, 1e-12);
+  EXPECT_NEAR(roundest(near(0.0044), 17.3456789), 17.35, 1e-12);
+  EXPECT_NEAR(roundest(near(0.001), 17.3456789), 17.345, 1e-12);
+  EXPECT_NEAR(roundest(near(0.0005), 17.3456789), 17.346, 1e-12);
+  EXPECT_NEAR(roundest(near(0.00004), 17.3456789), 17.3457, 1e-12);
+  EXPECT_NEAR(roundest(near(0.000002), 17.3456789), 17.34568, 1e-12);
+  EXPECT_NEAR(roundest(near(0.0000005), 17.3456789), 17.345679, 1e-12);
+}
+
+// ---- Names
+
+TEST(MappingNames, WordsAndAxes) {
+  EXPECT_EQ(lower("Rb1_Xy?"), "rb1_xy?");
+  EXPECT_THAT(words_of(" Force[2].X?/kN"), ElementsAre("force", "2", "x?", "kn"));
+  EXPECT_THAT(words_of("--"), IsEmpty());
+  EXPECT_TRUE(contains({"a", "b"}, "b"));
+  EXPECT_FALSE(contains({"a", "b"}, "c"));
+  EXPECT_TRUE(is_quantity({"of", "rb1"}, "Rb1"));
+  EXPECT_FALSE(is_quantity({"of", "rb2"}, "Rb1"));
+  EXPECT_THAT(axis_readings("FX"), ElementsAre(Pair("F?", 0)));
+  EXPECT_THAT(axis_readings("Force_y2 [N]"), ElementsAre(Pair("Force_?2 [N]", 1)));
+  EXPECT_THAT(axis_readings("z22"), IsEmpty());
+  EXPECT_THAT(axis_readings("yes"), IsEmpty());
+  EXPECT_THAT(axis_readings("x of Z"), ElementsAre(Pair("x of ?", 2), Pair("? of Z", 0)));
+  EXPECT_THAT(axis_readings("f(:,1)"), ElementsAre(Pair("f(:,?)", 0)));
+  EXPECT_THAT(axis_readings("f(:,3)"), ElementsAre(Pair("f(:,?)", 2)));
+  EXPECT_THAT(axis_readings("f(:,0)"), IsEmpty());
+  EXPECT_THAT(axis_readings("f(:,4)"), IsEmpty());
+  EXPECT_THAT(axis_readings("f(:,2)b"), IsEmpty());
+}
+
+TEST(MappingNames, NumberOfAPiston) {
+  EXPECT_EQ(piston_in("Rs_3", 7), 3);
+  EXPECT_EQ(piston_in("Rs_7", 7), 7);
+  EXPECT_EQ(piston_in("Rs_8", 7), 0);
+  EXPECT_EQ(piston_in("Rs_0", 7), 0);
+  EXPECT_EQ(piston_in("Rs_1", 7), 1);
+  EXPECT_EQ(piston_in("F1 piston 4", 7), 4);  // behind a word for pistons first
+  EXPECT_EQ(piston_in("F1 kolben4", 7), 4);
+  EXPECT_EQ(piston_in("F1 cyl4", 7), 4);
+  EXPECT_EQ(piston_in("F1 chamber_4", 7), 4);
+  EXPECT_EQ(piston_in("F1 axial4", 7), 1);
+  EXPECT_EQ(piston_in("F1 bicycl4", 7), 1);  // begins otherwise
+  EXPECT_EQ(piston_in("F2?_5", 7), 5);       // never that of an axis
+  EXPECT_EQ(piston_in("F2?", 7), 0);
+  EXPECT_EQ(piston_in("run 0012 5", 20), 5);  // four digits number runs
+  EXPECT_EQ(piston_in("run 012 5", 20), 12);
+  EXPECT_EQ(piston_in("p3 4", 7), 3);
+  EXPECT_EQ(piston_in("p", 7), 0);
+}
+
+TEST(MappingNames, AChannelsWords) {
+  Channel channel;
+  channel.name = "Rs_2_x2_N";
+  channel.quantity = "Rs";
+  EXPECT_TRUE(named({"x2", "rs", "2", "kn"}, channel));
+  EXPECT_FALSE(named({"x2", "rs", "3", "kn"}, channel));
+  EXPECT_FALSE(named({"torque"}, channel));
+  channel = {};
+  channel.name = "Td_z1_Nm";
+  channel.quantity = "Td";
+  EXPECT_TRUE(named({"shaft", "torque"}, channel));
+  EXPECT_FALSE(named({"td"}, channel));
+  EXPECT_TRUE(named({"td", "z1"}, channel));
+}
+
+// ---- Columns
+
+ForeignTable table_of(const std::vector<std::string>& header,
+                      const std::vector<std::vector<double>>& columns) {
+  ForeignTable table;
+  table.file = "theirs.txt";
+  table.header = header;
+  table.units.assign(header.size(), "");
+  table.digits.assign(header.size(), 0);
+  for (std::size_t row = 0; row < columns[0].size(); ++row) {
+    table.rows.emplace_back();
+    for (const auto& column : columns) table.rows.back().push_back(column[row]);
+    table.lines.push_back(static_cast<unsigned>(row) + 2);
+  }
+  return table;
+}
+
+std::vector<double> steps(double from, double step, int count) {
+  std::vector<double> out;
+  for (int i = 0; i < count; ++i) out.push_back(from + step * i);
+  return out;
+}
+
+struct Record {
+  bool is = false;
+  AngleMap map;
+};
+Record record_of(const std::vector<double>& values, int digits = 0, double unit = 1,
+                 std::optional<double> speed = std::nullopt) {
+  ForeignTable table = table_of({"a"}, {values});
+  table.digits[0] = digits;
+  Record record;
+  record.map.degrees_per_unit = unit;
+  record.map.is_time = speed.has_value();
+  record.is = is_record(table, 0, speed.value_or(1e9), record.map);
+  return record;
+}
+
+TEST(MappingColumns, ARecordCoversATurnWithoutWideGaps) {
+  EXPECT_TRUE(record_of(steps(3, 30, 12)).is);     // 330 deg in steps of 30
+  EXPECT_FALSE(record_of(steps(3, 29.9, 12)).is);  // 328.9
+  EXPECT_FALSE(record_of(steps(3, 30.1, 13)).is);
+  EXPECT_TRUE(record_of(steps(3, -30, 12)).is);
+  EXPECT_FALSE(record_of(steps(0, 90, 5)).is);
+  EXPECT_TRUE(record_of(steps(0, 30, 12001)).is);   // 1000 turns
+  EXPECT_FALSE(record_of(steps(0, 30, 12002)).is);  // and more
+  EXPECT_TRUE(record_of(steps(0, 0.5, 12), 0, 60).is);
+  // Time at 700 deg/s.
+  EXPECT_TRUE(record_of(steps(0, 0.04, 13), 0, 1, 700.0).is);
+  EXPECT_FALSE(record_of(steps(0, 0.04, 12), 0, 1, 700.0).is);  // 308 deg
+  EXPECT_FALSE(record_of(steps(0, 0.044, 13), 0, 1, 700.0).is);
+}
+
+TEST(MappingColumns, ARecordRisesOrFallsStrictly) {
+  auto angles = steps(0, 20, 19);
+  angles[7] = angles[6];
+  EXPECT_FALSE(record_of(angles).is);
+  angles[7] = angles[6] - 1;
+  EXPECT_FALSE(record_of(angles).is);
+  angles = steps(0, -20, 19);
+  angles[7] = angles[6];
+  EXPECT_FALSE(record_of(angles).is);
+  angles[7] = not_computed();
+  EXPECT_FALSE(record_of(angles).is);
+}
+
+TEST(MappingColumns, AnAngleThatBeginsAnewGoesOn) {
+  auto angles = steps(200, 20, 19);
+  for (double& angle : angles)
+    if (angle >= 360) angle -= 360;
+  EXPECT_TRUE(record_of(angles).is);
+  std::reverse(angles.begin(), angles.end());
+  EXPECT_TRUE(record_of(angles).is);
+  // Twice anew, and the last turn is taken.
+  auto twice = steps(0, 20, 40);
+  for (double& angle : twice) angle = std::fmod(angle, 360.0);
+  const Record record = record_of(twice);
+  ASSERT_TRUE(record.is);
+  EXPECT_EQ(record.map.turn_from_deg, 780 - 360);
+  // From -180 to 180: a step back by 180 deg is none, one of more is.
+  EXPECT_FALSE(record_of({0, 30, 60, 90, 120, 150, 180, 0, 30, 60, 90, 120, 150, 180}).is);
+  EXPECT_TRUE(record_of({0, 30, 60, 90, 120, 150, 180, -150, -120, -90, -60, -30, 0}).is);
+  // A time never does.
+  EXPECT_FALSE(record_of(angles, 0, 1, 1.0).is);
+}
+
+TEST(MappingColumns, OfALongerRecordTheLastTurn) {
+  EXPECT_FALSE(record_of(steps(0, 20, 19)).map.turn_from_deg);
+  EXPECT_EQ(record_of(steps(7, 20, 25)).map.turn_from_deg, 7 + 480 - 360);
+  EXPECT_EQ(record_of(steps(7, -20, 25)).map.turn_from_deg, 7 - 480);
+  auto angles = steps(0, 20, 19);
+  angles.back() += 1e-7;
+  EXPECT_TRUE(record_of(angles).map.turn_from_deg);
+  angles = steps(0, 20, 19);
+  angles.back() += 5e-10;
+  EXPECT_FALSE(record_of(angles).map.turn_from_deg);
+}
+
+TEST(MappingColumns, RoundingOfTheAngle) {
+  EXPECT_DOUBLE_EQ(half_of_last_digit(360, 4), 0.05);
+  EXPECT_DOUBLE_EQ(half_of_last_digit(0.0123, 2), 0.0005);
+  EXPECT_EQ(record_of(steps(0, 20, 19), 4).map.rounding_deg, 0);  // equal steps are exact
+  auto angles = steps(0, 20, 19);
+  angles[5] += 0.3;
+  EXPECT_DOUBLE_EQ(record_of(angles, 4).map.rounding_deg, 0.05);
+  EXPECT_NEAR(record_of(angles, 3).map.rounding_deg, 0.3, 1e-12);  // by as much they are uneven
+  EXPECT_EQ(record_of(angles, 0).map.rounding_deg, 0);
+  EXPECT_EQ(record_of(angles, 12).map.rounding_deg, 0);
+  EXPECT_DOUBLE_EQ(record_of(angles, 11).map.rounding_deg, 5e-9);
+  angles[5] -= 0.6;
+  EXPECT_NEAR(record_of(angles, 3).map.rounding_deg, 0.3, 1e-12);
+  angles = steps(-400, 20, 19);  // the largest magnitude counts
+  angles[5] += 0.3;
+  EXPECT_DOUBLE_EQ(record_of(angles, 4).map.rounding_deg, 0.05);
+  // In units of 60 deg, 0 .. 6: half of 0.001 of them.
+  std::vector<double> units = steps(0, 1.0 / 3, 19);
+  units[5] += 0.01;
+  EXPECT_DOUBLE_EQ(record_of(units, 4, 60).map.rounding_deg, 0.03);
+  // A turn and no more, as far as the rounding tells: 2 x 0.05 deg.
+  angles = steps(0, 20, 19);
+  angles[5] += 0.3;
+  angles.back() = 360.09;
+  EXPECT_FALSE(record_of(angles, 4).map.turn_from_deg);
+  angles.back() = 360.11;
+  EXPECT_TRUE(record_of(angles, 4).map.turn_from_deg);
+}
+
+// Column and unit of each choice.
+std::vector<std::pair<std::string, std::string>> choices(const ForeignTable& table,
+                                                         double speed = 720) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const AngleMap& map : angle_choices(table, speed)) {
+    out.emplace_back(map.column, map.unit);
+    EXPECT_EQ(map.is_time, map.unit == "s" || map.unit == "ms");
+    EXPECT_EQ(map.degrees_per_unit,
+              map.is_time ? compare::seconds_per(map.unit) : compare::degrees_per(map.unit));
+  }
+  return out;
+}
+
+TEST(MappingColumns, TheAngleIsWhatSaysSoMostClearly) {
+  const auto degrees = steps(0, 20, 19), seconds = steps(0, 1.0 / 36, 19);
+  ForeignTable table =
+      table_of({"foo", "bar", "time", "theta"}, {degrees, degrees, seconds, degrees});
+  table.units = {"", "deg", "s", "deg"};
+  EXPECT_THAT(choices(table), ElementsAre(Pair("theta", "deg")));
+  table.units[3] = "";
+  EXPECT_THAT(choices(table), ElementsAre(Pair("bar", "deg")));
+  table.units[1] = "N";
+  EXPECT_THAT(choices(table), ElementsAre(Pair("time", "s")));
+  table.units[2] = "";
+  EXPECT_THAT(choices(table), ElementsAre(Pair("theta", "deg")));
+  table.header[3] = "x";
+  EXPECT_THAT(choices(table), ElementsAre(Pair("time", "s")));
+  table.header[2] = "y";
+  table.units[1] = "";
+  // Nothing says anything: 720 turns in 19 rows are none, 0.5 s at 720 deg/s are a turn.
+  EXPECT_THAT(choices(table), ElementsAre(Pair("foo", "deg"), Pair("bar", "deg"), Pair("y", "s"),
+                                          Pair("x", "deg")));
+  // A name that says angle, over a curve that only as time is a turn, is the last resort.
+  EXPECT_THAT(choices(table_of({"phi"}, {seconds})), ElementsAre(Pair("phi", "s")));
+  EXPECT_THAT(choices(table_of({"phi", "what"}, {seconds, seconds})),
+              ElementsAre(Pair("what", "s")));
+  EXPECT_THAT(choices(table_of({"t", "what"}, {degrees, degrees})),
+              ElementsAre(Pair("what", "deg")));
+  EXPECT_THAT(choices(table_of({"what"}, {steps(0, 0.35, 19)})), ElementsAre(Pair("what", "rad")));
+  EXPECT_THAT(choices(table_of({"what"}, {steps(0, 1.0 / 18, 19)}), 1e-3),
+              ElementsAre(Pair("what", "turn")));
+  EXPECT_THAT(choices(table_of({"t"}, {steps(0, 1000.0 / 36, 19)})), ElementsAre(Pair("t", "ms")));
+  table = table_of({"t"}, {degrees});
+  table.units[0] = "N";
+  EXPECT_THROW(choices(table), InputError);
+}
+
+TEST(MappingColumns, WhatRunsAlongAndWhatIsALength) {
+  const ForeignTable table =
+      table_of({"up", "down", "flat", "x", "y", "r"},
+               {{1, 2, 4}, {3, 2, -1}, {1, 2, 2}, {3, -6, 0}, {4, 8, 5}, {5, 10.0009, 5}});
+  EXPECT_TRUE(runs_along(table, 0));
+  EXPECT_TRUE(runs_along(table, 1));
+  EXPECT_FALSE(runs_along(table, 2));
+  EXPECT_FALSE(runs_along(table, 3));
+  EXPECT_FALSE(runs_along(table_of({"down"}, {{2, 1, 1}}), 0));
+  Group group;
+  group.columns = {3, std::nullopt, 4};
+  EXPECT_EQ(group.count(), 2U);
+  EXPECT_TRUE(is_length(table, 5, group));
+  ForeignTable off = table;
+  off.rows[1][5] = 10.0011;  // beyond 1e-4 of itself
+  EXPECT_FALSE(is_length(off, 5, group));
+  off.rows[1][5] = 9.9991;
+  EXPECT_TRUE(is_length(off, 5, group));
+  off.rows[1][5] = -10;
+  EXPECT_FALSE(is_length(off, 5, group));
+  EXPECT_FALSE(is_length(table, 0, group));
+}
+
+TEST(MappingColumns, VectorsAndSingleColumns) {
+  // b: two components; F: three, one of them constant; C: constant; M: a single component.
+  ForeignTable table =
+      table_of({"by", "bz", "Fx", "Fy", "Fz", "F", "Cx", "Cy", "Mx", "p", "k", "gone"}, {{1, 2},
+                                                                                         {5, 3},
+                                                                                         {3, -6},
+                                                                                         {0, 0},
+                                                                                         {4, 8},
+                                                                                         {5, 10},
+                                                                                         {1, 1},
+                                                                                         {2, 2},
+                                                                                         {7, 9},
+                                                                                         {3, 8},
+                                                                                         {4, 4},
+                                                                                         {1, 2}});
+  table.units[3] = "kN";
+  std::vector<bool> has(12, true), constant(12, false);
+  has[11] = false;
+  for (const std::size_t c : {3, 6, 7, 10}) constant[c] = true;
+  const Grouping found = find_groups(table, has, constant);
+  ASSERT_EQ(found.groups.size(), 2U);
+  EXPECT_EQ(found.groups[0].key, "F?");  // whole ones first
+  EXPECT_EQ(found.groups[0].unit, "kN");
+  EXPECT_THAT(found.groups[0].columns, ElementsAre(2U, 3U, 4U));
+  EXPECT_EQ(found.groups[1].key, "b?");
+  EXPECT_THAT(found.groups[1].columns, ElementsAre(std::nullopt, 0U, 1U));
+  EXPECT_THAT(found.singles, ElementsAre(8U, 9U));
+  EXPECT_THAT(found.ignored,
+              ElementsAre(Pair("F", "is the length of F?"), Pair("Cx", "is constant"),
+                          Pair("Cy", "is constant"), Pair("k", "is constant")));
+}
+
+TEST(MappingColumns, AColumnIsOfOneVectorAndTheFirstOfTheFileWins) {
+  // "xF_x": of "xF_?" with xF_y, and of "?F_x" with yF_x.
+  const ForeignTable table =
+      table_of({"q.z", "q.x", "x F_x", "x F_y", "y F_x"}, {{1}, {2}, {3}, {4}, {5}});
+  const Grouping found =
+      find_groups(table, std::vector<bool>(5, true), std::vector<bool>(5, false));
+  ASSERT_EQ(found.groups.size(), 2U);
+  EXPECT_EQ(found.groups[0].key, "q.?");
+  EXPECT_THAT(found.groups[0].columns, ElementsAre(1U, std::nullopt, 0U));
+  EXPECT_EQ(found.groups[1].count(), 2U);
+  EXPECT_EQ(found.singles.size(), 1U);
+}
+
+// ---- Matches
+
+TEST(MappingMatches, TheNearestUnit) {
+  // Ours in mm: theirs over ours is 1 in mm, 1e-3 in m, 1e3 in um.
+  EXPECT_EQ(unit_for(1.3, "mm", 1e-3, ""), "mm");
+  EXPECT_EQ(unit_for(-1.3e-3, "mm", 1e-3, ""), "m");
+  EXPECT_EQ(unit_for(800, "mm", 1e-3, ""), "um");
+  EXPECT_EQ(unit_for(1.2e-3, "N", 1, ""), "kN");
+  EXPECT_EQ(unit_for(0.2248, "N", 1, ""), "lbf");
+  EXPECT_EQ(unit_for(8.85, "Nm", 1, ""), "lbf in");
+  EXPECT_EQ(unit_for(0.1, "bar", 1e5, ""), "MPa");
+  EXPECT_EQ(unit_for(1, "deg", 1, ""), "");
+  // What is said counts unless another fits and it does not, by a factor of 1.5.
+  EXPECT_EQ(unit_for(0.1 * 1.49, "N", 1, "daN"), "daN");
+  EXPECT_EQ(unit_for(0.1 * 1.49, "N", 1, "Nm"), "lbf");
+  EXPECT_EQ(unit_for(0.2, "N", 1, "daN"), "lbf");
+  EXPECT_EQ(unit_for(1.49, "N", 1, "kN"), "N");
+  EXPECT_EQ(unit_for(1.51, "N", 1, "kN"), "kN");  // none fits
+  EXPECT_EQ(unit_for(1 / 1.49, "N", 1, "kN"), "N");
+  EXPECT_EQ(unit_for(1 / 1.51, "N", 1, "kN"), "kN");
+}
+
+TEST(MappingMatches, CostIsTheDifferenceOverTheirs) {
+  // theirs = {2, -3} kN, ours = {1900, -3100} N.
+  const double square = 13, product = 2 * 1900 + 3 * 3100, own = 1900. * 1900 + 3100. * 3100;
+  const double cost = std::sqrt(0.02 / 13);
+  Match m = match_of(square, product, own, "N", 1, "", 0);
+  EXPECT_FALSE(m.found());
+  EXPECT_EQ(m.unit, "kN");
+  EXPECT_EQ(m.sign, 1);
+  EXPECT_NEAR(m.cost, cost, 1e-12);
+  m = match_of(square, -product, own, "N", 1, "kN", 0);
+  EXPECT_EQ(m.sign, -1);
+  EXPECT_NEAR(m.cost, cost, 1e-12);
+  m = match_of(square, product, own, "N", 1, "kN", -1);
+  EXPECT_EQ(m.sign, -1);
+  EXPECT_NEAR(m.cost, std::sqrt((3.9 * 3.9 + 6.1 * 6.1) / 13), 1e-12);
+  m = match_of(square, product * 1e-3, own * 1e-6, "mm", 1e-3, "um", 1);
+  EXPECT_EQ(m.unit, "mm");  // one unit for both
+  EXPECT_NEAR(m.cost, cost, 1e-12);
+  for (const Match& none :
+       {match_of(square, 0, own, "N", 1, "", 0), match_of(square, product, 0, "N", 1, "", 0),
+        match_of(square, product, own, "deg", 1, "", 0)}) {
+    EXPECT_EQ(none.cost, 2);
+    EXPECT_EQ(none.unit, "");
+  }
+}
+
+TEST(MappingMatches, SignsOfSingleComponents) {
+  const Axes axes = turned("XYZ", 35, 20, 75);
+  const std::array<Series, 3> ours = {Series{2, 3, -1}, Series{0.5, -4, 1}, Series{7, 1, 2}};
+  // In those axes, doubled, the second component turned round and the third left out.
+  std::array<Series, 3> theirs;
+  for (std::size_t j = 0; j < 2; ++j)
+    for (std::size_t row = 0; row < 3; ++row) {
+      theirs[j].push_back(0);
+      for (std::size_t i = 0; i < 3; ++i)
+        theirs[j][row] += (j == 0 ? 2 : -2) * axes[j][i] * ours[i][row];
+    }
+  Products p;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (!theirs[j].empty()) p.theirs_ours[j][i] = dot(theirs[j], ours[i]);
+      p.ours_ours[j][i] = dot(ours[j], ours[i]);
+    }
+  double product = 1, own = 2;  // added to
+  add_component(p, axes, 0, product, own);
+  EXPECT_NEAR(product, 1 + dot(theirs[0], theirs[0]) / 2, 1e-12);
+  EXPECT_NEAR(own, 2 + dot(theirs[0], theirs[0]) / 4, 1e-12);
+  EXPECT_NEAR(cost_without_signs(p, axes, 2, theirs), 0, 1e-7);
+  EXPECT_NEAR(cost_without_signs(p, axes, 1.5, theirs), 0.25, 1e-12);
+  EXPECT_NEAR(cost_without_signs(p, axes, 3, theirs), 0.5, 1e-12);
+}
+
+// ---- Frames and numbers
+
+TEST(MappingFrames, TurnedAxesAreThoseOfTheDescription) {
+  for (const char* sequence : {"ZXZ", "XYZ"}) {
+    const Axes axes = turned(sequence, 25, 140, 355);
+    const Axes expected = compare::turned_axes(sequence, {25, 140, 355});
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(axes[j][i], expected[j][i], 1e-15);
+  }
+}
+
+TEST(MappingFrames, ThereAre24AtRightAngles) {
+  const auto& all = right_angles();
+  ASSERT_EQ(all.size(), 24U);
+  EXPECT_EQ(all.front(), compare::kNoTurn);
+  for (std::size_t at = 0; at < all.size(); ++at) {
+    const Axes& a = all[at];
+    for (std::size_t i = 0; i < 3; ++i) {  // z = x cross y
+      const std::size_t p = (i + 1) % 3, q = (i + 2) % 3;
+      EXPECT_EQ(a[2][i], a[0][p] * a[1][q] - a[0][q] * a[1][p]);
+      EXPECT_EQ(dot({a[i].begin(), a[i].end()}, {a[i].begin(), a[i].end()}), 1);
+    }
+    EXPECT_EQ(std::count(all.begin(), all.end(), a), 1);
+  }
+}
+
+TEST(MappingFrames, AVectorStaysItselfInOtherAxes) {
+  const Axes s1 = turned("XYZ", 10, 25, 40), s2 = turned("ZXZ", 65, 35, 110);
+  const Axes theirs = turned("XYZ", 50, 5, 15);  // out of s1
+  const std::array<double, 3> v = {2, -3, 5};    // in the common axes
+  const auto in = [&](const Axes& axes, const std::array<double, 3>& w) {
+    std::array<double, 3> out{};
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t i = 0; i < 3; ++i) out[j] += axes[j][i] * w[i];
+    return out;
+  };
+  const auto expected = in(theirs, in(s1, v));
+  const auto found = in(carried(theirs, s1, s2), in(s2, v));
+  const auto of_s2 = in(s2, v), of_s1 = in(s1, v);
+  const auto out = in_axes({Series{of_s2[0], 0}, Series{of_s2[1], 0}, Series{of_s2[2], 1}}, s2, s1);
+  for (std::size_t j = 0; j < 3; ++j) {
+    EXPECT_NEAR(found[j], expected[j], 1e-14);
+    ASSERT_EQ(out[j].size(), 2U);
+    EXPECT_NEAR(out[j][0], of_s1[j], 1e-14);
+    EXPECT_NEAR(out[j][1], in(s1, s2[2])[j], 1e-14);
+  }
+}
+
+std::vector<int> numbering_of(const std::vector<std::pair<int, int>>& votes) {
+  const auto ours = best_numbering(votes, 5);
+  return {ours(1), ours(2), ours(3), ours(4), ours(5)};
+}
+
+TEST(MappingFrames, OneNumberingOfThePistons) {
+  EXPECT_THAT(numbering_of({{1, 1}, {2, 2}}), ElementsAre(1, 2, 3, 4, 5));
+  EXPECT_THAT(numbering_of({{1, 3}, {2, 4}}), ElementsAre(3, 4, 5, 1, 2));
+  // The most votes; of as many the plain numbering.
+  EXPECT_THAT(numbering_of({{1, 3}, {2, 4}, {3, 3}}), ElementsAre(3, 4, 5, 1, 2));
+  EXPECT_THAT(numbering_of({{1, 2}, {2, 2}}), ElementsAre(1, 2, 3, 4, 5));
+  // Against the rotation: four different numbers must show it.
+  EXPECT_THAT(numbering_of({{1, 2}, {2, 1}, {3, 5}, {4, 4}}), ElementsAre(2, 1, 5, 4, 3));
+  EXPECT_THAT(numbering_of({{1, 2}, {2, 1}, {3, 5}, {3, 5}}), ElementsAre(3, 4, 5, 1, 2));
+}
+
+}  // namespace
+}  // namespace bentaxis::study::mapping
