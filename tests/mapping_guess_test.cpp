@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -548,6 +550,327 @@ TEST(MappingFrames, OneNumberingOfThePistons) {
   // Against the rotation: four different numbers must show it.
   EXPECT_THAT(numbering_of({{1, 2}, {2, 1}, {3, 5}, {4, 4}}), ElementsAre(2, 1, 5, 4, 3));
   EXPECT_THAT(numbering_of({{1, 2}, {2, 1}, {3, 5}, {3, 5}}), ElementsAre(3, 4, 5, 1, 2));
+}
+
+// ---- Whole records
+
+constexpr double kTurned = 22;  // deg, S2 about x
+
+compare::FrameAxes frames() {
+  return {{"S1", compare::kNoTurn}, {"S2", compare::turned_axes("XYZ", {kTurned, 0, 0})}};
+}
+
+// A curve of its own for each number.
+double wave(int number, double theta_deg) {
+  const double t = radians(theta_deg), n = number;
+  return 3 + 0.4 * n + (5 + 0.3 * n) * std::sin(t + 0.37 * n * n) +
+         (2 + 0.2 * n) * std::cos(2 * t - 0.61 * n) + 1.3 * std::sin(3 * t + 1.7 * n) +
+         0.7 * std::cos(5 * t + 0.9 * n * n);
+}
+
+constexpr int kPistons = 5;
+
+// Of a pump of five pistons: a force on each with two components in S2, another with three in S1, a
+// torque and the pressures; the pistons' curves are one curve, a pitch apart.
+struct Value {
+  Channel channel;
+  std::function<double(double)> at;
+};
+std::vector<Value> values_of_model() {
+  std::vector<Value> out;
+  const auto add = [&](const std::string& quantity, int piston, const std::string& axis,
+                       const std::string& unit, double si, ChannelKind kind,
+                       std::function<double(double)> at) {
+    Channel c;
+    c.quantity = c.group = quantity;
+    c.piston = piston;
+    c.axis = axis;
+    c.frame = axis.empty() ? "" : "S" + axis.substr(1);
+    c.unit = unit;
+    c.unit_in_si = si;
+    c.kind = kind;
+    c.name = quantity + (piston > 0 ? "_" + std::to_string(piston) : "") +
+             (axis.empty() ? "" : "_" + axis) + "_" + unit;
+    out.push_back({c, std::move(at)});
+  };
+  for (int k = 1; k <= kPistons; ++k) {
+    const double behind = 72.0 * (k - 1);
+    add("Rs", k, "x2", "N", 1, ChannelKind::reaction,
+        [=](double t) { return 100 * wave(1, t - behind); });
+    add("Rs", k, "y2", "N", 1, ChannelKind::reaction,
+        [=](double t) { return 170 * wave(2, t - behind); });
+    add("p", k, "", "bar", 1e5, ChannelKind::input,
+        [=](double t) { return 20 * wave(3, t - behind); });
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    add("Rb1", 0, std::string(1, "xyz"[axis]) + "1", "N", 1, ChannelKind::reaction,
+        [=](double t) { return (900 + 300 * axis) * wave(4 + axis, t); });
+  add("Td", 0, "z1", "Nm", 1, ChannelKind::reaction, [](double t) { return 40 * wave(7, t); });
+  add("check", 0, "", "N", 1, ChannelKind::check, [](double t) { return 11 * wave(8, t); });
+  return out;
+}
+
+ResultTable model() {
+  ResultTable table;
+  const auto values = values_of_model();
+  for (const Value& value : values) table.channels.push_back(value.channel);
+  for (int row = 0; row < 360; ++row) {
+    table.theta_deg.push_back(row);
+    for (const Value& value : values) table.values.push_back(value.at(row));
+  }
+  return table;
+}
+
+double ours(const std::string& name, double theta) {
+  for (const Value& value : values_of_model())
+    if (value.channel.name == name) return value.at(theta);
+  ADD_FAILURE() << name;
+  return 0;
+}
+
+using Curve = std::function<double(double theta)>;
+struct Column {
+  std::string name, unit;
+  Curve at;
+};
+// theta = sign x angle + phase, a row per degree.
+ForeignTable record(double sign, double phase, const std::vector<Column>& columns) {
+  std::vector<std::string> header = {"angle"};
+  std::vector<std::vector<double>> values = {steps(0, 1, 360)};
+  for (const Column& column : columns) {
+    header.push_back(column.name);
+    values.emplace_back();
+    for (const double angle : values[0]) values.back().push_back(column.at(sign * angle + phase));
+  }
+  ForeignTable table = table_of(header, values);
+  table.units[0] = "deg";
+  for (std::size_t c = 0; c < columns.size(); ++c) table.units[c + 1] = columns[c].unit;
+  return table;
+}
+Curve of(const std::string& name, double factor = 1) {
+  return [=](double theta) { return factor * ours(name, theta); };
+}
+MappingGuess guess(const ForeignTable& table) {
+  return guess_mapping(table, model(), frames(), 3600);
+}
+
+// "theirs -> factor x ours, unit" of each column, sorted.
+std::vector<std::string> columns_of(const MappingGuess& found) {
+  std::vector<std::string> out;
+  for (const auto& c : found.curve.columns)
+    out.push_back(c.theirs + " -> " + number_text(c.factor) + " " + c.ours + ", " + c.unit);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(MappingRecords, ColumnsSignsUnitsAndPhase) {
+  ForeignTable table = record(-1, 37.5,
+                              {{"Fx", "kN", of("Rb1_x1_N", -1e-3)},
+                               {"Fy", "kN", of("Rb1_y1_N", -1e-3)},
+                               {"Fz", "kN", of("Rb1_z1_N", -1e-3)},
+                               {"shaft", "", of("Td_z1_Nm", 1e3)},
+                               {"p2", "MPa", of("p_2_bar", 0.1)},
+                               {"p3", "bar", of("p_3_bar", 0.1)},
+                               {"noise", "", [](double t) { return std::cos(radians(61 * t)); }}});
+  table.digits = {0, 5, 4, 6, 0, 5, 5, 7};
+  const MappingGuess found = guess(table);
+  EXPECT_THAT(columns_of(found), ElementsAre("Fx -> -1 Rb1_x1_N, kN", "Fy -> -1 Rb1_y1_N, kN",
+                                             "Fz -> -1 Rb1_z1_N, kN", "p2 -> 1 p_2_bar, MPa",
+                                             "p3 -> 1 p_3_bar, MPa", "shaft -> 1 Td_z1_Nm, Nmm"));
+  EXPECT_TRUE(found.curve.vectors.empty());
+  EXPECT_TRUE(found.curve.guessed);
+  EXPECT_EQ(found.curve.points, 360);
+  EXPECT_EQ(found.curve.angle.column, "angle");
+  EXPECT_EQ(found.curve.angle.sign, -1);
+  EXPECT_EQ(found.curve.angle.offset_deg, 37.5);
+  EXPECT_FALSE(found.curve.angle.turn_from_deg);
+  EXPECT_EQ(found.samples, 0);  // half a step off
+  EXPECT_EQ(found.digits, 4);
+  EXPECT_EQ(found.recognised(), 6U);
+  EXPECT_THAT(found.ignored, ElementsAre(Pair("noise", "no channel has this curve")));
+  EXPECT_THAT(found.curve.ignored, ElementsAre("noise"));
+  // Half of the last digit over the peak: of Fy, whose column reaches 10 kN and more, 5 N.
+  double largest = 0;
+  for (const auto& row : table.rows) largest = std::max(largest, std::abs(row[2]));
+  ASSERT_GT(largest, 10);
+  ASSERT_LT(largest, 100);
+  EXPECT_DOUBLE_EQ(found.rounding, 5 / model().peak("Rb1"));
+  ASSERT_EQ(found.proposals.size(), 4U);
+  for (const MappingProposal& p : found.proposals) {
+    EXPECT_NEAR(p.correlation, 1, 1e-9) << p.theirs;
+    EXPECT_LT(p.difference, 1e-5) << p.theirs;
+    EXPECT_EQ(p.remark, p.theirs == "p3" ? "the file says bar" : "") << p.theirs;
+    EXPECT_EQ(p.sign, p.ours == "Rb1" ? -1 : 1);
+  }
+}
+
+TEST(MappingRecords, WholeDegreesAreTheAnglesOfARun) {
+  const MappingGuess found =
+      guess(record(1, -23, {{"Td", "Nm", of("Td_z1_Nm")}, {"p1", "bar", of("p_1_bar")}}));
+  EXPECT_EQ(found.curve.angle.offset_deg, -23);
+  EXPECT_EQ(found.curve.angle.sign, 1);
+  EXPECT_EQ(found.samples, 360);
+  EXPECT_EQ(found.rounding, 0);
+  EXPECT_EQ(found.digits, 0);
+}
+
+TEST(MappingRecords, ALongerRecordAndOneOverTime) {
+  // 20 ms at 3600 deg/s are 72 deg: a turn is 100 ms. The last of 1.5 turns.
+  ForeignTable table = record(1, 12, {{"Td", "Nm", of("Td_z1_Nm")}});
+  for (int angle = 360; angle <= 540; ++angle)
+    table.rows.push_back({double(angle), ours("Td_z1_Nm", angle + 12)}), table.lines.push_back(1);
+  MappingGuess found = guess(table);
+  EXPECT_EQ(found.curve.angle.offset_deg, 12);
+  EXPECT_EQ(found.curve.angle.turn_from_deg, 12 + 180);
+  for (auto& row : table.rows) row[0] /= 3600;
+  table.header[0] = "time";
+  table.units[0] = "s";
+  found = guess(table);
+  EXPECT_TRUE(found.curve.angle.is_time);
+  EXPECT_EQ(found.curve.angle.offset_deg, 12);
+  EXPECT_NEAR(*found.curve.angle.turn_from_deg, 12 + 180, 1e-9);
+  EXPECT_EQ(found.curve.angle.sign, 1);
+  // Against our direction: theta = -angle + 12, which turns from -540 + 12.
+  table = record(-1, 12, {{"Td", "Nm", of("Td_z1_Nm")}});
+  for (int angle = 360; angle <= 540; ++angle)
+    table.rows.push_back({double(angle), ours("Td_z1_Nm", 12 - angle)}), table.lines.push_back(1);
+  found = guess(table);
+  EXPECT_EQ(found.curve.angle.sign, -1);
+  EXPECT_EQ(found.curve.angle.turn_from_deg, 12 - 180 - 360);
+}
+
+// Both forces on pistons and the one on the block in one frame, out of S1.
+std::vector<Column> in_frame(const Axes& theirs, double sign_of_rb1 = 1) {
+  const Axes s2 = frames().at("S2");
+  std::vector<Column> out;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const std::string letter(1, "xyz"[j]);
+    out.push_back(
+        {"Rb1" + letter, "N", [=](double t) {
+           const double v[] = {ours("Rb1_x1_N", t), ours("Rb1_y1_N", t), ours("Rb1_z1_N", t)};
+           return sign_of_rb1 * (theirs[j][0] * v[0] + theirs[j][1] * v[1] + theirs[j][2] * v[2]);
+         }});
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    const std::string letter(1, "xyz"[j]);
+    out.push_back({"Rs " + letter, "N", [=](double t) {
+                     const double x = ours("Rs_1_x2_N", t), y = ours("Rs_1_y2_N", t);
+                     double sum = 0;
+                     for (std::size_t i = 0; i < 3; ++i)
+                       sum += theirs[j][i] * (s2[0][i] * x + s2[1][i] * y);
+                     return sum;
+                   }});
+  }
+  return out;
+}
+
+TEST(MappingRecords, OneFrameAtRightAngles) {
+  const Axes theirs = {{{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}}};
+  const MappingGuess found = guess(record(1, 40, in_frame(theirs, -1)));
+  EXPECT_EQ(found.curve.frame.axes_of, "S1");
+  EXPECT_EQ(found.curve.frame.cosines, theirs);
+  EXPECT_EQ(found.curve.frame.words, "the axes of S1, exchanged");
+  EXPECT_EQ(found.euler, "");
+  ASSERT_EQ(found.curve.vectors.size(), 2U);
+  EXPECT_EQ(found.curve.vectors[0].ours, "Rb1");
+  EXPECT_EQ(found.curve.vectors[0].factor, -1);
+  EXPECT_THAT(found.curve.vectors[0].theirs, ElementsAre("Rb1x", "Rb1y", "Rb1z"));
+  EXPECT_EQ(found.curve.vectors[1].ours, "Rs_1");
+  EXPECT_EQ(found.curve.vectors[1].factor, 1);
+  EXPECT_EQ(found.recognised(), 6U);
+  EXPECT_EQ(found.curve.angle.offset_deg, 40);
+  for (const MappingProposal& p : found.proposals) EXPECT_LT(p.difference, 1e-5) << p.theirs;
+}
+
+TEST(MappingRecords, OneFrameAtEulerAngles) {
+  const Axes theirs = compare::turned_axes("ZXZ", {25, 40, 110});
+  const MappingGuess found = guess(record(1, 40, in_frame(theirs)));
+  EXPECT_EQ(found.curve.frame.axes_of, "S1");
+  EXPECT_EQ(found.euler, "ZXZ");
+  EXPECT_THAT(found.euler_deg, ElementsAre(25, 40, 110));
+  EXPECT_EQ(found.curve.frame.words, "the axes of S1, turned by 25, 40, 110 deg about ZXZ");
+  EXPECT_EQ(found.curve.vectors.size(), 2U);
+  for (const MappingProposal& p : found.proposals) EXPECT_LT(p.difference, 1e-5) << p.theirs;
+}
+
+TEST(MappingRecords, AWrongSignOfOneComponentIsComparedNotLeftOut) {
+  // Two vectors that are right show the frame.
+  std::vector<Column> columns = {{"Rb1x", "N", of("Rb1_x1_N", -1)}, {"Rb1y", "N", of("Rb1_y1_N")},
+                                 {"Rb1z", "N", of("Rb1_z1_N")},     {"f1_x", "N", of("Rs_1_x2_N")},
+                                 {"f1_y", "N", of("Rs_1_y2_N")},    {"f3_x", "N", of("Rs_3_x2_N")},
+                                 {"f3_y", "N", of("Rs_3_y2_N")}};
+  const MappingGuess found = guess(record(1, 40, columns));
+  EXPECT_EQ(found.recognised(), 7U);
+  EXPECT_THAT(columns_of(found),
+              testing::IsSupersetOf(
+                  {"Rb1x -> 1 Rb1_x1_N, N", "Rb1y -> 1 Rb1_y1_N, N", "Rb1z -> 1 Rb1_z1_N, N"}));
+  ASSERT_EQ(found.proposals.size(), 3U);
+  EXPECT_EQ(found.proposals[0].theirs, "Rb1x, Rb1y, Rb1z");  // worst first
+  EXPECT_EQ(found.proposals[0].remark, "differs by its signs, or only its name says so");
+  double wrong = 0, all = 0;
+  for (const auto& row : record(1, 40, columns).rows) {
+    wrong += 4 * row[1] * row[1];
+    all += row[1] * row[1] + row[2] * row[2] + row[3] * row[3];
+  }
+  EXPECT_NEAR(found.proposals[0].difference, std::sqrt(wrong / all), 1e-5);
+  EXPECT_LT(found.proposals[1].difference, 1e-5);
+}
+
+// Rs of pistons, each of which is number(k) of ours.
+std::vector<Column> numbered(const std::function<int(int)>& number) {
+  std::vector<Column> out;
+  for (int k = 1; k <= kPistons; ++k) {
+    const std::string ours_name = "Rs_" + std::to_string(number(k));
+    const std::string theirs = "f" + std::to_string(k);
+    out.push_back({theirs + "_x", "N", of(ours_name + "_x2_N")});
+    out.push_back({theirs + "_y", "N", of(ours_name + "_y2_N")});
+  }
+  return out;
+}
+
+TEST(MappingRecords, PistonsMixedUpStaySo) {
+  // 2 and 4 exchanged: the numbers in the names count, and the differences show.
+  const MappingGuess found =
+      guess(record(1, 40, numbered([](int k) { return k == 2   ? 4
+                                                      : k == 4 ? 2
+                                                               : k; })));
+  ASSERT_EQ(found.proposals.size(), 5U);
+  std::vector<std::string> poor, good;
+  for (const MappingProposal& p : found.proposals) {
+    EXPECT_EQ(p.ours.substr(3), p.theirs.substr(1, 1)) << p.theirs;
+    (p.difference > 0.1 ? poor : good).push_back(p.ours);
+  }
+  EXPECT_THAT(poor, testing::UnorderedElementsAre("Rs_2", "Rs_4"));
+  EXPECT_EQ(good.size(), 3U);
+  EXPECT_EQ(found.curve.angle.offset_deg, 40);
+}
+
+TEST(MappingRecords, PistonsNumberedAgainstTheRotation) {
+  const MappingGuess found = guess(record(1, 40, numbered([](int k) { return (7 - k) % 5 + 1; })));
+  for (const MappingProposal& p : found.proposals) EXPECT_LT(p.difference, 1e-5) << p.theirs;
+}
+
+TEST(MappingRecords, OfAnotherPistonTheNumbersSayThePhase) {
+  // One curve is piston 1 a pitch later or piston 2: its name says 2.
+  EXPECT_EQ(guess(record(1, 31, {{"p_2", "bar", of("p_2_bar")}, {"p_3", "bar", of("p_3_bar")}}))
+                .curve.angle.offset_deg,
+            31);
+  // Where no number says so the smallest shift.
+  EXPECT_EQ(guess(record(1, 31 + 144, {{"p", "bar", of("p_2_bar")}})).curve.angle.offset_deg, 31);
+}
+
+TEST(MappingRecords, AColumnTwiceAndARecordOfAnotherPump) {
+  const MappingGuess found = guess(record(1, 0,
+                                          {{"Td", "Nm", of("Td_z1_Nm")},
+                                           {"copy", "Nm", of("Td_z1_Nm")},
+                                           {"empty", "Nm", [](double) { return not_computed(); }},
+                                           {"along", "Nm", [](double t) { return t; }}}));
+  EXPECT_THAT(found.ignored, ElementsAre(Pair("empty", "has empty fields"),
+                                         Pair("along", "runs along with the angle"),
+                                         Pair("copy", "like another column, looks like Td_z1_Nm")));
+  EXPECT_EQ(found.curve.angle.offset_deg, 0);
+  EXPECT_THROW(guess(record(1, 0, {{"a", "", [](double t) { return std::cos(radians(61 * t)); }}})),
+               InputError);
 }
 
 }  // namespace
