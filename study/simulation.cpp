@@ -13,6 +13,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/worst.h"
 #include "coupled_pump.h"
+#include "simulation_pieces.h"
 
 namespace bentaxis::study {
 namespace {
@@ -38,19 +39,12 @@ constexpr double kOneTime = 1e-12;  // of the duration: times nearer than that a
 // A run longer than this is not repeated for the table of efforts.
 constexpr double kCheap = 1.0;  // s
 
-// What is compared: reactions, and of the oil that follows the motion its pressures and flows.
-// Flows are shown and not judged: through an open port they are what a pressure difference of
-// nearly nothing makes of them, errors of the pressures a thousand times larger.
-struct Compared {
-  std::string group, unit;
-  bool judged = true;
-};
-
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// "p_1_bar" is one of a group "p", "p_delivery_bar" a group of its own.
+}  // namespace
+
 Compared compared_column(const std::string& name) {
   const auto without = [&](const char* end) {
     return name.substr(0, name.size() - std::string(end).size());
@@ -63,6 +57,58 @@ Compared compared_column(const std::string& name) {
   }
   return {};
 }
+
+std::size_t judged_rows(const std::vector<double>& growth, double error, double disturbance) {
+  std::size_t rows = 0;
+  // Nor where the disturbance itself, which is larger with oil, has come to that: growth is then no
+  // longer known.
+  while (rows < growth.size() && error * growth[rows] <= kNothingToJudge &&
+         growth[rows] * disturbance <= kNothingToJudge)
+    ++rows;
+  return rows;
+}
+
+EventMatch match_events(const std::vector<ToothEvent>& analytic,
+                        const std::vector<ToothEvent>& multibody, double until_s) {
+  const std::vector<ToothEvent>* lists[] = {&analytic, &multibody};
+  std::vector<const ToothEvent*> touches[2];
+  EventMatch match;
+  for (int model = 0; model < 2; ++model) {
+    for (const ToothEvent& event : *lists[model])
+      if (event.touch && event.time_s <= until_s) {
+        touches[model].push_back(&event);
+        match.mean_impulse[model] += event.impulse;
+        match.largest_impulse[model] = std::max(match.largest_impulse[model], event.impulse);
+      }
+    match.touches[model] = touches[model].size();
+    if (match.touches[model] > 0)
+      match.mean_impulse[model] /= static_cast<double>(match.touches[model]);
+  }
+  // In order of time; a touch belongs to the one of the same flank that is next in time.
+  for (std::size_t i = 0, j = 0; i < touches[0].size() && j < touches[1].size();) {
+    const ToothEvent& a = *touches[0][i];
+    const ToothEvent& m = *touches[1][j];
+    const double apart = m.time_s - a.time_s;
+    const auto nearer = [&](const std::vector<const ToothEvent*>& list, std::size_t at,
+                            const ToothEvent& to) {
+      return at + 1 < list.size() && list[at + 1]->flank == to.flank &&
+             std::abs(list[at + 1]->time_s - to.time_s) < std::abs(apart);
+    };
+    if (a.flank != m.flank || nearer(touches[0], i, m) || nearer(touches[1], j, a)) {
+      ++(a.time_s < m.time_s ? i : j);
+      continue;
+    }
+    ++match.matched;
+    keep_worst(match.time_s, apart);
+    if (match.largest_impulse[0] > 0)
+      keep_worst(match.impulse, (m.impulse - a.impulse) / match.largest_impulse[0]);
+    ++i;
+    ++j;
+  }
+  return match;
+}
+
+namespace {
 
 // use(what it is, value) of everything compared in a row.
 template <class Use>
@@ -235,13 +281,7 @@ class Study {
   }
 
   std::size_t judged_rows() const {
-    std::size_t rows = 0;
-    // Nor where the disturbance itself, which is larger with oil, has come to that: growth is then
-    // no longer known.
-    while (rows < r_.growth.size() && r_.allowed(rows) <= kNothingToJudge &&
-           r_.growth[rows] * r_.disturbance <= kNothingToJudge)
-      ++rows;
-    return rows;
+    return study::judged_rows(r_.growth, r_.choice.error, r_.disturbance);
   }
 
   // Largest difference of any reaction in what is judged.
@@ -394,7 +434,7 @@ class Study {
     };
     std::sort(r_.groups.begin(), r_.groups.end(),
               [&](const auto& x, const auto& y) { return key(x) > key(y); });
-    match_events();
+    r_.events = match_events(a.record.events, m.record.events, r_.judged_until_s);
   }
 
   // The analytic trajectory at the moments when its shaft is where Simbody's is at the rows.
@@ -417,45 +457,6 @@ class Study {
     with_oil.tolerance = tolerance_;
     with_oil.times = options.times;
     return pump_->simulate(Model::analytic, with_oil, progress_of_("analytic, over the angle"));
-  }
-
-  void match_events() {
-    const std::vector<ToothEvent>* lists[] = {&r_.analytic->record.events,
-                                              &r_.multibody->record.events};
-    std::vector<const ToothEvent*> touches[2];
-    EventMatch& match = r_.events;
-    for (int model = 0; model < 2; ++model) {
-      for (const ToothEvent& event : *lists[model])
-        if (event.touch && event.time_s <= r_.judged_until_s) {
-          touches[model].push_back(&event);
-          match.mean_impulse[model] += event.impulse;
-          match.largest_impulse[model] = std::max(match.largest_impulse[model], event.impulse);
-        }
-      match.touches[model] = touches[model].size();
-      if (match.touches[model] > 0)
-        match.mean_impulse[model] /= static_cast<double>(match.touches[model]);
-    }
-    // In order of time; a touch belongs to the one of the same flank that is next in time.
-    for (std::size_t i = 0, j = 0; i < touches[0].size() && j < touches[1].size();) {
-      const ToothEvent& a = *touches[0][i];
-      const ToothEvent& m = *touches[1][j];
-      const double apart = m.time_s - a.time_s;
-      const auto nearer = [&](const std::vector<const ToothEvent*>& list, std::size_t at,
-                              const ToothEvent& to) {
-        return at + 1 < list.size() && list[at + 1]->flank == to.flank &&
-               std::abs(list[at + 1]->time_s - to.time_s) < std::abs(apart);
-      };
-      if (a.flank != m.flank || nearer(touches[0], i, m) || nearer(touches[1], j, a)) {
-        ++(a.time_s < m.time_s ? i : j);
-        continue;
-      }
-      ++match.matched;
-      keep_worst(match.time_s, apart);
-      if (match.largest_impulse[0] > 0)
-        keep_worst(match.impulse, (m.impulse - a.impulse) / match.largest_impulse[0]);
-      ++i;
-      ++j;
-    }
   }
 
   void check() {

@@ -1,0 +1,31 @@
+// The pieces of simulate() that judge columns, rows and touches by themselves.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bentaxis/study/simulation.h"
+
+namespace bentaxis::study {
+
+// What is compared: reactions, and of the oil that follows the motion its pressures and flows.
+// Flows are shown and not judged: through an open port they are what a pressure difference of
+// nearly nothing makes of them, errors of the pressures a thousand times larger.
+struct Compared {
+  std::string group, unit;
+  bool judged = true;
+};
+// Of a column of the oil: "p_1_bar" is one of a group "p", "p_delivery_bar" a group of its own; no
+// group where it is not compared.
+Compared compared_column(const std::string& name);
+
+// Rows before the first in which a disturbance of the wanted error, or the one that growth was
+// found by, has grown too large for anything to be judged.
+std::size_t judged_rows(const std::vector<double>& growth, double error, double disturbance);
+
+// Touches of both models that belong together, until a time.
+EventMatch match_events(const std::vector<ToothEvent>& analytic,
+                        const std::vector<ToothEvent>& multibody, double until_s);
+
+}  // namespace bentaxis::study

@@ -1,0 +1,201 @@
+// What a simulation's results say, of results put together by hand.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/simulation.h"
+#include "simulation_pieces.h"
+
+namespace bentaxis::study {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(SimulationStudy, ColumnsOfTheOilThatAreCompared) {
+  const auto is = [](const std::string& name, const std::string& group, const std::string& unit,
+                     bool judged) {
+    const Compared what = compared_column(name);
+    EXPECT_EQ(what.group, group) << name;
+    EXPECT_EQ(what.unit, unit) << name;
+    EXPECT_EQ(what.judged, judged) << name;
+  };
+  is("p_1_bar", "p", "bar", true);
+  is("p_0_bar", "p", "bar", true);
+  is("p_9_bar", "p", "bar", true);
+  is("p_delivery_bar", "p_delivery", "bar", true);
+  is("p__bar", "p_", "bar", true);
+  is("q_3_l_per_min", "q_3", "l/min", false);
+  is("_bar", "", "bar", true);
+  is("speed_rpm", "", "", true);
+  is("bar", "", "", true);
+}
+
+TEST(SimulationStudy, RowsAreJudgedUntilADisturbanceHasGrownTooLarge) {
+  const std::vector<double> growth = {1, 30, 1000, 1200, 5};
+  EXPECT_EQ(judged_rows(growth, 1e-5, 1e-9), 5U);
+  EXPECT_EQ(judged_rows(growth, 0.1 / 1100, 1e-9), 3U);
+  EXPECT_EQ(judged_rows(growth, 1e-9, 0.1 / 1100), 3U);  // the disturbance itself
+  EXPECT_EQ(judged_rows(growth, 0.0033, 1e-9), 2U);
+  EXPECT_EQ(judged_rows(growth, 0.0034, 1e-9), 1U);
+  EXPECT_EQ(judged_rows(growth, 0.1, 1e-9), 1U);  // the limit itself is judged
+  EXPECT_EQ(judged_rows({1}, 1e-9, 0.1), 1U);
+  EXPECT_EQ(judged_rows(growth, 0.1001, 1e-9), 0U);
+  EXPECT_EQ(judged_rows({}, 1e-6, 1e-9), 0U);
+}
+
+ToothEvent touch(double time_s, int flank, double impulse) {
+  ToothEvent event;
+  event.time_s = time_s;
+  event.flank = flank;
+  event.impulse = impulse;
+  return event;
+}
+
+TEST(SimulationStudy, TouchesThatBelongTogether) {
+  ToothEvent leaves = touch(2.5, 1, 0);
+  leaves.touch = false;
+  const EventMatch match =
+      match_events({touch(1, 1, 8), touch(2, -1, 5), leaves, touch(3, 1, 2), touch(9, 1, 50)},
+                   {touch(1.25, 1, 7), touch(1.875, -1, 6), leaves, touch(3.5, 1, 0)}, 3.5);
+  EXPECT_EQ(match.touches[0], 3U);
+  EXPECT_EQ(match.touches[1], 3U);  // the end itself counts
+  EXPECT_EQ(match.matched, 3U);
+  EXPECT_EQ(match.time_s, 0.5);
+  EXPECT_EQ(match.impulse, 2.0 / 8);
+  EXPECT_EQ(match.mean_impulse[0], 5);
+  EXPECT_EQ(match.largest_impulse[0], 8);
+  EXPECT_DOUBLE_EQ(match.mean_impulse[1], 13.0 / 3);
+  EXPECT_EQ(match.largest_impulse[1], 7);
+}
+
+TEST(SimulationStudy, ATouchThatOneModelLacksMatchesNone) {
+  // Of the other flank; of the same one, but the next is nearer; in either model.
+  const std::vector<ToothEvent> few = {touch(1, 1, 4), touch(3, 1, 4)};
+  const std::vector<ToothEvent> flank = {touch(1, 1, 4), touch(2, -1, 4), touch(3.125, 1, 4)};
+  const std::vector<ToothEvent> twice = {touch(0.5, 1, 4), touch(1.125, 1, 3), touch(3, 1, 4)};
+  for (const auto* more : {&flank, &twice}) {
+    for (const EventMatch& match : {match_events(few, *more, 5), match_events(*more, few, 5)}) {
+      EXPECT_EQ(match.matched, 2U);
+      EXPECT_EQ(match.time_s, 0.125);
+      EXPECT_EQ(match.impulse, more == &twice ? 0.25 : 0);
+    }
+  }
+  // As near is not nearer; what follows on the other flank is none of it.
+  EXPECT_EQ(match_events({touch(2, 1, 4)}, {touch(1.5, 1, 4), touch(2.5, 1, 2)}, 5).impulse, 0);
+  EXPECT_EQ(match_events({touch(2, 1, 4)}, {touch(1.5, 1, 4), touch(2.25, -1, 2)}, 5).time_s, 0.5);
+  const EventMatch none = match_events({}, {touch(1, 1, 4)}, 5);
+  EXPECT_EQ(none.matched, 0U);
+  EXPECT_EQ(none.touches[1], 1U);
+  EXPECT_EQ(none.mean_impulse[0], 0);
+}
+
+TEST(SimulationStudy, TimeForAnErrorLiesBetweenTheEfforts) {
+  SimulationResult r;
+  const auto add = [&](Model model, double error, double seconds) {
+    Effort effort{model, "", 0, error, seconds, 0, 0};
+    r.effort.push_back(effort);
+  };
+  add(Model::analytic, 1e-2, 1);
+  add(Model::analytic, 1e-4, 2);
+  add(Model::analytic, 1e-8, 32);
+  add(Model::analytic, 0, 1e-3);
+  add(Model::analytic, not_computed(), 1e-3);
+  add(Model::multibody, 1e-5, 7);
+  // Straight in logarithms: a quarter of the way from 1e-4 to 1e-8 is 2 x 16^(1/4).
+  EXPECT_NEAR(r.seconds_for(Model::analytic, 1e-5), 4, 1e-12);
+  EXPECT_NEAR(r.seconds_for(Model::analytic, 1e-7), 16, 1e-12);
+  EXPECT_EQ(r.seconds_for(Model::analytic, 1e-4), 2);
+  EXPECT_EQ(r.seconds_for(Model::analytic, 0.5), 1);
+  EXPECT_FALSE(is_computed(r.seconds_for(Model::analytic, 1e-9)));
+  EXPECT_EQ(r.seconds_for(Model::multibody, 1e-4), 7);
+  EXPECT_FALSE(is_computed(r.seconds_for(Model::multibody, 1e-6)));
+  add(Model::multibody, 1e-3, 9);  // slower and worse
+  EXPECT_EQ(r.seconds_for(Model::multibody, 1e-4), 7);
+}
+
+SimulationResult result(double of_allowed, double judged_until_s) {
+  SimulationResult r;
+  r.ready.the_case.drive.emplace();
+  r.ready.the_case.drive->duration = 2.5;
+  r.judged_until_s = judged_until_s;
+  r.growth = {1, 37};
+  GroupDifference group;
+  group.group = "Rs";
+  group.in_time = 3e-7;
+  group.time_s = 0.75;
+  group.of_allowed = of_allowed;
+  r.groups = {group};
+  return r;
+}
+
+TEST(SimulationStudy, HeadlineOfBothModels) {
+  EXPECT_EQ(result(0.25, 2.5).headline(),
+            "Both models move alike: largest difference 3.0e-07 of peak (Rs, at 0.75 s), 0.25 of "
+            "what is allowed (1e-06 of peak, grown as disturbances grow); disturbances of the "
+            "start grow 37 times");
+  EXPECT_TRUE(result(1, 2.5).agrees());
+  EXPECT_FALSE(result(1.0001, 2.5).agrees());
+  EXPECT_THAT(result(1.5, 2.5).headline(), HasSubstr("The models differ: "));
+  EXPECT_THAT(result(0.5, 1.25).headline(),
+              HasSubstr(". Later than 1.25 s nothing is judged: disturbances grow 4e+01 times by "
+                        "the end"));
+  EXPECT_THAT(result(0.5, 2.5 * (1 - 5e-13)).headline(), Not(HasSubstr("Later")));
+  EXPECT_THAT(result(0.5, 2.5 * (1 - 2e-12)).headline(), HasSubstr("Later"));
+  SimulationResult r = result(0.5, 2.5);
+  r.checks = {{"multibody", "work", "J", 6, 0, 2, 1}, {"analytic", "power", "W", 1, 0, 2, 1}};
+  EXPECT_THAT(r.headline(), HasSubstr("; multibody: work is 3.0e+00 of its scale"));
+  EXPECT_THAT(r.headline(), Not(HasSubstr("power")));
+  EXPECT_FALSE(r.agrees());
+  r.groups.clear();
+  EXPECT_EQ(r.worst(), nullptr);
+  EXPECT_THAT(r.headline(), HasSubstr("Nothing can be judged"));
+  r.checks.clear();
+  EXPECT_FALSE(r.agrees());
+  r.choice.only = Model::analytic;
+  EXPECT_TRUE(r.agrees());
+  EXPECT_EQ(r.headline(), "2.5 s simulated by the analytic model; work and power balance");
+  r.checks = {{"analytic", "power", "W", 3, 0, 2, 1}};
+  EXPECT_EQ(r.headline(), "2.5 s simulated by the analytic model; work and power do not balance");
+}
+
+TEST(SimulationStudy, HeadlineOfAPeriodicMotion) {
+  SimulationResult r = result(0.5, 2.5);
+  r.choice.steady = true;
+  PeriodicMotion motion;
+  motion.speed = 1500 * kRadPerSecondPerRpm;
+  motion.multipliers = {{0.3, -0.4}, 0.1};
+  EXPECT_TRUE(motion.stable());
+  r.periodic[1] = motion;
+  EXPECT_EQ(r.headline(),
+            "Both models find the same periodic motion: largest difference 3.0e-07 of peak (Rs), "
+            "1e-06 allowed; 1500 rpm, stable: of a disturbance 0.5 is left after an N-th of a "
+            "turn");
+  motion.multipliers = {1};
+  EXPECT_FALSE(motion.stable());
+  motion.speed *= 2;
+  r.periodic[0] = motion;  // the analytic one where both are
+  EXPECT_THAT(r.headline(), HasSubstr("3000 rpm, unstable: of a disturbance 1 is left"));
+  r.groups[0].of_allowed = 2;
+  EXPECT_THAT(r.headline(), HasSubstr("The periodic motions differ: "));
+  r.periodic[0]->multipliers.clear();
+  EXPECT_TRUE(r.periodic[0]->stable());
+  r.choice.only = Model::analytic;
+  EXPECT_EQ(r.headline(),
+            "periodic motion of the analytic model found: 3000 rpm, without states that could be "
+            "disturbed");
+}
+
+TEST(SimulationStudy, PeriodicOilWithoutOilIsRefused) {
+  Case the_case;
+  the_case.drive.emplace();
+  SimulationChoice choice;
+  choice.oil = OilInTime::periodic;
+  EXPECT_THROW(prepare_simulation(the_case, choice), InputError);
+}
+
+}  // namespace
+}  // namespace bentaxis::study
