@@ -714,6 +714,15 @@ TEST(MappingRecords, WholeDegreesAreTheAnglesOfARun) {
   EXPECT_EQ(found.digits, 0);
 }
 
+TEST(MappingRecords, SmallNumbersCorrelateToo) {
+  const MappingGuess found = guess(record(1, 10,
+                                          {{"Fx", "MN", of("Rb1_x1_N", 1e-6)},
+                                           {"Fy", "MN", of("Rb1_y1_N", 1e-6)},
+                                           {"Fz", "MN", of("Rb1_z1_N", 1e-6)}}));
+  ASSERT_EQ(found.proposals.size(), 1U);
+  EXPECT_NEAR(found.proposals[0].correlation, 1, 1e-9);
+}
+
 TEST(MappingRecords, ALongerRecordAndOneOverTime) {
   // 20 ms at 3600 deg/s are 72 deg: a turn is 100 ms. The last of 1.5 turns.
   ForeignTable table = record(1, 12, {{"Td", "Nm", of("Td_z1_Nm")}});
@@ -848,6 +857,18 @@ TEST(MappingRecords, PistonsMixedUpStaySo) {
 TEST(MappingRecords, PistonsNumberedAgainstTheRotation) {
   const MappingGuess found = guess(record(1, 40, numbered([](int k) { return (7 - k) % 5 + 1; })));
   for (const MappingProposal& p : found.proposals) EXPECT_LT(p.difference, 1e-5) << p.theirs;
+}
+
+TEST(MappingRecords, AVectorWithoutAPistonShowsNoNumbering) {
+  // Three pistons do not show a reversal, and the number in the name of another force adds none.
+  auto columns = numbered([](int k) { return (7 - k) % 5 + 1; });
+  columns.resize(6);
+  for (const std::string axis : {"x", "y", "z"})
+    columns.push_back({"Fb4 " + axis, "N", of("Rb1_" + axis + "1_N")});
+  double worst = 0;
+  for (const MappingProposal& p : guess(record(1, 40, columns)).proposals)
+    worst = std::max(worst, p.difference);
+  EXPECT_GT(worst, 0.1);
 }
 
 TEST(MappingRecords, OfAnotherPistonTheNumbersSayThePhase) {
