@@ -10,9 +10,8 @@ namespace bentaxis::multibody {
 
 /// Solves the equations of motion along the motions that the constraints allow: of the shaft, of
 /// the block, which with rigid teeth turns as the shaft does, and of a rotor. Along them
-/// constraints do no work, so no multiplier is sought: four times as fast as Simbody's own solution
-/// for all of them, which factors a matrix of all constraint equations. Masses, forces and
-/// velocities are Simbody's.
+/// constraints do no work, so no multiplier is sought: Simbody's own solution for all of them
+/// factors a matrix of all constraint equations. Masses, forces and velocities are Simbody's.
 class FreeMotion {
  public:
   struct Accelerations {
