@@ -191,14 +191,10 @@ class Study {
     Trajectory run = with_oil(first, tolerance, "with oil");
     Trajectory loose = with_oil(first, kLooser * tolerance, "looser");
     peaks_ = peaks_of(run);
-    if (analytic) {
-      coupled::Options disturbed;
-      disturbed.tolerance = tolerance;
-      r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
-      note_growth(run, pump_->simulate(first, disturbed, progress_of_("sensitivity")));
-    } else {
-      r_.growth.assign(run.lag.size(), 1.0);
-    }
+    coupled::Options disturbed;
+    disturbed.tolerance = tolerance;
+    r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
+    note_growth(run, pump_->simulate(first, disturbed, progress_of_("sensitivity")));
     const auto error = [&] { return change_of(loose, run) / kChangeOverError; };
     while (error() > 1 && tolerance > kFinestStep) {
       tolerance = std::max(kFinestStep, tolerance / kLooser);
@@ -212,7 +208,6 @@ class Study {
     add_effort(first, kLooser * tolerance, loose, r_.integration_change);
     add_effort(first, tolerance, run, r_.integration_change / kChangeOverError);
     if (!analytic) {
-      r_.growth.clear();
       r_.multibody = std::move(run);
       return;
     }
@@ -380,7 +375,7 @@ class Study {
   }
 
   std::string method_of(Model model) const {
-    if (pump_) return "BDF, with oil";
+    if (pump_) return "BDF";
     return model == Model::analytic
                ? "extrapolation"
                : multibody::integrator_names()[static_cast<std::size_t>(r_.choice.integrator)];
@@ -523,10 +518,6 @@ class Study {
   mutable double tolerance_ = 0;     // of its last run
 };
 
-}  // namespace
-
-namespace {
-
 bool needs_periodic_oil(const Case& the_case) {
   const LoadData load = the_case.hydraulics->load.value_or(LoadData());
   const bool held =
@@ -604,7 +595,7 @@ bool SimulationResult::agrees() const {
 }
 
 std::string SimulationResult::headline() const {
-  if (choice.steady) return periodic_headline(*this);
+  if (choice.steady && (choice.only || worst() != nullptr)) return periodic_headline(*this);
   if (choice.only)
     return fmt::format("{} s simulated by the {} model; work and power {}",
                        number_text(ready.the_case.drive->duration), to_string(*choice.only),
