@@ -93,8 +93,8 @@ void Course::start_teeth() {
   Mechanics& mechanics = system_.mechanics();
   if (!mechanics.compliant()) return;
   for (const int flank : {1, -1}) {
-    const double x = mechanics.approach(state_.motion, flank);
-    double rate = mechanics.approach_rate(state_.motion, flank);
+    const double x = mechanics.approach(time_, state_.motion, flank);
+    double rate = mechanics.approach_rate(time_, state_.motion, flank);
     if (x < -kOnTouch) continue;
     if (x <= kOnTouch && rate == 0) {
       // Without force between the flanks: which way they begin to move.
@@ -104,7 +104,7 @@ void Course::start_teeth() {
       MotionVector moving{};
       for (std::size_t i = 0; i < system_.active().size(); ++i)
         if (system_.active()[i] == kLagRate) moving[kLagRate] = dy[i] * system_.scale()[i];
-      rate = mechanics.approach_rate(moving, flank);
+      rate = mechanics.approach_rate(time_, moving, flank);
     }
     if (x <= kOnTouch && rate <= 0) continue;
     contact_changes(flank, true);
@@ -125,7 +125,7 @@ void Course::contact_changes(int flank, bool touch) {
   event.flank = flank;
   event.shaft_speed = shaft(time_, state_).speed;
   event.block_speed = block(time_, state_).speed;
-  event.approach_speed = system_.mechanics().approach_rate(state_.motion, flank);
+  event.approach_speed = system_.mechanics().approach_rate(time_, state_.motion, flank);
   if (touch) {
     touch_ = events_.size();
     impulse_ = state_.motion[kImpulse];
@@ -184,25 +184,25 @@ bool Course::hidden_touch() {
   for (const int flank : {1, -1}) {
     double low = step_start_, high = time_;
     state_at(low, at);
-    if (mechanics.approach(at.motion, flank) >= 0 ||
-        mechanics.approach_rate(at.motion, flank) <= 0 ||
-        mechanics.approach(state_.motion, flank) >= 0 ||
-        mechanics.approach_rate(state_.motion, flank) >= 0)
+    if (mechanics.approach(low, at.motion, flank) >= 0 ||
+        mechanics.approach_rate(low, at.motion, flank) <= 0 ||
+        mechanics.approach(time_, state_.motion, flank) >= 0 ||
+        mechanics.approach_rate(time_, state_.motion, flank) >= 0)
       continue;
     double nearest = low;
     const double first = low;
     for (int i = 0; i < 60; ++i) {
       nearest = (low + high) / 2;
       state_at(nearest, at);
-      (mechanics.approach_rate(at.motion, flank) > 0 ? low : high) = nearest;
+      (mechanics.approach_rate(nearest, at.motion, flank) > 0 ? low : high) = nearest;
     }
-    if (mechanics.approach(at.motion, flank) <= 0) continue;
+    if (mechanics.approach(nearest, at.motion, flank) <= 0) continue;
     low = first;
     high = nearest;
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2;
       state_at(middle, at);
-      (mechanics.approach(at.motion, flank) > 0 ? high : low) = middle;
+      (mechanics.approach(middle, at.motion, flank) > 0 ? high : low) = middle;
     }
     state_at(high, at);
     if (!integrals_.empty()) integrator_.integrals_at(high, integrals_.data());

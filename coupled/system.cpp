@@ -223,8 +223,8 @@ void System::guard_values(double time, const double* y, double* values) {
   values[kTo] = block_.angle - to;
   values[kFrom] = block_.angle - from;
   if (!mechanics_.compliant()) return;
-  values[kFlankPlus] = mechanics_.approach(state_.motion, 1);
-  values[kFlankMinus] = mechanics_.approach(state_.motion, -1);
+  values[kFlankPlus] = mechanics_.approach(time, state_.motion, 1);
+  values[kFlankMinus] = mechanics_.approach(time, state_.motion, -1);
 }
 
 }  // namespace bentaxis::coupled

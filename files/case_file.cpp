@@ -153,6 +153,10 @@ class CaseReader {
       *field.share(view()) = read_share_curve(file);
       return;
     }
+    if (field.teeth != nullptr) {
+      read_tooth_errors(file, *field.teeth(view()));
+      return;
+    }
     result_.pressure.curve = read_pressure_curve(file);
     PressureTrace{result_.pressure};  // refuses a curve that cannot be a periodic spline
   }

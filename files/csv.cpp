@@ -266,6 +266,21 @@ TimeCurve read_share_curve(const std::filesystem::path& file) {
   return read_time_curve(file, "time_s", "share", false);
 }
 
+void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth) {
+  const NumericTable table = read_numeric_csv(file);
+  if (table.header != std::vector<std::string>{"tooth", "shaft_um", "block_um"})
+    throw InputError(file.string() + ":1: header must be tooth,shaft_um,block_um");
+  if (table.rows.size() != static_cast<std::size_t>(teeth.count))
+    throw InputError(file.string() + ": has " + std::to_string(table.rows.size()) +
+                     " teeth, must be tooth_number = " + std::to_string(teeth.count));
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    if (table.rows[i][0] != static_cast<double>(i + 1))
+      refuse_value(file, table, i, 0, std::to_string(i + 1) + " (teeth in their order)");
+    teeth.shaft.pitch.push_back(table.rows[i][1] / 1e6);
+    teeth.block.pitch.push_back(table.rows[i][2] / 1e6);
+  }
+}
+
 // The columns that say how shaft and block move, in the order of their use.
 constexpr const char* kMotionColumns[] = {"theta_deg", "psi_deg",          "theta_rpm",
                                           "psi_rpm",   "theta_rad_per_s2", "psi_rad_per_s2"};

@@ -36,6 +36,7 @@ constexpr Unit kMegapascals{"MPa", [](double x) { return x * 1e6; }};
 constexpr Unit kMilliseconds{"ms", [](double x) { return x / 1000; }};
 constexpr Unit kPercent{"percent", [](double x) { return x / 100; }};
 constexpr Unit kCubicCentimetres{"cm3", [](double x) { return x / 1e6; }};
+constexpr Unit kGigapascal{"GPa", [](double x) { return x * 1e9; }};
 constexpr Unit kMicrometres{"um", [](double x) { return x / 1e6; }};
 constexpr Unit kStiffness{"N/um", [](double x) { return x * 1e6; }};
 constexpr Unit kMetres{"m"};
@@ -62,6 +63,8 @@ const When kBesideRelief{"load", "kind", {"orifice", "laminar", "flow"}};
 const When kAnyRelief{"load", "kind", {"relief_valve", "orifice", "laminar", "flow"}};
 const When kSizedLoad = kAnyRelief;
 const When kCompliant{"gear", "contact", {"compliant"}};
+const When kTeeth{"gear", "contact", {"teeth"}};
+const When kGivingWay{"gear", "contact", {"compliant", "teeth"}};
 const When kMotor{"drive", "kind", {"motor"}};
 const When kGivenTorque{"drive", "kind", {"torque", "motor"}};
 
@@ -77,6 +80,17 @@ const Part kStartSpeed{{},
                        [](const View& v) { v.drive_spec()->start_speed.emplace(); }};
 const Part kCompliance{kCompliant, [](const ConstView& v) { return v.compliance() != nullptr; },
                        [](const View& v) { v.pump->gear.compliance.emplace(); }};
+// Teeth that give way, of either kind; the keys that both have come after those that make one.
+const Part kGiving{kGivingWay,
+                   [](const ConstView& v) {
+                     return v.pump->gear.contact == ToothContact::teeth ? v.teeth() != nullptr
+                                                                        : v.compliance() != nullptr;
+                   },
+                   [](const View& v) {
+                     if (v.pump->gear.contact == ToothContact::teeth) v.pump->gear.teeth.emplace();
+                   }};
+const Part kToothData{kTeeth, [](const ConstView& v) { return v.teeth() != nullptr; },
+                      [](const View& v) { v.pump->gear.teeth.emplace(); }};
 const Part kDrive{{},
                   [](const ConstView& v) { return v.drive_spec() != nullptr; },
                   [](const View& v) {
@@ -506,6 +520,19 @@ Table assumptions_table(const std::string& model, Model) {
                  }}}};
 }
 
+Table multibody_assumptions_table() {
+  Table table = assumptions_table("multibody", [](const auto& v) { return v.multibody; });
+  table.parameters.push_back(
+      {.key = "flank_shape",
+       .field = choice_at([](const auto& v) { return in(v.multibody, &Assumptions::flanks); }),
+       .words = {"involute", "octoid"},
+       .fallback = {std::string("involute")},
+       .meaning = "of [gear] contact = \"teeth\": spherical involutes, as the analytic model has "
+                  "them, or octoids, which a plane flank of a crown gear envelops",
+       .active = kTeeth});
+  return table;
+}
+
 Table plausibility_table() {
   return {.name = "plausibility",
           .meaning = "reasons for values that a check holds to be doubtful (plausibility.md)",
@@ -600,7 +627,23 @@ Table pump_table() {
       .rules = {{.key = "piston_length_mm", .after = "piston_length_mm", .broken = not_assembled}}};
 }
 
+// What both kinds of teeth that give way have.
+template <class V>
+auto of_either(const V& v, double ToothCompliance::*of_law, double ToothData::*of_teeth)
+    -> decltype(in(v.compliance(), of_law)) {
+  return v.pump->gear.contact == ToothContact::teeth ? in(v.teeth(), of_teeth)
+                                                     : in(v.compliance(), of_law);
+}
+
+std::optional<Value> modules_of(const ConstView& v, double modules) {
+  if (v.teeth() == nullptr || v.teeth()->count <= 0) return std::nullopt;
+  return modules * v.pump->gear.pitch_diameter / v.teeth()->count * 1e3;
+}
+
 Table gear_table() {
+  CurveField pitch_errors =
+      curve_at([](const auto& v) { return in(v.teeth(), &ToothData::error_file); });
+  pitch_errors.teeth = [](const View& v) { return v.teeth(); };
   return {
       .name = "gear",
       .meaning = "bevel gear pair that carries the block round",
@@ -621,18 +664,18 @@ Table gear_table() {
             .meaning = "pressure angle; the pitch cone angle is 90 deg - alpha/2"},
            {.key = "contact",
             .field = choice_at([](const auto& v) { return &v.pump->gear.contact; }),
-            .words = {"rigid", "compliant"},
+            .words = {"rigid", "compliant", "teeth"},
             .fallback = {std::string("rigid")},
             .meaning = "rigid: block and shaft turn alike in motion; compliant: the flanks give "
-                       "way, with backlash between them (motion.md)"},
+                       "way, with backlash between them (motion.md); teeth: straight bevel teeth "
+                       "that touch where they are (teeth.md)"},
            {.key = "flanks",
             .field = choice_at([](const auto& v) { return &v.pump->gear.flanks; }),
             .words = {"one", "two"},
             .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
-                           const bool compliant = v.pump->gear.contact == ToothContact::compliant;
-                           return std::string(compliant ? "two" : "one");
+                           return std::string(v.pump->gear.gives_way() ? "two" : "one");
                          },
-                         .words = "one; two where `contact` is compliant"},
+                         .words = "one; two where `contact` is not rigid"},
             .meaning = "one: as the paper prints, one line of action for either sign of the "
                        "force; two: the flank that is pushed carries, and the separating part "
                        "of its force always pushes the gears apart"},
@@ -656,42 +699,186 @@ Table gear_table() {
             .practice = "lines 1, points 1.5, ADAMS' default 2.2",
             .part = &kCompliance},
            {.key = "dissipation_s_per_m",
-            .field = number_at(
-                [](const auto& v) { return in(v.compliance(), &ToothCompliance::dissipation); }),
-            .path = {"gear.compliance.dissipation"},
+            .field = number_at([](const auto& v) {
+              return of_either(v, &ToothCompliance::dissipation, &ToothData::dissipation);
+            }),
+            .path = {"gear.dissipation"},
             .symbol = "c",
             .unit = {"s/m"},
             .range = kNotNegative,
             .fallback = {0.0},
             .meaning = "growth of the force with the speed of approach",
-            .part = &kCompliance},
+            .part = &kGiving},
            {.key = "backlash_um",
-            .field = number_at(
-                [](const auto& v) { return in(v.compliance(), &ToothCompliance::backlash); }),
-            .path = {"gear.compliance.backlash"},
+            .field = number_at([](const auto& v) {
+              return of_either(v, &ToothCompliance::backlash, &ToothData::backlash);
+            }),
+            .path = {"gear.backlash"},
             .symbol = "j",
             .unit = kMicrometres,
             .range = kNotNegative,
             .fallback = {0.0},
             .meaning = "along the line of action; rigid teeth have none",
-            .part = &kCompliance}},
-      .rules = {{.key = "flanks",
-                 .after = "flanks",
-                 .broken =
-                     [](const ConstView& v) {
-                       const Gear& gear = v.pump->gear;
-                       return gear.contact == ToothContact::compliant && gear.flanks == Flanks::one
-                                  ? std::string(
-                                        "compliant teeth have two flanks: must be \"two\" "
-                                        "beside contact = \"compliant\"")
-                                  : std::string();
-                     }},
-                {.key = "contact", .after = "", .broken = [](const ConstView& v) {
-                   return v.pump->gear.contact == ToothContact::compliant &&
-                                  v.compliance() == nullptr
-                              ? std::string("needs stiffness_N_per_um")
-                              : std::string();
-                 }}}};
+            .part = &kGiving},
+           {.key = "tooth_number",
+            .field = integer_at([](const auto& v) { return in(v.teeth(), &ToothData::count); }),
+            .symbol = "Z",
+            .range = {5, 400},
+            .meaning = "teeth of the shaft and of the block",
+            .part = &kToothData},
+           {.key = "face_width_mm",
+            .field = number_at([](const auto& v) { return in(v.teeth(), &ToothData::face_width); }),
+            .path = {"gear.teeth.face_width"},
+            .symbol = "w",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .meaning = "along the pitch cone, O4 in its middle",
+            .part = &kToothData},
+           {.key = "addendum_mm",
+            .field = number_at([](const auto& v) { return in(v.teeth(), &ToothData::addendum); }),
+            .path = {"gear.teeth.addendum"},
+            .symbol = "h_a",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .fallback = {.computed = [](const ConstView& v) { return modules_of(v, 1); },
+                         .words = "the module d / Z"},
+            .meaning = "of the teeth over the pitch cone, at O4",
+            .part = &kToothData},
+           {.key = "dedendum_mm",
+            .field = number_at([](const auto& v) { return in(v.teeth(), &ToothData::dedendum); }),
+            .path = {"gear.teeth.dedendum"},
+            .symbol = "h_f",
+            .unit = kMillimetres,
+            .range = kPositive,
+            .fallback = {.computed = [](const ConstView& v) { return modules_of(v, 1.25); },
+                         .words = "1.25 modules"},
+            .meaning = "of the gaps under the pitch cone, at O4",
+            .part = &kToothData},
+           {.key = "tip_relief_um",
+            .field = number_at([](const auto& v) { return in(v.teeth(), &ToothData::tip_relief); }),
+            .path = {"gear.teeth.tip_relief"},
+            .symbol = "C_a",
+            .unit = kMicrometres,
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "material that the tips lack, along the line of action",
+            .part = &kToothData},
+           {.key = "tip_relief_height_mm",
+            .field =
+                number_at([](const auto& v) { return in(v.teeth(), &ToothData::relief_height); }),
+            .path = {"gear.teeth.relief_height"},
+            .unit = kMillimetres,
+            .range = kPositive,
+            .fallback = {.computed = [](const ConstView& v) { return modules_of(v, 0.5); },
+                         .words = "half a module"},
+            .meaning = "from the tip down to where its relief begins; it grows with the square of "
+                       "the way from there",
+            .part = &kToothData},
+           {.key = "lead_crowning_um",
+            .field =
+                number_at([](const auto& v) { return in(v.teeth(), &ToothData::lead_crowning); }),
+            .path = {"gear.teeth.lead_crowning"},
+            .symbol = "C_b",
+            .unit = kMicrometres,
+            .range = kNotNegative,
+            .fallback = {0.0},
+            .meaning = "by how much a pair of flanks is farther apart at both ends than in the "
+                       "middle of the face width: a parabola",
+            .part = &kToothData},
+           {.key = "youngs_modulus_GPa",
+            .field =
+                number_at([](const auto& v) { return in(v.teeth(), &ToothData::youngs_modulus); }),
+            .path = {"gear.teeth.youngs_modulus"},
+            .symbol = "E",
+            .unit = kGigapascal,
+            .range = kPositive,
+            .fallback = {206.0},
+            .meaning = "of the teeth",
+            .practice = "steel 206",
+            .part = &kToothData},
+           {.key = "poisson_ratio",
+            .field =
+                number_at([](const auto& v) { return in(v.teeth(), &ToothData::poisson_ratio); }),
+            .path = {"gear.teeth.poisson_ratio"},
+            .symbol = "nu",
+            .range = {0, 0.5},
+            .fallback = {0.3},
+            .meaning = "of the teeth",
+            .part = &kToothData},
+           {.key = "rim_ratio",
+            .field = number_at([](const auto& v) { return in(v.teeth(), &ToothData::rim_ratio); }),
+            .path = {"gear.teeth.rim_ratio"},
+            .range = {1.4, 7},
+            .fallback = {3.0},
+            .meaning =
+                "root radius over the radius of the hub's bore, of the equivalent spur gear: "
+                "what the foundation's deflection depends on",
+            .part = &kToothData},
+           {.key = "shaft_runout_um",
+            .field = number_at([](const auto& v) {
+              return in(in(v.teeth(), &ToothData::shaft), &ToothErrors::runout);
+            }),
+            .path = {"gear.teeth.shaft.runout"},
+            .unit = kMicrometres,
+            .fallback = {0.0},
+            .meaning = "amplitude of the material that the flanks of the shaft's teeth lack, once "
+                       "a turn",
+            .part = &kToothData},
+           {.key = "shaft_runout_deg",
+            .field = number_at([](const auto& v) {
+              return in(in(v.teeth(), &ToothData::shaft), &ToothErrors::runout_angle);
+            }),
+            .path = {"gear.teeth.shaft.runout_angle"},
+            .unit = kAngle,
+            .fallback = {0.0},
+            .meaning = "where they lack most, from tooth 1 in the order of the teeth",
+            .part = &kToothData},
+           {.key = "block_runout_um",
+            .field = number_at([](const auto& v) {
+              return in(in(v.teeth(), &ToothData::block), &ToothErrors::runout);
+            }),
+            .path = {"gear.teeth.block.runout"},
+            .unit = kMicrometres,
+            .fallback = {0.0},
+            .meaning = "the same of the block's teeth",
+            .part = &kToothData},
+           {.key = "block_runout_deg",
+            .field = number_at([](const auto& v) {
+              return in(in(v.teeth(), &ToothData::block), &ToothErrors::runout_angle);
+            }),
+            .path = {"gear.teeth.block.runout_angle"},
+            .unit = kAngle,
+            .fallback = {0.0},
+            .meaning = "the same of the block's teeth",
+            .part = &kToothData},
+           {.key = "pitch_error_file",
+            .field = pitch_errors,
+            .fallback = {std::string()},
+            .meaning = "CSV `tooth,shaft_um,block_um`, path relative to the case file, a line for "
+                       "each tooth: how far it stands ahead of its place, towards +theta or +psi, "
+                       "along the line of action; empty: 0",
+            .part = &kToothData}},
+      .rules =
+          {
+              {.key = "flanks",
+               .after = "flanks",
+               .broken =
+                   [](const ConstView& v) {
+                     const Gear& gear = v.pump->gear;
+                     return gear.gives_way() && gear.flanks == Flanks::one
+                                ? std::string(
+                                      "teeth that give way have two flanks: must be \"two\" "
+                                      "beside contact = \"compliant\" or \"teeth\"")
+                                : std::string();
+                   }},
+              {.key = "contact", .after = "", .broken = [](const ConstView& v) {
+                 const ToothContact contact = v.pump->gear.contact;
+                 if (contact == ToothContact::compliant && v.compliance() == nullptr)
+                   return std::string("needs stiffness_N_per_um");
+                 if (contact == ToothContact::teeth && v.teeth() == nullptr)
+                   return std::string("needs tooth_number and face_width_mm");
+                 return std::string();
+               }}}};
 }
 
 Table bearings_table() {
@@ -1853,7 +2040,7 @@ const Registry& standard_registry() {
        accumulator_table(),
        loop_table(),
        assumptions_table("analytic", [](const auto& v) { return v.analytic; }),
-       assumptions_table("multibody", [](const auto& v) { return v.multibody; }),
+       multibody_assumptions_table(),
        plausibility_table()}};
   return registry;
 }

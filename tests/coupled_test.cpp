@@ -75,8 +75,8 @@ class OneShaft : public Mechanics {
     return {speed * time + y[kTurn], speed + y[kTurnRate], 0};
   }
   AxisMotion block(double time, const MotionVector& y) const override { return shaft(time, y); }
-  double approach(const MotionVector&, int) const override { return -1; }
-  double approach_rate(const MotionVector&, int) const override { return 0; }
+  double approach(double, const MotionVector&, int) const override { return -1; }
+  double approach_rate(double, const MotionVector&, int) const override { return 0; }
   void rates(double time, const MotionVector& y, const OilLoads& loads, MotionVector& dy) override {
     ++asked;
     if (time > strange_after) throw ComputationError("the shaft has melted");
@@ -313,10 +313,10 @@ class Bouncing : public OneShaft {
     m.speed -= y[kLagRate];
     return m;
   }
-  double approach(const MotionVector& y, int flank) const override {
+  double approach(double, const MotionVector& y, int flank) const override {
     return flank * y[kLag] - half_backlash;
   }
-  double approach_rate(const MotionVector& y, int flank) const override {
+  double approach_rate(double, const MotionVector& y, int flank) const override {
     return flank * y[kLagRate];
   }
   void rates(double, const MotionVector& y, const OilLoads&, MotionVector& dy) override {
@@ -324,7 +324,7 @@ class Bouncing : public OneShaft {
     dy[kLag] = y[kLagRate];
     dy[kLagRate] = -pull;
     for (const int flank : {1, -1}) {
-      const double force = stiffness * std::max(0.0, approach(y, flank));
+      const double force = stiffness * std::max(0.0, approach(0, y, flank));
       dy[kLagRate] -= flank * force;
       dy[kImpulse] += force;
     }

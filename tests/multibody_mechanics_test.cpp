@@ -518,8 +518,8 @@ TEST(MechanicsOfBothModels, AgreeAtRandomStates) {
     EXPECT_EQ(a->shaft_is_free(), b->shaft_is_free());
     if (motion.compliant)
       for (const int flank : {1, -1}) {
-        EXPECT_NEAR(a->approach(y, flank), b->approach(y, flank), 1e-18);
-        EXPECT_NEAR(a->approach_rate(y, flank), b->approach_rate(y, flank), 1e-14);
+        EXPECT_NEAR(a->approach(0, y, flank), b->approach(0, y, flank), 1e-18);
+        EXPECT_NEAR(a->approach_rate(0, y, flank), b->approach_rate(0, y, flank), 1e-14);
       }
     EXPECT_NEAR(a->pressure_power(motion.time, y, motion.loads),
                 b->pressure_power(motion.time, y, motion.loads), scaled(1e-12) * torque * 300);

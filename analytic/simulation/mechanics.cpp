@@ -44,10 +44,10 @@ class ClosedForm : public Mechanics {
     motion.speed -= y[kLagRate];
     return motion;
   }
-  double approach(const MotionVector& y, int flank) const override {
+  double approach(double, const MotionVector& y, int flank) const override {
     return equations_.approach(y, flank);
   }
-  double approach_rate(const MotionVector& y, int flank) const override {
+  double approach_rate(double, const MotionVector& y, int flank) const override {
     return equations_.approach_rate(y, flank);
   }
 

@@ -79,10 +79,10 @@ class MultibodyMechanics : public Mechanics {
     const AxisMotion motion = shaft(time, y);
     return {motion.angle - y[kLag], motion.speed - y[kLagRate], 0};
   }
-  double approach(const MotionVector& y, int flank) const override {
+  double approach(double, const MotionVector& y, int flank) const override {
     return flank * arm_ * y[kLag] - teeth().backlash / 2;
   }
-  double approach_rate(const MotionVector& y, int flank) const override {
+  double approach_rate(double, const MotionVector& y, int flank) const override {
     return flank * arm_ * y[kLagRate];
   }
 
@@ -111,7 +111,7 @@ class MultibodyMechanics : public Mechanics {
   double potential_energy(const MotionVector& y) const override {
     double energy = 0;
     if (compliant())
-      for (const int flank : {1, -1}) energy += flank_energy(teeth(), approach(y, flank));
+      for (const int flank : {1, -1}) energy += flank_energy(teeth(), approach(0, y, flank));
     if (has_motor()) energy += motor().coupling_stiffness * y[kTwist] * y[kTwist] / 2;
     return energy;
   }
@@ -235,7 +235,7 @@ void MultibodyMechanics::add_work_rates(const Posture& now, const MotionVector& 
   double elastic = 0;
   if (compliant())
     for (const int flank : {1, -1})
-      elastic += flank_force(teeth(), approach(y, flank), 0) * approach_rate(y, flank);
+      elastic += flank_force(teeth(), approach(0, y, flank), 0) * approach_rate(0, y, flank);
   if (has_motor()) elastic += motor().coupling_stiffness * y[kTwist] * y[kTwistRate];
   dy[kWorkOfLoads] = total - drive + elastic;
   dy[kWorkOfDrive] = drive;

@@ -47,6 +47,11 @@ TimeCurve read_drive_curve(const std::filesystem::path& file, DriveKind kind);
 /// @throws InputError naming file and line.
 TimeCurve read_share_curve(const std::filesystem::path& file);
 
+/// Reads the pitch errors of shaft and block: CSV with the header tooth,shaft_um,block_um, a row
+/// for each of the `count` teeth.
+/// @throws InputError naming file and line.
+void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth);
+
 /// Reads the motion of another simulator or a rig: CSV with theta_deg, psi_deg, theta_rpm, psi_rpm,
 /// theta_rad_per_s2, psi_rad_per_s2 and where there are any time_s, p_1_bar .. p_N_bar,
 /// suction_bar, delivery_bar, in any order. Pressures that it does not give are the case's, those

@@ -4,6 +4,7 @@
 // points and derivatives, so that a mistake in one of them shows as a difference.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ enum class Flanks {
 enum class ToothContact {
   rigid,      ///< nothing: in motion the block turns as the shaft does
   compliant,  ///< flanks that give way, with backlash between them
+  teeth,      ///< straight bevel teeth: where they are, they touch
 };
 
 /// Approach x0, m, at which the force of a compliant flank is stated.
@@ -50,6 +52,42 @@ struct ToothCompliance {
   double backlash = 0;     ///< j, m, along the line of action
 };
 
+/// What one gear's teeth deviate from perfect ones, m along the line of action at O4. With the
+/// pitch angle p = 2 pi / Z, tooth i of the shaft, i = 1..Z, stands at O4 with its middle where
+/// theta = (i - 1) p, and tooth i of the block where psi = (i - 1/2) p: at 0 tooth 1 of the shaft
+/// is in the middle of a gap of the block.
+struct ToothErrors {
+  double runout = 0;        ///< both flanks of tooth i lack runout cos((i - 1) p - runout_angle)
+  double runout_angle = 0;  ///< rad
+  std::vector<double> pitch = {};  ///< tooth i stands so far ahead, towards +theta or +psi; Z
+                                   ///< values, or none: 0
+};
+
+/// Straight bevel teeth of shaft and block, alike but for their errors. Lengths are those at O4,
+/// the middle of the face width; towards O2 all but crowning shrink with the distance from it.
+struct ToothData {
+  int count = 0;              ///< Z
+  double face_width = 0;      ///< w, m, along the pitch cone
+  double addendum = 0;        ///< h_a, m, perpendicular to the pitch cone
+  double dedendum = 0;        ///< h_f, m
+  double backlash = 0;        ///< j, m, along the line of action
+  double dissipation = 0;     ///< c, s/m, as of ToothCompliance, per slice
+  double tip_relief = 0;      ///< C_a, m, material less at the tip
+  double relief_height = 0;   ///< from the tip down to where relief begins, m
+  double lead_crowning = 0;   ///< C_b, m, more distance at both ends than in the middle, of a pair
+  double youngs_modulus = 0;  ///< E, Pa
+  double poisson_ratio = 0;   ///< nu
+  double rim_ratio = 0;       ///< root radius over that of the hub's bore
+  ToothErrors shaft, block;
+  std::filesystem::path error_file = {};  ///< where the pitch errors come from
+};
+
+/// Shape of the flanks of perfect teeth: both carry with a ratio of exactly 1.
+enum class FlankShape {
+  involute,  ///< spherical involutes of base cones
+  octoid,    ///< envelopes of a plane flank of a crown gear
+};
+
 /// Bevel gear pair with equal tooth counts that carries the block round (19)-(23).
 struct Gear {
   double pitch_diameter = 0;  ///< d = m Z, m
@@ -57,6 +95,10 @@ struct Gear {
   ToothContact contact = ToothContact::rigid;
   Flanks flanks = Flanks::one;
   std::optional<ToothCompliance> compliance = {};  ///< there where the contact is compliant
+  std::optional<ToothData> teeth = {};             ///< there where the contact is that of teeth
+
+  /// Whether the block has a motion of its own in time.
+  bool gives_way() const { return contact != ToothContact::rigid; }
 };
 
 /// Bearing centres on the shaft axis, z1 in m.
@@ -161,10 +203,12 @@ struct Assumptions {
   bool piston_friction = true;
   PistonInertia inertia = PistonInertia::lumped;
   BlockDrive gear = BlockDrive::mesh;
+  FlankShape flanks = FlankShape::involute;  ///< of a multibody model's teeth
 };
 
 inline bool operator==(const Assumptions& a, const Assumptions& b) {
-  return a.piston_friction == b.piston_friction && a.inertia == b.inertia && a.gear == b.gear;
+  return a.piston_friction == b.piston_friction && a.inertia == b.inertia && a.gear == b.gear &&
+         a.flanks == b.flanks;
 }
 
 inline std::string to_string(PistonInertia inertia) {

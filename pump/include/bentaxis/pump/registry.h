@@ -44,6 +44,7 @@ struct BasicView {
     return hydraulics == nullptr ? nullptr : address(*hydraulics);
   }
   Pointer<ToothCompliance> compliance() const { return address(pump->gear.compliance); }
+  Pointer<ToothData> teeth() const { return address(pump->gear.teeth); }
   Pointer<double> ring_contact() const { return address(pump->piston.contact); }
   Pointer<DriveSpec> drive_spec() const { return drive == nullptr ? nullptr : address(*drive); }
   Pointer<MotorData> motor() const {
@@ -112,13 +113,14 @@ struct PairField {
   Access<double> first, second;
 };
 /// A CSV file with the points of a curve, relative to the case file: the opening of a port, what
-/// drives the shaft over time, the share of a load over time, or where all are null the chamber
-/// pressure. An empty name: none.
+/// drives the shaft over time, the share of a load over time, pitch errors of teeth, or where all
+/// are null the chamber pressure. An empty name: none.
 struct CurveField {
   Access<std::filesystem::path> file;
   OpeningTable* (*opening)(const View&) = nullptr;
   DriveSpec* (*drive)(const View&) = nullptr;
   TimeCurve* (*share)(const View&) = nullptr;
+  ToothData* (*teeth)(const View&) = nullptr;
 };
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;

@@ -1,6 +1,7 @@
 // One instant of a running pump: the argument of both models.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "bentaxis/pump/pressure.h"
@@ -18,6 +19,12 @@ inline bool operator==(const AxisMotion& a, const AxisMotion& b) {
   return a.angle == b.angle && a.speed == b.speed && a.acceleration == b.acceleration;
 }
 
+/// How far the shaft's teeth are ahead of the block's, theta - psi of the teeth.
+struct ToothLag {
+  double angle = 0;  ///< rad, from the middle of the backlash
+  double rate = 0;   ///< rad/s
+};
+
 /// Motion of shaft and block, and pressures, at an instant. Constant speed is the instant without
 /// accelerations. Reused from call to call without allocation.
 struct Instant {
@@ -25,6 +32,9 @@ struct Instant {
   AxisMotion block;                      ///< psi, positive about +z2
   std::vector<double> chamber_pressure;  ///< Pa gauge, one per piston
   PortPressures ports;                   ///< Pa gauge, load the port-plate lands
+  /// Where the contact is that of teeth: how they stand to each other. None: as they rest under the
+  /// torque that carries the block round, which micrometres of lag decide.
+  std::optional<ToothLag> lag = {};
 
   /// Turns shaft and block alike: the block is locked to the shaft.
   void turn(double angle, double speed, double acceleration = 0) {

@@ -8,6 +8,7 @@
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/oil.h"
+#include "bentaxis/results/teeth.h"
 
 namespace bentaxis {
 
@@ -15,7 +16,7 @@ namespace bentaxis {
 enum MotionIndex : std::size_t {
   kTurn,         ///< theta less the start's speed times time, rad; 0 where the speed is given
   kTurnRate,     ///< rad/s, likewise
-  kLag,          ///< theta - psi, rad, of compliant teeth
+  kLag,          ///< theta - psi, rad, where the gear gives way
   kLagRate,      ///< rad/s
   kTwist,        ///< of the coupling, phi - theta, rad
   kTwistRate,    ///< rad/s
@@ -48,10 +49,14 @@ class Mechanics {
   /// Angles and speeds; accelerations are not filled in.
   virtual AxisMotion shaft(double time, const MotionVector& y) const = 0;
   virtual AxisMotion block(double time, const MotionVector& y) const = 0;
-  /// Of a flank (+1: the shaft pushes the block towards +psi, -1) of compliant teeth, m; below 0:
-  /// the gap; and its rate, m/s.
-  virtual double approach(const MotionVector& y, int flank) const = 0;
-  virtual double approach_rate(const MotionVector& y, int flank) const = 0;
+  /// Of a flank (+1: the shaft pushes the block towards +psi, -1) where the gear gives way, m;
+  /// below 0: the gap; and its rate, m/s. Of teeth the largest of any pair and slice.
+  virtual double approach(double time, const MotionVector& y, int flank) const = 0;
+  virtual double approach_rate(double time, const MotionVector& y, int flank) const = 0;
+  /// What teeth do to each other there; false where the contact is not that of teeth.
+  virtual bool teeth(double /*time*/, const MotionVector& /*y*/, TeethAction& /*action*/) {
+    return false;
+  }
 
   /// dy/dt. Forces follow their laws as they are: between flanks that do not touch nothing acts.
   /// @throws ComputationError where the model has no accelerations
