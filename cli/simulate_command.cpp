@@ -40,9 +40,10 @@ int simulate(const Options& options, const CommandParser& command) {
       read.pump.gear.contact == ToothContact::teeth;
   for (const char* option : {"--integrator", "--accuracy"})
     if (command.given(option) && (one_method || choice.steady))
-      throw InputError(std::string(option) +
-                       ": changes nothing: with oil, of teeth and for a periodic motion, one method "
-                       "integrates what both models find; --error sets its tolerance");
+      throw InputError(
+          std::string(option) +
+          ": changes nothing: with oil, of teeth and for a periodic motion, one method "
+          "integrates what both models find; --error sets its tolerance");
   ReportFolders folders(options.place);
   const study::SimulationResult result = study::simulate(
       study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);

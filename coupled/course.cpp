@@ -44,8 +44,8 @@ Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double to
 void Course::fail(const std::string& why) const {
   const double speed = shaft(time_, state_).speed / kRadPerSecondPerRpm;
   throw ComputationError(name_ + (has_oil_ ? " model with oil" : " model") +
-                         ": the simulation stops at " + rounded_text(time_) +
-                         " s, the shaft at " + rounded_text(speed) + " rpm: " + why);
+                         ": the simulation stops at " + rounded_text(time_) + " s, the shaft at " +
+                         rounded_text(speed) + " rpm: " + why);
 }
 
 void Course::start(double time, const SystemState& state) {

@@ -232,21 +232,19 @@ Json json_of(const DrawingFigure& figure) {
                                                 {"y", drawn_values(line.y)}};
                                   })},
                 {"arrows", list_of(frame.arrows, [](const DrawingFigure::Arrow& arrow) {
-                   return Json{{"panel", arrow.panel},
-                               {"look", arrow.look},
-                               {"x", number_or_null(arrow.x)},
-                               {"y", number_or_null(arrow.y)},
-                               {"dx", number_or_null(arrow.dx)},
-                               {"dy", number_or_null(arrow.dy)}};
+                   return Json{{"panel", arrow.panel},           {"look", arrow.look},
+                               {"x", number_or_null(arrow.x)},   {"y", number_or_null(arrow.y)},
+                               {"dx", number_or_null(arrow.dx)}, {"dy", number_or_null(arrow.dy)}};
                  })}};
   };
   return {
       {"kind", "drawing"},
       {"looks",
-       list_of(figure.looks,
-               [](const DrawingFigure::Look& look) {
-                 return Json{{"label", look.label}, {"colour", look.colour}, {"filled", look.filled}};
-               })},
+       list_of(
+           figure.looks,
+           [](const DrawingFigure::Look& look) {
+             return Json{{"label", look.label}, {"colour", look.colour}, {"filled", look.filled}};
+           })},
       {"panels", list_of(figure.panels, panel_of)},
       {"frames", list_of(figure.frames, frame_of)},
       {"shown", figure.shown}};

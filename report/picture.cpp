@@ -919,16 +919,19 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
   const DrawingFigure::Frame& frame =
       figure.frames[std::min(figure.shown, figure.frames.size() - 1)];
   picture.legend.resize(2);
-  picture.legend[0].push_back({fmt::format("At {:g} deg{}{}", frame.theta_deg,
-                                           frame.text.empty() ? "" : ": ", frame.text),
-                               [](pugi::xml_node, double, double) {}});
+  picture.legend[0].push_back(
+      {fmt::format("At {:g} deg{}{}", frame.theta_deg, frame.text.empty() ? "" : ": ", frame.text),
+       [](pugi::xml_node, double, double) {}});
   for (const DrawingFigure::Look& look : figure.looks)
     picture.legend[1].push_back(line_key(
         look.label, pick(kColours, static_cast<std::size_t>(look.colour)), look.filled ? 6 : 2.5));
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     const DrawingFigure::Panel& from = figure.panels[p];
     const double scale = (kRight - kLeft) / (from.x_high - from.x_low);
-    Panel panel{from.x, from.y, scale * (from.y_high - from.y_low), {from.x_low, from.x_high},
+    Panel panel{from.x,
+                from.y,
+                scale * (from.y_high - from.y_low),
+                {from.x_low, from.x_high},
                 {from.y_low, from.y_high}};
     panel.y_margin = Margin::none;
     panel.draw = [=, looks = figure.looks](pugi::xml_node root, const Scale& x, const Scale& y) {
@@ -959,8 +962,7 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
         const double x2 = x.place(arrow.x + arrow.dx), y2 = y.place(arrow.y + arrow.dy);
         const double ux = (x2 - x1) / std::hypot(x2 - x1, y2 - y1);
         const double uy = (y2 - y1) / std::hypot(x2 - x1, y2 - y1);
-        add_line(root, x1, y1, x2, y2,
-                 {{"stroke", colour(arrow.look)}, {"stroke-width", "2.2"}});
+        add_line(root, x1, y1, x2, y2, {{"stroke", colour(arrow.look)}, {"stroke-width", "2.2"}});
         add(root, "path",
             {{"d", fmt::format("M{} {}L{} {}L{} {}Z", px(x2 + 3 * ux), px(y2 + 3 * uy),
                                px(x2 - 7 * ux - 4 * uy), px(y2 - 7 * uy + 4 * ux),

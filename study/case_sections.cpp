@@ -66,15 +66,17 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
       {"frames, signs and the names of the reactions", "docs/theory.md",
        "free-body diagrams written in the tests; signs printed in the paper"}};
   if (the_case.pump.gear.contact == ToothContact::teeth) {
-    inputs.push_back({"flexibility of a slice of teeth",
-                      "bending, shear, compression, foundation and flattening of the equivalent spur "
-                      "tooth: one function for both models",
-                      "mesh stiffness of a published spur pair and of ISO 6336 (docs/judges.md); "
-                      "1/E in the tests"});
-    inputs.push_back({"shape of the teeth and what counts as their approach (docs/teeth.md)",
-                      "spherical involutes in closed form; curves on the sphere and Newton's method "
-                      "in the multibody model",
-                      "each other; octoids, of which only the ratio of 1 is the same"});
+    inputs.push_back(
+        {"flexibility of a slice of teeth",
+         "bending, shear, compression, foundation and flattening of the equivalent spur "
+         "tooth: one function for both models",
+         "mesh stiffness of a published spur pair and of ISO 6336 (docs/judges.md); "
+         "1/E in the tests"});
+    inputs.push_back(
+        {"shape of the teeth and what counts as their approach (docs/teeth.md)",
+         "spherical involutes in closed form; curves on the sphere and Newton's method "
+         "in the multibody model",
+         "each other; octoids, of which only the ratio of 1 is the same"});
   }
   if (!motion) {
     inputs.push_back(

@@ -645,8 +645,9 @@ ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
     refuse_course(the_case);
     if (the_case.pump.gear.contact == ToothContact::teeth)
       throw InputError(
-          "--steady: with [gear] contact = \"teeth\" the motion repeats itself after a whole turn at "
-          "best, and the search is for an N-th of one: simulate from the start"); 
+          "--steady: with [gear] contact = \"teeth\" the motion repeats itself after a whole turn "
+          "at "
+          "best, and the search is for an N-th of one: simulate from the start");
     // From rest the search would have no period to begin with: it begins at the speed of
     // [operation].
     if (the_case.drive->start_speed == 0.0) the_case.drive->start_speed.reset();

@@ -75,16 +75,17 @@ report::Section teeth_section(const TeethComparison& teeth, const PumpParameters
                    error.high, 1e6 * data.backlash)}};
   for (const auto& [name, flank] : {std::pair{"plus_force_N", "+"}, {"minus_force_N", "-"}}) {
     const Extent force = extent(teeth.analytic, name);
-    section.facts.emplace_back(
-        fmt::format("force of flank {}", flank),
-        force.high > 0 ? fmt::format("{:.4g} to {:.4g} N, largest at {:g} deg", force.low,
-                                     force.high, force.theta_of_high_deg)
-                       : "none");
+    section.facts.emplace_back(fmt::format("force of flank {}", flank),
+                               force.high > 0
+                                   ? fmt::format("{:.4g} to {:.4g} N, largest at {:g} deg",
+                                                 force.low, force.high, force.theta_of_high_deg)
+                                   : "none");
   }
   for (int pairs = 0; pairs <= 2 * kPairsPerFlank; ++pairs)
     if (const double share = share_with(teeth.analytic, pairs); share > 0)
-      section.facts.emplace_back(fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
-                                 fmt::format("{:.3g} % of the turn", 100 * share));
+      section.facts.emplace_back(
+          fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
+          fmt::format("{:.3g} % of the turn", 100 * share));
   section.table.columns = {"quantity", "peak", "unit", "largest difference", "of peak", "verdict"};
   // The worst of each group.
   std::vector<const compare::ChannelComparison*> worst;

@@ -18,8 +18,8 @@ using report::DrawingFigure;
 enum Look { kShaft, kBlock, kPlus, kMinus };
 
 constexpr std::size_t kMostFrames = 90;
-constexpr double kReach = 1.8;        // pitches to either side of O4 that are drawn
-constexpr int kPoints = 9;            // of a flank
+constexpr double kReach = 1.8;         // pitches to either side of O4 that are drawn
+constexpr int kPoints = 9;             // of a flank
 constexpr double kLongestArrow = 0.5;  // pitches
 
 // A gear's teeth as seen on the sphere about O2.
@@ -62,9 +62,9 @@ class Mesh {
     const double tip = pitch_cone_ + std::atan(teeth_.addendum / distance_);
     const double root = pitch_cone_ - std::atan(teeth_.dedendum / distance_);
     const auto add = [&](double polar, double azimuth) {
-      const Vector3d p = std::cos(polar) * w.axis +
-                         std::sin(polar) * (std::cos(azimuth) * w.meridian +
-                                            std::sin(azimuth) * w.ahead);
+      const Vector3d p =
+          std::cos(polar) * w.axis +
+          std::sin(polar) * (std::cos(azimuth) * w.meridian + std::sin(azimuth) * w.ahead);
       line.x.push_back(1e3 * distance_ * p.dot(across_) / p.dot(towards_o4_));
       line.y.push_back(1e3 * distance_ * p.dot(up_) / p.dot(towards_o4_));
     };
@@ -171,12 +171,14 @@ report::Figure teeth_picture(const PumpParameters& pump, const ResultTable& tabl
         const double length = kLongestArrow * mesh.pitch_length() * force / largest;
         frame.arrows.push_back({0, look, x, y, length * normal.x(), length * normal.y()});
         const double outside = inside + mesh.face_width();
-        frame.lines.push_back({1, look, 1.5 + 6 * force / largest,
+        frame.lines.push_back({1,
+                               look,
+                               1.5 + 6 * force / largest,
                                {x * inside / mesh.distance(), x * outside / mesh.distance()},
                                {inside, outside}});
-        frame.text += fmt::format(
-            "{}flank {}: {:.4g} N on shaft tooth {:.0f}", frame.text.empty() ? "" : ", ",
-            look == kPlus ? "+" : "-", force, table.at(row, table.find(name + "shaft_tooth")));
+        frame.text += fmt::format("{}flank {}: {:.4g} N on shaft tooth {:.0f}",
+                                  frame.text.empty() ? "" : ", ", look == kPlus ? "+" : "-", force,
+                                  table.at(row, table.find(name + "shaft_tooth")));
       }
     if (carried > shown) {
       shown = carried;

@@ -175,10 +175,11 @@ std::vector<Figure> odd_figures() {
   add(PistonBars{"Nm", {"R", "missing"}, {0, 38}});
   add(DrawingFigure{});
   const DrawingFigure::Panel panel{{"x", "mm"}, {"y", "mm"}, -1, 1, 0, 1};
-  add(DrawingFigure{{{"tooth", 0, true}, {"force", 1}},
-                    {panel},
-                    {{38, "one pair", {{0, 0, 2, {0, gap, 1e300}, {0, 1, 1}}}, {{0, 1, 0, 0, 0, 0}}}},
-                    5});
+  add(DrawingFigure{
+      {{"tooth", 0, true}, {"force", 1}},
+      {panel},
+      {{38, "one pair", {{0, 0, 2, {0, gap, 1e300}, {0, 1, 1}}}, {{0, 1, 0, 0, 0, 0}}}},
+      5});
   return figures;
 }
 
@@ -216,10 +217,10 @@ TEST(Picture, DrawingShowsOneFrameToScaleAndHandsOutAll) {
   // 2 mm across are as long as 2 mm up: the box is 622 px wide and 10 mm.
   EXPECT_THAT(svg, HasSubstr("M144.2 "));
   std::smatch path;
-  ASSERT_TRUE(std::regex_search(svg, path,
-                                std::regex(R"(M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)\")")));
-  EXPECT_NEAR(std::stod(path[3]) - std::stod(path[1]), 2 * (std::stod(path[2]) - std::stod(path[4])),
-              0.21);
+  ASSERT_TRUE(
+      std::regex_search(svg, path, std::regex(R"(M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)\")")));
+  EXPECT_NEAR(std::stod(path[3]) - std::stod(path[1]),
+              2 * (std::stod(path[2]) - std::stod(path[4])), 0.21);
   EXPECT_EQ(csv_of(figure),
             "theta_deg,panel,look,shape,x,y\n38,1,tooth,1,1,1\n38,1,tooth,1,3,2\n"
             "38,1,force,2,2,2\n38,1,force,2,2,3\n");

@@ -84,7 +84,7 @@ struct Trajectory {
   MotionTable table;
   std::vector<double> lag;  ///< theta - psi, rad, per row, with its own digits
   TrajectoryRecord record;
-  std::optional<OilHistory> oil;  ///< where oil is simulated too
+  std::optional<OilHistory> oil;   ///< where oil is simulated too
   std::vector<TeethAction> teeth;  ///< per row, where the contact is that of teeth
 };
 
