@@ -58,16 +58,6 @@ constexpr std::array<std::array<double, 6>, 4> kFoundation = {{
     {-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904},
 }};
 
-std::array<double, 4> foundation_factors(double root_angle, double rim_ratio) {
-  std::array<double, 4> factors{};
-  const double t = std::clamp(root_angle, kFittedFrom, kFittedTo), h = rim_ratio;
-  for (std::size_t i = 0; i < factors.size(); ++i) {
-    const auto& [a, b, c, d, e, f] = kFoundation[i];
-    factors[i] = a / (t * t) + b * h * h + c * h / t + d / t + e * h + f;
-  }
-  return factors;
-}
-
 constexpr double kEstimate = 1e-8;
 
 template <typename F>
@@ -148,6 +138,17 @@ double ToothFlexibility::tooth(double height) const {
     last = now;
   }
   return x * last - before + coefficients_[0];
+}
+
+std::array<double, 4> ToothFlexibility::foundation_factors(double root_angle,
+ double rim_ratio) {
+  std::array<double, 4> factors{};
+  const double t = std::clamp(root_angle, kFittedFrom, kFittedTo), h = rim_ratio;
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const auto& [a, b, c, d, e, f] = kFoundation[i];
+    factors[i] = a / (t * t) + b * h * h + c * h / t + d / t + e * h + f;
+  }
+  return factors;
 }
 
 ToothFlexibility::Parts ToothFlexibility::parts(double height) const {

@@ -1,6 +1,7 @@
 // How much a slice of a tooth gives way: an input that both models share, stated in docs/teeth.md.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "bentaxis/pump/parameters.h"
@@ -48,6 +49,8 @@ class ToothFlexibility {
   };
   /// By quadrature, which tooth() interpolates: slow.
   Parts parts(double height) const;
+  /// L, M, P, Q; `root_angle` is half the tooth's thickness on the root circle, rad.
+  static std::array<double, 4> foundation_factors(double root_angle, double rim_ratio);
 
   /// The equivalent gear's tooth, m and rad.
   struct Profile {
