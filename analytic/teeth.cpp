@@ -33,6 +33,7 @@ const PumpParameters& checked(const PumpParameters& pump) {
   validate(pump);
   if (pump.gear.contact != ToothContact::teeth || !pump.gear.teeth)
     throw InputError("[gear] contact: must be \"teeth\" for teeth that touch where they are");
+  closed_form::require_mesh(pump.gear, closed_form::bevel(pump));
   return pump;
 }
 
@@ -197,7 +198,8 @@ void BevelTeeth::Numbers::press(Contact& c, bool dissipation_acts) const {
 
 template <class Use>
 void BevelTeeth::Numbers::each_pair(double theta, int flank, const Use& use) const {
-  const double nearest = std::floor(theta * pitches_per_radian + 0.5);
+  constexpr double kHair = 1e-9;  // of a pitch: samples on the border belong to one side
+  const double nearest = std::floor(theta * pitches_per_radian + 0.5 + kHair);
   const double past = std::fma(-nearest, bevel.pitch, theta) - nearest * bevel.pitch_rest;
   const auto tooth = static_cast<long long>(nearest);
   constexpr int kBefore[kPairsPerFlank] = {0, 1, -1};
@@ -212,9 +214,7 @@ void BevelTeeth::Numbers::each_pair(double theta, int flank, const Use& use) con
 BevelTeeth::BevelTeeth(const PumpParameters& pump, Unchecked)
     : numbers_(std::make_shared<const Numbers>(pump)) {}
 
-BevelTeeth::BevelTeeth(const PumpParameters& pump) : BevelTeeth(checked(pump), Unchecked{}) {
-  closed_form::require_mesh(pump.gear, numbers_->bevel);
-}
+BevelTeeth::BevelTeeth(const PumpParameters& pump) : BevelTeeth(checked(pump), Unchecked{}) {}
 
 const BevelGeometry& BevelTeeth::geometry() const { return numbers_->bevel.at; }
 
@@ -326,9 +326,9 @@ ToothLag BevelTeeth::rest(double theta, double torque) const {
     }
     return lag;
   };
-  // What rounding of a lag of a radian would change the torque by counts as none.
+  constexpr double kNoTorque = 1e-9;  // Nm: what rounding leaves of nothing
+  if (std::abs(torque) <= kNoTorque) torque = 0;
   const double stiffness = p.stiffness * arm * arm;
-  if (std::abs(torque) <= std::numeric_limits<double>::epsilon() * stiffness) torque = 0;
   const int side = torque < 0 ? -1 : 1;
   double near = touch(side);
   double near_excess = excess(near);

@@ -422,7 +422,7 @@ TEST(BevelTeeth, RestInvertsTheLaw) {
   for (const PumpParameters& pump : {toothed(), imperfect()}) {
     const BevelTeeth teeth(pump);
     for (const double theta : kAngles)
-      for (const double torque : {-20.0, -0.3, 1e-6, 0.7, 15.0, 200.0}) {
+      for (const double torque : {-20.0, -0.3, 1e-5, 0.7, 15.0, 200.0}) {
         const ToothLag lag = teeth.rest(theta, torque);
         EXPECT_EQ(lag.rate, 0);
         const TeethAction action = teeth.act(theta, 150, lag, false);
