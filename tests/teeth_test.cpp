@@ -12,11 +12,17 @@
 #include <string>
 
 #include "allocations.h"
+#include "bentaxis/analytic/batch.h"
+#include "bentaxis/analytic/mechanics.h"
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/rounding.h"
+#include "bentaxis/analytic/simulation.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/tooth_flexibility.h"
 #include "bentaxis/pump/units.h"
 #include "closed_form/bevel.h"
+#include "free_bodies.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -512,6 +518,292 @@ TEST(BevelTeeth, ActingAllocatesNothing) {
   }
   EXPECT_EQ(allocations, before);
   EXPECT_NE(sum, 0);
+}
+
+// ---- a pump with teeth -------------------------------------------------------------------------
+
+Case toothed_case() {
+  return read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_teeth.toml");
+}
+
+// The instant of a run's row.
+Instant instant_at(const Case& the_case, double theta_deg, double speed) {
+  const PressureTrace trace(the_case.pressure);
+  Instant instant;
+  instant.turn(radians(theta_deg), speed);
+  instant.ports = the_case.pressure.ports;
+  for (int k = 1; k <= the_case.pump.geometry.pistons; ++k)
+    instant.chamber_pressure.push_back(
+        trace(piston_angle_deg(theta_deg, k, the_case.pump.geometry.pistons)));
+  return instant;
+}
+
+TEST(ToothedModel, FreeBodiesBalanceUnderTheForcesOfThePairs) {
+  Case the_case = toothed_case();
+  the_case.pump.gear.teeth = imperfect().gear.teeth;
+  const analytic::Model model(the_case.pump, the_case.analytic);
+  std::vector<double> values(model.layout().size());
+  MotionChecks checks;
+  TeethAction action;
+  int back = 0;
+  for (const double speed : {157.0, -157.0})
+    for (double theta = 0; theta < 360; theta += 7.3) {
+      const Instant instant = instant_at(the_case, theta, speed);
+      model.evaluate(instant, values, &checks);
+      model.teeth(instant, action);
+      EXPECT_LT(free_body_residual(the_case.pump, the_case.analytic, instant, values, &action),
+                1e-12)
+          << theta;
+      EXPECT_NEAR(checks.power_balance, 0, 1e-9) << theta;
+      EXPECT_NEAR(values[model.layout().power_residual()], 0, 1e-11) << theta;
+      const double rcs = (speed < 0 ? -1 : 1) * values[model.layout().Rcs()];
+      EXPECT_NEAR(checks.tooth_law, rcs, 1e-10 * std::abs(rcs) + 1e-8) << theta;
+      if (action.lag < 0) ++back;
+    }
+  EXPECT_GT(back, 10);
+}
+
+TEST(ToothedModel, TakesTheLagOfAnInstant) {
+  // Block that moves on its own with teeth at a lag: the law's forces act, whatever the block's
+  // balance needs, and power balances with what the block takes.
+  Case the_case = toothed_case();
+  the_case.pump.gear.teeth = imperfect().gear.teeth;
+  const analytic::Model model(the_case.pump, the_case.analytic);
+  std::vector<double> values(model.layout().size());
+  MotionChecks checks;
+  TeethAction action;
+  const BevelTeeth teeth(the_case.pump);
+  for (double theta = 3; theta < 360; theta += 17.3) {
+    Instant instant = instant_at(the_case, theta, 157.0);
+    instant.lag = ToothLag{6e-4, 0.4};
+    instant.block = {instant.shaft.angle - 6e-4, 157.0 - 0.4, -300.0};
+    instant.shaft.acceleration = 100;
+    model.evaluate(instant, values, &checks);
+    model.teeth(instant, action);
+    const BevelTeeth::Wrench w = teeth.wrench(instant.shaft.angle, 157.0, *instant.lag);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(action.force[i], w.force[i], 1e-9);
+    const double arm =
+        the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle);
+    EXPECT_NEAR(checks.tooth_law, teeth.about_block_axis(w.moment) / arm, 1e-8);
+    EXPECT_NEAR(checks.power_balance, 0, 1e-8) << theta;
+  }
+}
+
+TEST(ToothedModel, LongDoubleSeesTheSame) {
+  const Case the_case = toothed_case();
+  const analytic::Model model(the_case.pump, the_case.analytic);
+  std::vector<double> values(model.layout().size());
+  std::vector<long double> wide(model.layout().size());
+  const Instant instant = instant_at(the_case, 100, 157);
+  model.reactions(instant, values);
+  model.reactions(instant, wide);
+  for (std::size_t c = 0; c < model.layout().reactions(); ++c)
+    EXPECT_NEAR(values[c], static_cast<double>(wide[c]), 1e-9) << c;
+}
+
+TEST(ToothedModel, StiffTeethTendToTwoRigidFlanksAsOneOverTheirStiffness) {
+  // A single pair at O4 on a narrow face, without backlash: what is left is the deflection. (At a
+  // tenth of the least stiffness here the neighbours' tips would touch.)
+  Case the_case = toothed_case();
+  ToothData& teeth = *the_case.pump.gear.teeth;
+  teeth.backlash = 0;
+  teeth.face_width = 2e-6;
+  PumpParameters rigid = the_case.pump;
+  rigid.gear.contact = ToothContact::rigid;
+  rigid.gear.teeth.reset();
+  const double theta = -90.0 / teeth.count;  // flank +1 of tooth 1 at O4
+  const Instant instant = instant_at(the_case, theta, 157);
+  const analytic::Model flanks(rigid, the_case.analytic);
+  std::vector<double> expected(flanks.layout().size());
+  flanks.evaluate(instant, expected);
+  ASSERT_GT(expected[flanks.layout().Rcs()], 50);
+  double before = 0;
+  for (const double stiffness : {1e15, 1e16, 1e17}) {
+    teeth.youngs_modulus = stiffness;
+    const analytic::Model model(the_case.pump, the_case.analytic);
+    std::vector<double> values(model.layout().size());
+    model.evaluate(instant, values);
+    const ChannelLayout& at = model.layout();
+    double largest = 0;
+    for (std::size_t c = at.Fh(); c < at.reactions(); ++c)
+      largest = std::max(largest, std::abs(values[c] - expected[c]));
+    EXPECT_GT(largest, 0);
+    EXPECT_NEAR(values[at.Td()], expected[at.Td()], 1e-10);
+    if (before > 0) {
+      EXPECT_NEAR(before / largest, 10, 0.5) << stiffness;
+    }
+    before = largest;
+  }
+  EXPECT_LT(before, 1e-4);  // N, of tens of thousands
+}
+
+TEST(ToothedModel, StiffTeethTakeAsMuchFromTheShaftAsTheyGive) {
+  // Edges of tips carry the less the stiffer the teeth: the ratio under load tends to 1.
+  Case the_case = toothed_case();
+  double before = std::numeric_limits<double>::infinity();
+  for (const double stiffness : {206e9, 206e11, 206e13}) {
+    the_case.pump.gear.teeth->youngs_modulus = stiffness;
+    const BevelTeeth teeth(the_case.pump);
+    double worst = 0;
+    for (int i = 0; i < 400; ++i) {
+      const double theta = 6e-4 * i;
+      const auto m = teeth.wrench(theta, 0, teeth.rest(theta, 16.0), false).moment;
+      worst = std::max(worst, std::abs(m[2] - teeth.about_block_axis(m)));
+    }
+    EXPECT_LT(worst, 0.2 * before) << stiffness;
+    before = worst;
+  }
+  EXPECT_GT(before, 0);
+}
+
+TEST(ToothedModel, RunWritesWhatTheTeethDo) {
+  const Case the_case = toothed_case();
+  const Samples samples = sample_case(the_case, PressureTrace(the_case.pressure));
+  ResultTable teeth;
+  const ResultTable table = analytic::run(the_case, the_case.analytic, samples, {}, &teeth);
+  ASSERT_EQ(teeth.rows(), table.rows());
+  const ChannelLayout at(the_case.pump.geometry.pistons);
+  const double arm =
+      the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    EXPECT_NEAR(table.at(row, at.power_residual()), 0, 1e-11);
+    // A pair's force is as far from O2 as its slices' middle: within 2 % of the force at O4.
+    const double sum =
+        teeth.at(row, teeth.find("plus_force_N")) - teeth.at(row, teeth.find("minus_force_N"));
+    const double rcs = table.at(row, at.Rcs());
+    EXPECT_NEAR(sum, rcs, 0.02 * std::abs(rcs) + 1e-6);
+    EXPECT_NEAR(teeth.at(row, teeth.find("transmission_error_um")),
+                teeth.at(row, teeth.find("lag_urad")) * arm, 1e-9);
+  }
+  // No teeth, no table.
+  Case rigid = the_case;
+  rigid.pump.gear.contact = ToothContact::rigid;
+  rigid.pump.gear.teeth.reset();
+  ResultTable none;
+  analytic::run(rigid, rigid.analytic, samples, {}, &none);
+  EXPECT_EQ(none.rows(), 0U);
+}
+
+TEST(ToothedModel, WhatCannotFollowTeethSaysSo) {
+  const Case the_case = toothed_case();
+  EXPECT_THROW(analytic::BatchModel(the_case.pump, the_case.analytic), InputError);
+  EXPECT_THROW(analytic::PumpBatch({the_case.pump}, the_case.analytic), InputError);
+  EXPECT_THROW(analytic::simulate(the_case, the_case.analytic, PressureTrace(the_case.pressure)),
+               InputError);
+  PumpParameters pump = the_case.pump;
+  pump.gear.teeth->dedendum = 1e-3;
+  EXPECT_THROW(analytic::Model(pump, the_case.analytic), InputError);
+}
+
+TEST(ToothedModel, RoundingIsEstimated) {
+  const Case the_case = toothed_case();
+  const PressureTrace trace(the_case.pressure);
+  const Samples samples = sample_case(the_case, trace);
+  for (const analytic::GroupRounding& group :
+       analytic::estimate_rounding(the_case, the_case.analytic, samples, trace, 12)) {
+    EXPECT_TRUE(std::isfinite(group.total())) << group.group;
+    EXPECT_LT(group.total(), 1e-6) << group.group;
+  }
+}
+
+// ---- in motion ---------------------------------------------------------------------------------
+
+OilLoads loads_at(const Case& the_case, double psi) {
+  const Instant instant = instant_at(the_case, psi / kRadPerDegree, 0);
+  return {instant.chamber_pressure, instant.ports};
+}
+
+TEST(ToothedMechanics, EnergyIsWhatTheLoadsFeedIn) {
+  for (const DriveKind kind : {DriveKind::speed, DriveKind::torque}) {
+    Case the_case = toothed_case();
+    the_case.pump.gear.teeth = imperfect().gear.teeth;
+    the_case.drive->kind = kind;
+    the_case.drive->torque = 250;
+    the_case.pump.friction.block_viscous = 1e-3;
+    const auto mechanics = analytic::mechanics(the_case, the_case.analytic);
+    EXPECT_TRUE(mechanics->compliant());
+    std::vector<double> state, row(mechanics->layout().size());
+    MotionChecks checks;
+    int pressing = 0;
+    for (int i = 0; i < 40; ++i) {
+      const double time = 1e-3 * i + 1e-4;
+      MotionVector y = mechanics->start();
+      y[kLag] = 9e-4 * std::sin(3.0 * i);
+      y[kLagRate] = 0.5 * std::cos(2.0 * i);
+      if (kind == DriveKind::torque) y[kTurn] = 0.02 * i, y[kTurnRate] = 3 * std::sin(1.0 * i);
+      const OilLoads loads = loads_at(the_case, mechanics->block(time, y).angle);
+      MotionVector dy;
+      mechanics->rates(time, y, loads, dy);
+      mechanics->row(time, y, loads, state, row, checks);
+      EXPECT_NEAR(checks.power_balance, 0, 1e-7);
+      const double rcs = row[mechanics->layout().Rcs()];
+      EXPECT_NEAR(checks.tooth_law, rcs, 1e-9 * (100 + std::abs(rcs)));
+      EXPECT_NEAR(dy[kImpulse], std::abs(rcs), 1e-9 * (100 + std::abs(rcs)));
+      if (std::abs(rcs) > 1e-6) ++pressing;
+      const double step = 1e-7;
+      const auto energy = [&](double t) {
+        MotionVector there = y;
+        for (const std::size_t s : {kTurn, kTurnRate, kLag, kLagRate}) there[s] += dy[s] * t;
+        return mechanics->kinetic_energy(time + t, there);
+      };
+      const double gained = (energy(step) - energy(-step)) / (2 * step);
+      const double fed = dy[kWorkOfLoads] + dy[kWorkOfDrive];
+      EXPECT_NEAR(gained, fed, 1e-5 * (1e4 + std::abs(dy[kWorkOfDrive]))) << i;
+      EXPECT_EQ(mechanics->potential_energy(y), 0);
+
+      TeethAction action;
+      ASSERT_TRUE(mechanics->teeth(time, y, action));
+      EXPECT_EQ(action.lag, y[kLag]);
+      const double nearest =
+          std::max(mechanics->approach(time, y, 1), mechanics->approach(time, y, -1));
+      double force = 0;
+      for (const PairContact& pair : action.pairs) force += pair.force;
+      if (force > 0) {
+        EXPECT_GT(nearest, 0);
+      }
+    }
+    EXPECT_GT(pressing, 10);
+  }
+}
+
+TEST(ToothedMechanics, RestsWhereTheQuasiStaticTeethDo) {
+  // At the lag of a run, with its rate, the block keeps nearly the shaft's pace: what is left is
+  // the motion of the lag itself.
+  Case the_case = toothed_case();
+  the_case.pump.gear.teeth->backlash = 0;
+  the_case.pump.gear.teeth->dissipation = 0;
+  const auto mechanics = analytic::mechanics(the_case, the_case.analytic);
+  const analytic::Model model(the_case.pump, the_case.analytic);
+  const double omega = rad_per_second(the_case.operation.speed_rpm);
+  for (const double theta_deg : {0.0, 50.0, 100.0, 200.0}) {
+    const double time = radians(theta_deg) / omega;
+    const Instant instant = instant_at(the_case, theta_deg, omega);
+    TeethAction action;
+    model.teeth(instant, action);
+    MotionVector y = mechanics->start();
+    y[kLag] = action.lag;
+    MotionVector dy;
+    mechanics->rates(time, y, {instant.chamber_pressure, instant.ports}, dy);
+    // The lag turns the block by as much: a change of some parts in 1e5 of its torques.
+    EXPECT_LT(std::abs(dy[kLagRate]), 20) << theta_deg;  // of 1e4 rad/s2 without teeth
+    y[kLag] = 0;
+    mechanics->rates(time, y, {instant.chamber_pressure, instant.ports}, dy);
+    EXPECT_GT(std::abs(dy[kLagRate]), 200) << theta_deg;
+  }
+}
+
+TEST(ToothedMechanics, ScalesAreThoseOfTheTeeth) {
+  const Case the_case = toothed_case();
+  const auto mechanics = analytic::mechanics(the_case, the_case.analytic);
+  const MotionVector scale = mechanics->scales();
+  const BevelTeeth teeth(the_case.pump);
+  const double arm =
+      the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle);
+  // A force of the size that acts deflects a pair by about the lag's scale.
+  const double force = scale[kLag] * arm * teeth.stiffness();
+  EXPECT_GT(force, 50);
+  EXPECT_LT(force, 5000);
+  EXPECT_GT(scale[kLagRate] / scale[kLag], 1e3);  // rad/s
 }
 
 }  // namespace
