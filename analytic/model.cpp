@@ -12,6 +12,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
+#include "closed_form/bevel.h"
 #include "closed_form/reactions.h"
 #include "kinematics.h"
 #include "prepared.h"
@@ -66,8 +67,19 @@ void require_sizes(const Instant& instant, const std::vector<Real>& values, int 
 
 }  // namespace
 
+namespace {
+
+const PumpParameters& checked(const PumpParameters& pump) {
+  validate(pump);
+  if (pump.gear.contact == ToothContact::teeth)
+    closed_form::require_mesh(pump.gear, closed_form::bevel(pump));
+  return pump;
+}
+
+}  // namespace
+
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
-    : Model(validate(pump), assumptions, Unchecked{}) {}
+    : Model(checked(pump), assumptions, Unchecked{}) {}
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked)
     : pump_(pump),
@@ -106,12 +118,87 @@ void Model::reactions(const Instant& instant, std::vector<double>& values) const
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
+  if (prepared_->teeth && !prepared_->imposed) let_teeth_act(instant, values);
 }
 
 void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), extended(prepared_->numbers), instant, values.data());
+  if (prepared_->teeth && !prepared_->imposed) let_teeth_act(instant, values);
+}
+
+namespace {
+
+// Towards +psi, of the column Rcs.
+double on_block(const Instant& instant, double rcs) {
+  return closed_form::Math<double>::direction(instant.shaft.speed) * rcs;
+}
+
+BevelTeeth::Wrench wrench_at(const BevelTeeth& teeth, const Instant& instant, const ToothLag& lag) {
+  return teeth.wrench(instant.shaft.angle, instant.shaft.speed, lag, instant.lag.has_value());
+}
+
+}  // namespace
+
+// Of the law where the instant says how the teeth stand, else at rest under the force `tooth_force`
+// along the line of action at O4.
+ToothLag Model::lag_at(const Instant& instant, double tooth_force) const {
+  if (instant.lag) return *instant.lag;
+  return prepared_->teeth->rest(instant.shaft.angle,
+                                tooth_force / prepared_->numbers.gear.inverse_arm);
+}
+
+// Reactions were found with the whole tooth force at O4: what the teeth's own force and moment
+// differ by comes on top.
+template <class Real>
+void Model::let_teeth_act(const Instant& instant, std::vector<Real>& values) const {
+  using closed_form::Vec3;
+  const closed_form::Pump<double>& p = prepared_->numbers;
+  const double tooth = on_block(instant, static_cast<double>(values[layout_.Rcs()]));
+  const BevelTeeth::Wrench w = wrench_at(*prepared_->teeth, instant, lag_at(instant, tooth));
+  const Vec3<double> force = {w.force[0], w.force[1], w.force[2]};
+  const Vec3<double> moment = {w.moment[0], w.moment[1], w.moment[2]};
+  const auto to_s2 = [&](const Vec3<double>& v) {
+    return Vec3<double>{v.x, p.frame.cos_tilt * v.y - p.frame.sin_tilt * v.z,
+                        p.frame.sin_tilt * v.y + p.frame.cos_tilt * v.z};
+  };
+  const auto at_o4 = closed_form::tooth_on_block(p.gear, tooth);
+  const Vec3<double> block_moment = to_s2(moment) - at_o4.moment;
+  const auto block = closed_form::hold_block(
+      p.block, closed_form::BlockBalance<double>{to_s2(force) - at_o4.force, block_moment.x,
+                                                 block_moment.y});
+  const auto add = [&](std::size_t channel, double change) { values[channel] += change; };
+  add(layout_.Fh(), block.fh);
+  add(layout_.Th(0), block.th_x);
+  add(layout_.Th(1), block.th_y);
+  add(layout_.Rcn(0), block.pin_x);
+  add(layout_.Rcn(1), block.pin_y);
+
+  const auto shaft_at_o4 = closed_form::tooth_on_shaft(p.gear, tooth);
+  const double offset = pump_.geometry.axis_offset;  // of O2 from O1
+  const Vec3<double> about_o1 = moment + offset * Vec3<double>{-force.y, force.x, 0};
+  const Vec3<double> shaft_force = -1.0 * force - shaft_at_o4.force;
+  const Vec3<double> shaft_moment = -1.0 * about_o1 - shaft_at_o4.moment;
+  const auto held = closed_form::bearings(p.shaft, shaft_force, shaft_moment.x, shaft_moment.y);
+  add(layout_.Rb1(0), held.tapered.x);
+  add(layout_.Rb1(1), held.tapered.y);
+  add(layout_.Rb1(2), held.tapered.z);
+  add(layout_.Rb2(0), held.cylindrical_x);
+  add(layout_.Rb2(1), held.cylindrical_y);
+  add(layout_.Td(), -shaft_moment.z * p.shaft.inverse_torque_factor);
+}
+
+void Model::teeth(const Instant& instant, TeethAction& action) const {
+  if (!prepared_->teeth || prepared_->imposed)
+    throw InputError(
+        "analytic model: teeth act where [gear] contact = \"teeth\" and the shaft moves the block");
+  std::vector<double> values(layout_.reactions());
+  require_sizes(instant, values, layout_.pistons(), layout_.reactions());
+  all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
+  const ToothLag lag = lag_at(instant, on_block(instant, values[layout_.Rcs()]));
+  action =
+      prepared_->teeth->act(instant.shaft.angle, instant.shaft.speed, lag, instant.lag.has_value());
 }
 
 namespace {
@@ -121,7 +208,7 @@ namespace {
 template <class State>
 MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
                    const ChannelLayout& at, const Instant& instant, const State& state,
-                   std::vector<double>& values) {
+                   const BevelTeeth::Wrench* teeth, std::vector<double>& values) {
   constexpr bool kLocked = std::is_same_v<State, closed_form::State<double>>;
   const closed_form::Pump<double>& numbers = pump.numbers;
   const closed_form::PistonNumbers<double>& p = numbers.piston;
@@ -147,11 +234,17 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
                shaft.speed -
            carry * block.speed;
     if (!pump.imposed) {
-      const double tooth =
-          closed_form::Math<double>::direction(shaft.speed) * values[at.Rcs()];  // towards +psi
+      const double tooth = on_block(instant, values[at.Rcs()]);
       work +=
           closed_form::tooth_on_block(numbers.gear, tooth).moment.z * (block.speed - shaft.speed);
     }
+  }
+  // What teeth take from the shaft beyond what their force at O4 would.
+  if (teeth != nullptr) {
+    const double tooth = on_block(instant, values[at.Rcs()]);
+    work += (closed_form::tooth_on_block(numbers.gear, tooth).moment.z -
+             BevelTeeth::about_shaft_axis(teeth->moment)) *
+            (kLocked ? 1 : shaft.speed);
   }
   double ring_work = 0;
   for (int k = 0; k < at.pistons(); ++k) {
@@ -204,10 +297,12 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
     values[at.power_residual()] = work;
   else
     values[at.power_residual()] = shaft.speed == 0 ? not_computed() : work / shaft.speed;
-  return {pump.tooth_law
-              ? pump.tooth_law->force(shaft.angle - block.angle, shaft.speed - block.speed)
-              : not_computed(),
-          ring_work * rate, work * rate};
+  double law = not_computed();
+  if (pump.tooth_law)
+    law = pump.tooth_law->force(shaft.angle - block.angle, shaft.speed - block.speed);
+  if (teeth != nullptr)
+    law = pump.teeth->about_block_axis(teeth->moment) * numbers.gear.inverse_arm;
+  return {law, ring_work * rate, work * rate};
 }
 
 }  // namespace
@@ -221,9 +316,14 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values,
   values[at.xh()] = fh == 0 ? not_computed() : -values[at.Th(1)] / fh;  // (53)
   values[at.yh()] = fh == 0 ? not_computed() : values[at.Th(0)] / fh;
 
+  BevelTeeth::Wrench wrench;
+  const BevelTeeth* teeth = prepared_->imposed || !prepared_->teeth ? nullptr : &*prepared_->teeth;
+  if (teeth != nullptr)
+    wrench = wrench_at(*teeth, instant, lag_at(instant, on_block(instant, values[at.Rcs()])));
   MotionChecks found;
   with_state<double>(instant, [&](const auto& state) {
-    found = judge(*prepared_, pump_, at, instant, state, values);
+    found =
+        judge(*prepared_, pump_, at, instant, state, teeth != nullptr ? &wrench : nullptr, values);
   });
   if (checks != nullptr) *checks = found;
 }
@@ -284,10 +384,24 @@ void note(Provenance& provenance, std::chrono::steady_clock::time_point start, i
       {"kinematics", kinematics}};
 }
 
+// What the teeth do at each instant of a table.
+template <class At>
+ResultTable act_along(const Model& model, const Gear& gear, std::size_t rows, const At& at) {
+  ResultTable table = teeth_table("analytic");
+  Instant instant;
+  TeethAction action;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double theta_deg = at(row, instant);
+    model.teeth(instant, action);
+    append_teeth(table, theta_deg, gear, action);
+  }
+  return table;
+}
+
 }  // namespace
 
 ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
-                const Progress& progress) {
+                const Progress& progress, ResultTable* teeth) {
   const auto start = std::chrono::steady_clock::now();
   const Model model(validate(the_case).pump, assumptions);
   ResultTable table = tabulate(
@@ -296,11 +410,17 @@ ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samp
       progress);
   note(table.provenance, start, model.layout().pistons(),
        "exact derivatives with respect to theta (9)-(23)");
+  if (teeth != nullptr && the_case.pump.gear.contact == ToothContact::teeth)
+    *teeth = act_along(model, the_case.pump.gear, samples.theta_deg.size(),
+                       [&](std::size_t row, Instant& instant) {
+                         samples.instant(row, instant);
+                         return samples.theta_deg[row];
+                       });
   return table;
 }
 
 MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
-                       const Progress& progress) {
+                       const Progress& progress, ResultTable* teeth) {
   const auto start = std::chrono::steady_clock::now();
   const Model model(validate(the_case).pump, assumptions);
   MotionTable table = tabulate_states(
@@ -312,6 +432,12 @@ MotionTable run_states(const Case& the_case, const Assumptions& assumptions, con
   note(table.results.provenance, start, model.layout().pistons(),
        "exact total derivatives with respect to time of (9)-(12), shaft and block each at its own "
        "angle");
+  if (teeth != nullptr && the_case.pump.gear.contact == ToothContact::teeth)
+    *teeth =
+        act_along(model, the_case.pump.gear, states.rows(), [&](std::size_t row, Instant& instant) {
+          states.instant(row, instant);
+          return states.motion[row].theta_deg;
+        });
   return table;
 }
 

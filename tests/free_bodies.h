@@ -12,6 +12,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/teeth.h"
 #include "printed_model.h"
 
 namespace bentaxis::test {
@@ -53,8 +54,10 @@ inline double ring_friction(const Friction& f, double velocity, double rest_spee
 
 /// Largest residual of all bodies, in S1. `values` are SI, ordered by ChannelLayout. Needs the gear
 /// in mesh.
+/// @param teeth  where not null: what acts between shaft and block, instead of Rcs at O4
 inline double free_body_residual(const PumpParameters& p, const Assumptions& assumptions,
-                                 const Instant& t, const std::vector<double>& values) {
+                                 const Instant& t, const std::vector<double>& values,
+                                 const TeethAction* teeth = nullptr) {
   using V = Eigen::Vector3d;
   const Geometry& g = p.geometry;
   const ChannelLayout at(g.pistons);
@@ -134,8 +137,18 @@ inline double free_body_residual(const PumpParameters& p, const Assumptions& ass
   const double apart = p.gear.flanks == Flanks::two ? std::abs(towards_psi) : towards_psi;
   const V tooth(-std::cos(ap) * towards_psi, std::sin(ap) * std::cos(delta) * apart,
                 std::sin(ap) * std::sin(delta) * apart);
-  block.force(o4 - o2, tooth);
-  shaft.force(o4, -tooth);
+  if (teeth == nullptr) {
+    block.force(o4 - o2, tooth);
+    shaft.force(o4, -tooth);
+  } else {
+    for (const PairContact& pair : teeth->pairs) {
+      if (!(pair.force > 0)) continue;
+      const V point(pair.point[0], pair.point[1], pair.point[2]);
+      const V force = pair.force * V(pair.normal[0], pair.normal[1], pair.normal[2]);
+      block.force(point, force);
+      shaft.force(o2 + point, -force);
+    }
+  }
 
   block.force(V::Zero(), (p.block.spring_force + values[at.Fh()]) * z2);
   block.moment(r12 * V(values[at.Th(0)], values[at.Th(1)], 0));

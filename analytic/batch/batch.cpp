@@ -198,8 +198,21 @@ BatchOutputs outputs_of(const ChannelLayout& layout, ChannelGroup group, BatchCo
   return outputs;
 }
 
+namespace {
+
+// Teeth rest where an iteration per instant says: Model has them.
+const PumpParameters& without_teeth(const PumpParameters& pump) {
+  if (validate(pump).gear.contact == ToothContact::teeth)
+    throw InputError(
+        "batch: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\" in the evaluation "
+        "of many instants at a time");
+  return pump;
+}
+
+}  // namespace
+
 BatchModel::BatchModel(const PumpParameters& pump, const Assumptions& assumptions)
-    : layout_(validate(pump).geometry.pistons),
+    : layout_(without_teeth(pump).geometry.pistons),
       pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
 BatchModel::~BatchModel() = default;
 BatchModel::BatchModel(BatchModel&&) noexcept = default;
@@ -211,7 +224,8 @@ void BatchModel::reactions(const BatchInstants& instants, const BatchOutputs& ou
 }
 
 PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions)
-    : layout_(pumps.empty() ? 1 : validate(pumps.front()).geometry.pistons), size_(pumps.size()) {
+    : layout_(pumps.empty() ? 1 : without_teeth(pumps.front()).geometry.pistons),
+      size_(pumps.size()) {
   if (pumps.empty()) throw InputError("batch of pumps: there is none");
   numbers_.resize(kNumbers * size_);
   for (std::size_t i = 0; i < size_; ++i) {
@@ -219,7 +233,7 @@ PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions
       throw InputError("batch of pumps: pump " + std::to_string(i + 1) + " has " +
                        std::to_string(pumps[i].geometry.pistons) + " pistons, the first has " +
                        std::to_string(layout_.pistons()));
-    PreparedPump pump = prepare(validate(pumps[i]), assumptions);
+    PreparedPump pump = prepare(without_teeth(pumps[i]), assumptions);
     double numbers[kNumbers];
     std::memcpy(numbers, &pump.numbers, sizeof numbers);
     for (std::size_t n = 0; n < kNumbers; ++n) numbers_[n * size_ + i] = numbers[n];

@@ -9,9 +9,18 @@
 namespace bentaxis::analytic::simulation {
 namespace {
 
+// Bevel teeth replaced by two rigid flanks at O4.
+PumpParameters with_flanks(PumpParameters pump) {
+  if (pump.gear.contact == ToothContact::teeth) {
+    pump.gear.contact = ToothContact::rigid;
+    pump.gear.teeth.reset();
+  }
+  return pump;
+}
+
 PumpParameters with_ideal_rings(PumpParameters pump) {
   pump.piston.contact.reset();
-  return pump;
+  return with_flanks(pump);
 }
 
 double start_speed_of(const Case& the_case, const std::optional<TimeSignal>& curve) {
@@ -45,6 +54,11 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
         "gear = \"imposed\": must be \"mesh\" in a simulation, where the shaft moves the "
         "block");
   if (the_case.pump.gear.contact == ToothContact::rigid) law_.reset();
+  if (the_case.pump.gear.contact == ToothContact::teeth) {
+    bevel_.emplace(the_case.pump);
+    at_o4_.emplace(with_flanks(the_case.pump), assumptions);
+  }
+  const Model& model = bevel_ ? *at_o4_ : model_;
   start_speed_ = start_speed_of(the_case, curve_);
   values_.resize(model_.layout().size());
   instant_.chamber_pressure.resize(model_.layout().pistons());
@@ -58,7 +72,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
     for (int k = 0; k < model_.layout().pistons(); ++k)
       instant_.chamber_pressure[k] =
           pressure_(piston_angle_deg(angle / kRadPerDegree, k + 1, model_.layout().pistons()));
-    const Response r = respond(model_, 0, 0);
+    const Response r = respond(model, 0, 0);
     torque_scale_ = std::max(torque_scale_, std::abs(r.drive_torque));
     tooth_scale_ = std::max(tooth_scale_, std::abs(r.tooth_force));
   }
@@ -66,14 +80,14 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   for (const double value : drive_.curve.value)
     if (drive_.kind != DriveKind::speed) torque_scale_ = std::max(torque_scale_, std::abs(value));
   tooth_scale_ = std::max(tooth_scale_, 0.1 * torque_scale_ / arm_);
-  const Response still = respond(model_, 0, 0);
-  shaft_inertia_ = std::abs(respond(model_, 1e5, 1e5).drive_torque - still.drive_torque) / 1e5;
-  block_inertia_ = std::abs(respond(model_, 0, 1e5).tooth_force - still.tooth_force) * arm_ / 1e5;
+  const Response still = respond(model, 0, 0);
+  shaft_inertia_ = std::abs(respond(model, 1e5, 1e5).drive_torque - still.drive_torque) / 1e5;
+  block_inertia_ = std::abs(respond(model, 0, 1e5).tooth_force - still.tooth_force) * arm_ / 1e5;
   // Rounding leaves this much of nothing.
   constexpr double kLeastInertia = 1e-14;
   if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kLeastInertia))
     throw InputError("[shaft] axial_inertia_kg_mm2: must be > 0 where a torque moves the shaft");
-  if (law_ && !(block_inertia_ > kLeastInertia))
+  if (compliant() && !(block_inertia_ > kLeastInertia))
     throw InputError("[block] axial_inertia_kg_mm2: must be > 0 where the teeth are compliant");
   probe_ = torque_scale_ / std::max(shaft_inertia_, kLeastInertia);
 }
@@ -102,10 +116,10 @@ double Equations::block_angle(double time, const State& y) const {
 State Equations::start(const SimulationOptions& options) const {
   State y = {};
   if (drive_.kind != DriveKind::speed) y[kTurnRate] = options.start_speed;
-  if (law_) y[kLag] = options.start_lag;
+  if (compliant()) y[kLag] = options.start_lag;
   if (options.disturbance != 0) {
     const State scale = scales();
-    if (law_) y[kLag] += options.disturbance * scale[kLag];
+    if (compliant()) y[kLag] += options.disturbance * scale[kLag];
     if (drive_.kind != DriveKind::speed) y[kTurnRate] += options.disturbance * scale[kTurnRate];
   }
   if (drive_.kind == DriveKind::motor && start_speed_ != 0)
@@ -122,11 +136,16 @@ State Equations::scales() const {
   scale[kTurn] = kAngle;
   scale[kTurnRate] = kAngle * std::max({std::abs(omega_), std::abs(start_speed_),
                                         std::sqrt(torque_scale_ * kAngle / shaft_inertia_)});
-  if (law_) {
-    const double approach =
-        kToothApproach *
-        std::pow(tooth_scale_ / (law_->stiffness * kToothApproach), 1 / law_->exponent);
-    const double stiffness = law_->exponent * tooth_scale_ / approach * arm_ * arm_;
+  if (compliant()) {
+    double stiffness = 0;  // Nm/rad
+    if (law_) {
+      const double approach =
+          kToothApproach *
+          std::pow(tooth_scale_ / (law_->stiffness * kToothApproach), 1 / law_->exponent);
+      stiffness = law_->exponent * tooth_scale_ / approach * arm_ * arm_;
+    } else {
+      stiffness = bevel_->stiffness() * arm_ * arm_;
+    }
     const double reduced = drive_.kind == DriveKind::speed
                                ? block_inertia_
                                : block_inertia_ * (1 - block_inertia_ / (2 * shaft_inertia_));
@@ -215,16 +234,25 @@ Motion Equations::motion_under_loads(double time, const State& y) {
   return accelerate(time, y);
 }
 
+BevelTeeth::Approach Equations::approach_of_teeth(double time, const State& y, int flank) const {
+  const AxisMotion turning = shaft(time, y);
+  return bevel_->approach(turning.angle, turning.speed, {y[kLag], y[kLagRate]}, flank);
+}
+
+// Of drives that give a torque.
+double Equations::drive_torque_at(double time, const State& y) const {
+  if (drive_.kind == DriveKind::torque) return curve_ ? curve_->value(time) : drive_.torque;
+  return drive_.motor->coupling_stiffness * y[kTwist] +
+         drive_.motor->coupling_damping * y[kTwistRate];
+}
+
 // Of the instant, whose speeds and pressures are set.
 Motion Equations::accelerate(double time, const State& y) {
+  if (bevel_) return accelerate_with_teeth(time, y);
   Motion m;
   const bool speed_given = drive_.kind == DriveKind::speed;
   const double given = instant_.shaft.acceleration;
-  if (!speed_given)
-    m.drive_torque = drive_.kind == DriveKind::torque
-                         ? (curve_ ? curve_->value(time) : drive_.torque)
-                         : drive_.motor->coupling_stiffness * y[kTwist] +
-                               drive_.motor->coupling_damping * y[kTwistRate];
+  if (!speed_given) m.drive_torque = drive_torque_at(time, y);
   double shaft = given, block = given;
   if (!law_) {
     if (!speed_given) {
@@ -265,6 +293,42 @@ Motion Equations::accelerate(double time, const State& y) {
   return m;
 }
 
+Motion Equations::accelerate_with_teeth(double time, const State& y) {
+  Motion m;
+  instant_.lag = ToothLag{y[kLag], y[kLagRate]};
+  const BevelTeeth::Wrench w =
+      bevel_->wrench(instant_.shaft.angle, instant_.shaft.speed, *instant_.lag);
+  m.shaft_moment = -BevelTeeth::about_shaft_axis(w.moment);
+  m.tooth_force = bevel_->about_block_axis(w.moment) / arm_;
+  // Td beyond what it is with the force at O4.
+  const double more = -(m.shaft_moment + m.tooth_force * arm_) / torque_factor_;
+  const double given = instant_.shaft.acceleration;
+  const Response still = respond(*at_o4_, given, 0);
+  const Response by_block = respond(*at_o4_, given, probe_);
+  const double block_force = by_block.tooth_force - still.tooth_force;
+  const double block_torque = by_block.drive_torque - still.drive_torque;
+  const double force = m.tooth_force - still.tooth_force;
+  double shaft = given;
+  double block = force / block_force;  // in probes
+  if (drive_.kind == DriveKind::speed) {
+    m.drive_torque = still.drive_torque + block * block_torque + more;
+  } else {
+    m.drive_torque = drive_torque_at(time, y);
+    const Response by_shaft = respond(*at_o4_, probe_, 0);
+    const double shaft_force = by_shaft.tooth_force - still.tooth_force;
+    const double shaft_torque = by_shaft.drive_torque - still.drive_torque;
+    const double torque = m.drive_torque - more - still.drive_torque;
+    const double determinant = shaft_torque * block_force - block_torque * shaft_force;
+    shaft = (torque * block_force - block_torque * force) / determinant * probe_;
+    block = (shaft_torque * force - torque * shaft_force) / determinant;
+  }
+  instant_.shaft.acceleration = shaft;
+  instant_.block.acceleration = block * probe_;
+  m.shaft = instant_.shaft;
+  m.block = instant_.block;
+  return m;
+}
+
 void Equations::rates(double time, const State& y, State& dy) {
   const Motion m = motion(time, y);
   add_rates(y, m, dy);
@@ -293,6 +357,12 @@ void Equations::add_rates(const State& y, const Motion& m, State& dy) {
   if (drive_.kind != DriveKind::speed) {
     dy[kTurn] = y[kTurnRate];
     dy[kTurnRate] = m.shaft.acceleration;
+  }
+  if (bevel_) {
+    dy[kLag] = y[kLagRate];
+    dy[kLagRate] = m.shaft.acceleration - m.block.acceleration;
+    loads += m.shaft_moment * shaft_speed + m.tooth_force * arm_ * m.block.speed;
+    dy[kImpulse] = std::abs(m.tooth_force);
   }
   if (law_) {
     dy[kLag] = y[kLagRate];
@@ -325,7 +395,7 @@ void Equations::row(double time, const State& y, const Motion& m, std::vector<do
   row.assign(model_.layout().size(), not_computed());
   model_.evaluate(instant_, row, &checks);
   // By the lag's own digits.
-  if (law_) checks.tooth_law = m.tooth_force;
+  if (law_ || bevel_) checks.tooth_law = m.tooth_force;
   state = {time, m.shaft.angle / kRadPerDegree, (m.shaft.angle - y[kLag]) / kRadPerDegree,
            m.shaft.speed / kRadPerSecondPerRpm, m.block.speed / kRadPerSecondPerRpm};
   if (drive_.kind == DriveKind::motor)

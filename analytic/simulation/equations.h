@@ -7,6 +7,7 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/simulation.h"
+#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/results/mechanics.h"
 #include "closed_form/gear.h"
@@ -28,6 +29,7 @@ struct Motion {
   AxisMotion shaft, block;
   double drive_torque = 0;  ///< Td, Nm
   double tooth_force = 0;   ///< of the contact law, towards +psi, N
+  double shaft_moment = 0;  ///< of bevel teeth on the shaft about z1, Nm
 };
 
 class Equations {
@@ -37,7 +39,7 @@ class Equations {
 
   const Model& model() const { return model_; }
   const DriveSpec& drive() const { return drive_; }
-  bool compliant() const { return law_.has_value(); }
+  bool compliant() const { return law_ || bevel_; }
   const closed_form::ToothLaw& law() const { return *law_; }
   long evaluations() const { return evaluations_; }
 
@@ -52,11 +54,14 @@ class Equations {
   Teeth teeth;
   double from_angle = 0, to_angle = 0;  ///< rad, of psi: pressures are those of this interval
 
-  /// Approach of a flank, m, and its rate.
+  /// Approach of a flank that is compliant, m, and its rate.
   double approach(const State& y, int flank) const {
     return flank * law_->arm * y[kLag] - law_->half_backlash;
   }
   double approach_rate(const State& y, int flank) const { return flank * law_->arm * y[kLagRate]; }
+  /// The same of bevel teeth, the largest of any pair and slice.
+  BevelTeeth::Approach approach_of_teeth(double time, const State& y, int flank) const;
+  const std::optional<BevelTeeth>& bevel() const { return bevel_; }
   double block_angle(double time, const State& y) const;
   AxisMotion shaft(double time, const State& y) const;
   double speed(double time, const State& y) const { return shaft(time, y).speed; }
@@ -93,6 +98,8 @@ class Equations {
   Teeth teeth_at(const State& y) const;
   void set_speeds(double time, const State& y);
   void set_pressures(double block_angle);
+  Motion accelerate_with_teeth(double time, const State& y);
+  double drive_torque_at(double time, const State& y) const;
   double spring_force(double approach) const;
   double flank_force(double approach, double rate) const;
   double motor_torque(double rotor_speed) const;
@@ -103,6 +110,10 @@ class Equations {
   double torque_factor_;
   Model model_;
   Model ideal_;  // contact of the rings at B: what the mass matrix is found from
+  std::optional<BevelTeeth> bevel_;
+  // Accelerations are found with the teeth's torque on the block as a force at O4; what they take
+  // from the shaft beyond it is a torque of its own.
+  std::optional<Model> at_o4_;
   Loads loads_;
   bool ring_off_;  // rings act off B, and do work on the play of their pistons
   std::optional<closed_form::ToothLaw> law_;

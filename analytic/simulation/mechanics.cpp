@@ -44,11 +44,19 @@ class ClosedForm : public Mechanics {
     motion.speed -= y[kLagRate];
     return motion;
   }
-  double approach(double, const MotionVector& y, int flank) const override {
-    return equations_.approach(y, flank);
+  double approach(double time, const MotionVector& y, int flank) const override {
+    return equations_.bevel() ? equations_.approach_of_teeth(time, y, flank).distance
+                              : equations_.approach(y, flank);
   }
-  double approach_rate(double, const MotionVector& y, int flank) const override {
-    return equations_.approach_rate(y, flank);
+  double approach_rate(double time, const MotionVector& y, int flank) const override {
+    return equations_.bevel() ? equations_.approach_of_teeth(time, y, flank).rate
+                              : equations_.approach_rate(y, flank);
+  }
+  bool teeth(double time, const MotionVector& y, TeethAction& action) override {
+    if (!equations_.bevel()) return false;
+    const AxisMotion turning = equations_.shaft(time, y);
+    action = equations_.bevel()->act(turning.angle, turning.speed, {y[kLag], y[kLagRate]});
+    return true;
   }
 
   void rates(double time, const MotionVector& y, const OilLoads& loads, MotionVector& dy) override {

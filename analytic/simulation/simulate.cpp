@@ -452,10 +452,22 @@ class Simulation {
 
 }  // namespace
 
+namespace {
+
+const Case& without_teeth(const Case& the_case) {
+  if (the_case.pump.gear.contact == ToothContact::teeth)
+    throw InputError(
+        "analytic model: [gear] contact = \"teeth\": motion with teeth is integrated from the "
+        "equations of motion (analytic/mechanics.h)");
+  return the_case;
+}
+
+}  // namespace
+
 Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                     const PressureTrace& pressure, const SimulationOptions& options,
                     std::vector<Piece>& pieces) {
-  return Simulation(the_case, assumptions, pressure, options, {}, &pieces).run();
+  return Simulation(without_teeth(the_case), assumptions, pressure, options, {}, &pieces).run();
 }
 
 }  // namespace simulation
@@ -463,7 +475,9 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
 Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                     const PressureTrace& pressure, const SimulationOptions& options,
                     const Progress& progress) {
-  return simulation::Simulation(the_case, assumptions, pressure, options, progress, nullptr).run();
+  return simulation::Simulation(simulation::without_teeth(the_case), assumptions, pressure, options,
+                                progress, nullptr)
+      .run();
 }
 
 }  // namespace bentaxis::analytic

@@ -98,7 +98,7 @@ struct PreparedPump;
 /// One pump, prepared for batches of instants. Immutable, so one object serves many threads.
 class BatchModel {
  public:
-  /// @throws InputError as Model
+  /// @throws InputError as Model, and where the contact is that of teeth
   BatchModel(const PumpParameters& pump, const Assumptions& assumptions);
   ~BatchModel();
   BatchModel(BatchModel&&) noexcept;
@@ -121,7 +121,8 @@ class BatchModel {
 /// pump i. For sweeps, tolerances and fits. Immutable.
 class PumpBatch {
  public:
-  /// @throws InputError if there is no pump, if numbers of pistons differ, or as Model
+  /// @throws InputError if there is no pump, if numbers of pistons differ, or as
+  ///         BatchModel
   PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions);
   ~PumpBatch();
   PumpBatch(PumpBatch&&) noexcept;

@@ -13,6 +13,7 @@
 #include "bentaxis/results/instant.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/results/teeth.h"
 
 namespace bentaxis::analytic {
 
@@ -22,7 +23,8 @@ struct PreparedPump;
 /// cheap to copy.
 class Model {
  public:
-  /// @throws InputError where a case file with this pump would be refused (validate()), or if
+  /// @throws InputError where a case file with this pump would be refused (validate()), where its
+  ///         teeth cannot mesh (teeth.h), or if
   ///         `assumptions` ask for real pistons and the pump has no data of them.
   Model(const PumpParameters& pump, const Assumptions& assumptions);
 
@@ -36,8 +38,10 @@ class Model {
   /// @param values   at least layout().reactions() long; SI, ordered by layout(). Rcs is
   ///                 not_computed() where the block speed is imposed.
   /// @throws InputError where the sizes are others
-  /// Rcs follows from the block's balance, whatever a contact law would give. Allocates nothing.
-  /// Many instants, or many pumps, at a time: batch.h.
+  /// Rcs follows from the block's balance, whatever a contact law would give. Where the contact is
+  /// that of teeth, pin, film, bearings and Td are those of the force and moment that the teeth
+  /// have at the instant's lag, or at rest under that Rcs. Allocates nothing. Many instants, or
+  /// many pumps, at a time: batch.h.
   void reactions(const Instant& instant, std::vector<double>& values) const;
 
   /// The same algebra with `long double` (64 bits of mantissa on x86): what reactions() loses to
@@ -49,6 +53,10 @@ class Model {
   /// @param checks  where not null: what general motion is judged by
   void evaluate(const Instant& instant, std::vector<double>& values,
                 MotionChecks* checks = nullptr) const;
+
+  /// What the teeth do to each other at an instant, as reactions() takes them.
+  /// @throws InputError where the contact is not that of teeth, or the block's speed is imposed
+  void teeth(const Instant& instant, TeethAction& action) const;
 
   /// By how much reactions with two flanks differ from those with one line of action, as printed,
   /// where that one's separating part would pull the gears together; 0 where it pushes them apart.
@@ -77,19 +85,26 @@ class Model {
   struct Unchecked {};
   Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked);
 
+  ToothLag lag_at(const Instant& instant, double tooth_force) const;
+  template <class Real>
+  void let_teeth_act(const Instant& instant, std::vector<Real>& values) const;
+
   PumpParameters pump_;
   ChannelLayout layout_;
   std::shared_ptr<const PreparedPump> prepared_;
 };
 
 /// One turn of a case under the assumptions it gives this model, as a table.
+/// @param teeth  where not null and the contact is that of teeth: becomes what they do, as a
+///               teeth_table()
 /// @throws ComputationError where a value is not finite.
 ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
-                const Progress& progress = {});
+                const Progress& progress = {}, ResultTable* teeth = nullptr);
 
 /// Reactions at given states of a case's pump, as a table.
+/// @param teeth  as of run()
 /// @throws ComputationError where a value is not finite.
 MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
-                       const Progress& progress = {});
+                       const Progress& progress = {}, ResultTable* teeth = nullptr);
 
 }  // namespace bentaxis::analytic

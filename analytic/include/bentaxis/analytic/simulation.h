@@ -27,7 +27,8 @@ struct SimulationOptions : bentaxis::SimulationOptions {
 /// the pressure trace that a chamber passes, and at every row. The lag theta - psi is a state of
 /// its own. docs/motion.md says what was measured against what.
 ///
-/// @throws InputError as Model and drive_of(), and where the block is carried by an imposed drive;
+/// @throws InputError as Model and drive_of(), where the block is carried by an imposed drive,
+///         and where the contact is that of teeth;
 ///         ComputationError naming the time where the motion cannot be followed, or not within a
 ///         bounded number of evaluations
 Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
