@@ -48,6 +48,15 @@ void refuse_ring_off_b(const PumpParameters& pump) {
                      "driven, run --states), or use the analytic model");
 }
 
+void refuse_teeth(const Case& the_case) {
+  if (the_case.pump.gear.contact == ToothContact::teeth)
+    throw InputError(
+        (the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+        "[gear] contact = \"teeth\": not integrated by Simbody itself, only evaluated at "
+        "given motion (run --way driven, run --states) or given as equations of motion "
+        "(simulate)");
+}
+
 Method method_for(const PumpParameters& pump, std::optional<Method> asked) {
   if (!has_ring_off_b(pump)) return asked.value_or(Method::multipliers);
   if (asked == Method::multipliers)

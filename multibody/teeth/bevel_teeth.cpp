@@ -36,7 +36,6 @@ Rotation frame_of(const Vec3& y, const Vec3& z) {
 Vec3 mirrored(const Vec3& v) { return {-v[0], v[1], v[2]}; }
 
 std::array<double, 3> array_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
-Vec3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 const ToothData& teeth_of(const Gear& gear) {
   if (!gear.teeth) throw InputError("[gear] contact = \"teeth\" needs tooth_number, face_width_mm");

@@ -15,6 +15,8 @@
 
 namespace bentaxis::multibody {
 
+inline SimTK::Vec3 vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
 /// Where two flanks are nearest to each other, on the unit sphere about O2 in S1.
 struct Touch {
   bool found = false;     ///< else they do not face each other, or only beyond both tips
