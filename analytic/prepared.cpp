@@ -18,6 +18,8 @@ PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions)
   closed_form::prepare(pump, p.gear);
   closed_form::prepare(pump, p.frame, p.shaft);
   result.tooth_law = closed_form::tooth_law(pump.gear);
+  if (pump.gear.contact == ToothContact::teeth)
+    result.teeth = BevelTeeth(pump, BevelTeeth::Unchecked{});
   result.imposed = assumptions.gear == BlockDrive::imposed;
   for (int k = 0; k < pump.geometry.pistons; ++k) {
     result.phase_sin.push_back(std::sin(2 * kPi * k / pump.geometry.pistons));

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/parameters.h"
 #include "closed_form/pump.h"
 
@@ -15,6 +16,7 @@ struct PreparedPump {
   bool imposed = false;
   closed_form::FrictionLaw friction;
   std::optional<closed_form::ToothLaw> tooth_law;  // of flanks that give way
+  std::optional<BevelTeeth> teeth;                 // where the contact is theirs
   std::vector<double> phase_sin, phase_cos;        // of 2 pi k / N
 
   closed_form::Common common() const {

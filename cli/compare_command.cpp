@@ -74,6 +74,10 @@ int compare(const Options& options) {
     curves.emplace_back("budget_analytic.csv", to_csv(result.budget->analytic));
     curves.emplace_back("budget_multibody.csv", to_csv(result.budget->multibody));
   }
+  if (result.teeth) {
+    curves.emplace_back("teeth_analytic.csv", to_csv(result.teeth->analytic));
+    curves.emplace_back("teeth_multibody.csv", to_csv(result.teeth->multibody));
+  }
   const report::Document document = study::comparison_document(result, versions());
   const auto paths =
       folders.write("report", document, study::comparison_curves(result, document), curves);

@@ -97,12 +97,17 @@ int run(const Options& options) {
     warn(study::multibody_warnings(ready.the_case, assumptions, run_options.scene, lines));
   warn(warnings);
 
-  if (analytic) {
+  run_options.teeth = ready.the_case.pump.gear.contact == ToothContact::teeth && driven &&
+                      assumptions.gear == BlockDrive::mesh &&
+                      run_options.scene.scene == multibody::Scene::full;
+  if (analytic && !run_options.teeth) {
     study::stream_analytic(ready, assumptions, wanted, folder.open("analytic.csv"), progress_of);
   } else {
     const study::ModelRun result = study::run(ready, run_options, progress_of);
     if (!result.choice.empty()) std::fprintf(stderr, "chosen %s\n", result.choice.c_str());
-    folder.add("multibody.csv", to_csv(select_channels(result.table, wanted)));
+    const std::string name = to_string(options.model);
+    folder.add(name + ".csv", to_csv(select_channels(result.table, wanted)));
+    if (result.teeth) folder.add("teeth_" + name + ".csv", to_csv(*result.teeth));
   }
   return finish(folder);
 }

@@ -35,13 +35,15 @@ int simulate(const Options& options, const CommandParser& command) {
   if (options.oil == "periodic") choice.oil = study::OilInTime::periodic;
   Case read = options.the_case.read();
   drive_of(read);
-  const bool with_oil =
-      read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows;
+  const bool one_method =
+      (read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows) ||
+      read.pump.gear.contact == ToothContact::teeth;
   for (const char* option : {"--integrator", "--accuracy"})
-    if (command.given(option) && (with_oil || choice.steady))
-      throw InputError(std::string(option) +
-                       ": changes nothing: with oil, and for a periodic motion, one method "
-                       "integrates what both models find; --error sets its tolerance");
+    if (command.given(option) && (one_method || choice.steady))
+      throw InputError(
+          std::string(option) +
+          ": changes nothing: with oil, of teeth and for a periodic motion, one method "
+          "integrates what both models find; --error sets its tolerance");
   ReportFolders folders(options.place);
   const study::SimulationResult result = study::simulate(
       study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);
@@ -50,6 +52,9 @@ int simulate(const Options& options, const CommandParser& command) {
        {std::pair{"analytic", &result.analytic}, std::pair{"multibody", &result.multibody}}) {
     if (!*run) continue;
     curves.emplace_back(std::string("simulation_") + name + ".csv", to_csv((*run)->table));
+    if (!(*run)->teeth.empty())
+      curves.emplace_back(std::string("teeth_") + name + ".csv",
+                          teeth_csv(**run, result.ready.the_case.pump.gear));
     if ((*run)->oil) curves.emplace_back(std::string("oil_") + name + ".csv", oil_csv(**run));
   }
   const auto paths = folders.write("report", study::simulation_document(result, versions()),

@@ -33,7 +33,8 @@ Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double to
       system_(mechanics, oil, balances),
       integrator_(system_, tolerance),
       edges_deg_(oil.edges_deg()),
-      knots_(mechanics.knots()) {
+      knots_(mechanics.knots()),
+      has_oil_(oil.states() > 0) {
   const std::vector<double> of_oil = oil.knots();
   knots_.insert(knots_.end(), of_oil.begin(), of_oil.end());
   std::sort(knots_.begin(), knots_.end());
@@ -42,8 +43,9 @@ Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double to
 
 void Course::fail(const std::string& why) const {
   const double speed = shaft(time_, state_).speed / kRadPerSecondPerRpm;
-  throw ComputationError(name_ + " model with oil: the simulation stops at " + rounded_text(time_) +
-                         " s, the shaft at " + rounded_text(speed) + " rpm: " + why);
+  throw ComputationError(name_ + (has_oil_ ? " model with oil" : " model") +
+                         ": the simulation stops at " + rounded_text(time_) + " s, the shaft at " +
+                         rounded_text(speed) + " rpm: " + why);
 }
 
 void Course::start(double time, const SystemState& state) {

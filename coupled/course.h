@@ -63,6 +63,7 @@ class Course {
   System system_;
   Integrator integrator_;
   std::vector<double> edges_deg_, knots_;
+  bool has_oil_;
   std::ptrdiff_t edge_ = 0;  // that ends the interval, counted over turns
   bool restart_ = false;     // before the next step
   double time_ = 0, step_start_ = 0, apart_ = 0;

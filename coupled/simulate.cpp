@@ -39,6 +39,8 @@ class Rows {
     mechanics_.row(time, s.motion, loads_, state_, row_, checks);
     append_trajectory_row(trajectory_.table, state_, row_, checks);
     trajectory_.lag.push_back(s.motion[kLag]);
+    if (TeethAction action; mechanics_.teeth(time, s.motion, action))
+      trajectory_.teeth.push_back(action);
 
     TrajectoryRecord& record = trajectory_.record;
     record.work_of_loads = s.motion[kWorkOfLoads] - work_of_loads_;

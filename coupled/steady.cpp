@@ -73,7 +73,7 @@ class PeriodMap {
   }
 
   [[noreturn]] void fail(const std::string& why) const {
-    throw ComputationError(name_ + " model with oil: no periodic motion: " + why);
+    throw ComputationError(name_ + " model: no periodic motion: " + why);
   }
   double step_angle() const { return 2 * kPi / oil_.pistons(); }
   int direction() const { return direction_; }

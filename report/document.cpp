@@ -207,6 +207,49 @@ Json json_of(const ScatterFigure& figure) {
            })}};
 }
 
+// Thousandths are more than a picture shows.
+Json drawn_values(const Values& values) {
+  constexpr double kShown = 1e3;
+  return list_of(values, [](double v) { return number_or_null(std::round(v * kShown) / kShown); });
+}
+
+Json json_of(const DrawingFigure& figure) {
+  const auto panel_of = [](const DrawingFigure::Panel& panel) {
+    Json json = {{"x", json_of(panel.x)}, {"y", json_of(panel.y)}};
+    json["x_range"] = {panel.x_low, panel.x_high};
+    json["y_range"] = {panel.y_low, panel.y_high};
+    return json;
+  };
+  const auto frame_of = [](const DrawingFigure::Frame& frame) {
+    return Json{{"theta_deg", frame.theta_deg},
+                {"text", frame.text},
+                {"lines", list_of(frame.lines,
+                                  [](const DrawingFigure::Line& line) {
+                                    return Json{{"panel", line.panel},
+                                                {"look", line.look},
+                                                {"width", line.width},
+                                                {"x", drawn_values(line.x)},
+                                                {"y", drawn_values(line.y)}};
+                                  })},
+                {"arrows", list_of(frame.arrows, [](const DrawingFigure::Arrow& arrow) {
+                   return Json{{"panel", arrow.panel},           {"look", arrow.look},
+                               {"x", number_or_null(arrow.x)},   {"y", number_or_null(arrow.y)},
+                               {"dx", number_or_null(arrow.dx)}, {"dy", number_or_null(arrow.dy)}};
+                 })}};
+  };
+  return {
+      {"kind", "drawing"},
+      {"looks",
+       list_of(
+           figure.looks,
+           [](const DrawingFigure::Look& look) {
+             return Json{{"label", look.label}, {"colour", look.colour}, {"filled", look.filled}};
+           })},
+      {"panels", list_of(figure.panels, panel_of)},
+      {"frames", list_of(figure.frames, frame_of)},
+      {"shown", figure.shown}};
+}
+
 Json json_of(const Figure& figure) {
   Json json = std::visit([](const auto& content) { return json_of(content); }, figure.content);
   json["id"] = figure.id;

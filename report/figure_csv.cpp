@@ -104,6 +104,29 @@ std::string numbers(const ScatterFigure& figure, const Curves&) {
   return csv;
 }
 
+std::string numbers(const DrawingFigure& figure, const Curves&) {
+  std::string csv;
+  line(csv, std::string("theta_deg"), std::string("panel"), std::string("look"),
+       std::string("shape"), std::string("x"), std::string("y"));
+  const auto name = [&](int look) { return figure.looks[static_cast<std::size_t>(look)].label; };
+  for (const DrawingFigure::Frame& frame : figure.frames) {
+    double shape = 0;
+    for (const DrawingFigure::Line& drawn : frame.lines) {
+      ++shape;
+      for (std::size_t i = 0; i < drawn.x.size(); ++i)
+        line(csv, frame.theta_deg, drawn.panel + 1.0, name(drawn.look), shape, drawn.x[i],
+             drawn.y[i]);
+    }
+    for (const DrawingFigure::Arrow& arrow : frame.arrows) {
+      ++shape;
+      line(csv, frame.theta_deg, arrow.panel + 1.0, name(arrow.look), shape, arrow.x, arrow.y);
+      line(csv, frame.theta_deg, arrow.panel + 1.0, name(arrow.look), shape, arrow.x + arrow.dx,
+           arrow.y + arrow.dy);
+    }
+  }
+  return csv;
+}
+
 }  // namespace
 
 std::string csv_of(const Figure& figure, const Curves& curves) {

@@ -65,6 +65,19 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
        "nothing here: a rig or an elastic model"},
       {"frames, signs and the names of the reactions", "docs/theory.md",
        "free-body diagrams written in the tests; signs printed in the paper"}};
+  if (the_case.pump.gear.contact == ToothContact::teeth) {
+    inputs.push_back(
+        {"flexibility of a slice of teeth",
+         "bending, shear, compression, foundation and flattening of the equivalent spur "
+         "tooth: one function for both models",
+         "mesh stiffness of a published spur pair and of ISO 6336 (docs/judges.md); "
+         "1/E in the tests"});
+    inputs.push_back(
+        {"shape of the teeth and what counts as their approach (docs/teeth.md)",
+         "spherical involutes in closed form; curves on the sphere and Newton's method "
+         "in the multibody model",
+         "each other; octoids, of which only the ratio of 1 is the same"});
+  }
   if (!motion) {
     inputs.push_back(
         {"constant speed, equal for shaft and block (1:1)",
@@ -93,6 +106,10 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
                                 "written once in each model",
                                 "stored trajectories; rigid teeth are its limit in proportion to "
                                 "1/k"}
+      : the_case.pump.gear.contact == ToothContact::teeth
+          ? report::CommonInput{"integration of the motion",
+                                "one integrator, run with each model's own accelerations",
+                                "another tolerance; work balance of each model"}
           : report::CommonInput{"rigid teeth", "psi = theta (1:1), no play",
                                 "nothing here: a rig, or compliant teeth"});
   return inputs;

@@ -55,9 +55,17 @@ class Maker {
 
  private:
   bool integrated() const { return result_.options.way == Way::integrated; }
+  bool has_teeth() const {
+    return result_.first.the_case.pump.gear.contact == ToothContact::teeth && !integrated() &&
+           result_.options.scene.scene == multibody::Scene::full &&
+           result_.first.the_case.analytic.gear == BlockDrive::mesh &&
+           result_.second.the_case.multibody.gear == BlockDrive::mesh;
+  }
+  // The parts of a torque budget are powers, which teeth that slip by micrometres pass on with a
+  // rest of their own.
   bool has_budget() const {
     const ChannelLayout layout(result_.first.the_case.pump.geometry.pistons);
-    return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
+    return !has_teeth() && !integrated() && result_.options.scene.scene == multibody::Scene::full &&
            result_.options.channels.wants(layout.channels()[layout.Td()]);
   }
 
@@ -108,6 +116,7 @@ void Maker::run_models() {
                                : kDrivenTolerance;
   RunOptions analytic_run;
   analytic_run.budget = has_budget();
+  analytic_run.teeth = has_teeth();
   ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
   r.analytic = std::move(analytic.table);
   analytic_budget_ = std::move(analytic.budget);
@@ -117,9 +126,13 @@ void Maker::run_models() {
   }
   RunOptions driven = multibody_run(0);
   driven.budget = has_budget();
+  driven.teeth = has_teeth();
   ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
   r.multibody = std::move(multibody.table);
   multibody_budget_ = std::move(multibody.budget);
+  if (analytic.teeth)
+    r.teeth = compare_teeth(std::move(*analytic.teeth), std::move(*multibody.teeth), r.tolerance,
+                            zero_scales_);
 }
 
 // Integrated runs at every accuracy asked for. The last one's table is the one compared.
@@ -322,6 +335,7 @@ bool ComparisonResult::checks_hold() const {
 bool ComparisonResult::agrees() const {
   if (!checks_hold() || comparison.incomplete() != nullptr) return false;
   if (budget && !budget->comparison.agrees()) return false;
+  if (teeth && !split && !teeth->comparison.agrees()) return false;
   return split ? split->explained() : comparison.agrees();
 }
 
@@ -339,6 +353,15 @@ std::string ComparisonResult::headline() const {
         "of its peak).",
         apart->channel.name, apart->theta_of_largest_deg, apart->largest, apart->channel.unit,
         split ? split->tolerance : budget->comparison.tolerance);
+  }
+  if (teeth && channels_agree && !split && !teeth->comparison.agrees()) {
+    const auto* apart = teeth->comparison.incomplete() != nullptr ? teeth->comparison.incomplete()
+                                                                  : teeth->comparison.worst();
+    return fmt::format(
+        "The teeth of the two models differ: {} at {:g} deg by {:.1e} {} (tolerance {:g} of its "
+        "peak).",
+        apart->channel.name, apart->theta_of_largest_deg, apart->largest, apart->channel.unit,
+        teeth->comparison.tolerance);
   }
   const auto* worst = comparison.worst();
   const std::string where =

@@ -163,6 +163,11 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
     for (auto& figure : hydraulic_figures(the_case, *r.first.hydraulics))
       document.figures->push_back(std::move(figure));
   }
+  if (r.teeth) {
+    document.runs->push_back(teeth_section(*r.teeth, the_case.pump));
+    document.figures->push_back(teeth_picture(the_case.pump, r.teeth->analytic));
+    for (auto& figure : teeth_figures(*r.teeth)) document.figures->push_back(std::move(figure));
+  }
   document.runs->push_back(rounding_section(r.rounding));
   if (r.with) add_reference(document, *r.with);
   return document;

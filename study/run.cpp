@@ -31,6 +31,8 @@ void check(const RunOptions& options) {
         "pump, by its equations of motion");
   if (options.budget && (integrated || options.scene.scene != multibody::Scene::full))
     throw InputError("a torque budget is of a driven run of the full pump");
+  if (options.teeth && (integrated || options.scene.scene != multibody::Scene::full))
+    throw InputError("what teeth do is of a driven run of the full pump");
 }
 
 // Tables of a run, and what a comparison makes of them, lie in memory.
@@ -106,13 +108,17 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
       options.assumptions ? *options.assumptions : ready.assumptions(options.model);
   ModelRun result;
   if (options.model == Model::analytic) {
-    result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"));
+    if (options.teeth) result.teeth.emplace();
+    result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"),
+                                 options.teeth ? &*result.teeth : nullptr);
     if (options.budget) result.budget = analytic::run_budget(the_case, assumptions, samples);
   } else if (options.way == Way::driven) {
     if (options.budget) result.budget.emplace();
+    if (options.teeth) result.teeth.emplace();
     result.table = multibody::run_driven(the_case, assumptions, samples, progress_of("multibody"),
                                          options.scene.scene, options.scene.method,
-                                         options.budget ? &*result.budget : nullptr);
+                                         options.budget ? &*result.budget : nullptr,
+                                         options.teeth ? &*result.teeth : nullptr);
   } else if (options.target) {
     const auto& among = options.target->integrators;
     VerifiedRun verified =

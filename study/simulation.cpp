@@ -112,11 +112,22 @@ namespace {
 
 // use(what it is, value) of everything compared in a row.
 template <class Use>
+void for_each_tooth_value(const Trajectory& run, std::size_t row, const Use& use) {
+  const TeethAction& action = run.teeth[row];
+  double force[2] = {};
+  for (std::size_t i = 0; i < action.pairs.size(); ++i)
+    force[i / kPairsPerFlank] += action.pairs[i].force;
+  use(Compared{"lag of the teeth", "rad", true}, action.lag);
+  for (const double flank : force) use(Compared{"tooth force", "N", true}, flank);
+}
+
+template <class Use>
 void for_each_value(const Trajectory& run, std::size_t row, const Use& use) {
   const ResultTable& table = run.table.results;
   for (std::size_t c = 0; c < table.columns(); ++c)
     if (table.channels[c].kind == ChannelKind::reaction)
       use(Compared{table.channels[c].group, table.channels[c].unit, true}, table.at(row, c));
+  if (!run.teeth.empty()) for_each_tooth_value(run, row, use);
   if (!run.oil) return;
   for (std::size_t c = 0; c < run.oil->columns.size(); ++c)
     if (const Compared what = compared_column(run.oil->columns[c].name); !what.group.empty())
@@ -163,9 +174,9 @@ class Study {
       : r_(result), progress_of_(progress_of) {}
 
   void run() {
-    if (r_.oil_follows || r_.choice.steady) {
+    if (r_.oil_follows || r_.choice.steady || r_.has_teeth()) {
       pump_.emplace(r_.ready, r_.oil_follows);
-      r_.choice.steady ? run_steady() : run_with_oil();
+      r_.choice.steady ? run_steady() : run_coupled();
     } else {
       if (r_.choice.only != Model::multibody) run_analytic();
       if (r_.choice.only != Model::analytic) run_multibody();
@@ -184,12 +195,12 @@ class Study {
 
   // Both models to one tolerance: at which a looser run says that the error of the integration,
   // which they share, is below what is allowed. The analytic model costs little and finds it.
-  void run_with_oil() {
+  void run_coupled() {
     const bool analytic = r_.choice.only != Model::multibody;
     const Model first = analytic ? Model::analytic : Model::multibody;
     double tolerance = this->tolerance();
-    Trajectory run = with_oil(first, tolerance, "with oil");
-    Trajectory loose = with_oil(first, kLooser * tolerance, "looser");
+    Trajectory run = integrate(first, tolerance, r_.oil_follows ? "with oil" : "motion");
+    Trajectory loose = integrate(first, kLooser * tolerance, "looser");
     peaks_ = peaks_of(run);
     coupled::Options disturbed;
     disturbed.tolerance = tolerance;
@@ -199,7 +210,7 @@ class Study {
     while (error() > 1 && tolerance > kFinestStep) {
       tolerance = std::max(kFinestStep, tolerance / kLooser);
       loose = std::move(run);
-      run = with_oil(first, tolerance, "tighter");
+      run = integrate(first, tolerance, "tighter");
     }
     r_.integration_change = apart(run, loose);
     r_.checks.push_back({to_string(first),
@@ -213,7 +224,7 @@ class Study {
     }
     r_.analytic = std::move(run);
     if (r_.choice.only == Model::analytic) return;
-    r_.multibody = with_oil(Model::multibody, tolerance, "with oil");
+    r_.multibody = integrate(Model::multibody, tolerance, r_.oil_follows ? "with oil" : "motion");
     add_effort(Model::multibody, tolerance, *r_.multibody, apart(*r_.analytic, *r_.multibody));
     r_.multibody_choice = fmt::format(
         "Simbody's accelerations at every state, integrated as the analytic model's, "
@@ -221,7 +232,7 @@ class Study {
         tolerance);
   }
 
-  Trajectory with_oil(Model model, double tolerance, const std::string& part) const {
+  Trajectory integrate(Model model, double tolerance, const std::string& part) const {
     coupled::Options options;
     options.tolerance = tolerance_ = tolerance;
     return pump_->simulate(model, options, progress_of_(to_string(model) + ", " + part));
@@ -632,6 +643,11 @@ ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
         "--oil periodic changes nothing: the pressure of the case is not \"hydraulic\"");
   if (choice.steady) {
     refuse_course(the_case);
+    if (the_case.pump.gear.contact == ToothContact::teeth)
+      throw InputError(
+          "--steady: with [gear] contact = \"teeth\" the motion repeats itself after a whole turn "
+          "at "
+          "best, and the search is for an N-th of one: simulate from the start");
     // From rest the search would have no period to begin with: it begins at the speed of
     // [operation].
     if (the_case.drive->start_speed == 0.0) the_case.drive->start_speed.reset();

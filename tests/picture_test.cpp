@@ -8,6 +8,7 @@
 #include <limits>
 #include <pugixml.hpp>
 #include <random>
+#include <regex>
 #include <sstream>
 
 #include "bentaxis/pump/number.h"
@@ -172,6 +173,13 @@ std::vector<Figure> odd_figures() {
     add(ChannelFigure{"N", {"R", "missing"}, {}, own});
   }
   add(PistonBars{"Nm", {"R", "missing"}, {0, 38}});
+  add(DrawingFigure{});
+  const DrawingFigure::Panel panel{{"x", "mm"}, {"y", "mm"}, -1, 1, 0, 1};
+  add(DrawingFigure{
+      {{"tooth", 0, true}, {"force", 1}},
+      {panel},
+      {{38, "one pair", {{0, 0, 2, {0, gap, 1e300}, {0, 1, 1}}}, {{0, 1, 0, 0, 0, 0}}}},
+      5});
   return figures;
 }
 
@@ -194,6 +202,28 @@ TEST(Picture, CsvQuotesAndLeavesOut) {
   EXPECT_EQ(csv_of({"id", "t", "",
                     MapFigure{{"n", "rpm"}, {"m"}, {"e", "%"}, {1, 2}, {3}, {{5, 6}}, {}, {}}}),
             "n (rpm),m,e (%)\n1,3,5\n2,3,6\n");
+}
+
+TEST(Picture, DrawingShowsOneFrameToScaleAndHandsOutAll) {
+  DrawingFigure drawing{{{"tooth", 0, true}, {"force", 1}},
+                        {{{"x", "mm"}, {"y", "mm"}, 0, 10, 0, 5}},
+                        {{0, "first", {}, {}}, {38, "second", {{0, 0, 2, {1, 3}, {1, 2}}}, {}}},
+                        1};
+  drawing.frames[1].arrows.push_back({0, 1, 2, 2, 0, 1});
+  const Figure figure{"teeth", "t", "", drawing};
+  const std::string svg = svg_of(figure);
+  EXPECT_THAT(svg, HasSubstr("At 38 deg: second"));
+  EXPECT_THAT(svg, Not(HasSubstr("first")));
+  // 2 mm across are as long as 2 mm up: the box is 622 px wide and 10 mm.
+  EXPECT_THAT(svg, HasSubstr("M144.2 "));
+  std::smatch path;
+  ASSERT_TRUE(
+      std::regex_search(svg, path, std::regex(R"(M([\d.]+) ([\d.]+)L([\d.]+) ([\d.]+)\")")));
+  EXPECT_NEAR(std::stod(path[3]) - std::stod(path[1]),
+              2 * (std::stod(path[2]) - std::stod(path[4])), 0.21);
+  EXPECT_EQ(csv_of(figure),
+            "theta_deg,panel,look,shape,x,y\n38,1,tooth,1,1,1\n38,1,tooth,1,3,2\n"
+            "38,1,force,2,2,2\n38,1,force,2,2,3\n");
 }
 
 TEST(Picture, PngHasTwiceTheSize) {

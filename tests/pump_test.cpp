@@ -22,25 +22,6 @@ namespace {
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-class Scratch {
- public:
-  Scratch()
-      : path_(fs::temp_directory_path() /
-              ("bentaxis_test_" + std::to_string(getpid()) + "_" +
-               testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::create_directories(path_);
-  }
-  ~Scratch() { fs::remove_all(path_); }
-  fs::path file(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return path_ / name;
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 std::string default_text() {
   std::ifstream in(reference_folder() / "bap63_rated" / "case.toml");
   return {std::istreambuf_iterator<char>(in), {}};

@@ -176,6 +176,7 @@ TEST(Registry, ContinuousInputsKeepTheirOrder) {
 TEST(Registry, ListsEveryNumberOfAPump) {
   PumpParameters pump = reference_case("asymmetric_ports").pump;
   pump.piston.contact.emplace();
+  pump.gear.contact = ToothContact::compliant;
   pump.gear.compliance.emplace();
   std::set<const void*> places;
   for (const PumpInput& input : continuous_inputs(pump)) places.insert(input.value);
@@ -185,6 +186,95 @@ TEST(Registry, ListsEveryNumberOfAPump) {
           sizeof(double) +
       6 + 2 + 3 + 1;  // Geometry without N, Gear's and PistonMass's own, gravity
   EXPECT_EQ(places.size(), kNumbers);
+}
+
+TEST(Registry, ListsEveryNumberOfTheTeeth) {
+  PumpParameters pump = reference_case("asymmetric_ports").pump;
+  std::set<std::string> before, names;
+  for (const PumpInput& input : continuous_inputs(pump)) before.insert(input.name);
+  pump.gear.contact = ToothContact::teeth;
+  pump.gear.teeth.emplace();
+  std::set<const void*> places;
+  for (const PumpInput& input : continuous_inputs(pump))
+    if (before.count(input.name) == 0) places.insert(input.value);
+  const auto* first = reinterpret_cast<const char*>(&*pump.gear.teeth);
+  for (const void* place : places) {
+    EXPECT_GE(static_cast<const char*>(place), first);
+    EXPECT_LT(static_cast<const char*>(place), first + sizeof(ToothData));
+  }
+  // From face_width to rim_ratio without a gap, and two of each gear.
+  const ToothData& teeth = *pump.gear.teeth;
+  constexpr std::size_t kOfGears = 4;
+  EXPECT_EQ(places.size(),
+            static_cast<std::size_t>(&teeth.rim_ratio - &teeth.face_width) + 1 + kOfGears);
+}
+
+// ---- Teeth
+
+Case with_teeth(std::vector<std::string> changes, const std::filesystem::path& file = "case.toml") {
+  changes.insert(changes.begin(), {"gear.contact=teeth", "gear.tooth_number=20", "gear.face_width_mm=12"});
+  std::string text = rated_text();
+  for (const char* own : {"contact", "flanks"}) {  // of rigid teeth, as they are written
+    const auto at = text.find(std::string("\n") + own + " = ") + 1;
+    text.erase(at, text.find('\n', at) - at + 1);
+  }
+  return parse_case(text, file, changes);
+}
+
+TEST(Teeth, AreReadWithTheirDefaults) {
+  const Case the_case =
+      with_teeth({"gear.backlash_um=40", "gear.dissipation_s_per_m=0.3"});
+  const Gear& gear = the_case.pump.gear;
+  ASSERT_TRUE(gear.teeth);
+  EXPECT_FALSE(gear.compliance);
+  EXPECT_EQ(gear.flanks, Flanks::two);
+  const double module = gear.pitch_diameter / 20;
+  EXPECT_EQ(gear.teeth->count, 20);
+  EXPECT_NEAR(gear.teeth->addendum, module, 1e-15);
+  EXPECT_NEAR(gear.teeth->dedendum, 1.25 * module, 1e-15);
+  EXPECT_NEAR(gear.teeth->relief_height, 0.5 * module, 1e-15);
+  EXPECT_DOUBLE_EQ(gear.teeth->backlash, 40e-6);
+  EXPECT_DOUBLE_EQ(gear.teeth->dissipation, 0.3);
+  EXPECT_DOUBLE_EQ(gear.teeth->youngs_modulus, 206e9);
+  // Written and read again.
+  const Case again = parse_case(case_text(the_case), "again.toml");
+  EXPECT_DOUBLE_EQ(again.pump.gear.teeth->addendum, gear.teeth->addendum);
+  EXPECT_EQ(again.pump.gear.contact, ToothContact::teeth);
+}
+
+TEST(Teeth, AreRefusedByName) {
+  EXPECT_THAT(refusal([] { with_teeth({"gear.flanks=one"}); }),
+              HasSubstr("teeth that give way have two flanks"));
+  EXPECT_THAT(refusal([] { with_teeth({"gear.rim_ratio=1.2"}); }),
+              HasSubstr("gear.rim_ratio=1.2: must be in [1.4, 7]"));
+  EXPECT_THAT(refusal([] { with_teeth({"gear.tooth_number=4"}); }), HasSubstr("in [5, 400]"));
+  EXPECT_THAT(refusal([] {
+                parse_case(rated_text(), "case.toml", {"gear.contact=teeth", "gear.flanks=two"});
+              }),
+              HasSubstr("tooth_number"));
+}
+
+TEST(Teeth, PitchErrorsAreReadToothByTooth) {
+  const Scratch scratch;
+  const auto file = scratch.path() / "errors.csv";
+  const auto write = [&](const std::string& lines) {
+    std::ofstream(file) << "tooth,shaft_um,block_um\n" << lines;
+  };
+  const auto read = [&] {
+    return with_teeth({"gear.pitch_error_file=errors.csv"}, scratch.path() / "case.toml");
+  };
+  std::string lines;
+  for (int i = 1; i <= 20; ++i)
+    lines += std::to_string(i) + "," + std::to_string(i) + ",-" + std::to_string(2 * i) + "\n";
+  write(lines);
+  const ToothData teeth = *read().pump.gear.teeth;
+  ASSERT_EQ(teeth.shaft.pitch.size(), 20U);
+  EXPECT_DOUBLE_EQ(teeth.shaft.pitch[2], 3e-6);
+  EXPECT_DOUBLE_EQ(teeth.block.pitch[19], -40e-6);
+  write("1,0,0\n");
+  EXPECT_THAT(refusal(read), HasSubstr("has 1 teeth, must be tooth_number = 20"));
+  write("2" + lines.substr(1));
+  EXPECT_THAT(refusal(read), HasSubstr(":2: tooth"));
 }
 
 // A case made in memory starts from the defaults of the file.

@@ -2,13 +2,14 @@
 
 // Drawn by the program; every other kind is drawn here too, to be zoomed and read out.
 const STILL = ["xy", "map", "scatter"];
+const DRAWN = { piston_bars: barsFigure, drawing: drawingFigure };
 
 // A figure may bring curves of its own, at angles of its own.
 const dataOf = (figure, report, data) => !figure.curves ? data
   : { ...prepare(report, figure.curves), mounts: data.mounts };
 
 function figures(report, data) {
-  const figures = list(report.figures).filter(f => f.curves || STILL.includes(f.kind) || data.order.length);
+  const figures = list(report.figures).filter(f => f.curves || f.kind === "drawing" || STILL.includes(f.kind) || data.order.length);
   if (!figures.length) return null;
   return el("div", {},
     figures.some(f => !STILL.includes(f.kind)) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "
@@ -19,7 +20,7 @@ function figures(report, data) {
       picture.append(document.querySelector(`#pictures [data-figure="${f.id}"] svg`).cloneNode(true));
       return el("figure", { id: "figure-" + f.id }, el("figcaption", {}, el("h3", {}, f.title),
         f.paper ? el("span.paper", {}, "paper: " + f.paper) : null, handOut(f, own, picture)),
-        still ? null : el("div.screen", {}, (f.kind === "piston_bars" ? barsFigure : curvesFigure)(f, own)),
+        still ? null : el("div.screen", {}, (DRAWN[f.kind] || curvesFigure)(f, own)),
         picture, f.note ? el("p.note", {}, f.note) : null);
     }));
 }

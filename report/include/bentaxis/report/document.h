@@ -155,10 +155,45 @@ struct ScatterFigure {
   std::vector<ScatterSeries> series;
 };
 
+/// Drawings to scale, one per angle, of which one can be chosen. They stand below each other.
+struct DrawingFigure {
+  /// What is drawn alike: a colour of its own, named in the legend.
+  struct Look {
+    std::string label;
+    int colour = 0;
+    bool filled = false;  ///< the inside of its lines, pale
+  };
+  struct Line {
+    int panel = 0, look = 0;
+    double width = 1;  ///< of the line, px
+    Values x, y;
+  };
+  struct Arrow {
+    int panel = 0, look = 0;
+    double x = 0, y = 0, dx = 0, dy = 0;  ///< from, along
+  };
+  struct Panel {
+    Axis x, y;  ///< of one scale
+    double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
+  };
+  struct Frame {
+    double theta_deg = 0;
+    std::string text;  ///< what there is to say of it
+    std::vector<Line> lines;
+    std::vector<Arrow> arrows;
+  };
+  std::vector<Look> looks;
+  std::vector<Panel> panels;
+  std::vector<Frame> frames;
+  std::size_t shown = 0;  ///< the frame that a still picture shows, and a page at first
+};
+
 struct Figure {
   std::string id, title;
   std::string paper;  ///< figures of the paper that it answers, or ""
-  std::variant<ChannelFigure, PistonBars, OwnFigure, XyFigure, MapFigure, ScatterFigure> content;
+  std::variant<ChannelFigure, PistonBars, OwnFigure, XyFigure, MapFigure, ScatterFigure,
+               DrawingFigure>
+      content;
   std::string note = {};
 };
 

@@ -9,6 +9,7 @@
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/oil.h"
+#include "bentaxis/results/teeth.h"
 
 namespace bentaxis {
 
@@ -83,7 +84,8 @@ struct Trajectory {
   MotionTable table;
   std::vector<double> lag;  ///< theta - psi, rad, per row, with its own digits
   TrajectoryRecord record;
-  std::optional<OilHistory> oil;  ///< where oil is simulated too
+  std::optional<OilHistory> oil;   ///< where oil is simulated too
+  std::vector<TeethAction> teeth;  ///< per row, where the contact is that of teeth
 };
 
 /// time_s, theta_deg, psi_deg, shaft_rpm, block_rpm, and motor_rpm where a motor drives.

@@ -16,6 +16,7 @@
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/run.h"
+#include "bentaxis/study/teeth.h"
 
 namespace bentaxis::study {
 
@@ -58,6 +59,7 @@ struct ComparisonResult {
   compare::Comparison comparison;   ///< of the channels asked for
   std::vector<compare::Check> checks;
   std::optional<BudgetComparison> budget;      ///< of a driven run of full pumps whose Td is wanted
+  std::optional<TeethComparison> teeth;        ///< likewise, where the contact is that of teeth
   std::vector<report::AssumptionRow> changes;  ///< where the models assume different things
   std::optional<compare::Split> split;         ///< then: the difference taken apart
   std::vector<IntegrationRow> integrations;  ///< integrated: one per accuracy, the last is compared

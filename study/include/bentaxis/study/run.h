@@ -57,6 +57,7 @@ struct RunOptions {
   Model model = Model::analytic;
   std::optional<Assumptions> assumptions;  ///< instead of the case's
   bool budget = false;  ///< torque by cause too; of a driven run of the full pump
+  bool teeth = false;   ///< what the teeth do, too; likewise, where the contact is that of teeth
   // Of the multibody model:
   Way way = Way::driven;
   multibody::SceneChoice scene;               ///< driven; an integrated run is of the full pump
@@ -67,6 +68,7 @@ struct RunOptions {
 struct ModelRun {
   ResultTable table;
   std::optional<ResultTable> budget;                   ///< where asked for (results/budget.h)
+  std::optional<ResultTable> teeth;                    ///< likewise (results/teeth.h)
   multibody::IntegrationOptions integration;           ///< of an integrated run: as it was run
   std::optional<multibody::IntegrationRecord> record;  ///< of an integrated run
   std::string choice;  ///< of a run to an error: what was chosen, and what it then did

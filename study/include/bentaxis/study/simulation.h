@@ -102,6 +102,7 @@ struct SimulationResult {
   /// Time that a model needs for an error, between its efforts; not_computed() where none of them
   /// reached it.
   double seconds_for(Model model, double error) const;
+  bool has_teeth() const { return ready.the_case.pump.gear.contact == ToothContact::teeth; }
   bool agrees() const;  ///< of one model alone: its checks hold
   std::string headline() const;
 };

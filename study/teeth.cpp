@@ -1,0 +1,133 @@
+#include "bentaxis/study/teeth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/results/teeth.h"
+
+namespace bentaxis::study {
+namespace {
+
+struct Extent {
+  double low = 0, high = 0, theta_of_high_deg = 0;
+};
+
+Extent extent(const ResultTable& table, const std::string& name) {
+  const std::size_t column = table.find(name);
+  Extent found{table.at(0, column), table.at(0, column), table.theta_deg[0]};
+  for (std::size_t row = 1; row < table.rows(); ++row) {
+    const double value = table.at(row, column);
+    found.low = std::min(found.low, value);
+    if (value > found.high) {
+      found.high = value;
+      found.theta_of_high_deg = table.theta_deg[row];
+    }
+  }
+  return found;
+}
+
+// Share of the turn with so many pairs under load.
+double share_with(const ResultTable& table, int pairs) {
+  std::size_t rows = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    int carrying = 0;
+    for (std::size_t c = 0; c < table.columns(); ++c)
+      if (table.channels[c].group == "share" && table.at(row, c) > 0) ++carrying;
+    if (carrying == pairs) ++rows;
+  }
+  return static_cast<double>(rows) / static_cast<double>(table.rows());
+}
+
+}  // namespace
+
+TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, double tolerance,
+                              const compare::ZeroScales& scales) {
+  TeethComparison teeth;
+  compare::Options options;
+  options.tolerance = tolerance;
+  options.zero_scales = scales;
+  // Where no force acts: lengths of a tooth under its usual load.
+  for (const auto& [unit, scale] : {std::pair{"urad", 10.0}, {"um", 1.0}, {"mm", 1.0}, {"", 1.0}})
+    options.zero_scales.emplace(unit, scale);
+  teeth.comparison = compare::compare_tables(analytic, multibody, options);
+  teeth.analytic = std::move(analytic);
+  teeth.multibody = std::move(multibody);
+  return teeth;
+}
+
+report::Section teeth_section(const TeethComparison& teeth, const PumpParameters& pump) {
+  const ToothData& data = *pump.gear.teeth;
+  report::Section section;
+  section.title = "Teeth in contact";
+  section.text =
+      "What the pairs of teeth do to each other, at rest under the torque that carries the block: "
+      "flank + pushes the block towards +psi, flank - towards -psi. Each model finds contact and "
+      "shares on its own.";
+  const Extent error = extent(teeth.analytic, "transmission_error_um");
+  section.facts = {
+      {"teeth", fmt::format("{} on either gear, module {:.4g} mm, face width {:.4g} mm", data.count,
+                            1e3 * pump.gear.pitch_diameter / data.count, 1e3 * data.face_width)},
+      {"transmission error",
+       fmt::format("{:.4g} to {:.4g} um along the line of action, backlash {:.4g} um", error.low,
+                   error.high, 1e6 * data.backlash)}};
+  for (const auto& [name, flank] : {std::pair{"plus_force_N", "+"}, {"minus_force_N", "-"}}) {
+    const Extent force = extent(teeth.analytic, name);
+    section.facts.emplace_back(fmt::format("force of flank {}", flank),
+                               force.high > 0
+                                   ? fmt::format("{:.4g} to {:.4g} N, largest at {:g} deg",
+                                                 force.low, force.high, force.theta_of_high_deg)
+                                   : "none");
+  }
+  for (int pairs = 0; pairs <= 2 * kPairsPerFlank; ++pairs)
+    if (const double share = share_with(teeth.analytic, pairs); share > 0)
+      section.facts.emplace_back(
+          fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
+          fmt::format("{:.3g} % of the turn", 100 * share));
+  section.table.columns = {"quantity", "peak", "unit", "largest difference", "of peak", "verdict"};
+  // The worst of each group.
+  std::vector<const compare::ChannelComparison*> worst;
+  for (const auto& line : teeth.comparison.channels) {
+    const auto same = std::find_if(worst.begin(), worst.end(), [&](const auto* other) {
+      return other->channel.group == line.channel.group;
+    });
+    if (same == worst.end())
+      worst.push_back(&line);
+    else if (!(line.largest_over_peak() <= (*same)->largest_over_peak()))
+      *same = &line;
+  }
+  for (const auto* line : worst)
+    section.table.rows.push_back({line->channel.name, line->peak, line->channel.unit, line->largest,
+                                  line->largest_over_peak(),
+                                  std::string(compare::to_string(line->verdict))});
+  return section;
+}
+
+std::vector<report::Figure> teeth_figures(const TeethComparison& teeth) {
+  const report::Curves curves = report::curves_of(teeth.analytic, teeth.multibody);
+  const auto figure = [&](const char* id, const char* title, const char* unit,
+                          std::vector<std::string> names) {
+    report::ChannelFigure content{unit, std::move(names)};
+    content.curves = curves;
+    // Only what the figure shows.
+    const auto keep = [&](auto& columns) {
+      std::erase_if(columns, [&](const auto& column) {
+        return std::find(content.channels.begin(), content.channels.end(), column.first) ==
+               content.channels.end();
+      });
+    };
+    for (auto& table : content.curves->tables) keep(table.columns);
+    keep(content.curves->difference);
+    return report::Figure{id, title, "", std::move(content)};
+  };
+  return {figure("tooth_forces", "Forces of the flanks, and of the pairs of flank +", "N",
+                 {"plus_force_N", "minus_force_N", "plus_at_force_N", "plus_before_force_N",
+                  "plus_after_force_N"}),
+          figure("transmission_error",
+                 "Transmission error: the shaft ahead of the block, along the line of action", "um",
+                 {"transmission_error_um"})};
+}
+
+}  // namespace bentaxis::study
