@@ -212,7 +212,8 @@ TEST(Registry, ListsEveryNumberOfTheTeeth) {
 // ---- Teeth
 
 Case with_teeth(std::vector<std::string> changes, const std::filesystem::path& file = "case.toml") {
-  changes.insert(changes.begin(), {"gear.contact=teeth", "gear.tooth_number=20", "gear.face_width_mm=12"});
+  changes.insert(changes.begin(),
+                 {"gear.contact=teeth", "gear.tooth_number=20", "gear.face_width_mm=12"});
   std::string text = rated_text();
   for (const char* own : {"contact", "flanks"}) {  // of rigid teeth, as they are written
     const auto at = text.find(std::string("\n") + own + " = ") + 1;
@@ -222,8 +223,7 @@ Case with_teeth(std::vector<std::string> changes, const std::filesystem::path& f
 }
 
 TEST(Teeth, AreReadWithTheirDefaults) {
-  const Case the_case =
-      with_teeth({"gear.backlash_um=40", "gear.dissipation_s_per_m=0.3"});
+  const Case the_case = with_teeth({"gear.backlash_um=40", "gear.dissipation_s_per_m=0.3"});
   const Gear& gear = the_case.pump.gear;
   ASSERT_TRUE(gear.teeth);
   EXPECT_FALSE(gear.compliance);

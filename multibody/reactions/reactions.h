@@ -27,7 +27,7 @@ struct Reactions {
                            ///< torque that the block's motion takes over GearMesh::arm()
   SimTK::Vec3 tooth_line;  ///< of the flank that carries it
   double imposed = 0;      ///< torque about z2 that an imposed motion applies to the block; beside
-                       ///< bevel teeth what they do not give of what its motion takes
+                           ///< bevel teeth what they do not give of what its motion takes
 };
 
 /// Realizes a dynamics state to Acceleration with that flank of the gear in mesh that can carry the

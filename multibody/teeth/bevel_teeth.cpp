@@ -79,13 +79,13 @@ BevelTeeth::BevelTeeth(const PumpParameters& pump, FlankShape shape)
       // Flanks that push towards +psi: the shaft's looks towards -x1, the block's towards +x1.
       shaft_frame_(frame_of(Vec3(1, 0, 0), Vec3(0, 0, -1))),
       block_frame_(frame_of(Vec3(-1, 0, 0), block_axis_)),
-      curve_(flank_curve(shape, pitch_cone_, pump.gear.pressure_angle)),
-      flexibility_(pump.gear, pitch_cone_) {
+      curve_(flank_curve(shape, pitch_cone_, pump.gear.pressure_angle)) {
   if (!(tip_cone_ < kPi - curve_->at(curve_->first_roll()).polar_angle()))
     throw InputError("[gear] addendum_mm = " + mm(teeth_.addendum) +
                      ": the tips lie beyond where flanks of this kind reach");
   tip_roll_ = curve_->roll_at(tip_cone_);
   refuse_what_does_not_mesh();
+  flexibility_.emplace(pump.gear, pitch_cone_);
 }
 
 double BevelTeeth::contact_ratio() const { return 2 * tip_roll_ / pitch_angle_; }
@@ -255,8 +255,8 @@ BevelTeeth::Pair BevelTeeth::pair(double theta, double lag, int flank, int which
       runout(teeth_.shaft, shaft) - runout(teeth_.block, block) - relief(touch.shaft_angle) -
       relief(touch.block_angle);
   const auto height = [&](double polar_angle) { return distance_ * (polar_angle - pitch_cone_); };
-  pair.give = flexibility_.tooth(height(touch.shaft_angle)) +
-              flexibility_.tooth(height(touch.block_angle)) + flexibility_.contact();
+  pair.give = flexibility_->tooth(height(touch.shaft_angle)) +
+              flexibility_->tooth(height(touch.block_angle)) + flexibility_->contact();
   return pair;
 }
 

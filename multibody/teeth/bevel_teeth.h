@@ -96,7 +96,7 @@ class BevelTeeth {
   SimTK::Vec3 block_axis_;
   SimTK::Rotation shaft_frame_, block_frame_;  // cone axis, pitch point
   std::unique_ptr<FlankCurve> curve_;
-  ToothFlexibility flexibility_;
+  std::optional<ToothFlexibility> flexibility_;
   double tip_roll_ = 0;
 };
 
