@@ -9,6 +9,8 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "placement/placement.h"
+#include "scene/pump_system.h"
 #include "teeth/bevel_teeth.h"
 
 namespace bentaxis::multibody {
@@ -224,6 +226,48 @@ TEST(BevelTeeth, ForcesAreContinuousAndCarryTheTorqueAskedFor) {
         last = lag.angle;
       }
     }
+  }
+}
+
+// What Simbody has of the element does the work of its wrench, with no lever left out: shaft and
+// block have their origins at C1 and O2.
+TEST(TeethElement, DoesTheWorkOfItsWrench) {
+  for (const FlankShape shape : kShapes) {
+    PumpParameters pump = perfect_pump();
+    pump.gear.teeth->shaft.runout = 5e-6;
+    Assumptions assumptions;
+    assumptions.flanks = shape;
+    PumpSystem system(pump, assumptions, 1, Drive::given_acceleration);
+    Placement placement(system);
+    int corners = 0;
+    for (int i = 0; i < 50; ++i) {
+      const double theta = 0.3 * i, shaft_speed = 150, block_speed = 149.5 + 0.02 * i;
+      placement.place({theta, shaft_speed, 0}, {theta, block_speed, 0});
+      SimTK::State& state = system.dynamics();
+      system.teeth_setting().lag = {(i % 2 == 0 ? 1 : -1) * 4e-4, shaft_speed - block_speed};
+      SimTK::Vector_<SimTK::SpatialVec> forces;
+      SimTK::Vector_<Vec3> particles;
+      SimTK::Vector mobilities;
+      system.bevel()->force().calcForceContribution(state, forces, particles, mobilities);
+      double power = 0;
+      Vec3 sum(0);
+      for (SimTK::MobilizedBodyIndex b(1); b < system.matter().getNumBodies(); ++b) {
+        const SimTK::SpatialVec& v = system.matter().getMobilizedBody(b).getBodyVelocity(state);
+        power += dot(forces[b][0], v[0]) + dot(forces[b][1], v[1]);
+        sum += forces[b][1];
+      }
+      const TeethAction action = system.bevel()->action(state);
+      const Vec3 moment = vector_of(action.moment);
+      const BevelTeeth& teeth = system.bevel()->teeth();
+      const double on_block = dot(moment, teeth.block_axis());
+      const double on_shaft = -dot(moment, teeth.shaft_axis());
+      EXPECT_GT(std::abs(on_block), 1);
+      EXPECT_NEAR(power, on_block * block_speed + on_shaft * shaft_speed,
+                  1e-12 * std::abs(on_block * block_speed));
+      EXPECT_LT(sum.norm(), 1e-12 * vector_of(action.force).norm());
+      corners += std::abs(on_block + on_shaft) > 1e-6 * std::abs(on_block);
+    }
+    EXPECT_GT(corners, 0);
   }
 }
 

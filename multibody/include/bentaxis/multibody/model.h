@@ -87,8 +87,9 @@ SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions,
 /// stands for all where the samples allow it (they divide by N, and every piston sees at its angle
 /// the pressure that piston 1 sees there); elsewhere the pistons are evaluated one by one.
 /// @param budget  if not null, becomes the budget_table() of the run; of the full pump
-/// @param teeth   if not null, becomes the teeth_table() of the run; of the full pump with bevel
-///                teeth
+/// @param teeth   if not null, becomes the teeth_table() of the run, without rows where the full
+/// pump's
+///                block is not turned by bevel teeth
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress = {}, Scene scene = Scene::full,
                        std::optional<Method> method = {}, ResultTable* budget = nullptr,
