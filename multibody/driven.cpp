@@ -49,7 +49,7 @@ bool one_stands_for_all(const Samples& samples) {
 
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress, Scene scene, std::optional<Method> method,
-                       ResultTable* budget) {
+                       ResultTable* budget, ResultTable* teeth) {
   validate(the_case);
   if (samples.pistons != the_case.pump.geometry.pistons)
     throw InputError("driven run: samples of " + std::to_string(samples.pistons) +
@@ -68,11 +68,19 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   }
   std::size_t next = 0;
   if (budget != nullptr) *budget = budget_table("multibody", has_ring_off_b(the_case.pump));
+  if (teeth != nullptr) {
+    *teeth = teeth_table("multibody");
+    if (the_case.pump.gear.contact != ToothContact::teeth ||
+        assumptions.gear == BlockDrive::imposed || scene != Scene::full)
+      teeth = nullptr;  // none touch
+  }
   const ChannelLayout& at = model.layout();
   const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {
     if (!shared) {
       model.evaluate(instant, row);
-      if (budget != nullptr) append_budget(*budget, samples.theta_deg[next++], model.budget());
+      const double angle = samples.theta_deg[next++];
+      if (budget != nullptr) append_budget(*budget, angle, model.budget());
+      if (teeth != nullptr) append_teeth(*teeth, angle, the_case.pump.gear, model.teeth());
       return;
     }
     for (int k = 0; k < at.pistons(); ++k) {

@@ -22,6 +22,7 @@ void check(const Case& the_case, const Samples& samples) {
     throw InputError("integrated run: samples of " + std::to_string(samples.pistons) +
                      " pistons for a pump with " + std::to_string(the_case.pump.geometry.pistons));
   refuse_ring_off_b(the_case.pump);
+  refuse_teeth(the_case);
   if (the_case.operation.speed_rpm == 0)
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = 0: an integrated run needs a speed other than 0 "

@@ -54,6 +54,7 @@ struct Model::Implementation {
   void require_sizes(const Instant& instant, const std::vector<double>& values) const;
   void evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks);
   void place_and_solve(const AxisMotion& shaft, const AxisMotion& block, const Instant& instant);
+  void settle_teeth(const Instant& instant);
   void check_rank();
 
   ChannelLayout layout;
@@ -66,6 +67,7 @@ struct Model::Implementation {
   InverseDynamics inverse_dynamics;
   Reactions reactions;
   Reactions by_inverse_dynamics;  // what the multipliers are held to
+  TeethAction teeth;
   std::vector<double> pressure;
   SimTK::Vector accelerations;
   Rank rank;
@@ -115,6 +117,23 @@ void Model::Implementation::check_rank() {
                            ": reactions cannot be told apart");
 }
 
+// Lets the teeth stand as they are given, or where they give what the block's balance takes.
+void Model::Implementation::settle_teeth(const Instant& instant) {
+  SimTK::State& state = system.dynamics();
+  TeethSetting& setting = system.teeth_setting();
+  setting = {};
+  if (instant.lag) {
+    setting.lag = *instant.lag;
+  } else {
+    setting.apart = true;
+    inverse_dynamics.solve(by_inverse_dynamics);
+    setting.lag = system.bevel()->rest(state, by_inverse_dynamics.imposed);
+    setting.apart = setting.dissipation = false;
+    state.invalidateAllCacheAtOrAbove(Stage::Dynamics);
+  }
+  teeth = system.bevel()->action(state);
+}
+
 // Finds the reactions at a motion of shaft and block under the pressures in `pressure`.
 void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisMotion& block,
                                             const Instant& instant) {
@@ -126,10 +145,11 @@ void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisM
   ++placements;
   placement.place(shaft, block);
   SimTK::State& state = system.dynamics();
+  if (system.bevel() != nullptr) settle_teeth(instant);
   if (method == Method::multipliers) {
     if (scene == Scene::full) {
       system.drive().set_acceleration(state, shaft.acceleration);
-      if (system.has_gear())
+      if (system.has_rigid_gear())
         system.gear().setting().relative_acceleration = block.acceleration - shaft.acceleration;
     }
     realize_with_flank(system, state);
@@ -200,6 +220,12 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
     read_piston_channels(self.system, self.reactions, 0, 0, instant.chamber_pressure[0],
                          self.layout, values);
   });
+}
+
+const TeethAction& Model::teeth() const {
+  if (implementation_->system.bevel() == nullptr)
+    throw std::logic_error("teeth() is of the full pump with bevel teeth");
+  return implementation_->teeth;
 }
 
 Budget Model::budget() {

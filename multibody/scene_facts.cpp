@@ -48,6 +48,15 @@ void refuse_ring_off_b(const PumpParameters& pump) {
                      "driven, run --states), or use the analytic model");
 }
 
+void refuse_teeth(const Case& the_case) {
+  if (the_case.pump.gear.contact == ToothContact::teeth)
+    throw InputError(
+        (the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+        "[gear] contact = \"teeth\": not integrated by Simbody itself, only evaluated at "
+        "given motion (run --way driven, run --states) or given as equations of motion "
+        "(simulate)");
+}
+
 Method method_for(const PumpParameters& pump, std::optional<Method> asked) {
   if (!has_ring_off_b(pump)) return asked.value_or(Method::multipliers);
   if (asked == Method::multipliers)
@@ -76,6 +85,13 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
                                                              const Assumptions& assumptions,
                                                              Scene scene) {
   const bool mesh = assumptions.gear == BlockDrive::mesh;
+  const bool teeth = mesh && pump.gear.contact == ToothContact::teeth;
+  const char* const gear =
+      !mesh    ? "gear replaced by a speed imposed on the block's joint"
+      : !teeth ? "gear in mesh (tooth force along z4 at O4)"
+      : assumptions.flanks == FlankShape::octoid
+          ? "octoid bevel teeth, contact found by Newton's method in a force element"
+          : "spherical involute bevel teeth, contact found by Newton's method in a force element";
   const int n = scene == Scene::piston ? 1 : pump.geometry.pistons;
   const std::string pistons = n == 1 ? "1 piston" : std::to_string(n) + " pistons";
   const std::string bodies = std::to_string(n + 2) + " (shaft, block, " + pistons + ")";
@@ -88,14 +104,12 @@ std::vector<std::pair<std::string, std::string>> scene_facts(const PumpParameter
             {"constraints", "B on its bore axis (2 per piston)"}};
   return {
       {"method", "multibody, Simbody " + simbody_version()},
-      {"scene", std::string("full pump, gear ") +
-                    (mesh ? "in mesh (tooth force along z4 at O4)"
-                          : "replaced by a speed imposed on the block's joint")},
+      {"scene", std::string("full pump, ") + gear},
       {"bodies", bodies},
       {"joints", "shaft spherical at C1, block pin about z2, pistons spherical at A to the shaft"},
       {"constraints",
        std::string("cylindrical bearing inline at C2 (2), speed of the shaft (1), ") +
-           (mesh ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
+           (mesh && !teeth ? "gear (1), " : "") + "B on its bore axis (2 per piston)"}};
 }
 
 SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions, Scene scene) {

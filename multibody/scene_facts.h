@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bentaxis/multibody/scene.h"
+#include "bentaxis/pump/case.h"
 #include "bentaxis/pump/parameters.h"
 #include "scene/drive.h"
 
@@ -12,6 +13,10 @@ Drive drive_of(Scene scene);
 
 /// @throws InputError where the bores' forces act off B: no integration serves such a pump.
 void refuse_ring_off_b(const PumpParameters& pump);
+
+/// @throws InputError where the contact is that of bevel teeth: Simbody's own integrators do not
+/// know when their flanks meet and part.
+void refuse_teeth(const Case& the_case);
 
 /// The pump that is built: the one-piston scene is the scene of a pump with one piston.
 PumpParameters built_pump(const PumpParameters& pump, Scene scene);

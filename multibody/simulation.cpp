@@ -47,6 +47,7 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                     const PressureTrace& pressure, const SimulationOptions& options,
                     const Progress& progress, const SimulationMethod& method) {
   require_simulable(the_case, assumptions);
+  refuse_teeth(the_case);
   const Stopwatch stopwatch;
   const IntegrationOptions integration{method.integrator,
                                        options.accuracy.value_or(accuracy_for(options.error))};

@@ -63,7 +63,7 @@ class MultibodyMechanics : public Mechanics {
   }
   MotionVector scales() const override { return scales_; }
   bool shaft_is_free() const override { return !drive_.gives_speed(); }
-  bool compliant() const override { return system_.teeth() != nullptr; }
+  bool compliant() const override { return system_.teeth() != nullptr || has_bevel(); }
   bool has_motor() const override { return drive_.is_motor(); }
   std::vector<double> knots() const override { return drive_.knots(); }
 
@@ -79,11 +79,18 @@ class MultibodyMechanics : public Mechanics {
     const AxisMotion motion = shaft(time, y);
     return {motion.angle - y[kLag], motion.speed - y[kLagRate], 0};
   }
-  double approach(double, const MotionVector& y, int flank) const override {
-    return flank * arm_ * y[kLag] - teeth().backlash / 2;
+  double approach(double time, const MotionVector& y, int flank) const override {
+    if (has_bevel()) return closing(time, y, flank).approach;
+    return flank * arm_ * y[kLag] - law().backlash / 2;
   }
-  double approach_rate(double, const MotionVector& y, int flank) const override {
+  double approach_rate(double time, const MotionVector& y, int flank) const override {
+    if (has_bevel()) return closing(time, y, flank).rate;
     return flank * arm_ * y[kLagRate];
+  }
+  bool teeth(double time, const MotionVector& y, TeethAction& action) override {
+    if (has_bevel())
+      action = bevel().act(shaft(time, y).angle, shaft(time, y).speed, {y[kLag], y[kLagRate]});
+    return has_bevel();
   }
 
   void rates(double time, const MotionVector& y, const OilLoads& loads, MotionVector& dy) override {
@@ -110,14 +117,21 @@ class MultibodyMechanics : public Mechanics {
   }
   double potential_energy(const MotionVector& y) const override {
     double energy = 0;
-    if (compliant())
-      for (const int flank : {1, -1}) energy += flank_energy(teeth(), approach(0, y, flank));
+    if (has_law())
+      for (const int flank : {1, -1}) energy += flank_energy(law(), approach(0, y, flank));
     if (has_motor()) energy += motor().coupling_stiffness * y[kTwist] * y[kTwist] / 2;
     return energy;
   }
 
  private:
-  const ToothCompliance& teeth() const { return *pump_.gear.compliance; }
+  const ToothCompliance& law() const { return *pump_.gear.compliance; }
+  bool has_law() const { return system_.teeth() != nullptr; }
+  const BevelTeeth& bevel() const { return system_.bevel()->teeth(); }
+  bool has_bevel() const { return system_.bevel() != nullptr; }
+  BevelTeeth::Closing closing(double time, const MotionVector& y, int flank) const {
+    const AxisMotion turning = shaft(time, y);
+    return bevel().closing(turning.angle, turning.speed, {y[kLag], y[kLagRate]}, flank);
+  }
   const MotorData& motor() const { return *drive_.spec().motor; }
 
   Posture posture(double time, const MotionVector& y) const {
@@ -179,9 +193,10 @@ void MultibodyMechanics::place(const Posture& now) {
     placed_ = now;
   }
   state.invalidateAllCacheAtOrAbove(Stage::Dynamics);
-  if (compliant()) {
+  if (has_bevel()) system_.teeth_setting().lag = {now.lag, now.lag_rate};
+  if (has_law()) {
     system_.teeth()->set_advance(state, arm_ * now.lag);
-    system_.tooth_branch() = tooth_branch_at(teeth(), arm_ * now.lag, arm_ * now.lag_rate);
+    system_.tooth_branch() = tooth_branch_at(law(), arm_ * now.lag, arm_ * now.lag_rate);
   }
   if (has_motor()) system_.drive_torque()->set_twist(state, now.twist);
 }
@@ -212,7 +227,8 @@ void MultibodyMechanics::find_rates(const Posture& now, const MotionVector& y,
   if (compliant()) {
     dy[kLag] = y[kLagRate];
     dy[kLagRate] = found_.shaft - found_.block;
-    dy[kImpulse] = std::abs(system_.teeth()->force(state));
+    dy[kImpulse] = std::abs(has_bevel() ? system_.bevel_torque_on_block(state) / arm_
+                                        : system_.teeth()->force(state));
   }
   if (has_motor()) {
     dy[kTwist] = y[kTwistRate];
@@ -233,9 +249,9 @@ void MultibodyMechanics::add_work_rates(const Posture& now, const MotionVector& 
   // What turns the shaft is Ct Td (38): the rest of Td's work is lost, to friction that is a load.
   if (!has_motor()) drive /= pump_.friction.shaft_torque_factor;
   double elastic = 0;
-  if (compliant())
+  if (has_law())
     for (const int flank : {1, -1})
-      elastic += flank_force(teeth(), approach(0, y, flank), 0) * approach_rate(0, y, flank);
+      elastic += flank_force(law(), approach(0, y, flank), 0) * approach_rate(0, y, flank);
   if (has_motor()) elastic += motor().coupling_stiffness * y[kTwist] * y[kTwistRate];
   dy[kWorkOfLoads] = total - drive + elastic;
   dy[kWorkOfDrive] = drive;
@@ -290,7 +306,8 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
   const double start = drive_.start_speed();
 
   double torque = kLeastTorque;
-  double tooth = 0;              // N, that keeps the block with the shaft
+  double tooth = 0;  // N, that keeps the block with the shaft
+  system_.teeth_setting().apart = true;
   double both = 0;               // kg m2
   double lag = SimTK::Infinity;  // kg m2, inertia that the teeth work against
   for (int i = 0; i < kAngles; ++i) {
@@ -339,6 +356,7 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
     for (const double value : spec.curve.value) torque = std::max(torque, std::abs(value));
   }
   placed_.reset();
+  system_.teeth_setting().apart = false;
 
   MotionVector scale;
   scale.fill(1);
@@ -350,9 +368,14 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
   if (compliant()) {
     // Teeth that meet carry a good part of what the drive gives.
     tooth = std::max(tooth, kTouchShare * torque / arm_);
-    const double approach = kToothApproach * std::pow(tooth / (teeth().stiffness * kToothApproach),
-                                                      1 / teeth().exponent);
-    const double stiffness = teeth().exponent * tooth / approach * arm_ * arm_;  // Nm/rad
+    double stiffness = 0;  // Nm/rad
+    if (has_bevel()) {
+      stiffness = tooth * arm_ / (bevel().rest(0, tooth * arm_).angle - bevel().rest(0, 0).angle);
+    } else {
+      const double approach =
+          kToothApproach * std::pow(tooth / (law().stiffness * kToothApproach), 1 / law().exponent);
+      stiffness = law().exponent * tooth / approach * arm_ * arm_;
+    }
     scale[kLag] = std::min(kAngle, tooth * arm_ / stiffness);
     scale[kLagRate] = scale[kLag] * std::sqrt(stiffness / lag);
     scale[kImpulse] = tooth * kOneTouch;

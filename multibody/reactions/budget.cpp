@@ -54,10 +54,13 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
   OnBodies forces;
   SimTK::Vector_<Vec3> particles;
   Vector mobilities;
+  // The gear passes on to the shaft what the block needs; an imposed motion supplies it.
+  double passed_on = 1;
+  if (pump.bevel() != nullptr && reactions.tooth != 0)
+    passed_on = -pump.bevel_torque_on_shaft(state) / pump.bevel_torque_on_block(state);
   const auto put = [&](Cause cause, double on_shaft, double on_block) {
     budget.carrying_of(cause) = on_block;
-    // The gear passes on to the shaft what the block needs; an imposed motion supplies it.
-    budget.drive_of(cause) = pump.has_gear() ? on_shaft + on_block : on_shaft;
+    budget.drive_of(cause) = pump.has_gear() ? on_shaft + passed_on * on_block : on_shaft;
   };
   const auto along_axis = [&] { return dot(z2, forces[bodies.block.getMobilizedBodyIndex()][1]); };
   const auto put_forces = [&](Cause cause) {
@@ -112,7 +115,10 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
 
   find_only(LoadSource::spring);
   budget.pressing += along_axis();
-  if (pump.has_gear()) {
+  if (pump.bevel() != nullptr) {
+    budget.carrying_torque = reactions.tooth * pump.gear().arm();
+    budget.pressing += dot(z2, vector_of(pump.bevel()->action(state).force));
+  } else if (pump.has_gear()) {
     const GearMesh& gear = pump.gear();
     budget.carrying_torque =
         reactions.tooth * dot(z2, (gear.point() - bodies.block_origin) % reactions.tooth_line);

@@ -43,6 +43,18 @@ void read_piston_channels(const PumpSystem& pump, const Reactions& reactions, st
   values[layout.axis_moment(channel)] = on.axis_moment;
 }
 
+namespace {
+
+// Both torques that pass between shaft and block, Nm: those of a gear with one line cancel.
+double gear_torque(const PumpSystem& pump, const State& state, const Reactions& reactions,
+                   double imposed) {
+  if (!pump.has_gear()) return imposed;
+  if (pump.bevel() == nullptr) return 0;
+  return reactions.tooth * pump.gear().arm() + pump.bevel_torque_on_shaft(state);
+}
+
+}  // namespace
+
 void read_pump_channels(const PumpSystem& pump, const State& state, const Reactions& reactions,
                         const WorkRate& rate, const AxisMotions& motion,
                         const std::vector<double>& pressure, const ChannelLayout& layout,
@@ -96,7 +108,7 @@ void read_pump_channels(const PumpSystem& pump, const State& state, const Reacti
   values[layout.power_residual()] =
       reactions.drive - (p.friction.shaft_viscous + p.friction.block_viscous) * motion.shaft.speed -
       (p.shaft.axial_inertia + p.block.axial_inertia) * motion.shaft.acceleration +
-      work / rate.omega + (pump.has_gear() ? 0 : values[layout.Tcs()]);
+      work / rate.omega + gear_torque(pump, state, reactions, values[layout.Tcs()]);
 }
 
 void read_channels(const PumpSystem& pump, const State& state, const WorkRate& rate,
@@ -118,8 +130,8 @@ void read_motion_row(const PumpSystem& pump, const State& state, const AxisMotio
     read_piston_channels(pump, reactions, k, k, pressure[k], layout, values);
   const double speed = motion.shaft.speed;
   read_pump_channels(pump, state, reactions, {state, speed}, motion, pressure, layout, values);
-  checks = {pump.teeth() != nullptr ? reactions.tooth : not_computed(),
-            ring_power(pump, reactions, state),
+  const bool gives_way = pump.teeth() != nullptr || pump.bevel() != nullptr;
+  checks = {gives_way ? reactions.tooth : not_computed(), ring_power(pump, reactions, state),
             power_balance(pump, state, reactions, state.getUDot())};
   values[layout.power_residual()] = speed == 0 ? not_computed() : checks.power_balance / speed;
 }

@@ -68,7 +68,14 @@ void InverseDynamics::solve_block_and_shaft(Reactions& reactions, const Loads& l
     hold += SpatialVec((contact - o2) % on.bore, on.bore);
     on_shaft += SpatialVec((on.place.p() - c1) % on.joint, on.joint);
   }
-  if (pump_.has_gear()) {
+  reactions.imposed = 0;
+  if (pump_.bevel() != nullptr) {
+    // Their forces are among the loads. What is left about z2 they do not give.
+    reactions.imposed = dot(hold[0], z2);
+    hold[0] -= reactions.imposed * z2;
+    reactions.tooth = (reactions.imposed + pump_.bevel_torque_on_block(state)) / pump_.gear().arm();
+    reactions.tooth_line = pump_.gear().line_for(reactions.tooth);
+  } else if (pump_.has_gear()) {
     // The arm about z2 is that of either flank; the sign tells which of them pushes.
     const Vec3 on_block = (pump_.gear().point() - o2) % pump_.gear().line_for(0);
     reactions.tooth = dot(hold[0], z2) / dot(on_block, z2);

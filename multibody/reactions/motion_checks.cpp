@@ -1,5 +1,7 @@
 #include "reactions/motion_checks.h"
 
+#include <cmath>
+
 #include "bentaxis/results/result_table.h"
 #include "scene/tooth_contact.h"
 
@@ -69,12 +71,14 @@ double power_balance(const PumpSystem& pump, const State& state, const Reactions
     sum += reactions.drive * bodies.shaft.getBodyAngularVelocity(state)[2];
   if (pump.has_rigid_gear())
     sum -= reactions.tooth * dot(reactions.tooth_line, sliding_at_mesh(pump, state));
-  else if (!pump.has_gear())
+  else if (pump.block_is_imposed())
     sum += reactions.imposed * bodies.block.getOneU(state, 0);
   return sum + ring_power(pump, reactions, state);
 }
 
 double contact_law_force(const PumpSystem& pump, const State& state, double lag) {
+  if (pump.bevel() != nullptr)
+    return pump.bevel_torque_on_block(state) / std::abs(pump.gear().arm());
   const auto& teeth = pump.pump().gear.compliance;
   if (!teeth || pump.pump().gear.contact != ToothContact::compliant || !pump.has_gear())
     return not_computed();

@@ -25,7 +25,7 @@ double ring_power(const PumpSystem& pump, const Reactions& reactions, const SimT
 double power_balance(const PumpSystem& pump, const SimTK::State& state, const Reactions& reactions,
                      const SimTK::Vector& udot);
 
-/// Force of the contact law of compliant teeth at this motion, N, signed towards +psi;
+/// Force of the contact law of compliant or bevel teeth at this motion, N, signed towards +psi;
 /// not_computed() where teeth are rigid or there is no gear.
 double contact_law_force(const PumpSystem& pump, const SimTK::State& state, double lag);
 

@@ -51,9 +51,8 @@ void reactions_from_multipliers(const PumpSystem& pump, const State& state, Reac
     reactions.tooth = pump.tooth_force(state);
     reactions.tooth_line =
         pump.has_rigid_gear() ? pump.gear().line() : pump.gear().line_for(reactions.tooth);
-  } else {
-    reactions.imposed = pump.imposed_block_torque(state);
   }
+  reactions.imposed = pump.block_is_imposed() ? pump.imposed_block_torque(state) : 0;
 }
 
 }  // namespace bentaxis::multibody

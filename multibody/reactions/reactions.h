@@ -23,9 +23,11 @@ struct Reactions {
   SimTK::SpatialVec block_hold;      ///< by film and pin together, about O2: moment, force
   SimTK::Vec3 tapered, cylindrical;  ///< on the shaft by its bearings
   double drive = 0;                  ///< torque about z1 on the shaft after proportional losses, Nm
-  double tooth = 0;                  ///< tooth force on the block along tooth_line, N
-  SimTK::Vec3 tooth_line;            ///< of the flank that carries it
-  double imposed = 0;  ///< torque about z2 that an imposed motion applies to the block
+  double tooth = 0;        ///< tooth force on the block along tooth_line, N; of bevel teeth the
+                           ///< torque that the block's motion takes over GearMesh::arm()
+  SimTK::Vec3 tooth_line;  ///< of the flank that carries it
+  double imposed = 0;      ///< torque about z2 that an imposed motion applies to the block; beside
+                           ///< bevel teeth what they do not give of what its motion takes
 };
 
 /// Realizes a dynamics state to Acceleration with that flank of the gear in mesh that can carry the

@@ -55,6 +55,10 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
     if (pump_.gear.contact == ToothContact::compliant && has_gear())
       teeth_.emplace(forces_, *pump_.gear.compliance, *gear_, shaft_, block_, tooth_branch_);
   }
+  if (pump_.gear.contact == ToothContact::teeth && has_gear()) {
+    bevel_teeth_.emplace(pump_, assumptions_.flanks);
+    bevel_.emplace(forces_, *bevel_teeth_, shaft_, block_, bodies_.block_origin, teeth_setting_);
+  }
   if (drive_ == Drive::constant_speed || drive_ == Drive::torque || drive_ == Drive::given_turning)
     work_.emplace(
         system_, matter_, forces_, [this](const State& state) { return power_of_drives(state); },
@@ -89,10 +93,11 @@ void PumpSystem::make_states() {
     cylindrical_.constraint().disable(assembly_);
     shaft_drive_->disable(assembly_);
     if (has_gear()) gear_->disable(assembly_);
-    // Dynamics: joints and constraints hold them; an imposed block keeps its motion.
+    // Dynamics: joints and constraints hold them; an imposed block keeps its motion, and so does
+    // one with bevel teeth at a given instant: what they push need not be what its motion takes.
     shaft_motion_.disable(dynamics_);
-    if (has_gear()) block_motion_.disable(dynamics_);
-    if (teeth_) gear_->disable(dynamics_);
+    if (!block_is_imposed()) block_motion_.disable(dynamics_);
+    if (teeth_ || bevel_) gear_->disable(dynamics_);
   }
   system_.realize(assembly_, SimTK::Stage::Instance);
   system_.realize(dynamics_, SimTK::Stage::Instance);
@@ -110,7 +115,7 @@ double PumpSystem::power_of_drives(const State& state) const {
   if (shaft_drive_->has_equation())
     power += shaft_drive_->torque(state) * shaft_.getBodyAngularVelocity(state)[2];
   if (drive_torque_) power += drive_torque_->power(state);
-  if (!has_gear()) power += imposed_block_torque(state) * block_.getOneU(state, 0);
+  if (block_is_imposed()) power += imposed_block_torque(state) * block_.getOneU(state, 0);
   return power;
 }
 
@@ -120,7 +125,19 @@ double PumpSystem::torque_on_shaft(const State& state) const {
 }
 
 double PumpSystem::tooth_force(const State& state) const {
+  if (bevel_) {
+    const double imposed = block_is_imposed() ? imposed_block_torque(state) : 0;
+    return (bevel_torque_on_block(state) + imposed) / gear_->arm();
+  }
   return teeth_ ? teeth_->force(state) : gear_->tooth_force(state);
+}
+
+double PumpSystem::bevel_torque_on_block(const State& state) const {
+  return bevel_teeth_->torque_on_block(bevel_->action(state));
+}
+
+double PumpSystem::bevel_torque_on_shaft(const State& state) const {
+  return bevel_teeth_->torque_on_shaft(bevel_->action(state));
 }
 
 double PumpSystem::imposed_block_torque(const State& state) const {

@@ -25,6 +25,7 @@
 #include "scene/piston.h"
 #include "scene/tooth_contact.h"
 #include "scene/work_meter.h"
+#include "teeth/teeth_element.h"
 
 namespace bentaxis::multibody {
 
@@ -75,11 +76,25 @@ class PumpSystem {
   const GearMesh& gear() const { return *gear_; }
   const ShaftDrive& drive() const { return *shaft_drive_; }
   bool has_gear() const { return !is_prescribed() && assumptions_.gear == BlockDrive::mesh; }
-  /// Whether the gear is a constraint; compliant teeth of a pump that is simulated are not.
-  bool has_rigid_gear() const { return has_gear() && !teeth_; }
+  /// Whether the gear is a constraint; bevel teeth, and compliant ones of a pump that is simulated,
+  /// are not.
+  bool has_rigid_gear() const { return has_gear() && !teeth_ && !bevel_; }
   /// Compliant teeth of a pump that is simulated; else null.
   const CompliantTeeth* teeth() const { return teeth_ ? &*teeth_ : nullptr; }
   ToothBranch& tooth_branch() { return tooth_branch_; }
+  /// Bevel teeth in contact; else null. At given instants the block's motion is imposed beside
+  /// them.
+  const TeethElement* bevel() const { return bevel_ ? &*bevel_ : nullptr; }
+  /// Whether the block's motion is imposed on its own joint.
+  bool block_is_imposed() const {
+    return !is_prescribed() &&
+           (!has_gear() || (bevel_.has_value() && drive_ == Drive::given_acceleration));
+  }
+  TeethSetting& teeth_setting() { return teeth_setting_; }
+  /// Torques that they exert on the block about z2 and on the shaft about z1, Nm.
+  /// @param state  realized to Velocity
+  double bevel_torque_on_block(const SimTK::State& state) const;
+  double bevel_torque_on_shaft(const SimTK::State& state) const;
   /// What turns a shaft that runs free in a simulation; else null.
   const DriveTorque* drive_torque() const { return drive_torque_ ? &*drive_torque_ : nullptr; }
   bool is_prescribed() const { return drive_ == Drive::prescribed; }
@@ -141,6 +156,9 @@ class PumpSystem {
   std::optional<DriveTorque> drive_torque_;
   ToothBranch tooth_branch_;
   std::optional<CompliantTeeth> teeth_;
+  std::optional<BevelTeeth> bevel_teeth_;
+  TeethSetting teeth_setting_;
+  std::optional<TeethElement> bevel_;
   std::optional<WorkMeter> work_;
   SimTK::State assembly_, dynamics_;
 };

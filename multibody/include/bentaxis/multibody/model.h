@@ -15,6 +15,7 @@
 #include "bentaxis/results/instant.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/results/teeth.h"
 
 namespace bentaxis::multibody {
 
@@ -50,6 +51,10 @@ class Model {
   /// full pump.
   Budget budget();
 
+  /// What bevel teeth do to each other at the instant of the last evaluate(); of the full pump with
+  /// [gear] contact = "teeth".
+  const TeethAction& teeth() const;
+
   /// The channels of piston 1 alone; only in the one-piston scene.
   void evaluate_one(const Instant& instant, std::vector<double>& values);
 
@@ -82,9 +87,13 @@ SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions,
 /// stands for all where the samples allow it (they divide by N, and every piston sees at its angle
 /// the pressure that piston 1 sees there); elsewhere the pistons are evaluated one by one.
 /// @param budget  if not null, becomes the budget_table() of the run; of the full pump
+/// @param teeth   if not null, becomes the teeth_table() of the run, without rows where the full
+/// pump's
+///                block is not turned by bevel teeth
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress = {}, Scene scene = Scene::full,
-                       std::optional<Method> method = {}, ResultTable* budget = nullptr);
+                       std::optional<Method> method = {}, ResultTable* budget = nullptr,
+                       ResultTable* teeth = nullptr);
 
 /// Reactions at given states of shaft and block, with the torque that their motion needs.
 /// @throws InputError, ComputationError
