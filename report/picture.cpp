@@ -946,7 +946,7 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
           if (std::isfinite(line.x[i]) && std::isfinite(line.y[i]))
             path += fmt::format("{}{} {}", path.empty() ? "M" : "L",
                                 px(std::clamp(x.place(line.x[i]), kLeft, kRight)),
-                                px(y.place(line.y[i])));
+                                px(std::clamp(y.place(line.y[i]), y.last, y.first)));
         const bool filled = looks[static_cast<std::size_t>(line.look)].filled;
         add(root, "path",
             {{"d", path},

@@ -230,6 +230,19 @@ void Maker::split_assumptions() {
     names.push_back(from_words[i].first);
     changes.push_back(all_changes[i]);
   }
+  // The closed form knows involutes alone: what another shape does is seen in the other model.
+  std::optional<ModelRun> involutes;
+  const unsigned shape = 1U << names.size();
+  const bool other_shape = has_teeth() && to.flanks != from.flanks;
+  if (other_shape) {
+    r.changes.push_back({"flanks of the teeth", to_string(from.flanks), to_string(to.flanks)});
+    names.emplace_back("flanks of the teeth");
+    changes.push_back([](Assumptions&, const Assumptions&) {});
+    RunOptions options = multibody_run(0);
+    options.assumptions = to;
+    options.assumptions->flanks = from.flanks;
+    involutes = study::run(r.second, multibody_samples_, options, progress_of_);
+  }
   if (names.empty()) return;
   const auto run_of = [&](unsigned mask, bool budget) {
     RunOptions options;
@@ -239,7 +252,13 @@ void Maker::split_assumptions() {
       if ((mask & (1U << i)) != 0) changes[i](*options.assumptions, to);
     return study::run(r.first, samples_, options);
   };
-  const auto variant = [&](unsigned mask) { return run_of(mask, false).table; };
+  const auto variant = [&](unsigned mask) {
+    ResultTable table = run_of(mask, false).table;
+    if (other_shape && (mask & shape) != 0)
+      for (std::size_t i = 0; i < table.values.size(); ++i)
+        table.values[i] += r.multibody.values[i] - involutes->table.values[i];
+    return table;
+  };
   // A tolerance that the user names counts as it is.
   const double tolerance = r.options.tolerance || integrated() ? r.tolerance : kDrivenRestTolerance;
   r.split =

@@ -151,7 +151,8 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   if (r.split)
     document.assumptions = {
         "The models were asked to assume different things. Each assumption's contribution is its "
-        "effect in the analytic model, averaged over the orders in which the assumptions can be "
+        "effect in the analytic model (of the flanks' shape: in the multibody model), averaged "
+        "over the orders in which the assumptions can be "
         "taken over; what is left is a difference between the models themselves.",
         r.changes, *r.split};
   document.published = r.published;

@@ -34,9 +34,9 @@ function drawingPanel(width, panel, frame, p, figure, colour) {
   const root = svg("svg", { width, height: bottom + 44, role: "img",
                             "aria-label": `${figure.title}: ${name(panel.y)} over ${name(panel.x)}; ${frame.text}` });
   drawAxes(root, x, y, [left, right, top, bottom]);
-  const inside = v => Math.min(right, Math.max(left, v));
+  const inside = (v, low, high) => Math.min(high, Math.max(low, v));
   for (const line of frame.lines.filter(l => l.panel === p)) {
-    const points = line.x.map((v, i) => `${inside(x.place(v)).toFixed(1)},${y.place(line.y[i]).toFixed(1)}`).join(" ");
+    const points = line.x.map((v, i) => `${inside(x.place(v), left, right).toFixed(1)},${inside(y.place(line.y[i]), top, bottom).toFixed(1)}`).join(" ");
     const filled = figure.looks[line.look].filled;
     root.append(svg("polyline", { points, stroke: colour(line.look), "stroke-width": line.width,
                                   fill: filled ? colour(line.look) : "none", "fill-opacity": filled ? 0.18 : 0 }));

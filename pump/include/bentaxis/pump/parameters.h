@@ -214,6 +214,9 @@ inline bool operator==(const Assumptions& a, const Assumptions& b) {
 inline std::string to_string(PistonInertia inertia) {
   return piston_inertia_names()[static_cast<std::size_t>(inertia)];
 }
+inline std::string to_string(FlankShape flanks) {
+  return flanks == FlankShape::involute ? "involute" : "octoid";
+}
 inline std::string to_string(BlockDrive gear) {
   return gear == BlockDrive::mesh ? "mesh" : "imposed";
 }
