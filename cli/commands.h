@@ -8,7 +8,13 @@
 namespace bentaxis::cli {
 
 /// Exit statuses (docs/command_line.md).
-enum ExitStatus { kDone = 0, kOutOfTolerance = 1, kBadInput = 2, kComputationFailed = 3 };
+enum ExitStatus {
+  kDone = 0,
+  kOutOfTolerance = 1,
+  kBadInput = 2,
+  kComputationFailed = 3,
+  kInterrupted = 130,  ///< as shells report Ctrl-C
+};
 
 /// A command as the parser knows it, and what it does once its options are parsed.
 struct Command {

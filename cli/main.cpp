@@ -17,8 +17,6 @@ namespace {
 using namespace bentaxis;
 using namespace bentaxis::cli;
 
-constexpr int kInterruptedStatus = 130;  // as shells report Ctrl-C
-
 int guarded(const std::function<int()>& job) {
   try {
     return job();
@@ -27,7 +25,7 @@ int guarded(const std::function<int()>& job) {
     return kBadInput;
   } catch (const Interrupted&) {
     std::fprintf(stderr, "bentaxis: interrupted; nothing was written\n");
-    return kInterruptedStatus;
+    return kInterrupted;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "bentaxis: not enough memory; fewer samples or revolutions take less\n");
     return kComputationFailed;

@@ -81,11 +81,12 @@ int rattle(const Options& options) {
   study::RattleMap map;
   try {
     map = study::rattle_map(the_case, rattle, keeping, progress_of);
-  } catch (...) {
-    if (file.rows() > 0)
-      std::fprintf(stderr, "bentaxis: %zu of %zu rows are in %s: --resume goes on from them\n",
-                   file.rows(), rattle.delivery_bar.size(), file.file().c_str());
-    throw;
+  } catch (const Interrupted&) {
+    if (file.rows() == 0) throw;
+    std::fprintf(stderr,
+                 "bentaxis: interrupted; %zu of %zu rows are in %s: --resume goes on from them\n",
+                 file.rows(), rattle.delivery_bar.size(), file.file().c_str());
+    return kInterrupted;
   }
   const auto paths = folders.write("report", study::rattle_document(map, versions()), {},
                                    {{"rattle.csv", study::rattle_csv(map)}});

@@ -19,6 +19,7 @@ constexpr double kCheckDisturbance = 1e-6;  // of the lag's scale
 // the steps grown as disturbances grow.
 constexpr double kOfTops = 1e-3;
 constexpr double kOfSteps = 1e-5;
+constexpr int kMostCheckedTurns = 3;  // an irregular motion is judged for less than one
 constexpr double kTooMuchToJudge = 0.05;
 
 // A model under way.
@@ -90,21 +91,20 @@ RattleCheck check_point(const RattleMap& map, std::size_t row, std::size_t speed
   RattleCheck check;
   check.row = row;
   check.speed = speed;
-  const int pistons = ready.the_case.pump.geometry.pistons;
-  check.pitches = point.observed * pistons;
-  const double pitch = 60 / map.options.speed_rpm[speed] / pistons;
+  check.parts = std::min(point.observed, kMostCheckedTurns) * kPartsOfTurn;
+  const double part = 60 / map.options.speed_rpm[speed] / kPartsOfTurn;
   double growth = 1;
   bool judging = true;
-  for (int n = 1; n <= check.pitches; ++n) {
+  for (int n = 1; n <= check.parts; ++n) {
     coupled::ToothStretch of[2];
     int model = 0;
     for (Runner* runner : {&analytic, &multibody}) {
-      of[model] = runner->watch.run_to(n * pitch);
+      of[model] = runner->watch.run_to(n * part);
       runner->whole = runner->whole + of[model++];
     }
     turn();
     if (!judging) continue;
-    disturbed.watch.run_to(n * pitch);
+    disturbed.watch.run_to(n * part);
     growth = std::max(growth, states_apart(analytic, disturbed) / kCheckDisturbance);
     const double allowed = kOfTops + kOfSteps * growth;
     judging = allowed <= kTooMuchToJudge;

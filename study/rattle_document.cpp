@@ -39,6 +39,8 @@ std::size_t agreeing(const RattleMap& map) {
                     [](const RattleCheck& check) { return check.agrees(); }));
 }
 
+double turns_of(int parts) { return static_cast<double>(parts) / kPartsOfTurn; }
+
 std::string headline(const RattleMap& map) {
   const auto counts = counts_of(map, &RattleRow::up);
   std::string text;
@@ -69,9 +71,9 @@ std::string agreement_text(const BoundaryAgreement& agreement) {
   }
   if (count > 0)
     text += fmt::format(
-        "; the simulated boundary lies {:.3g} rpm above it on average, {:.3g} rpm from it at most, "
+        "; the simulated boundary lies {:.3g} rpm {} it on average, {:.3g} rpm from it at most, "
         "where speeds are {:.3g} rpm apart",
-        sum / count, most, spacing);
+        std::abs(sum / count), sum < 0 ? "below" : "above", most, spacing);
   return text;
 }
 
@@ -143,8 +145,9 @@ report::Section boundary_section(const BoundaryAgreement& agreement) {
       "what "
       "its pistons take exceed what they turn it on by, all through the turn. The speed at which "
       "the smallest force passes 0, beside the speed half way between those where the upward "
-      "sweep ceases or begins to carry.",
-      {{"agreement", agreement_text(agreement)}},
+      "sweep ceases or begins to carry: " +
+          agreement_text(agreement) + ".",
+      {},
       {{"delivery pressure, bar", "criterion, rpm", "simulated, rpm", "difference, rpm"}, {}}};
   for (const auto& place : agreement.places)
     section.table.rows.push_back({place.delivery_bar, place.criterion_rpm, place.simulated_rpm,
@@ -181,16 +184,16 @@ report::Section checks_section(const RattleMap& map) {
       "largest force may differ by the errors of the steps grown so. Where they have grown too far "
       "nothing more is judged; such a motion is chaotic, and what follows agrees only in kind.",
       {{"agree", fmt::format("{} of {}", agreeing(map), map.checks.size())}},
-      {{"delivery pressure, bar", "speed, rpm", "class", "Simbody", "pitches judged", "of",
-        "growth", "difference of largest force", "allowed", "agrees", "class over all turns",
-        "Simbody", "largest, N", "Simbody, N"},
+      {{"delivery pressure, bar", "speed, rpm", "class", "Simbody", "turns judged", "of", "growth",
+        "difference of largest force", "allowed", "agrees", "class over all turns", "Simbody",
+        "largest, N", "Simbody, N"},
        {}}};
   for (const RattleCheck& c : map.checks)
-    section.table.rows.push_back(
-        {map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed], to_string(c.analytic),
-         to_string(c.multibody), static_cast<long>(c.judged), static_cast<long>(c.pitches),
-         c.growth, c.difference, c.allowed, c.agrees(), to_string(c.analytic_whole),
-         to_string(c.multibody_whole), c.largest_analytic, c.largest_multibody});
+    section.table.rows.push_back({map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
+                                  to_string(c.analytic), to_string(c.multibody), turns_of(c.judged),
+                                  turns_of(c.parts), c.growth, c.difference, c.allowed, c.agrees(),
+                                  to_string(c.analytic_whole), to_string(c.multibody_whole),
+                                  c.largest_analytic, c.largest_multibody});
   return section;
 }
 
@@ -346,13 +349,13 @@ std::string rattle_text(const RattleMap& map) {
   text += "\n" + agreement_text(boundary_agreement(map)) + "\n";
   for (const RattleCheck& c : map.checks)
     text += fmt::format(
-        "Simbody at {:g} bar, {:g} rpm: {}: {}, largest force {:.1e} apart, {:.1e} allowed, {} of "
-        "{} pitches judged{}\n",
+        "Simbody at {:g} bar, {:g} rpm: {}: {}, largest force {:.1e} apart, {:.1e} allowed, {:g} "
+        "of {:g} turns judged{}\n",
         map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
         c.agrees() ? "agrees" : "differs",
         c.analytic == c.multibody ? to_string(c.analytic)
                                   : to_string(c.analytic) + " against " + to_string(c.multibody),
-        c.difference, c.allowed, c.judged, c.pitches,
+        c.difference, c.allowed, turns_of(c.judged), turns_of(c.parts),
         c.chaotic() ? fmt::format(", chaotic; over all {} against {}", to_string(c.analytic_whole),
                                   to_string(c.multibody_whole))
                     : "");

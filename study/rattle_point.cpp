@@ -118,7 +118,9 @@ RattleClass class_of(const coupled::ToothStretch& s) {
   return both ? RattleClass::hits_both : RattleClass::loses_contact;
 }
 
-double step_tolerance(double error) { return std::clamp(kErrorOfStep * error, kTightestStep, kLoosestStep); }
+double step_tolerance(double error) {
+  return std::clamp(kErrorOfStep * error, kTightestStep, kLoosestStep);
+}
 
 RattlePoint settle(const ReadyCase& ready, const RattleOptions& options, double& lag,
                    double& lag_rate, const std::function<void()>& turn) {

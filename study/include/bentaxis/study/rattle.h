@@ -21,6 +21,7 @@ inline constexpr double kRepeats = 1e-3;
 inline constexpr int kLongestPeriod = 4;  ///< turns, of a motion that is seen to repeat itself
 /// Turns without separation after which nothing more is waited for.
 inline constexpr int kTurnsInTouch = 5;
+inline constexpr int kPartsOfTurn = 40;  ///< of a turn by Simbody: it is judged part by part
 /// Two steady states differ in class, or in the largest force of a turn by this share of it.
 inline constexpr double kOtherForce = 0.1;
 
@@ -72,7 +73,7 @@ bool carries_rigidly(double least, double greatest);
 /// A point by both models from the same state.
 struct RattleCheck {
   std::size_t row = 0, speed = 0;
-  int pitches = 0;                      ///< N-ths of a turn that were computed
+  int parts = 0;                        ///< of turns, kPartsOfTurn each, that were computed
   int judged = 0;                       ///< of them, until a disturbance has grown too much
   double growth = 1;                    ///< of a disturbance, within what is judged
   double difference = 0;                ///< of the largest force, of it, within what is judged
@@ -80,7 +81,7 @@ struct RattleCheck {
   RattleClass analytic{}, multibody{};  ///< within what is judged
   RattleClass analytic_whole{}, multibody_whole{};     ///< over all
   double largest_analytic = 0, largest_multibody = 0;  ///< N, over all
-  bool chaotic() const { return judged < pitches; }
+  bool chaotic() const { return judged < parts; }
   bool agrees() const { return judged > 0 && analytic == multibody && difference <= allowed; }
 };
 
