@@ -17,7 +17,7 @@ constexpr double kCheckTolerance = 1e-9;
 constexpr double kCheckDisturbance = 1e-6;  // of the lag's scale
 // Allowed difference of the largest force: what tops between steps are found to, and the errors of
 // the steps grown as disturbances grow.
-constexpr double kOfTops = 1e-3;
+constexpr double kOfTops = 1e-5;
 constexpr double kOfSteps = 1e-5;
 constexpr int kMostCheckedTurns = 3;  // an irregular motion is judged for less than one
 constexpr double kTooMuchToJudge = 0.05;
