@@ -8,7 +8,13 @@
 namespace bentaxis::cli {
 
 /// Exit statuses (docs/command_line.md).
-enum ExitStatus { kDone = 0, kOutOfTolerance = 1, kBadInput = 2, kComputationFailed = 3 };
+enum ExitStatus {
+  kDone = 0,
+  kOutOfTolerance = 1,
+  kBadInput = 2,
+  kComputationFailed = 3,
+  kInterrupted = 130,  ///< as shells report Ctrl-C
+};
 
 /// A command as the parser knows it, and what it does once its options are parsed.
 struct Command {
@@ -25,6 +31,7 @@ Command add_hardcases_command(CommandParser program);
 Command add_inertia_command(CommandParser program);
 Command add_manual_command(CommandParser program);
 Command add_pressure_command(CommandParser program);
+Command add_rattle_command(CommandParser program);
 Command add_regress_command(CommandParser program);
 Command add_reference_command(CommandParser program);
 Command add_schema_command(CommandParser program);

@@ -17,8 +17,6 @@ namespace {
 using namespace bentaxis;
 using namespace bentaxis::cli;
 
-constexpr int kInterruptedStatus = 130;  // as shells report Ctrl-C
-
 int guarded(const std::function<int()>& job) {
   try {
     return job();
@@ -27,7 +25,7 @@ int guarded(const std::function<int()>& job) {
     return kBadInput;
   } catch (const Interrupted&) {
     std::fprintf(stderr, "bentaxis: interrupted; nothing was written\n");
-    return kInterruptedStatus;
+    return kInterrupted;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "bentaxis: not enough memory; fewer samples or revolutions take less\n");
     return kComputationFailed;
@@ -69,7 +67,7 @@ int run_program(int argc, char** argv) {
       add_schema_command(program),      add_calibrate_command(program),
       add_blocktorque_command(program), add_completion_command(program),
       add_manual_command(program),      add_show_command(program),
-      add_simulate_command(program)};
+      add_simulate_command(program),    add_rattle_command(program)};
   return guarded([&]() -> int {
     if (!parser.parse(argc, argv)) return kDone;
     watch_for_interruption();

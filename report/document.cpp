@@ -169,25 +169,33 @@ Json json_of(const OwnFigure& figure) {
           {"series", series_of(figure.series)}};
 }
 
+Json json_of(const XySeries& s) {
+  return {{"label", s.label}, {"x", exact(s.x)}, {"y", exact(s.y)}};
+}
+
 Json json_of(const XyFigure& figure) {
   return {{"kind", "xy"},
           {"x", json_of(figure.x)},
           {"y", json_of(figure.y)},
-          {"series", list_of(figure.series, [](const XySeries& s) {
-             return Json{{"label", s.label}, {"x", exact(s.x)}, {"y", exact(s.y)}};
-           })}};
+          {"series", list_of(figure.series, [](const XySeries& s) { return json_of(s); })}};
 }
 
 Json json_of(const MapFigure& figure) {
-  return {{"kind", "map"},
-          {"x", json_of(figure.x, figure.x_values)},
-          {"y", json_of(figure.y, figure.y_values)},
-          {"z", {{"label", figure.z.label}, {"unit", figure.z.unit}}},
-          {"values", list_of(figure.values, [](const Values& row) { return exact(row); })},
-          {"contours", figure.contours},
-          {"points", list_of(figure.points, [](const MapFigure::Point& p) {
-             return Json{{"label", p.label}, {"x", p.x}, {"y", p.y}};
-           })}};
+  Json json = {{"kind", "map"},
+               {"x", json_of(figure.x, figure.x_values)},
+               {"y", json_of(figure.y, figure.y_values)},
+               {"z", {{"label", figure.z.label}, {"unit", figure.z.unit}}},
+               {"values", list_of(figure.values, [](const Values& row) { return exact(row); })},
+               {"contours", figure.contours},
+               {"points", list_of(figure.points, [](const MapFigure::Point& p) {
+                  return Json{{"label", p.label}, {"x", p.x}, {"y", p.y}};
+                })}};
+  if (!figure.classes.empty()) json["classes"] = figure.classes;
+  if (figure.linear) json["linear"] = true;
+  if (!figure.lines.empty())
+    json["lines"] = list_of(figure.lines, [](const XySeries& s) { return json_of(s); });
+  if (figure.marks) json["marks"] = json_of(*figure.marks);
+  return json;
 }
 
 Json json_of(const ScatterFigure& figure) {

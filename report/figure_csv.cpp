@@ -90,8 +90,14 @@ std::string numbers(const MapFigure& figure, const Curves&) {
   std::string csv;
   line(csv, heading_of(figure.x), heading_of(figure.y), heading_of(figure.z));
   for (std::size_t i = 0; i < figure.values.size(); ++i)
-    for (std::size_t j = 0; j < figure.values[i].size(); ++j)
-      line(csv, figure.x_values[j], figure.y_values[i], figure.values[i][j]);
+    for (std::size_t j = 0; j < figure.values[i].size(); ++j) {
+      const double value = figure.values[i][j];
+      if (!figure.classes.empty() && is_computed(value))
+        line(csv, figure.x_values[j], figure.y_values[i],
+             figure.classes.at(static_cast<std::size_t>(value)));
+      else
+        line(csv, figure.x_values[j], figure.y_values[i], value);
+    }
   return csv;
 }
 

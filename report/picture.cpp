@@ -820,32 +820,89 @@ std::vector<std::array<Point, 2>> contour(const Values& xs, const Values& ys,
   return pieces;
 }
 
-// Shades and contours go by the logarithm of z.
+// Of classes, light to dark too.
+std::string class_shade(double k) {
+  constexpr std::array kClassShades = {"#f3f7e9", "#b9d7a8", "#e58a2b", "#5e1f63"};
+  return pick(kClassShades, static_cast<std::size_t>(k));
+}
+
+Key shade_key(const std::string& label, const std::string& colour) {
+  return {label, [=](pugi::xml_node root, double x, double y) {
+            add(root, "rect",
+                {{"x", px(x)},
+                 {"y", px(y - 6)},
+                 {"width", "30"},
+                 {"height", "12"},
+                 {"stroke", "#67727e"},
+                 {"stroke-width", "0.6"},
+                 {"fill", colour}});
+          }};
+}
+
+// A line or a dot that is seen on any shade.
+void draw_line_over(pugi::xml_node root, const std::string& path, std::size_t which) {
+  const Attributes common = {{"d", path}, {"fill", "none"}, {"stroke-linejoin", "round"}};
+  Attributes ground = common, line = common;
+  ground.insert(ground.end(), {{"stroke", "#fff"}, {"stroke-width", "5"}});
+  line.insert(line.end(), {{"class", "boundary"},
+                           {"stroke", "#000"},
+                           {"stroke-width", "2.2"},
+                           {"stroke-dasharray", pick(kDashes, which)}});
+  add(root, "path", ground);
+  add(root, "path", line);
+}
+
+void draw_dot_over(pugi::xml_node root, double x, double y) {
+  add(root, "circle",
+      {{"cx", px(x)}, {"cy", px(y)}, {"r", "2.4"}, {"fill", "#fff"}, {"stroke", "#000"}});
+}
+
+// Shades and contours go by the logarithm of z, where it is not to be linear.
 Picture picture_of(const MapFigure& figure, const Curves&) {
   Picture picture;
   std::vector<Values> z = figure.values;
+  const bool linear = figure.linear || !figure.classes.empty();
   Range range, xs, ys;
   for (Values& row : z)
     for (double& v : row) {
-      v = std::isfinite(v) && v > 0 ? std::log10(v) : not_computed();
+      if (!linear) v = std::isfinite(v) && v > 0 ? std::log10(v) : not_computed();
       range.include(v);
     }
   if (range.empty()) return picture;
+  if (linear) range.low = std::min(range.low, 0.0);
   xs.include(figure.x_values);
   ys.include(figure.y_values);
-  const auto text = [unit = figure.z.unit](double v) { return with_unit(short_number(v), unit); };
+  const auto text = [&figure](double v) {
+    if (!figure.classes.empty()) return figure.classes.at(static_cast<std::size_t>(v));
+    return with_unit(short_number(v), figure.z.unit);
+  };
+  const auto colour = [&figure, range](double v) {
+    if (!is_computed(v)) return std::string("#fff");
+    if (!figure.classes.empty()) return class_shade(v);
+    return shade((v - range.low) / std::max(1e-12, range.high - range.low));
+  };
   picture.legend.emplace_back();
-  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
-    picture.legend[0].push_back({text(std::pow(10, range.low + t * (range.high - range.low))),
-                                 [=](pugi::xml_node root, double x, double y) {
-                                   add(root, "rect",
-                                       {{"x", px(x)},
-                                        {"y", px(y - 6)},
-                                        {"width", "30"},
-                                        {"height", "12"},
-                                        {"fill", shade(t)}});
+  if (!figure.classes.empty()) {
+    for (std::size_t k = 0; k < figure.classes.size(); ++k)
+      picture.legend[0].push_back(
+          shade_key(figure.classes[k], class_shade(static_cast<double>(k))));
+  } else {
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const double v = range.low + t * (range.high - range.low);
+      picture.legend[0].push_back(shade_key(text(linear ? v : std::pow(10, v)), shade(t)));
+    }
+    picture.legend[0][0].label = figure.z.label + ": " + picture.legend[0][0].label;
+  }
+  picture.legend.emplace_back();
+  for (std::size_t i = 0; i < figure.lines.size(); ++i)
+    picture.legend[1].push_back(
+        {figure.lines[i].label, [i](pugi::xml_node root, double x, double y) {
+           draw_line_over(root, fmt::format("M{} {}L{} {}", px(x), px(y), px(x + 30), px(y)), i);
+         }});
+  if (figure.marks)
+    picture.legend[1].push_back({figure.marks->label, [](pugi::xml_node root, double x, double y) {
+                                   draw_dot_over(root, x + 15, y);
                                  }});
-  picture.legend[0][0].label = figure.z.label + ": " + picture.legend[0][0].label;
   Panel panel{figure.x, figure.y, 330, xs, ys};
   panel.y_margin = Margin::none;
   panel.draw = [=](pugi::xml_node root, const Scale& x, const Scale& y) {
@@ -859,15 +916,12 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
       for (std::size_t j = 0; j < z[i].size(); ++j) {
         const double x1 = edge(px_x, j), x2 = edge(px_x, j + 1), y1 = edge(px_y, i + 1),
                      y2 = edge(px_y, i);
-        pugi::xml_node cell = add(
-            root, "rect",
-            {{"x", px(x1)},
-             {"y", px(y1)},
-             {"width", px(x2 - x1 + 0.6)},
-             {"height", px(y2 - y1 + 0.6)},
-             {"fill", is_computed(z[i][j])
-                          ? shade((z[i][j] - range.low) / std::max(1e-12, range.high - range.low))
-                          : "#fff"}});
+        pugi::xml_node cell = add(root, "rect",
+                                  {{"x", px(x1)},
+                                   {"y", px(y1)},
+                                   {"width", px(x2 - x1 + 0.6)},
+                                   {"height", px(y2 - y1 + 0.6)},
+                                   {"fill", colour(z[i][j])}});
         cell.append_child("title").text() =
             fmt::format(
                 "{} {}, {} {}: {}", figure.x.label,
@@ -881,7 +935,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
                               {"stroke-width", "4"},     {"paint-order", "stroke"},
                               {"class", "label"}};
     for (const double level : figure.contours) {
-      const auto pieces = contour(px_x, px_y, z, std::log10(level));
+      const auto pieces = contour(px_x, px_y, z, linear ? level : std::log10(level));
       if (pieces.empty()) continue;
       std::string path;
       for (const auto& [a, b] : pieces)
@@ -897,6 +951,24 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
       const Point& at = pieces[pieces.size() / 2][0];
       add_text(root, std::clamp(at[0], kLeft + 24, kRight - 24), at[1] - 6, text(level), label);
     }
+    for (std::size_t i = 0; i < figure.lines.size(); ++i) {
+      const XySeries& line = figure.lines[i];
+      std::string path;
+      bool drawing = false;
+      for (std::size_t k = 0; k < line.x.size(); ++k) {
+        if (!x.shows(line.x[k]) || !y.shows(line.y[k])) {
+          drawing = false;
+          continue;
+        }
+        path += fmt::format("{}{} {}", drawing ? "L" : "M", px(x.place(line.x[k])),
+                            px(y.place(line.y[k])));
+        drawing = true;
+      }
+      if (!path.empty()) draw_line_over(root, path, i);
+    }
+    if (figure.marks)
+      for (std::size_t k = 0; k < figure.marks->x.size(); ++k)
+        draw_dot_over(root, x.place(figure.marks->x[k]), y.place(figure.marks->y[k]));
     for (const MapFigure::Point& p : figure.points) {
       if (p.x < xs.low || p.x > xs.high || p.y < ys.low || p.y > ys.high) continue;
       add(root, "circle",

@@ -123,7 +123,7 @@ struct XyFigure {
   std::vector<XySeries> series;
 };
 
-/// A quantity over two others: values[i][j] at y_values[i], x_values[j].
+/// A quantity, or one of a few classes, over two others: values[i][j] at y_values[i], x_values[j].
 struct MapFigure {
   struct Point {
     std::string label;
@@ -134,6 +134,12 @@ struct MapFigure {
   std::vector<Values> values;
   std::vector<double> contours;
   std::vector<Point> points;
+  /// What the values 0, 1, .. stand for, drawn light to dark. None: shades go by the quantity's
+  /// logarithm, or from 0 by itself where `linear`.
+  std::vector<std::string> classes = {};
+  bool linear = false;
+  std::vector<XySeries> lines = {};              ///< drawn over it
+  std::optional<XySeries> marks = std::nullopt;  ///< places of the map, each a dot
 };
 
 struct ScatterPoint {

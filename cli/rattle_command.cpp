@@ -1,0 +1,141 @@
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/input_log.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/study/rattle_document.h"
+#include "bentaxis/study/rattle_file.h"
+#include "commands.h"
+#include "console.h"
+#include "options.h"
+#include "report_files.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+constexpr int kMostPoints = 1000;  // of either axis
+
+struct Options {
+  CaseOption the_case;
+  ReportPlace place;
+  std::string speeds, delivery;
+  bool resume = false;
+  study::RattleOptions rattle;
+};
+
+// FROM:TO:COUNT, equally spaced.
+std::vector<double> range_of(const std::string& option, const std::string& text, double least) {
+  const auto fail = [&](const std::string& why) {
+    throw InputError(option + " " + text + ": must be FROM:TO:COUNT, " + why);
+  };
+  std::vector<double> numbers;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(':', at), text.size());
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data() + at, text.data() + end, value);
+    if (error != std::errc() || stop != text.data() + end || !std::isfinite(value))
+      fail("three numbers");
+    numbers.push_back(value);
+    at = end + 1;
+  }
+  if (numbers.size() != 3) fail("three numbers");
+  const double from = numbers[0], to = numbers[1], count = numbers[2];
+  if (from < least) fail("FROM >= " + number_text(least));
+  if (!(count >= 1 && count <= kMostPoints && count == std::floor(count)))
+    fail("COUNT an integer from 1 to " + std::to_string(kMostPoints));
+  if (count == 1 ? to != from : !(to > from)) fail("FROM < TO, or FROM = TO with COUNT = 1");
+  std::vector<double> values;
+  for (int i = 0; i < static_cast<int>(count); ++i)
+    values.push_back(i == 0 ? from : from + i * (to - from) / (count - 1));
+  return values;
+}
+
+// What rows of this map are computed from.
+std::string origin_of(const Case& the_case, const study::RattleOptions& options) {
+  std::string text = case_text(the_case);
+  for (const InputFile& input : InputLog::files())
+    if (input.file != the_case.file) text += input.sha256;
+  return std::string("bentaxis ") + BENTAXIS_VERSION + ", case " + sha256_of(text).substr(0, 16) +
+         ", " + study::options_text(options);
+}
+
+int rattle(const Options& options) {
+  study::RattleOptions rattle = options.rattle;
+  constexpr double kLeastSpeed = 1;  // rpm
+  rattle.speed_rpm = range_of("--speeds", options.speeds, kLeastSpeed);
+  rattle.delivery_bar = range_of("--delivery-bar", options.delivery, 0);
+  const Case the_case = options.the_case.read();
+  study::RattleFile file(std::filesystem::path(options.place.out) / "rattle.partial.csv",
+                         origin_of(the_case, rattle));
+  study::RattleKeeping keeping;
+  if (options.resume) keeping.finished = file.read();
+  ReportFolders folders(options.place);
+  keeping.keep = [&](const study::RattleRow& row) { file.keep(row); };
+  study::RattleMap map;
+  try {
+    map = study::rattle_map(the_case, rattle, keeping, progress_of);
+  } catch (const Interrupted&) {
+    if (file.rows() == 0) throw;
+    std::fprintf(stderr,
+                 "bentaxis: interrupted; %zu of %zu rows are in %s: --resume goes on from them\n",
+                 file.rows(), rattle.delivery_bar.size(), file.file().c_str());
+    return kInterrupted;
+  }
+  const auto paths = folders.write("report", study::rattle_document(map, versions()), {},
+                                   {{"rattle.csv", study::rattle_csv(map)}});
+  file.remove();
+  std::printf("%s\n", study::rattle_text(map).c_str());
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  return map.agrees() ? kDone : kOutOfTolerance;
+}
+
+}  // namespace
+
+Command add_rattle_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command = program.subcommand(
+      "rattle", "Map where the gear carries, reverses, loses contact or hits both flanks");
+  add_case(command, options->the_case);
+  add_report(command, options->place, "report.html, report.json and rattle.csv");
+  command.option("--speeds", options->speeds, "speeds of the shaft, rpm, equally spaced")
+      .required()
+      .text("FROM:TO:COUNT");
+  command.option("--delivery-bar", options->delivery, "delivery pressures, bar, equally spaced")
+      .required()
+      .text("FROM:TO:COUNT");
+  study::RattleOptions& rattle_options = options->rattle;
+  command
+      .option("--turns", rattle_options.turns,
+              "turns observed at a point whose motion does not repeat itself")
+      .integer_in(1, 10000)
+      .text("NUMBER [10]");
+  command.option("--discard", rattle_options.discard, "turns before them, at most")
+      .integer_in(0, 10000)
+      .text("NUMBER [10]");
+  command
+      .option("--error", rattle_options.error,
+              "wanted error of the tooth force, of its peak, where no impact makes it grow")
+      .number_in(1e-8, 1e-2)
+      .text("NUMBER [1e-3]");
+  command
+      .option("--check", rattle_options.check,
+              "points, spread over the classes, that Simbody computes too")
+      .integer_in(0, 10000)
+      .text("NUMBER [0]");
+  command
+      .option("--threads", rattle_options.threads, "rows computed at a time; 0: one per processor")
+      .integer_in(0, 1024)
+      .text("NUMBER [0]");
+  command.flag("--resume", options->resume,
+               "go on with the rows that an interrupted run has left in the folder");
+  return {command, [options] { return rattle(*options); }};
+}
+
+}  // namespace bentaxis::cli

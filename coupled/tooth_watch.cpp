@@ -1,0 +1,143 @@
+#include "bentaxis/coupled/tooth_watch.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "course.h"
+
+namespace bentaxis::coupled {
+
+ToothStretch operator+(const ToothStretch& a, const ToothStretch& b) {
+  return {a.duration + b.duration,
+          a.apart + b.apart,
+          a.plus + b.plus,
+          a.minus + b.minus,
+          std::max(a.largest, b.largest),
+          a.impulse + b.impulse,
+          a.separations + b.separations,
+          a.impacts + b.impacts,
+          std::max(a.largest_hit, b.largest_hit)};
+}
+
+class ToothWatch::Watcher {
+ public:
+  Watcher(std::string name, Mechanics& mechanics, const Oil& oil, double tolerance,
+          double impact_speed)
+      : mechanics_(mechanics),
+        oil_(oil),
+        impact_speed_(impact_speed),
+        course_(std::move(name), mechanics, oil, tolerance, true) {}
+
+  void start(const MotionVector& motion) {
+    state_ = {motion, oil_.start()};
+    state_.motion[kImpulse] = 0;
+    course_.start(0, state_);
+    // What touches now began before.
+    flank_ = 0;
+    hits_ = false;
+    for (const ToothEvent& event : course_.events()) flank_ = event.touch ? event.flank : 0;
+    seen_ = course_.events().size();
+    known_ = 0;
+  }
+
+  ToothStretch run_to(double time) {
+    ToothStretch s;
+    const double from = course_.time();
+    const double apart = course_.time_apart();
+    const double impulse = state_.motion[kImpulse];
+    since_ = from;
+    note_force(s);
+    while (course_.time() < time) {
+      course_.advance(time);
+      course_.state_at(course_.time(), state_);
+      note_events(s);
+      note_force(s);
+    }
+    on_flank(s, course_.time());
+    s.duration = course_.time() - from;
+    s.apart = course_.time_apart() - apart;
+    s.impulse = state_.motion[kImpulse] - impulse;
+    return s;
+  }
+
+  const MotionVector& motion() const { return state_.motion; }
+  long steps() const { return course_.steps(); }
+
+ private:
+  void on_flank(ToothStretch& s, double until) {
+    if (flank_ != 0) (flank_ > 0 ? s.plus : s.minus) += until - since_;
+    since_ = until;
+  }
+
+  void note_events(ToothStretch& s) {
+    for (; seen_ < course_.events().size(); ++seen_) {
+      const ToothEvent& event = course_.events()[seen_];
+      on_flank(s, event.time_s);
+      known_ = 0;
+      if (event.touch) {
+        touch_ = seen_;
+        flank_ = event.flank;
+        hits_ = event.approach_speed >= impact_speed_;
+        s.impacts += hits_ ? 1 : 0;
+      } else {
+        ++s.separations;
+        if (hits_) s.largest_hit = std::max(s.largest_hit, course_.events()[touch_].impulse);
+        flank_ = 0;
+        hits_ = false;
+      }
+    }
+  }
+
+  void note_force(ToothStretch& s) {
+    if (flank_ == 0) return;
+    const double time = course_.time();
+    oil_.loads(time, mechanics_.block(time, state_.motion), state_.oil.data(), loads_);
+    MotionVector rates{};
+    mechanics_.rates(time, state_.motion, loads_, rates);
+    s.largest = std::max(s.largest, rates[kImpulse]);
+    if (known_ > 0 && time == times_[2]) return;
+    std::rotate(times_.begin(), times_.begin() + 1, times_.end());
+    std::rotate(forces_.begin(), forces_.begin() + 1, forces_.end());
+    times_[2] = time;
+    forces_[2] = rates[kImpulse];
+    ++known_;
+    if (known_ >= 3 && forces_[1] > forces_[0] && forces_[1] >= forces_[2])
+      s.largest = std::max(s.largest, top());
+  }
+
+  // Of the parabola through the last three forces, the middle one of which is the largest.
+  double top() const {
+    const double h0 = times_[1] - times_[0], h1 = times_[2] - times_[1];
+    const double d0 = (forces_[1] - forces_[0]) / h0, d1 = (forces_[2] - forces_[1]) / h1;
+    const double curvature = (d1 - d0) / (h0 + h1);  // half of it
+    const double slope = (d0 * h1 + d1 * h0) / (h0 + h1);
+    return forces_[1] - slope * slope / (4 * curvature);
+  }
+
+  Mechanics& mechanics_;
+  const Oil& oil_;
+  double impact_speed_;
+  Course course_;
+  SystemState state_;
+  OilLoads loads_;
+  std::size_t seen_ = 0, touch_ = 0;  // events
+  int flank_ = 0;                     // that touches
+  bool hits_ = false;                 // it touched by an impact
+  double since_ = 0;
+  std::array<double, 3> times_{}, forces_{};  // of the contact's last steps
+  int known_ = 0;
+};
+
+ToothWatch::ToothWatch(std::string name, Mechanics& mechanics, const Oil& oil, double tolerance,
+                       double impact_speed)
+    : watcher_(
+          std::make_unique<Watcher>(std::move(name), mechanics, oil, tolerance, impact_speed)) {}
+ToothWatch::~ToothWatch() = default;
+void ToothWatch::start(const MotionVector& motion) { watcher_->start(motion); }
+ToothStretch ToothWatch::run_to(double time) { return watcher_->run_to(time); }
+const MotionVector& ToothWatch::motion() const { return watcher_->motion(); }
+long ToothWatch::steps() const { return watcher_->steps(); }
+
+}  // namespace bentaxis::coupled

@@ -1,0 +1,56 @@
+// The criterion of the rattle map: rigid teeth keep the sign of their force as long as the drag on
+// the block exceeds what the pistons turn it on by.
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/units.h"
+#include "rattle_pieces.h"
+
+namespace bentaxis::study {
+
+std::pair<double, double> rigid_extremes(const ReadyCase& ready) {
+  const Case& c = ready.the_case;
+  PumpParameters pump = c.pump;
+  pump.gear.contact = ToothContact::rigid;
+  pump.gear.compliance.reset();
+  pump.gear.teeth.reset();
+  const analytic::Model model(pump, ready.assumptions(Model::analytic));
+  const int pistons = pump.geometry.pistons;
+  const double omega = rad_per_second(c.operation.speed_rpm);
+  Instant instant;
+  instant.ports = c.pressure.ports;
+  instant.chamber_pressure.resize(static_cast<std::size_t>(pistons));
+  std::vector<double> values(model.layout().size());
+  const auto force = [&](double degrees) {
+    instant.turn(radians(degrees), omega);
+    for (int k = 0; k < pistons; ++k)
+      instant.chamber_pressure[static_cast<std::size_t>(k)] =
+          ready.pressure(piston_angle_deg(degrees, k + 1, pistons));
+    model.reactions(instant, values);
+    return values[model.layout().Rcs()];
+  };
+  // All pistons do the same: an N-th of a turn is all there is.
+  constexpr int kAngles = 144;
+  const double step = 360.0 / pistons / kAngles;
+  std::pair<double, double> at{0, 0}, extremes{INFINITY, -INFINITY};
+  for (int i = 0; i < kAngles; ++i) {
+    const double value = force(i * step);
+    if (value < extremes.first) extremes.first = value, at.first = i * step;
+    if (value > extremes.second) extremes.second = value, at.second = i * step;
+  }
+  constexpr int kBits = 20;
+  const auto refine = [&](double middle, double sign, double& extreme) {
+    const double found =
+        boost::math::tools::brent_find_minima([&](double a) { return sign * force(a); },
+                                              middle - step, middle + step, kBits)
+            .second;
+    extreme = sign * std::min(found, sign * extreme);
+  };
+  refine(at.first, 1, extremes.first);
+  refine(at.second, -1, extremes.second);
+  return extremes;
+}
+
+}  // namespace bentaxis::study

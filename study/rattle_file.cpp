@@ -1,0 +1,202 @@
+#include "bentaxis/study/rattle_file.h"
+
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr const char* kTitle = "# rows of a rattle map that is not complete (docs/rattle.md)";
+
+// A point as numbers, and back.
+std::vector<double> numbers_of(const RattlePoint& p) {
+  return {static_cast<double>(p.kind),
+          p.apart,
+          p.plus,
+          p.minus,
+          p.largest,
+          p.mean,
+          p.least_turn,
+          p.impacts,
+          p.largest_impulse,
+          static_cast<double>(p.observed),
+          static_cast<double>(p.passed),
+          static_cast<double>(p.period),
+          p.lag,
+          p.lag_rate};
+}
+constexpr std::size_t kNumbers = 14;
+
+RattlePoint point_of(const double* n) {
+  RattlePoint p;
+  p.kind = static_cast<RattleClass>(static_cast<int>(n[0]));
+  p.apart = n[1];
+  p.plus = n[2];
+  p.minus = n[3];
+  p.largest = n[4];
+  p.mean = n[5];
+  p.least_turn = n[6];
+  p.impacts = n[7];
+  p.largest_impulse = n[8];
+  p.observed = static_cast<int>(n[9]);
+  p.passed = static_cast<int>(n[10]);
+  p.period = static_cast<int>(n[11]);
+  p.lag = n[12];
+  p.lag_rate = n[13];
+  return p;
+}
+
+void append(std::string& text, const std::vector<double>& values) {
+  for (const double value : values) {
+    text += ',';
+    append_number(text, value);
+  }
+}
+
+// A line for the row, then one per sweep.
+std::string text_of(const RattleRow& row) {
+  std::string text = "row," + number_text(row.delivery_bar);
+  append(text, row.boundary_rpm);
+  text += "\nrigid";
+  append(text, row.least);
+  append(text, row.greatest);
+  for (const auto& [name, points] : {std::pair{"up", &row.up}, {"down", &row.down}}) {
+    text += std::string("\n") + name;
+    for (const RattlePoint& point : *points) append(text, numbers_of(point));
+  }
+  return text + "\n";
+}
+
+// The numbers behind a line's name; false where it is another or has something else in it.
+bool read_line(std::istream& in, const std::string& name, std::vector<double>& values) {
+  std::string line;
+  if (!std::getline(in, line) || line.compare(0, name.size(), name) != 0) return false;
+  values.clear();
+  const char* at = line.data() + name.size();
+  const char* end = line.data() + line.size();
+  while (at != end) {
+    double value = 0;
+    if (*at != ',') return false;
+    const auto [stop, error] = std::from_chars(at + 1, end, value);
+    if (error != std::errc()) return false;
+    values.push_back(value);
+    at = stop;
+  }
+  return true;
+}
+
+bool read_row(std::istream& in, RattleRow& row) {
+  std::vector<double> values;
+  if (!read_line(in, "row", values) || values.empty()) return false;
+  row.delivery_bar = values[0];
+  row.boundary_rpm.assign(values.begin() + 1, values.end());
+  if (!read_line(in, "rigid", values) || values.size() % 2 != 0) return false;
+  const std::size_t speeds = values.size() / 2;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(speeds);
+  row.least.assign(values.begin(), middle);
+  row.greatest.assign(middle, values.end());
+  for (const auto& [name, points] : {std::pair{"up", &row.up}, {"down", &row.down}}) {
+    if (!read_line(in, name, values) || values.size() != speeds * kNumbers) return false;
+    for (std::size_t j = 0; j < speeds; ++j)
+      points->push_back(point_of(values.data() + j * kNumbers));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string rattle_csv(const RattleMap& map) {
+  std::string text =
+      "delivery_bar,speed_rpm,sweep,class,share_apart,share_plus,share_minus,largest_N,mean_N,"
+      "largest_over_mean,least_of_turns_N,impacts_per_turn,largest_impulse_Ns,turns_observed,"
+      "turns_before,period_turns,lag_rad,lag_rate_rad_per_s,rigid_least_N,rigid_greatest_N,"
+      "two_states\n";
+  for (const RattleRow& row : map.rows)
+    for (std::size_t j = 0; j < row.up.size(); ++j)
+      for (const auto& [name, points] : {std::pair{"up", &row.up}, {"down", &row.down}}) {
+        const RattlePoint& p = (*points)[j];
+        text += number_text(row.delivery_bar) + "," + number_text(map.options.speed_rpm[j]) + "," +
+                name + "," + to_string(p.kind);
+        append(text,
+               {p.apart, p.plus, p.minus, p.largest, p.mean, p.over_mean(), p.least_turn, p.impacts,
+                p.largest_impulse, static_cast<double>(p.observed), static_cast<double>(p.passed),
+                static_cast<double>(p.period), p.lag, p.lag_rate, row.least[j], row.greatest[j]});
+        text += two_states(row.up[j], row.down[j]) ? ",1\n" : ",0\n";
+      }
+  return text;
+}
+
+RattleFile::RattleFile(std::filesystem::path file, std::string from)
+    : file_(std::move(file)), from_(std::move(from)) {
+  text_ = std::string(kTitle) + "\n# " + from_ + "\n";
+}
+
+std::vector<RattleRow> RattleFile::read() {
+  std::ifstream in(file_, std::ios::binary);
+  if (!in) return {};
+  const auto fail = [&](const std::string& why) {
+    throw InputError(file_.string() + ": " + why + "; without --resume it is replaced");
+  };
+  std::string title, from;
+  std::getline(in, title);
+  std::getline(in, from);
+  if (title != kTitle) fail("is no unfinished rattle map");
+  if (from != "# " + from_)
+    fail("its rows are of another case, version or set of options (" +
+         from.substr(from.size() > 2 ? 2 : 0) + "; now " + from_ + ")");
+  std::vector<RattleRow> rows;
+  while (in.peek() != std::istream::traits_type::eof()) {
+    RattleRow row;
+    if (!read_row(in, row)) fail("row " + std::to_string(rows.size() + 1) + " cannot be read");
+    rows.push_back(std::move(row));
+  }
+  for (const RattleRow& row : rows) text_ += text_of(row);
+  rows_ = rows.size();
+  return rows;
+}
+
+void RattleFile::keep(const RattleRow& row) {
+  text_ += text_of(row);
+  ++rows_;
+  write();
+}
+
+void RattleFile::write() const {
+  const std::filesystem::path beside = file_.string() + ".new";
+  std::ofstream out(beside, std::ios::binary | std::ios::trunc);
+  out << text_;
+  out.close();
+  std::error_code error;
+  if (out) std::filesystem::rename(beside, file_, error);
+  if (!out || error) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw InputError(file_.string() + ": cannot be written" +
+                     (error ? ": " + error.message() : std::string()));
+  }
+}
+
+void RattleFile::remove() const {
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+}
+
+std::string options_text(const RattleOptions& options) {
+  std::string text = "speeds_rpm";
+  const auto range = [&](const std::vector<double>& values) {
+    text += " " + number_text(values.front()) + ":" + number_text(values.back()) + ":" +
+            std::to_string(values.size());
+  };
+  range(options.speed_rpm);
+  text += ", delivery_bar";
+  range(options.delivery_bar);
+  return text + ", discard " + std::to_string(options.discard) + ", turns " +
+         std::to_string(options.turns) + ", error " + number_text(options.error);
+}
+
+}  // namespace bentaxis::study

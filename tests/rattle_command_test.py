@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Tests of `bentaxis rattle` from outside: files, options, interruption and resumption.
+
+usage: rattle_command_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import pathlib
+import signal
+import sys
+import time
+import unittest
+
+import command_line_test as program
+from command_line_test import INTERRUPTED, ProgramTest
+
+FILES = {"report.html", "report.json", "rattle.csv"}
+
+
+class RattleTest(ProgramTest):
+    def command(self, *options, speeds="1000:2000:2", delivery="100:300:3", out="out"):
+        return ("rattle", program.REPO / "cases" / "bap63_tooth_rattle.toml", "--turns", 2, "--discard", 2,
+                "--speeds", speeds, "--delivery-bar", delivery, "--out", out, *options)
+
+    def files(self, out="out"):
+        return {path.name for path in (self.folder / out).iterdir()}
+
+    def table(self, out="out"):
+        with open(self.folder / out / "rattle.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_files_of_a_map(self):
+        result = self.run_program(*self.command())
+        self.assertEqual(self.files(), FILES)
+        self.assertIn("of 6 points", result.out)
+        rows = self.table()
+        self.assertEqual(len(rows), 12)
+        self.assertEqual({row["sweep"] for row in rows}, {"up", "down"})
+        for row in rows:
+            self.assertAlmostEqual(sum(float(row[f"share_{key}"]) for key in ("apart", "plus", "minus")), 1, 9)
+            self.assertAlmostEqual(float(row["largest_over_mean"]), float(row["largest_N"]) / float(row["mean_N"]), 9)
+            self.assertLess(float(row["rigid_least_N"]), float(row["rigid_greatest_N"]))
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        figure = {f["id"]: f for f in report["figures"]}["classes"]
+        names = [figure["classes"][int(k)] for line in figure["values"] for k in line]
+        self.assertEqual(names, [row["class"] for row in rows if row["sweep"] == "up"])
+
+    def test_a_map_with_drag_has_its_boundary(self):
+        self.run_program(*self.command("--set", "friction.block_viscous_Nm_per_rpm=0.0054", speeds="300:1900:3"))
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        table = {s["title"]: s["table"] for s in report["runs"]}["Boundary by the criterion"]
+        self.assertEqual([row[0] for row in table["rows"]], [100, 200, 300])
+        criterion = [row[1] for row in table["rows"]]
+        self.assertEqual(criterion, sorted(criterion))
+        (line,) = {f["id"]: f for f in report["figures"]}["classes"]["lines"]
+        self.assertEqual(line["x"], criterion)
+
+    def test_an_interrupted_map_goes_on(self):
+        command = self.command(delivery="100:300:12")
+        self.run_program(*command, "--threads", 2)
+        whole = (self.folder / "out" / "rattle.csv").read_bytes()
+
+        process = self.start(*command, "--threads", 1)
+        partial = self.folder / "out" / "rattle.partial.csv"
+        end = time.monotonic() + program.SECONDS
+        while not partial.exists() and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.002)
+        process.send_signal(signal.SIGINT)
+        self.finish(process, INTERRUPTED)
+        self.assertRegex(process.err, "^bentaxis: interrupted; [0-9]+ of 12 rows are in out/rattle.partial.csv: --resume goes on")
+        self.assertEqual(self.files(), FILES | {"rattle.partial.csv"})  # those of the earlier map
+        self.assertEqual((self.folder / "out" / "rattle.csv").read_bytes(), whole)
+        kept = partial.read_text().count("\nrow,")
+        self.assertGreater(kept, 0)
+        self.assertLess(kept, 12)
+
+        # Another case, other options: refused, and nothing is touched.
+        for more in (["--set", "gear.backlash_um=21"], ["--error", "1e-4"]):
+            self.assert_mentions(self.refused(*command, "--resume", *more), "rattle.partial.csv", "another case")
+        # Rows that are there are taken as they are.
+        text = partial.read_text()
+        (self.folder / "out" / "rattle.csv").unlink()
+        self.run_program(*command, "--resume")
+        self.assertEqual((self.folder / "out" / "rattle.csv").read_bytes(), whole)
+        self.assertEqual(self.files(), FILES)
+        first = text.split("\nup,")[1].split(",")[4]  # largest_N of a point
+        partial.write_text(text.replace(f",{first},", ",4321,"))
+        self.run_program(*command, "--resume")
+        self.assertIn(",4321,", (self.folder / "out" / "rattle.csv").read_text())
+
+    def test_resume_without_rows_begins(self):
+        self.run_program(*self.command("--resume", delivery="100:100:1"))
+        self.assertEqual(self.files(), FILES)
+
+    def test_bad_options(self):
+        for options, word in (
+            ({"speeds": "1000:2000"}, "three numbers"),
+            ({"speeds": "1000:2000:x"}, "three numbers"),
+            ({"speeds": "0:2000:3"}, "FROM >= 1"),
+            ({"speeds": "2000:1000:3"}, "FROM < TO"),
+            ({"speeds": "1000:2000:1"}, "COUNT = 1"),
+            ({"speeds": "1000:2000:2.5"}, "COUNT"),
+            ({"delivery": "-5:100:3"}, "FROM >= 0"),
+            ({"delivery": "100:200:1001"}, "1000"),
+            ({"delivery": "nan:200:3"}, "three numbers"),
+        ):
+            with self.subTest(options):
+                option = "--speeds" if "speeds" in options else "--delivery-bar"
+                self.assert_mentions(self.refused(*self.command(**options)), option, word)
+        for option, value in (("--error", "0"), ("--check", "-1"), ("--threads", "x")):
+            self.assert_mentions(self.refused(*self.command(option, value)), option)
+        self.assert_mentions(self.refused(*self.command("--turns", 0)[:2], "--speeds", "1:2:2"), "--delivery-bar")
+        self.assert_mentions(self.refused(*self.command("--set", "friction.regularization_m_per_s=0")), "regularization_m_per_s")
+
+    def test_check_counts_for_the_status(self):
+        result = self.run_program(*self.command("--check", 1, speeds="1500:1500:1", delivery="275:275:1"))
+        self.assertIn("Simbody agrees at 1 of 1 points", result.out)
+        other = ("--set", "friction.block_viscous_Nm_per_rpm=0.0054", "--set", "friction.piston_coulomb_N=500",
+                 "--set", "assumptions.multibody.piston_friction=false", "--check", 1)
+        result = self.run_program(*self.command(*other, speeds="1500:1500:1", delivery="100:100:1"), status=1)
+        self.assertIn("Simbody agrees at 0 of 1 points", result.out)
+
+    def test_rigid_teeth_and_hydraulic_pressure(self):
+        self.run_program("rattle", program.REPO / "cases" / "bap63_rated_hydraulic.toml", "--speeds", "500:1500:2",
+                         "--delivery-bar", "275:275:1", "--out", "out")
+        self.assertEqual([row["class"] for row in self.table()], ["reverses"] * 2 + ["carries"] * 2)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program.PROGRAM, program.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,285 @@
+// The rattle map: classes that are known by construction, the criterion against a search by brute
+// force, rows that do not depend on threads, and points by Simbody.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "bentaxis/analytic/mechanics.h"
+#include "bentaxis/analytic/simulation.h"
+#include "bentaxis/coupled/prescribed_oil.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/rattle_document.h"
+#include "bentaxis/study/rattle_file.h"
+#include "rattle_pieces.h"
+#include "support.h"
+
+namespace bentaxis::study {
+namespace {
+
+using test::scaled;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+const fs::path kCases = fs::path(BENTAXIS_SOURCE_DIR) / "cases";
+
+// The pump at its rated pressure with compliant teeth.
+Case pump_with(double drag, double backlash_um) {
+  Case c = read_case(kCases / "bap63_tooth_rattle.toml");
+  c.pump.friction.block_viscous =
+      read_case(kCases / "bap63_rated.toml").pump.friction.block_viscous * drag;
+  c.pump.gear.compliance->backlash = backlash_um * 1e-6;
+  return c;
+}
+
+RattleOptions map_of(std::vector<double> speeds, std::vector<double> pressures) {
+  RattleOptions options;
+  options.speed_rpm = std::move(speeds);
+  options.delivery_bar = std::move(pressures);
+  return options;
+}
+
+RattlePoint point_at(const Case& c, double rpm, double bar) {
+  const RattleMap map = rattle_map(c, map_of({rpm}, {bar}));
+  return map.rows[0].up[0];
+}
+
+TEST(Rattle, StretchesHaveTheirClass) {
+  coupled::ToothStretch s;
+  s.duration = s.plus = 1;
+  EXPECT_EQ(class_of(s), RattleClass::carries);
+  s.plus = 0.5;
+  s.minus = 0.5;
+  EXPECT_EQ(class_of(s), RattleClass::reverses);
+  s.apart = 1.01 * kNoGap;
+  EXPECT_EQ(class_of(s), RattleClass::hits_both);
+  s.minus = 0;
+  EXPECT_EQ(class_of(s), RattleClass::loses_contact);
+  s.apart = 0.99 * kNoGap;
+  EXPECT_EQ(class_of(s), RattleClass::carries);
+}
+
+TEST(Rattle, TwoSteadyStates) {
+  RattlePoint a, b;
+  a.largest = b.largest = 100;
+  a.least_turn = 95;
+  b.least_turn = 90;
+  EXPECT_FALSE(two_states(a, b));
+  b.largest = 112;
+  b.least_turn = 101;  // above all of the other
+  EXPECT_TRUE(two_states(a, b));
+  EXPECT_TRUE(two_states(b, a));
+  b.least_turn = 99;  // their turns overlap
+  EXPECT_FALSE(two_states(a, b));
+  b.least_turn = 101;
+  b.largest = 110;  // not far enough apart
+  EXPECT_FALSE(two_states(a, b));
+  b = a;
+  b.kind = RattleClass::loses_contact;
+  EXPECT_TRUE(two_states(a, b));
+}
+
+// With the printed drag at a low pressure the flank never leaves; without drag the torque on the
+// block changes its sign: over no backlash the force passes to the other flank, over some it hits.
+// A little reversal of torque, and a backlash that the block does not cross before it is driven
+// back: one flank only.
+TEST(Rattle, ClassesByConstruction) {
+  const RattlePoint carries = point_at(pump_with(1, 20), 1500, 100);
+  EXPECT_EQ(carries.kind, RattleClass::carries);
+  EXPECT_EQ(carries.plus, 1);
+  EXPECT_EQ(carries.apart, 0);
+  EXPECT_EQ(carries.impacts, 0);
+  EXPECT_EQ(carries.period, 1);
+  EXPECT_LT(carries.passed, 10);  // it is not waited for what is settled
+
+  const RattlePoint reverses = point_at(pump_with(0, 0), 1500, 275);
+  EXPECT_EQ(reverses.kind, RattleClass::reverses);
+  EXPECT_GT(reverses.plus, 0.1);
+  EXPECT_GT(reverses.minus, 0.1);
+
+  const RattlePoint hits = point_at(pump_with(0, 20), 1500, 275);
+  EXPECT_EQ(hits.kind, RattleClass::hits_both);
+  EXPECT_GT(hits.impacts, 10);
+  EXPECT_GT(hits.largest_impulse, 0);
+  EXPECT_NEAR(hits.apart + hits.plus + hits.minus, 1, 1e-9);
+
+  const RattlePoint loses = point_at(pump_with(1, 100), 1150, 350);
+  EXPECT_EQ(loses.kind, RattleClass::loses_contact);
+  EXPECT_EQ(loses.minus, 0);
+  EXPECT_GT(loses.apart, 0.01);
+}
+
+TEST(Rattle, RigidTeethCarryOrReverse) {
+  Case c = read_case(kCases / "bap63_rated.toml");
+  EXPECT_EQ(point_at(c, 1500, 275).kind, RattleClass::carries);
+  EXPECT_EQ(point_at(c, 500, 275).kind, RattleClass::reverses);
+  const RattlePoint p = point_at(c, 1500, 275);
+  EXPECT_EQ(p.apart, 0);
+  EXPECT_EQ(p.observed, 0);
+  EXPECT_GT(p.largest, p.mean);
+}
+
+// The force at ten times as many angles, from the tables that `run` gives.
+double least_by_brute_force(const Case& the_case, double rpm, double bar) {
+  Case c = rattle_case(the_case, rpm, bar);
+  c.pump.gear.contact = ToothContact::rigid;
+  c.pump.gear.compliance.reset();
+  c.operation.samples_per_revolution = 7200;
+  const ResultTable table = run_turn(prepare(c), Model::analytic);
+  double least = INFINITY;
+  for (const double force : test::column(table, "Rcs_z4_N")) least = std::min(least, force);
+  return least;
+}
+
+TEST(Rattle, CriterionIsThatOfASearchByBruteForce) {
+  const Case c = pump_with(1, 20);
+  for (const double rpm : {400.0, 1100.0, 2900.0}) {
+    const double least = rigid_extremes(prepare(rattle_case(c, rpm, 275))).first;
+    EXPECT_NEAR(least, least_by_brute_force(c, rpm, 275), scaled(1e-3)) << rpm;  // of 100 N
+  }
+  RattleOptions options = map_of({300, 1000, 1700}, {150, 300});
+  const RattleMap map = rattle_map(c, options);
+  for (const RattleRow& row : map.rows) {
+    ASSERT_EQ(row.boundary_rpm.size(), 1U);
+    EXPECT_LT(least_by_brute_force(c, row.boundary_rpm[0] - 0.1, row.delivery_bar), 0);
+    EXPECT_GT(least_by_brute_force(c, row.boundary_rpm[0] + 0.1, row.delivery_bar), 0);
+  }
+  // About in proportion to the pressure.
+  EXPECT_NEAR(map.rows[1].boundary_rpm[0] / map.rows[0].boundary_rpm[0], 2, 0.1);
+  const BoundaryAgreement agreement = boundary_agreement(map);
+  EXPECT_EQ(agreement.points, 6U);
+  ASSERT_EQ(agreement.places.size(), 2U);
+  EXPECT_EQ(agreement.places[0].simulated_rpm, 650);
+  EXPECT_EQ(agreement.places[1].criterion_rpm, map.rows[1].boundary_rpm[0]);
+}
+
+// Against the trajectory of analytic::simulate, another method: half a turn of impacts.
+TEST(Rattle, TheWatchSeesWhatASimulationSees) {
+  Case c = read_case(kCases / "bap63_tooth_rattle.toml");
+  c.drive->duration = 0.004;
+  c.drive->samples = 40000;
+  const PressureTrace pressure(c.pressure);
+  analytic::SimulationOptions options;
+  options.error = 1e-9;
+  const Trajectory truth = analytic::simulate(c, c.analytic, pressure, options);
+  const auto oil = coupled::prescribed_oil(c.pump.geometry.pistons, pressure, c.pressure.ports);
+  const auto mechanics = analytic::mechanics(c, c.analytic);
+  coupled::ToothWatch watch("analytic", *mechanics, *oil, 1e-10, kImpactSpeed);
+  watch.start(mechanics->start());
+  const coupled::ToothStretch first = watch.run_to(0.0015);
+  const coupled::ToothStretch all = first + watch.run_to(0.004);
+
+  const auto& events = truth.record.events;
+  const auto touches = std::count_if(events.begin(), events.end(), [](const ToothEvent& e) {
+    return e.touch && e.approach_speed >= kImpactSpeed;
+  });
+  EXPECT_GT(touches, 3);
+  EXPECT_EQ(all.impacts, touches);
+  EXPECT_NEAR(all.apart / 0.004, truth.record.share_out_of_contact, scaled(1e-5));
+  EXPECT_NEAR(all.apart + all.plus + all.minus, 0.004, 1e-15);
+  double impulse = 0, hit = 0, largest = 0;
+  for (const ToothEvent& e : events) {
+    impulse += e.impulse;
+    hit = std::max(hit, e.impulse);
+  }
+  for (const double force : test::column(truth.table.results, "Rcs_law_N"))
+    largest = std::max(largest, std::abs(force));
+  EXPECT_NEAR(all.impulse, impulse, scaled(1e-5) * impulse);
+  EXPECT_NEAR(all.largest_hit, hit, scaled(1e-5) * hit);
+  EXPECT_NEAR(all.largest, largest, scaled(1e-4) * largest);
+  EXPECT_EQ(std::max(first.largest, all.largest), all.largest);
+}
+
+TEST(Rattle, RowsDoNotDependOnThreads) {
+  RattleOptions options = map_of({800, 1500}, {100, 200, 300});
+  options.turns = options.discard = 2;
+  options.threads = 1;
+  const Case c = pump_with(0.3, 20);
+  const std::string one = rattle_csv(rattle_map(c, options));
+  EXPECT_THAT(one, HasSubstr("hits both flanks"));
+  for (const int threads : {2, 3}) {
+    options.threads = threads;
+    EXPECT_EQ(rattle_csv(rattle_map(c, options)), one);
+  }
+}
+
+TEST(Rattle, RowsThatAreThereAreNotComputedAgain) {
+  RattleOptions options = map_of({1500, 2000}, {100, 200});
+  const Case c = pump_with(1, 20);
+  const fs::path file = fs::path(testing::TempDir()) / "rattle_rows.csv";
+  fs::remove(file);
+  RattleFile kept(file, "one case");
+  RattleKeeping keeping;
+  keeping.keep = [&](const RattleRow& row) { kept.keep(row); };
+  const std::string whole = rattle_csv(rattle_map(c, options, keeping));
+  EXPECT_EQ(kept.rows(), 2U);
+
+  keeping.finished = RattleFile(file, "one case").read();
+  ASSERT_EQ(keeping.finished.size(), 2U);
+  keeping.keep = [](const RattleRow&) { FAIL() << "nothing is left to do"; };
+  EXPECT_EQ(rattle_csv(rattle_map(c, options, keeping)), whole);
+  keeping.finished[0].up[0].largest = 12345;  // taken as it is
+  EXPECT_THAT(rattle_csv(rattle_map(c, options, keeping)), HasSubstr("12345"));
+
+  EXPECT_THROW(RattleFile(file, "another case").read(), InputError);
+  EXPECT_TRUE(RattleFile(file.string() + ".none", "one case").read().empty());
+  std::ofstream(file, std::ios::app) << "row,300\nrigid,1";
+  EXPECT_THROW(RattleFile(file, "one case").read(), InputError);
+  std::ofstream(file) << "delivery_bar\n1\n";
+  EXPECT_THROW(RattleFile(file, "one case").read(), InputError);
+  fs::remove(file);
+}
+
+TEST(Rattle, PointsToCheckAreSpreadOverTheClasses) {
+  RattleMap map;
+  map.options = map_of({1, 2, 3, 4}, {1, 2, 3, 4});
+  map.options.check = 7;
+  map.rows.resize(4);
+  for (RattleRow& row : map.rows) {
+    row.up.resize(4);
+    for (RattlePoint& p : row.up) p.observed = 1;
+  }
+  map.rows[1].up[2].kind = RattleClass::loses_contact;
+  for (RattlePoint& p : map.rows[3].up) p.kind = RattleClass::hits_both;
+  const auto chosen = points_to_check(map);
+  std::vector<int> counts(4, 0);
+  for (const auto& [i, j] : chosen) ++counts[static_cast<std::size_t>(map.rows[i].up[j].kind)];
+  EXPECT_THAT(counts, testing::ElementsAre(3, 0, 1, 3));
+  EXPECT_EQ((std::set<std::pair<std::size_t, std::size_t>>(chosen.begin(), chosen.end()).size()),
+            chosen.size());
+  map.options.check = 100;
+  EXPECT_EQ(points_to_check(map).size(), 16U);
+}
+
+TEST(Rattle, SimbodyFindsTheSameOrIsSaidNotTo) {
+  Case c = pump_with(1, 20);
+  RattleOptions options = map_of({600, 1500}, {300});
+  options.turns = options.discard = 2;
+  options.check = 2;
+  const RattleMap map = rattle_map(c, options);
+  ASSERT_EQ(map.checks.size(), 2U);
+  bool chaotic = false, whole = false;
+  for (const RattleCheck& check : map.checks) {
+    EXPECT_TRUE(check.agrees()) << check.difference << " of " << check.allowed;
+    (check.chaotic() ? chaotic : whole) = true;
+  }
+  EXPECT_TRUE(chaotic && whole);
+  EXPECT_TRUE(map.agrees());
+
+  // Simbody without friction of the pistons: another pump.
+  c.pump.friction.piston_coulomb = 500;
+  c.multibody.piston_friction = false;
+  options = map_of({1500}, {100});
+  options.turns = options.discard = 2;  // still ringing
+  options.check = 1;
+  const RattleMap other = rattle_map(c, options);
+  EXPECT_FALSE(other.agrees());
+  EXPECT_THAT(rattle_text(other), HasSubstr("differs"));
+}
+
+}  // namespace
+}  // namespace bentaxis::study
