@@ -140,8 +140,7 @@ double ToothFlexibility::tooth(double height) const {
   return x * last - before + coefficients_[0];
 }
 
-std::array<double, 4> ToothFlexibility::foundation_factors(double root_angle,
- double rim_ratio) {
+std::array<double, 4> ToothFlexibility::foundation_factors(double root_angle, double rim_ratio) {
   std::array<double, 4> factors{};
   const double t = std::clamp(root_angle, kFittedFrom, kFittedTo), h = rim_ratio;
   for (std::size_t i = 0; i < factors.size(); ++i) {
