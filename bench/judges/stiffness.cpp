@@ -186,10 +186,11 @@ Rows iso_6336() {
     const Mesh mesh(spur(teeth, 4e-3, 3));
     const std::string of = ", spur, " + std::to_string(teeth) + "/" + std::to_string(teeth) +
                            ": the law, the standard";
-    rows.push_back(
-        {"c'" + of, mesh.at_pitch_point() * kPerMillimetreMicrometre, standard.single, kFit});
-    rows.push_back(
-        {"c_gamma_alpha" + of, mesh.mean() * kPerMillimetreMicrometre, standard.mesh_alpha, kFit});
+    const bool known = teeth == 120;
+    rows.push_back({"c'" + of, mesh.at_pitch_point() * kPerMillimetreMicrometre, standard.single,
+                    kFit, true, known});
+    rows.push_back({"c_gamma_alpha" + of, mesh.mean() * kPerMillimetreMicrometre,
+                    standard.mesh_alpha, kFit, true, known});
   }
   return rows;
 }
