@@ -34,8 +34,11 @@ const std::vector<Parameter>& parameters() {
   return list;
 }
 
+std::string number_of(const Parameter& of, double value) {
+  return fmt::format("{:g}", std::round(1e4 * value * of.factor) / 1e4);
+}
 std::string value_text(const Parameter& of, double value) {
-  return fmt::format("{} {:.3g}{}", of.name, value * of.factor, of.unit);
+  return fmt::format("{} {}{}", of.name, number_of(of, value), of.unit);
 }
 
 std::vector<double> values_of(const Fig34Study& s, const Parameter& of) {
@@ -155,7 +158,7 @@ Lines about(const Fig34Study& s, bool drag) {
       if (count(s, [&](const Fig34Point& p) {
             return p.drag == drag && p.*of.member == value;
           }).both > 0)
-        values += fmt::format("{}{:.3g}", values.empty() ? "" : ", ", value * of.factor);
+        values += (values.empty() ? "" : ", ") + number_of(of, value);
     open += fmt::format("{}{} {}{}", open.empty() ? "" : "; ", of.name, values, of.unit);
   }
   lines.push_back("What some of them have: " + open + ".");
@@ -243,46 +246,39 @@ report::Section counts_section(const Fig34Study& s) {
           std::move(table)};
 }
 
-report::Section grid_section(const Fig34Study& s) {
-  report::Table table{
-      {"Cc", "exponent", "approach at 100 N, um", "backlash, um", "c, s/m", "block inertia, kg mm2",
-       "least, N", "greatest, N", "without contact, %", "changes of sign per turn",
-       "pitches with both signs, %", "inside, reverses"},
-      {}};
+std::vector<report::Record> records(const Fig34Study& s) {
+  std::vector<report::Record> rows;
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     const Fig34Point& p = s.points[i];
     const Fig34Curve& c = s.curves[i];
-    std::vector<Cell> row = {p.drag ? "yes" : "no", p.exponent,    1e6 * p.approach,
-                             1e6 * p.backlash,      p.dissipation, 1e6 * p.block_inertia};
-    if (c.done())
-      row.insert(row.end(),
-                 {c.least, c.greatest, 100 * c.apart, c.sign_changes, 100 * c.both_signs,
-                  fmt::format("{}, {}", c.inside() ? "yes" : "no", c.reverses() ? "yes" : "no")});
-    else
-      row.insert(row.end(), {Cell(), Cell(), Cell(), Cell(), Cell(), "failed: " + c.failure});
-    table.rows.push_back(std::move(row));
+    const auto of = [&](double value) { return c.done() ? Cell(value) : Cell(); };
+    rows.push_back({{"drag", p.drag},
+                    {"exponent", p.exponent},
+                    {"approach_at_100N_um", 1e6 * p.approach},
+                    {"backlash_um", 1e6 * p.backlash},
+                    {"dissipation_s_per_m", p.dissipation},
+                    {"block_inertia_kg_mm2", 1e6 * p.block_inertia},
+                    {"least_Rcs_x2_N", of(c.least)},
+                    {"greatest_Rcs_x2_N", of(c.greatest)},
+                    {"share_without_contact", of(c.apart)},
+                    {"sign_changes_per_turn", of(c.sign_changes)},
+                    {"share_of_pitches_with_both_signs", of(c.both_signs)},
+                    {"inside_axes", c.inside()},
+                    {"reverses", c.reverses()},
+                    {"status", c.done() ? "done" : "failed: " + c.failure}});
   }
-  return {"Every contact law", "Forces along x2.", {}, std::move(table)};
+  return rows;
 }
 
 // ---- Figures
 
 report::Figure curves_figure(const Fig34Study& s) {
-  report::OwnFigure content{"N", "shaft angle (deg)", true, {}, {}};
-  for (const auto& [name, curve] : s.pictured) {
-    if (curve.force.empty()) continue;
-    if (content.x.empty()) content.x = curve.theta_deg;
-    // All over the angles of the first.
-    report::Values values;
-    std::size_t at = 0;
-    for (const double angle : content.x) {
-      while (at + 1 < curve.theta_deg.size() && curve.theta_deg[at] < angle) ++at;
-      values.push_back(curve.force[at]);
-    }
-    content.series.push_back({name, std::move(values)});
-  }
-  content.series.push_back({"printed axes", report::Values(content.x.size(), kFig34Axes)});
-  content.series.push_back({"", report::Values(content.x.size(), -kFig34Axes)});
+  report::XyFigure content{{"shaft angle", "deg"}, {"force along x2", "N"}, {}};
+  for (const auto& [name, curve] : s.pictured)
+    if (!curve.force.empty()) content.series.push_back({name, curve.theta_deg, curve.force});
+  for (const double end : {-kFig34Axes, kFig34Axes})
+    content.series.push_back(
+        {fmt::format("printed axes end at {:g} N", end), {0, 360}, {end, end}});
   return {"fig34", "Tooth force along x2", "Fig. 34", std::move(content),
           "Block inertia 1500 kg mm2."};
 }
@@ -333,7 +329,8 @@ report::Document fig34_document(const Fig34Study& s, const report::Lines& progra
   document.verdict = report::Verdict{s.as_expected(), headline(s)};
   document.verdict->word = s.as_expected() ? "As expected" : "Not all as expected";
   document.summary = summary_of(s);
-  document.runs = {expectations_section(s), counts_section(s), grid_section(s)};
+  document.runs = {expectations_section(s), counts_section(s)};
+  document.records = records(s);
   document.figures = {curves_figure(s), scatter_figure(s)};
   return document;
 }
