@@ -35,7 +35,7 @@ const std::vector<Parameter>& parameters() {
 }
 
 std::string number_of(const Parameter& of, double value) {
-  return fmt::format("{:g}", std::round(1e4 * value * of.factor) / 1e4);
+  return fmt::format("{:g}", std::round(1e3 * value * of.factor) / 1e3);
 }
 std::string value_text(const Parameter& of, double value) {
   return fmt::format("{} {}{}", of.name, number_of(of, value), of.unit);
@@ -168,17 +168,17 @@ Lines about(const Fig34Study& s, bool drag) {
 std::string headline(const Fig34Study& s) {
   const Count c = count(s, false);
   std::string text = fmt::format(
-      "Without Cc {} of {} contact laws stay inside the printed axes and reverse as printed",
-      c.both, c.all);
+      "Without Cc {} of {} contact laws stay inside the printed axes and reverse as printed{}",
+      c.both, c.all, c.both > 1 ? ": the figure does not tell which" : "");
   if (has_drag(s)) {
     const Count d = count(s, true);
-    text += fmt::format(", with Cc {} of {}", d.both, d.all);
+    text += fmt::format("; with Cc {} of {}", d.both, d.all);
   }
   int outside = 0;
   for (const Fig34Expectation& e : s.expectations) outside += e.holds() ? 0 : 1;
-  return text + (c.both > 1 ? ": the figure does not tell which" : "") +
-         fmt::format(". {} of {} expectations hold.",
-                     static_cast<int>(s.expectations.size()) - outside, s.expectations.size());
+  return text + fmt::format(". {} of {} expectations hold.",
+                            static_cast<int>(s.expectations.size()) - outside,
+                            s.expectations.size());
 }
 
 report::Summary summary_of(const Fig34Study& s) {
