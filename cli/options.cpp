@@ -48,8 +48,12 @@ void CaseOption::refuse_timing(const std::vector<report::Warning>& timing) const
                      "reason in [plausibility] (docs/hydraulics.md)");
 }
 
-void add_case(CommandParser command, CaseOption& the_case) {
-  command.option("case", the_case.file, "case file (TOML)").required().text("CASE");
+void add_case(CommandParser command, CaseOption& the_case, const std::string& otherwise) {
+  Option file = command.option("case", the_case.file, "case file (TOML)");
+  if (otherwise.empty())
+    file.required().text("CASE");
+  else
+    file.text("CASE [" + otherwise + "]");
   command
       .option("--set", the_case.changes,
               "change a key of the case, as if its file said so; can be given again")

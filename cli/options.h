@@ -30,7 +30,8 @@ struct CaseOption {
   void refuse_timing(const std::vector<report::Warning>& timing) const;
 };
 /// CASE, --set and --strict.
-void add_case(CommandParser command, CaseOption& the_case);
+/// @param otherwise  what the command takes where no CASE is given; empty: it must be
+void add_case(CommandParser command, CaseOption& the_case, const std::string& otherwise = {});
 void add_out(CommandParser command, std::string& folder, const std::string& what);
 /// A list of integrators; empty where not given.
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators);

@@ -49,6 +49,8 @@ class SchemaTest(unittest.TestCase):
                                    REPO / "reference_data" / "published" / "bap63" / "numbers.toml", status=None),
             "inertia": cls.report("inertia.json", "inertia", rated, "--map-size", "4"),
             "tradeoff": cls.report("tradeoff.json", "tradeoff", rated, "--integrators", "rk-merson", "--accuracies", "1e-3"),
+            "fig34": cls.report("fig34.json", "fig34", rated, "--exponents", "1", "--approaches-um", "5", "--backlashes-um", "0",
+                                "--dissipations", "5", "--block-inertias-kg-mm2", "1500"),
             "hardcases": cls.report("hardcases.json", "hardcases", "--filter", "speed", "--catalogue",
                                     REPO / "reference_data" / "hard"),
             "simulate": cls.report("report.json", "simulate", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",

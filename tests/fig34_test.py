@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""`bentaxis fig34` from outside, on a grid of a few laws.
+
+usage: fig34_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import pathlib
+import sys
+import unittest
+
+import command_line_test as program
+from command_line_test import BAD_INPUT, ProgramTest
+
+
+class Fig34Test(ProgramTest):
+    def study(self, *options, status=0):
+        result = self.run_program("fig34", *options, "--dissipations", "0.5,5", "--block-inertias-kg-mm2", "1500",
+                                  "--exponents", "1", "--out", "out", status=status)
+        with open(self.folder / "out/fig34.csv") as file:
+            self.rows = list(csv.DictReader(file))
+        self.report = json.loads((self.folder / "out/fig34.json").read_text())
+        return result
+
+    def law(self, **wanted):
+        (row,) = [r for r in self.rows if all(float(r[k]) == v for k, v in wanted.items())]
+        return {k: float(v) for k, v in row.items() if v != ""}
+
+    def test_laws(self):
+        result = self.study("--approaches-um", "0.5", "--backlashes-um", "0,20")
+        self.assertEqual({p.name for p in (self.folder / "out").iterdir()},
+                         {"fig34.html", "fig34.json", "fig34.csv", "fig34_curves.csv"})
+        self.assertEqual(len(self.rows), 2 * 2 * 2)  # Cc, backlash, dissipation
+        self.assertEqual({r["failure"] for r in self.rows}, {""})
+        # Stiff teeth without backlash are rigid ones with ripples: inside, ten changes of sign.
+        tight = self.law(drag=0, backlash_um=0, dissipation_s_per_m=5)
+        self.assertEqual((tight["inside_axes"], tight["reverses"]), (1, 1))
+        self.assertEqual(tight["sign_changes_per_turn"], 10)
+        self.assertLess(tight["least_Rcs_x2_N"], -100)
+        self.assertEqual(tight["share_without_contact"], 0)
+        # With backlash they rattle; with drag they do not.
+        loose = self.law(drag=0, backlash_um=20, dissipation_s_per_m=0.5)
+        self.assertEqual(loose["inside_axes"], 0)
+        self.assertGreater(loose["share_without_contact"], 0.5)
+        held = self.law(drag=1, backlash_um=20, dissipation_s_per_m=0.5)
+        self.assertEqual((held["share_without_contact"], held["reverses"]), (0, 0))
+        self.assertLess(abs(held["least_Rcs_x2_N"] + 268), 5)
+        # The words are those of the numbers.
+        both = sum(r["inside_axes"] == r["reverses"] == "1" and r["drag"] == "0" for r in self.rows)
+        self.assertIn(f"Without Cc {both} of 4 contact laws stay inside", result.out)
+        self.assertIn("backlash 20 um: 2 of 2 laws leave the axes", result.out)
+        titles = [s["title"] for s in self.report["runs"]]
+        self.assertEqual(titles, ["Expectations", "By value"])
+        self.assertEqual(len(self.report["rows"]), len(self.rows))
+        (rigid,) = [r for r in self.report["runs"][0]["table"]["rows"] if r[0].endswith("without Cc, 0 deg")]
+        self.assertEqual(rigid[-1], "inside")
+
+    def test_a_case_without_drag(self):
+        self.study(self.case(**{"friction.block_viscous_Nm_per_rpm": 0.0}), "--approaches-um", "5", "--backlashes-um", "0")
+        self.assertEqual({r["drag"] for r in self.rows}, {"0"})
+        self.assertNotIn("Compliant teeth with Cc", [g["title"] for g in self.report["summary"]["groups"]])
+
+    def test_refusals(self):
+        for options, text in ((("--approaches-um", "0"), "--approaches-um"), (("--backlashes-um", "-1"), "--backlashes-um"),
+                              (("--set", "operation.speed_rpm=0"), "speed_rpm = 0")):
+            result = self.run_program("fig34", *options, "--out", "refused", status=BAD_INPUT)
+            self.assertIn(text, result.err)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program.PROGRAM, program.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
