@@ -159,7 +159,6 @@ TEST(MultibodyTeeth, RestWhereTheClosedFormDoes) {
   EXPECT_GT(signs[1], 20);
 }
 
-#ifdef CLOSED
 // A turn of the pump with teeth at rest under its loads, with and without what teeth may have.
 TEST(MultibodyTeeth, AreTheTwinOfTheClosedFormOverATurn) {
   RandomPump random(163);
@@ -185,7 +184,6 @@ TEST(MultibodyTeeth, AreTheTwinOfTheClosedFormOverATurn) {
   }
 }
 
-#endif
 TEST(MultibodyTeeth, MultipliersAndInverseDynamicsFindTheSameReactions) {
   Case the_case = teeth_case();
   const Samples samples = one_turn(the_case);
@@ -301,7 +299,6 @@ TEST(MultibodyTeeth, MoveAsTheirLawSays) {
   EXPECT_GT(carrying, 20);
 }
 
-#ifdef CLOSED
 TEST(MultibodyTeeth, AccelerateAsTheClosedFormDoes) {
   RandomPump random(165);
   for (const DriveKind kind : {DriveKind::speed, DriveKind::torque, DriveKind::motor})
@@ -333,7 +330,6 @@ TEST(MultibodyTeeth, AccelerateAsTheClosedFormDoes) {
     }
 }
 
-#endif
 // The approach is continuous as pairs come and go, and its rate is the flanks' closing speed.
 TEST(MultibodyTeeth, ApproachIsContinuousAndItsRateTheClosingSpeed) {
   Case the_case = teeth_case();
@@ -375,6 +371,29 @@ double worst_lag(const Trajectory& a, const Trajectory& b) {
   for (std::size_t i = 0; i < std::min(a.lag.size(), b.lag.size()); ++i)
     worst = std::max(worst, std::abs(a.lag[i] - b.lag[i]));
   return worst;
+}
+
+// Both models integrated by the same method: they are apart by what the tolerance leaves.
+TEST(MultibodyTeeth, MoveAsTheClosedFormDoes) {
+  Case the_case = teeth_case();
+  the_case.drive->duration = 8e-3;
+  the_case.drive->samples = 100;
+  const auto found = multibody::mechanics(the_case, the_case.multibody);
+  const auto closed = analytic::mechanics(the_case, the_case.analytic);
+  const Trajectory a = moved(the_case, *closed, 1e-11), b = moved(the_case, *found, 1e-11);
+  const Trajectory loose = moved(the_case, *closed, 1e-9);
+  const double error = worst_lag(a, loose);
+  EXPECT_GT(error, 1e-13);
+  EXPECT_LT(worst_lag(a, b), scaled(0.1) * error);
+  EXPECT_LT(error, 1e-8);
+  ASSERT_EQ(a.record.events.size(), b.record.events.size());
+  for (std::size_t i = 0; i < a.record.events.size(); ++i) {
+    EXPECT_EQ(a.record.events[i].flank, b.record.events[i].flank);
+    EXPECT_NEAR(a.record.events[i].time_s, b.record.events[i].time_s, scaled(1e-8));
+    EXPECT_NEAR(a.record.events[i].impulse, b.record.events[i].impulse, scaled(1e-5));
+  }
+  const Worst worst = worst_difference(a.table.results, b.table.results, true);
+  EXPECT_LT(worst.over_peak, scaled(1e-6)) << worst.channel;
 }
 
 // Through impacts on both flanks: a tenth of the tolerance leaves less error, and energy and work
