@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/error.h"
 #include "closed_form/reactions.h"
 #include "prepared.h"
 #include "turning.h"
@@ -51,9 +52,22 @@ closed_form::Vec3<double> play(const closed_form::Pump<double>& p, const State& 
 
 }  // namespace
 
+namespace {
+
+// Parts of a torque are passed on as they are.
+const PumpParameters& with_one_ratio(const PumpParameters& pump) {
+  if (pump.gear.contact == ToothContact::teeth)
+    throw InputError(
+        "budget: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\", where the gear "
+        "passes on every part of the torque as it is");
+  return pump;
+}
+
+}  // namespace
+
 struct BudgetModel::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions)
-      : model(pump, assumptions),
+      : model(with_one_ratio(pump), assumptions),
         prepared(prepare(pump, assumptions)),
         block_weight_and_spring(prepared.numbers.block.force_z),
         torque_factor(pump.friction.shaft_torque_factor),

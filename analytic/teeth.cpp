@@ -41,11 +41,78 @@ std::array<double, 3> array(const Vector& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
+namespace {
+
+// A smooth function from one argument to another as a row of polynomials, to rounding; constant
+// before the first.
+class Pieces {
+ public:
+  template <class Function>
+  Pieces(double from, double to, const Function& f)
+      : from_(from), per_piece_(kPieces / (to - from)), pieces_(kPieces) {
+    for (int piece = 0; piece < kPieces; ++piece) {
+      // Of Chebyshev's polynomials through their nodes, then of powers.
+      Piece series = {};
+      for (int node = 0; node < kTerms; ++node) {
+        const double angle = kPi * (node + 0.5) / kTerms;
+        const double value = f(from + (piece + 0.5 * (1 + std::cos(angle))) / per_piece_);
+        for (int i = 0; i < kTerms; ++i)
+          series[i] += (i == 0 ? 1.0 : 2.0) / kTerms * value * std::cos(i * angle);
+      }
+      Piece before = {1}, last = {0, 1}, sum = {};
+      for (int i = 0; i < kTerms; ++i) {
+        for (int k = 0; k < kTerms; ++k) sum[k] += series[i] * before[k];
+        Piece next = {};
+        for (int k = 0; k + 1 < kTerms; ++k) next[k + 1] = 2 * last[k];
+        for (int k = 0; k < kTerms; ++k) next[k] -= before[k];
+        before = last;
+        last = next;
+      }
+      pieces_[piece] = sum;
+    }
+  }
+
+  double operator()(double at) const {
+    const double place = std::max(0.0, (at - from_) * per_piece_);
+    const int piece = std::min(static_cast<int>(place), kPieces - 1);
+    const double x = 2 * (place - piece) - 1;
+    const Piece& c = pieces_[piece];
+    const double x2 = x * x;
+    return (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2 +
+           x2 * x2 * ((c[4] + c[5] * x) + (c[6] + c[7] * x) * x2);
+  }
+
+ private:
+  static constexpr int kPieces = 64;
+  static constexpr int kTerms = 8;
+  using Piece = std::array<double, kTerms>;
+  double from_, per_piece_;
+  std::vector<Piece> pieces_;
+};
+
+Pieces flexibility_by_arc(const ToothFlexibility& law, const closed_form::Bevel& bevel) {
+  const ToothFlexibility::Profile& tooth = law.profile();
+  const double start =
+      tooth.base_radius * std::hypot(1, tooth.start_roll) - tooth.pitch_radius;  // height
+  const double start_cone = bevel.at.pitch_cone + start / bevel.at.distance;
+  const double from = std::acos(std::min(1.0, std::cos(start_cone) / bevel.cos_base));
+  return {from, bevel.tip_roll, [&](double arc) {
+            return law.tooth(bevel.at.distance * (bevel.cone(arc) - bevel.at.pitch_cone));
+          }};
+}
+
+}  // namespace
+
 struct BevelTeeth::Numbers {
   explicit Numbers(const PumpParameters& pump);
 
   closed_form::Bevel bevel;
-  ToothFlexibility flexibility;
+  ToothFlexibility law;
+  Pieces flexibility;  // of a tooth's slice by the arc of where it touches
+  // What a tip's edge lacks at least, m, so many steps of its angle past the path's end.
+  static constexpr int kSteps = 64;
+  std::array<double, kSteps> least_gap;
+  double steps_per_arc;
   int count;
   double pitches_per_radian;
   double half_width;  // over R
@@ -62,8 +129,12 @@ struct BevelTeeth::Numbers {
     const double share = (relief_height - depth) / relief_height;
     return relief * share * share;
   }
-  double flexibility_at(double cone) const {
-    return flexibility.tooth(bevel.at.distance * (cone - bevel.at.pitch_cone));
+  // Whether what presses a pair, m, cannot close the gap of its tips.
+  bool beyond_reach(double along, double shut, double pressed) const {
+    const double past =
+        std::max(along - bevel.at.path_end, bevel.at.path_begin - along + shut) * steps_per_arc;
+    if (!(past > 1)) return false;
+    return least_gap[static_cast<std::size_t>(std::min(past, kSteps - 1.0))] > pressed;
   }
 
   template <class Use>
@@ -104,7 +175,12 @@ struct BevelTeeth::Contact {
 };
 
 BevelTeeth::Numbers::Numbers(const PumpParameters& pump)
-    : bevel(closed_form::bevel(pump)), flexibility(pump.gear, bevel.at.pitch_cone) {
+    : bevel(closed_form::bevel(pump)),
+      law(pump.gear, bevel.at.pitch_cone),
+      flexibility(flexibility_by_arc(law, bevel)) {
+  const double step = bevel.pitch / 32;
+  for (int i = 0; i < kSteps; ++i) least_gap[i] = bevel.at.distance * bevel.corner(step * i).gap;
+  steps_per_arc = 1 / (step * bevel.sin_base);
   const ToothData& teeth = *pump.gear.teeth;
   count = teeth.count;
   pitches_per_radian = count / (2 * kPi);
@@ -120,7 +196,7 @@ BevelTeeth::Numbers::Numbers(const PumpParameters& pump)
           lack(teeth.block, flank == 0 ? wrapped(i - 1, count) : i, count, flank == 0 ? -1 : 1));
   block_axis_y = std::sin(pump.geometry.tilt);
   block_axis_z = std::cos(pump.geometry.tilt);
-  stiffness = teeth.face_width / (2 * flexibility.tooth(0) + flexibility.contact());
+  stiffness = teeth.face_width / (2 * law.tooth(0) + law.contact());
 }
 
 // Where a pair touches, whose shaft's flank is at this arc from O4, were there no tips.
@@ -178,8 +254,7 @@ void BevelTeeth::Numbers::press(Contact& c, bool dissipation_acts) const {
   const double damping = dissipation_acts ? dissipation * c.rate * r0 : 0;
   if (damping < 0) high = std::min(high, (-1 / damping - 1) / half_width);
   if (!(high > low)) return;
-  const double flexible = flexibility_at(bevel.cone(c.shaft_arc)) +
-                          flexibility_at(bevel.cone(c.block_arc)) + flexibility.contact();
+  const double flexible = flexibility(c.shaft_arc) + flexibility(c.block_arc) + law.contact();
   constexpr double kPlaces[] = {-0.77459666924148337704, 0, 0.77459666924148337704};
   constexpr double kWeights[] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
   const double middle = (low + high) / 2;
@@ -268,12 +343,13 @@ BevelTeeth::Wrench BevelTeeth::wrench(double theta, double shaft_speed, const To
   const Numbers& p = *numbers_;
   Vector force = {0, 0, 0};
   Vector moment = {0, 0, 0};
-  const double shut = p.bevel.at.distance * p.bevel.sin_base * lag.angle;
+  const double shut = p.bevel.sin_base * lag.angle;
   for (const int flank : {1, -1}) {
     Vector flank_force = {0, 0, 0};
     Vector flank_moment = {0, 0, 0};
     p.each_pair(theta, flank, [&](int, int, double along, double offset) {
-      if (!(flank * shut + offset > 0)) return;  // nor where a tip ends
+      const double pressed = flank * shut * p.bevel.at.distance + offset;
+      if (!(pressed > 0) || p.beyond_reach(along, flank * shut, pressed)) return;
       Contact c = p.contact(along, shaft_speed, lag, flank, offset);
       p.press(c, dissipation);
       if (!(c.force > 0)) return;

@@ -323,6 +323,42 @@ TEST(BevelTeeth, SumsAreThoseOfThePairs) {
     }
   EXPECT_GT(carrying, 40);
   EXPECT_GT(corners, 5);
+  for (int i = 0; i < 1000; ++i)
+    for (const double angle : kLags) {
+      const TeethAction action = teeth.act(7e-4 * i, 150, {angle, 0.2});
+      const BevelTeeth::Wrench wrench = teeth.wrench(7e-4 * i, 150, {angle, 0.2});
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(wrench.force[k], action.force[k], 1e-13 * (1 + size(action.force))) << i;
+    }
+}
+
+TEST(BevelTeeth, ForceIsApproachOverTheLawsFlexibility) {
+  // Perfect teeth within the path: slices' forces grow with their distance from O2, so their sum is
+  // what all of them at O4's distance would have.
+  const PumpParameters pump = toothed();
+  const BevelTeeth teeth(pump);
+  const BevelGeometry& g = teeth.geometry();
+  const ToothFlexibility law(pump.gear, g.pitch_cone);
+  const Gears gears(pump);
+  const double lag = 5.5e-4;
+  const double depth = std::sin(g.base_cone) * lag;
+  const double roll = std::acos(std::cos(g.pitch_cone) / std::cos(g.base_cone));
+  int seen = 0;
+  for (int i = 0; i < 1000; ++i)
+    for (const PairContact& pair : teeth.act(7e-4 * i, 0, {lag, 0}).pairs) {
+      const V u = unit(pair.point);
+      if (!(pair.force > 0) || std::abs(dot(cross(gears.u0, gears.n0), u)) > 1e-12) continue;
+      const double phi = std::atan2(dot(u, gears.n0), dot(u, gears.u0));
+      const auto flexible = [&](double arc) {
+        return law.tooth(g.distance *
+                         (std::acos(std::cos(g.base_cone) * std::cos(arc)) - g.pitch_cone));
+      };
+      const double q =
+          flexible(roll + phi + depth / 2) + flexible(roll - phi + depth / 2) + law.contact();
+      EXPECT_NEAR(pair.force, pair.approach * pump.gear.teeth->face_width / q, 1e-11 * pair.force);
+      ++seen;
+    }
+  EXPECT_GT(seen, 1000);
 }
 
 TEST(BevelTeeth, SlicesAreIntegratedExactly) {

@@ -16,7 +16,7 @@ namespace bentaxis::analytic {
 /// play is a cause of its own, of every load's share less it.
 class BudgetModel {
  public:
-  /// @throws InputError as Model does
+  /// @throws InputError as Model does, and where the contact is that of teeth
   BudgetModel(const PumpParameters& pump, const Assumptions& assumptions);
   ~BudgetModel();
   BudgetModel(BudgetModel&&) noexcept;
