@@ -215,6 +215,29 @@ TEST(MultibodyTeeth, OctoidsDifferFromInvolutesByWhereTheyTouch) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-9 * force);
 }
 
+// What each cause needs of the drive adds up to Td, though corners pass on a little more or less
+// than the block takes.
+TEST(MultibodyTeeth, BudgetAddsUp) {
+  const Case the_case = teeth_case();
+  multibody::Model model(the_case.pump, the_case.multibody, 1);
+  ASSERT_TRUE(model.has_teeth());
+  std::vector<double> values(model.layout().size());
+  double lost = 0;
+  for (int deg = 0; deg < 40; ++deg) {
+    model.evaluate(turning(the_case, deg * kRadPerDegree, 157), values);
+    const Budget budget = model.budget();
+    double drive = 0, carrying = 0;
+    for (const double part : budget.drive) drive += part;
+    for (const double part : budget.carrying) carrying += part;
+    EXPECT_NEAR(drive, values[model.layout().Td()], scaled(1e-11) * 300);
+    EXPECT_NEAR(carrying, values[model.layout().Rcs()] * arm_of(the_case.pump.gear),
+                scaled(1e-11) * 300);
+    EXPECT_NEAR(budget.carrying_torque, carrying, scaled(1e-11) * 300);
+    lost = std::max(lost, std::abs(model.teeth().moment[2] - carrying));
+  }
+  EXPECT_GT(lost, 1e-5);
+}
+
 Case moving_case(DriveKind kind) {
   Case the_case = teeth_case();
   the_case.drive->kind = kind;

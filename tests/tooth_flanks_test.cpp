@@ -193,8 +193,9 @@ TEST(BevelTeeth, TipsTouchBeyondThePathWithoutAJump) {
   }
 }
 
-// Tips that reach nearly to where the mate's flanks begin: beyond the path the point with the stationary
-// distance lies on no flank, from where a search would slip to the far side of the base circle.
+// Tips that reach nearly to where the mate's flanks begin: beyond the path the point with the
+// stationary distance lies on no flank, from where a search would slip to the far side of the base
+// circle.
 TEST(BevelTeeth, FindsTheCornerWhereTipsReachAsDeepAsFlanksGo) {
   PumpParameters pump = perfect_pump();
   pump.geometry.tilt = 0.308673;
@@ -205,8 +206,7 @@ TEST(BevelTeeth, FindsTheCornerWhereTipsReachAsDeepAsFlanksGo) {
   const double delta = kPi / 2 - pump.geometry.tilt / 2;
   const double radius = pump.gear.pitch_diameter / 2 / std::sin(delta);
   const SphericalInvolute curve(delta, pump.gear.pressure_angle);
-  data.addendum =
-      radius * std::tan(curve.at(-0.98 * curve.first_roll()).polar_angle() - delta);
+  data.addendum = radius * std::tan(curve.at(-0.98 * curve.first_roll()).polar_angle() - delta);
   data.dedendum = data.addendum + 0.25 * module;
   const BevelTeeth teeth(pump, FlankShape::involute);
   double last = 0;

@@ -159,9 +159,9 @@ bool BevelTeeth::regular(double shaft_ahead, double block_ahead, Touch& touch) c
   return false;
 }
 
-// Roll of the flank's point whose normal passes through a tip of the mate. There are two: the tip is
-// in front of one and behind the other, nearer to the root. Beyond the path the search may slip to
-// that one; from the flank's own tip it comes down to the one in front.
+// Roll of the flank's point whose normal passes through a tip of the mate. There are two: the tip
+// is in front of one and behind the other, nearer to the root. Beyond the path the search may slip
+// to that one; from the flank's own tip it comes down to the one in front.
 template <class Flank>
 bool BevelTeeth::foot(const Vec3& tip, const Flank& flank, double& roll) const {
   return foot_from(roll, tip, flank, roll) || foot_from(tip_roll_, tip, flank, roll);
