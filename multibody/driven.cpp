@@ -70,9 +70,7 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   if (budget != nullptr) *budget = budget_table("multibody", has_ring_off_b(the_case.pump));
   if (teeth != nullptr) {
     *teeth = teeth_table("multibody");
-    if (the_case.pump.gear.contact != ToothContact::teeth ||
-        assumptions.gear == BlockDrive::imposed || scene != Scene::full)
-      teeth = nullptr;  // none touch
+    if (!model.has_teeth()) teeth = nullptr;
   }
   const ChannelLayout& at = model.layout();
   const auto evaluate = [&](const Instant& instant, std::vector<double>& row) {

@@ -222,9 +222,10 @@ void Model::evaluate_one(const Instant& instant, std::vector<double>& values) {
   });
 }
 
+bool Model::has_teeth() const { return implementation_->system.bevel() != nullptr; }
+
 const TeethAction& Model::teeth() const {
-  if (implementation_->system.bevel() == nullptr)
-    throw std::logic_error("teeth() is of the full pump with bevel teeth");
+  if (!has_teeth()) throw std::logic_error("teeth() is of the full pump with bevel teeth");
   return implementation_->teeth;
 }
 

@@ -7,17 +7,24 @@
 namespace bentaxis::multibody {
 
 MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
-                       const Progress& progress, std::optional<Method> method) {
+                       const Progress& progress, std::optional<Method> method, ResultTable* teeth) {
   validate(the_case);
   if (states.pistons != the_case.pump.geometry.pistons)
     throw InputError("states of " + std::to_string(states.pistons) + " pistons for a pump with " +
                      std::to_string(the_case.pump.geometry.pistons));
   const Stopwatch stopwatch;
   Model model(the_case.pump, assumptions, 1, Scene::full, method);
+  if (teeth != nullptr) {
+    *teeth = teeth_table("multibody");
+    if (!model.has_teeth()) teeth = nullptr;
+  }
+  std::size_t next = 0;
   MotionTable table = tabulate_states(
       "multibody", model.layout(), states,
       [&](const Instant& instant, std::vector<double>& row, MotionChecks& checks) {
         model.evaluate(instant, row, &checks);
+        const double angle = states.motion[next++].theta_deg;
+        if (teeth != nullptr) append_teeth(*teeth, angle, the_case.pump.gear, model.teeth());
       },
       progress);
   table.results.provenance = model.provenance();

@@ -193,6 +193,35 @@ TEST(BevelTeeth, TipsTouchBeyondThePathWithoutAJump) {
   }
 }
 
+// Tips that reach nearly to where the mate's flanks begin: beyond the path the point with the
+// stationary distance lies on no flank, from where a search would slip to the far side of the base
+// circle.
+TEST(BevelTeeth, FindsTheCornerWhereTipsReachAsDeepAsFlanksGo) {
+  PumpParameters pump = perfect_pump();
+  pump.geometry.tilt = 0.308673;
+  pump.gear.pressure_angle = 0.161122;
+  ToothData& data = *pump.gear.teeth;
+  data.count = 8;
+  const double module = pump.gear.pitch_diameter / data.count;
+  const double delta = kPi / 2 - pump.geometry.tilt / 2;
+  const double radius = pump.gear.pitch_diameter / 2 / std::sin(delta);
+  const SphericalInvolute curve(delta, pump.gear.pressure_angle);
+  data.addendum = radius * std::tan(curve.at(-0.98 * curve.first_roll()).polar_angle() - delta);
+  data.dedendum = data.addendum + 0.25 * module;
+  const BevelTeeth teeth(pump, FlankShape::involute);
+  double last = 0;
+  for (int i = 0; i <= 100; ++i) {
+    const double ahead = -teeth.tip_roll() * (1 + 0.003 * i);
+    const Touch touch = teeth.touch(ahead, ahead - 7e-4);
+    ASSERT_TRUE(touch.found) << i;
+    if (i > 0) {
+      EXPECT_LE(touch.pressed_in, last) << i;
+      EXPECT_NEAR(touch.pressed_in, last, 4e-4) << i;
+    }
+    last = touch.pressed_in;
+  }
+}
+
 // Forces over an angle of the shaft in which pairs come and go have no jump, and they rest where
 // they carry what is asked for.
 TEST(BevelTeeth, ForcesAreContinuousAndCarryTheTorqueAskedFor) {

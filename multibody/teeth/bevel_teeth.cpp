@@ -159,19 +159,30 @@ bool BevelTeeth::regular(double shaft_ahead, double block_ahead, Touch& touch) c
   return false;
 }
 
-// Roll of the flank's point whose normal passes through a tip of the mate.
+// Roll of the flank's point whose normal passes through a tip of the mate. There are two: the tip
+// is in front of one and behind the other, nearer to the root. Beyond the path the search may slip
+// to that one; from the flank's own tip it comes down to the one in front.
 template <class Flank>
 bool BevelTeeth::foot(const Vec3& tip, const Flank& flank, double& roll) const {
+  return foot_from(roll, tip, flank, roll) || foot_from(tip_roll_, tip, flank, roll);
+}
+
+template <class Flank>
+bool BevelTeeth::foot_from(double start, const Vec3& tip, const Flank& flank, double& roll) const {
   double last = std::numeric_limits<double>::infinity();
+  double at_roll = start;
   for (int i = 0; i < kMostIterations; ++i) {
-    const Placed at = flank(roll);
+    const Placed at = flank(at_roll);
     const double slope = dot(at.tangent_rate, tip);
     const double step = -dot(at.tangent, tip) / slope;
     if (!std::isfinite(step)) return false;
-    roll += std::clamp(step, -kLongestStep, kLongestStep);
-    // Of the two points with such a normal the one in front of which the tip is, not behind.
-    if (std::abs(step) <= kRollRoundOff || (std::abs(step) < kFound && std::abs(step) >= last / 2))
-      return slope < 0;
+    at_roll += std::clamp(step, -kLongestStep, kLongestStep);
+    if (std::abs(step) <= kRollRoundOff ||
+        (std::abs(step) < kFound && std::abs(step) >= last / 2)) {
+      if (!(slope < 0)) return false;
+      roll = at_roll;
+      return true;
+    }
     last = std::abs(step);
   }
   return false;

@@ -87,6 +87,8 @@ class BevelTeeth {
   bool regular(double shaft_ahead, double block_ahead, Touch& touch) const;
   template <class Flank>
   bool foot(const SimTK::Vec3& tip, const Flank& flank, double& roll) const;
+  template <class Flank>
+  bool foot_from(double start, const SimTK::Vec3& tip, const Flank& flank, double& roll) const;
   double largest_approach(double theta, double lag, int flank) const;
 
   Gear gear_;

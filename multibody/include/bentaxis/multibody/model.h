@@ -51,8 +51,9 @@ class Model {
   /// full pump.
   Budget budget();
 
-  /// What bevel teeth do to each other at the instant of the last evaluate(); of the full pump with
-  /// [gear] contact = "teeth".
+  /// Whether bevel teeth turn the block: of the full pump with [gear] contact = "teeth".
+  bool has_teeth() const;
+  /// What they do to each other at the instant of the last evaluate(); where there are any.
   const TeethAction& teeth() const;
 
   /// The channels of piston 1 alone; only in the one-piston scene.
@@ -96,8 +97,10 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
                        ResultTable* teeth = nullptr);
 
 /// Reactions at given states of shaft and block, with the torque that their motion needs.
+/// @param teeth  as of run_driven()
 /// @throws InputError, ComputationError
 MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
-                       const Progress& progress = {}, std::optional<Method> method = {});
+                       const Progress& progress = {}, std::optional<Method> method = {},
+                       ResultTable* teeth = nullptr);
 
 }  // namespace bentaxis::multibody
