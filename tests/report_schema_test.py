@@ -55,6 +55,8 @@ class SchemaTest(unittest.TestCase):
                                     REPO / "reference_data" / "hard"),
             "simulate": cls.report("report.json", "simulate", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                    "drive.duration_s=0.001", "--set", "drive.samples=10", "--error", "1e-4"),
+            "teeth": cls.report("report.json", "compare", REPO / "cases" / "bap63_teeth.toml", "--set",
+                                "operation.samples_per_revolution=36"),
             "rattle": cls.report("report.json", "rattle", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                  "friction.block_viscous_Nm_per_rpm=0.0054", "--speeds", "900:1200:2", "--delivery-bar",
                                  "350:350:1", "--turns", "2", "--check", "1"),
