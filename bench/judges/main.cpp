@@ -41,6 +41,7 @@ int main() {
     int unexpected =
         print("ISO/TR 6336-30, example 1; ISO 6336-1 and the law: N/(mm um)", iso_6336());
     unexpected += print("m 2 mm, 62/62 after Ma et al. 2014: N/m", pair_of_62());
+    unexpected += print("One tooth by finite elements, stored: m/(N/m)", finite_element_tooth());
     unexpected += print("Kahraman and Singh's oscillator, exactly, and coupled/", oscillator());
     std::printf("\nrows other than docs/judges.md says: %d\n", unexpected);
     return unexpected == 0 ? 0 : 1;

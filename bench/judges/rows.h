@@ -18,8 +18,9 @@ struct Row {
 };
 using Rows = std::vector<Row>;
 
-Rows iso_6336();    ///< ISO/TR 6336-30, example 1, and the spur case of its formulas
-Rows pair_of_62();  ///< m 2 mm, 62/62 after Ma et al. 2014
-Rows oscillator();  ///< with backlash, by matching pieces, against coupled/
+Rows iso_6336();              ///< ISO/TR 6336-30, example 1, and the spur case of its formulas
+Rows pair_of_62();            ///< m 2 mm, 62/62 after Ma et al. 2014
+Rows finite_element_tooth();  ///< computed once, stored
+Rows oscillator();            ///< with backlash, by matching pieces, against coupled/
 
 }  // namespace bentaxis::judges

@@ -1,6 +1,7 @@
 // The law of a tooth's flexibility in its spur limit, against ISO 6336-1 and a pair from elsewhere.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "bentaxis/pump/tooth_flexibility.h"
 #include "bentaxis/pump/units.h"
@@ -213,6 +214,27 @@ Rows pair_of_62() {
           {"mean, its conventions", kWidth * mean, kMean, 1e-3, true, true},
           {"start of mesh, ours", kWidth * mesh.mesh(0), kStart, 0.05},
           {"mean, ours", kWidth * mesh.mean(), kMean, 0.05}};
+}
+
+Rows finite_element_tooth() {
+  struct Stored {
+    int teeth;
+    double height, deflection;  // modules; m per N/m
+  };
+  // Of bench/judges/finite_element_tooth.py 0.03.
+  const Stored stored[] = {{27, -0.5, 2.671684e-11}, {27, 0, 3.484053e-11},
+                           {27, 0.9, 6.910369e-11},  {79, -0.5, 2.619950e-11},
+                           {79, 0, 3.421526e-11},    {79, 0.9, 6.836431e-11}};
+  constexpr double kModule = 4e-3;
+  Rows rows;
+  for (const Stored& s : stored) {
+    const ToothFlexibility law(spur(s.teeth, kModule, 3), 0);
+    char what[64];
+    std::snprintf(what, sizeof what, "%d teeth, load at %+.1f modules: deflection", s.teeth,
+                  s.height);
+    rows.push_back({what, law.tooth(s.height * kModule), s.deflection, 0.15});
+  }
+  return rows;
 }
 
 }  // namespace bentaxis::judges
