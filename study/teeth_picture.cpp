@@ -17,7 +17,7 @@ using report::DrawingFigure;
 
 enum Look { kShaft, kBlock, kPlus, kMinus };
 
-constexpr std::size_t kMostFrames = 90;
+constexpr std::size_t kMostFrames = 180;
 constexpr double kReach = 1.8;         // pitches to either side of O4 that are drawn
 constexpr int kPoints = 9;             // of a flank
 constexpr double kLongestArrow = 0.5;  // pitches

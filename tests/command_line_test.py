@@ -1269,6 +1269,13 @@ BESIDE_B = {**RATED, "piston.contact_mm": 41.5, "gear.flanks": '"two"', "frictio
 COMPLIANT = {**RATED, "gear.contact": '"compliant"', "gear.stiffness_N_per_um": 200.0}
 CURVED = {"pressure.kind": '"curve"', "pressure.file": '"curve.csv"'}
 
+# At rest: with runout, relief and crowning, and a torque that brings tips in early.
+TEETH = {**RATED, "gear.contact": '"teeth"', "gear.tooth_number": 27, "gear.face_width_mm": 16.0, "gear.addendum_mm": 3.9,
+         "gear.dedendum_mm": 4.9, "gear.tip_relief_um": 5.0, "gear.tip_relief_height_mm": 2.0, "gear.lead_crowning_um": 6.0,
+         "gear.youngs_modulus_GPa": 206.0, "gear.poisson_ratio": 0.3, "gear.rim_ratio": 3.0, "gear.shaft_runout_um": 4.0,
+         "gear.shaft_runout_deg": 40.0, "gear.block_runout_um": 3.0, "gear.block_runout_deg": 100.0, "gear.backlash_um": 20.0,
+         "gear.dissipation_s_per_m": 0.5, "friction.block_viscous_Nm_per_rpm": 0.05}
+
 # What does not make itself felt in the rated case; every other number of that case does.
 HIDDEN_BY_PRESSURE = {"shaft.mass_kg", "shaft.centre_of_mass_z_mm", "block.mass_kg", "block.centre_of_mass_z_mm",
                       "operation.gravity_m_per_s2"}
@@ -1278,14 +1285,17 @@ CONTROLS = (
     (REAL, {"piston.mass_kg", "piston.centre_of_mass_mm", "piston.transverse_inertia_kg_mm2", "piston.axial_inertia_kg_mm2",
             "piston.spin_rpm"}),
     (BESIDE_B, {"piston.contact_mm", "gear.pitch_diameter_mm", "gear.pressure_angle_deg"}),
+    (TEETH, {name for name, value in TEETH.items() if name.startswith("gear.") and isinstance(value, float)}
+     - {"gear.dissipation_s_per_m"}),
 )
 # Numbers that say how much is computed, not what of.
-STRUCTURE = {"pump.pistons", "operation.samples_per_revolution", "operation.revolutions", "pressure.points"}
+STRUCTURE = {"pump.pistons", "gear.tooth_number", "operation.samples_per_revolution", "operation.revolutions", "pressure.points"}
 # Without effect at constant speed, whatever their size.
 WITHOUT_EFFECT = (
     (RATED, "shaft.axial_inertia_kg_mm2", 20000.0), (RATED, "block.axial_inertia_kg_mm2", 15000.0),
     (LIGHT, "shaft.axial_inertia_kg_mm2", 0.0), (LIGHT, "block.axial_inertia_kg_mm2", 0.0),
     (REAL, "piston.joint_mass_fraction", 0.7), (LIGHT, "piston.spin_rpm", 900.0),
+    (TEETH, "gear.dissipation_s_per_m", 0.1),
     # Compliant teeth act where the motion is not given; rigid ones have nothing of this.
     *((base, f"gear.{key}", value) for base in (COMPLIANT, RATED)
       for key, value in (("stiffness_N_per_um", 300.0), ("stiffness_exponent", 1.5), ("dissipation_s_per_m", 0.1), ("backlash_um", 20.0))),
