@@ -17,6 +17,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/rounding.h"
 #include "bentaxis/analytic/simulation.h"
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/tooth_flexibility.h"
@@ -718,6 +719,33 @@ TEST(ToothedModel, RunWritesWhatTheTeethDo) {
   ResultTable none;
   analytic::run(rigid, rigid.analytic, samples, {}, &none);
   EXPECT_EQ(none.rows(), 0U);
+}
+
+TEST(ToothedModel, SaysWhereFurtherPairsWouldTouch) {
+  Case the_case = toothed_case();
+  const auto limit = [&] {
+    const Samples samples = sample_case(the_case, PressureTrace(the_case.pressure));
+    const ResultTable table = analytic::run(the_case, the_case.analytic, samples);
+    const auto limits = analytic::check_validity(the_case, the_case.analytic, samples, table);
+    EXPECT_EQ(limits.back().name, "further pairs of teeth touch");
+    return limits.back();
+  };
+  EXPECT_EQ(limit().violated_share, 0);
+  EXPECT_LT(limit().worst, 5);
+  // At the reach a pair on the border of those looked at nearly touches: it was measured without
+  // the lag, by which the block's tooth has still farther to go.
+  const BevelTeeth teeth(the_case.pump);
+  const double arm =
+      the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle);
+  const double lag = (teeth.geometry().reach + the_case.pump.gear.teeth->backlash / 2) / arm;
+  const double border = -kPi / the_case.pump.gear.teeth->count;  // half a pitch
+  const double gap = -teeth.act(border, 0, {lag, 0}).pairs[2].approach;
+  EXPECT_GT(gap, 0);
+  EXPECT_LT(gap, 0.1 * teeth.geometry().reach);
+  // Ever softer teeth are pressed that far.
+  the_case.pump.gear.teeth->youngs_modulus = 1e9;
+  EXPECT_GT(limit().violated_share, 0);
+  EXPECT_GT(limit().worst, teeth.geometry().reach * 1e6);
 }
 
 TEST(ToothedModel, WhatCannotFollowTeethSaysSo) {

@@ -22,6 +22,9 @@ struct BevelGeometry {
   /// Its ends, rad from O4, positive in the direction of the force on the block.
   double path_begin = 0, path_end = 0;
   double contact_ratio = 0;
+  /// How far teeth may be pressed into each other, m, before a pair touches that is not among the
+  /// kPairsPerFlank that are looked at.
+  double reach = 0;
 };
 
 /// Teeth of a pump. Immutable; one object serves many threads, cheap to copy.
