@@ -9,6 +9,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <random>
 #include <string>
 
 #include "allocations.h"
@@ -216,6 +218,54 @@ TEST(BevelGeometry, ContactRatioIsThatOfASearchForTheTips) {
         << tilt;
     EXPECT_EQ(shape.at.path_begin, -shape.at.path_end);
   }
+}
+
+TEST(BevelGeometry, GapsOfAnyShapeAreTheDistancesOfItsCurves) {
+  std::mt19937 random(20261122);
+  const auto draw = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  int accepted = 0, refused = 0;
+  while (accepted < 100 && refused < 4000) {
+    PumpParameters pump = toothed();
+    ToothData& t = *pump.gear.teeth;
+    pump.geometry.tilt = radians(draw(8, 80));
+    pump.gear.pressure_angle = radians(draw(12, 32));
+    t.count = static_cast<int>(draw(9, 70));
+    t.backlash = 0;
+    t.addendum = draw(0.6, 1.2) * pump.gear.pitch_diameter / t.count;
+    t.dedendum = 1.2 * t.addendum;
+    const Gears gears(pump);
+    analytic::closed_form::Bevel shape = analytic::closed_form::bevel(pump);
+    try {
+      analytic::closed_form::require_mesh(pump.gear, shape);
+    } catch (const InputError&) {
+      ++refused;
+      continue;
+    }
+    ++accepted;
+    std::optional<BevelTeeth> teeth;
+    try {
+      teeth.emplace(pump);
+    } catch (const InputError&) {
+      continue;  // a rack cuts no such tooth: the law of its flexibility says so
+    }
+    const double lag = -1e-4;
+    for (const double share : {-1.15, -1.02, 0.3, 1.05, 1.2}) {
+      const double quarter = kPi / 2 / gears.count;
+      const double theta = share * shape.at.path_end / std::sin(gears.base) - quarter;
+      if (theta + quarter <= -4.9 * quarter) continue;  // no longer looked at
+      const double gap = nearest(shaft_flank(gears, theta), block_flank(gears, theta - lag));
+      for (const PairContact& pair : teeth->act(theta, 0, {lag, 0}).pairs)
+        if (pair.flank == 1 && pair.shaft_tooth == 1) {
+          EXPECT_NEAR(pair.approach / shape.at.distance, -gap, 1e-10)
+              << share << ": Z " << gears.count << ", tilt " << pump.geometry.tilt << ", ap "
+              << pump.gear.pressure_angle << ", addendum " << t.addendum;
+        }
+    }
+  }
+  EXPECT_EQ(accepted, 100);
+  EXPECT_GT(refused, 3);
 }
 
 TEST(BevelGeometry, RefusesByName) {
@@ -472,6 +522,15 @@ TEST(BevelTeeth, RestInvertsTheLaw) {
         EXPECT_NEAR(teeth.about_block_axis(action.moment), torque, 1e-12 * std::abs(torque) + 2e-10)
             << theta;
       }
+  }
+}
+
+TEST(BevelTeeth, SaysWhichTorqueNoLagCarries) {
+  try {
+    BevelTeeth(toothed()).rest(0.3, 1e9);
+    FAIL();
+  } catch (const ComputationError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("1e+09 Nm at theta = 17.2 deg"));
   }
 }
 
