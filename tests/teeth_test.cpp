@@ -12,6 +12,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "allocations.h"
 #include "bentaxis/analytic/batch.h"
@@ -477,6 +478,41 @@ TEST(BevelTeeth, SpeedOfApproachIsItsDerivative) {
       }
 }
 
+TEST(BevelTeeth, ForcesPointWhereApproachGrows) {
+  // By virtual work: the approach of a pair grows as the bodies' points move along its normal
+  // there, tips' edges and all.
+  PumpParameters pump = imperfect();
+  pump.gear.teeth->tip_relief = 0;
+  const BevelTeeth teeth(pump);
+  const Gears gears(pump);
+  const double r = teeth.geometry().distance;
+  int corners = 0;
+  for (const double lag : {-8e-4, 6e-4, 9e-4})
+    for (int i = 0; i < 300; ++i) {
+      const double theta = 8e-4 * i + 1e-5;
+      const TeethAction action = teeth.act(theta, 0, {lag, 0});
+      for (const auto& [shaft, block] : {std::pair{1.0, 0.0}, std::pair{0.0, 1.0}}) {
+        const double step = 1e-6;
+        const auto there = [&](double t) {
+          return teeth.act(theta + shaft * t, 0, {lag + (shaft - block) * t, 0});
+        };
+        const TeethAction after = there(step), before = there(-step);
+        for (std::size_t k = 0; k < action.pairs.size(); ++k) {
+          const PairContact& pair = action.pairs[k];
+          if (!(pair.force > 0) || after.pairs[k].shaft_tooth != pair.shaft_tooth) continue;
+          const V u = unit(pair.point);
+          const double expected =
+              r * dot(pair.normal, cross(shaft * gears.z1 - block * gears.z2, u));
+          EXPECT_NEAR((after.pairs[k].approach - before.pairs[k].approach) / (2 * step), expected,
+                      1e-8);
+          const V n0 = {pair.flank * gears.n0[0], gears.n0[1], gears.n0[2]};
+          if (std::abs(dot(cross(gears.u0, n0), u)) > 1e-9) ++corners;
+        }
+      }
+    }
+  EXPECT_GT(corners, 50);
+}
+
 TEST(BevelTeeth, ApproachIsContinuousAndThatOfThePairs) {
   const BevelTeeth teeth(imperfect());
   for (const int flank : {1, -1})
@@ -778,6 +814,37 @@ TEST(ToothedModel, RunWritesWhatTheTeethDo) {
   ResultTable none;
   analytic::run(rigid, rigid.analytic, samples, {}, &none);
   EXPECT_EQ(none.rows(), 0U);
+}
+
+TEST(ToothedModel, StatesAreThoseOfTheInstants) {
+  Case the_case = toothed_case();
+  the_case.pump.gear.teeth = imperfect().gear.teeth;
+  const analytic::Model model(the_case.pump, the_case.analytic);
+  States states;
+  states.pistons = the_case.pump.geometry.pistons;
+  for (const double theta_deg : {10.0, 100.0, 370.0}) {
+    states.motion.push_back(
+        {theta_deg, theta_deg - 0.2, 157, 155, 30, -500, the_case.pressure.ports});
+    const Instant at = instant_at(the_case, theta_deg, 157);
+    states.chamber_pressure.insert(states.chamber_pressure.end(), at.chamber_pressure.begin(),
+                                   at.chamber_pressure.end());
+  }
+  ResultTable teeth;
+  const MotionTable table = analytic::run_states(the_case, the_case.analytic, states, {}, &teeth);
+  ASSERT_EQ(teeth.rows(), states.rows());
+  std::vector<double> values(model.layout().size());
+  Instant instant;
+  TeethAction action;
+  for (std::size_t row = 0; row < states.rows(); ++row) {
+    states.instant(row, instant);
+    model.evaluate(instant, values);
+    model.teeth(instant, action);
+    for (std::size_t c = 0; c < model.layout().reactions(); ++c)
+      EXPECT_EQ(table.results.at(row, c), values[c]);
+    EXPECT_EQ(teeth.theta_deg[row], states.motion[row].theta_deg);
+    EXPECT_EQ(teeth.at(row, teeth.find("lag_urad")), action.lag * 1e6);
+    EXPECT_NEAR(table.results.at(row, table.results.find("power_balance_W")), 0, 1e-8);
+  }
 }
 
 TEST(ToothedModel, SaysWhereFurtherPairsWouldTouch) {
