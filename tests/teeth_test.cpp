@@ -12,7 +12,6 @@
 #include <optional>
 #include <random>
 #include <string>
-#include <utility>
 
 #include "allocations.h"
 #include "bentaxis/analytic/batch.h"
@@ -491,7 +490,8 @@ TEST(BevelTeeth, ForcesPointWhereApproachGrows) {
     for (int i = 0; i < 300; ++i) {
       const double theta = 8e-4 * i + 1e-5;
       const TeethAction action = teeth.act(theta, 0, {lag, 0});
-      for (const auto& [shaft, block] : {std::pair{1.0, 0.0}, std::pair{0.0, 1.0}}) {
+      for (const double shaft : {1.0, 0.0}) {
+        const double block = 1 - shaft;
         const double step = 1e-6;
         const auto there = [&](double t) {
           return teeth.act(theta + shaft * t, 0, {lag + (shaft - block) * t, 0});
