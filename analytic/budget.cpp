@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bentaxis/analytic/model.h"
-#include "bentaxis/pump/error.h"
 #include "closed_form/reactions.h"
 #include "prepared.h"
 #include "turning.h"
@@ -52,22 +51,9 @@ closed_form::Vec3<double> play(const closed_form::Pump<double>& p, const State& 
 
 }  // namespace
 
-namespace {
-
-// Parts of a torque are passed on as they are.
-const PumpParameters& with_one_ratio(const PumpParameters& pump) {
-  if (pump.gear.contact == ToothContact::teeth)
-    throw InputError(
-        "budget: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\", where the gear "
-        "passes on every part of the torque as it is");
-  return pump;
-}
-
-}  // namespace
-
 struct BudgetModel::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions)
-      : model(with_one_ratio(pump), assumptions),
+      : model(pump, assumptions),
         prepared(prepare(pump, assumptions)),
         block_weight_and_spring(prepared.numbers.block.force_z),
         torque_factor(pump.friction.shaft_torque_factor),
@@ -84,6 +70,7 @@ struct BudgetModel::Implementation {
   PreparedPump prepared;
   double block_weight_and_spring;
   double torque_factor;
+  double passed_on = 1;  // torque that the gear takes from the shaft over what the block gets
   std::vector<double> values;
 };
 
@@ -94,7 +81,8 @@ void BudgetModel::Implementation::put(Budget& budget, Cause cause, double on_sha
   if (prepared.imposed) return;
   // The tooth force that carries the block against this load, as it acts on the shaft (43), (57).
   const closed_form::GearNumbers<double>& gear = prepared.numbers.gear;
-  budget.drive_of(cause) -= closed_form::tooth_on_shaft(gear, on_block * gear.inverse_arm).moment.z;
+  budget.drive_of(cause) -=
+      passed_on * closed_form::tooth_on_shaft(gear, on_block * gear.inverse_arm).moment.z;
 }
 
 template <class State>
@@ -166,6 +154,13 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
   else
     model.reactions(instant, values);
   const closed_form::Pump<double>& p = prepared.numbers;
+  TeethAction teeth;
+  const bool toothed = prepared.teeth && !prepared.imposed;
+  if (toothed) {
+    model.teeth(instant, teeth);
+    const double on_block = prepared.teeth->about_block_axis(teeth.moment);
+    passed_on = on_block == 0 ? 1 : BevelTeeth::about_shaft_axis(teeth.moment) / on_block;
+  }
   Budget budget;
   with_state<double>(instant, [&](const auto& state) { budget = causes(instant, state); });
 
@@ -183,7 +178,7 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
         closed_form::Math<double>::direction(instant.shaft.speed) * values[at.Rcs()];
     const auto carried = closed_form::tooth_on_block(p.gear, tooth);
     budget.carrying_torque = carried.moment.z;
-    budget.pressing += carried.force.z;
+    budget.pressing += toothed ? prepared.teeth->about_block_axis(teeth.force) : carried.force.z;
   }
   return budget;
 }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 
+#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/number.h"
 
 namespace bentaxis::analytic {
@@ -93,6 +94,32 @@ ValidityLimit ring_limit(const Model& model, const Case& the_case, const Samples
       *the_case.pump.piston.contact * 1e3, the_case.pump.geometry.piston_length * 1e3, mean);
   ring.consequence = text;
   return ring;
+}
+
+// More pairs of teeth might touch than are looked at.
+ValidityLimit reach_limit(const Model& model, const Case& the_case, const Samples& samples,
+                          const ResultTable& table) {
+  const double reach = BevelTeeth(the_case.pump).geometry().reach;
+  ValidityLimit limit;
+  limit.limit = "teeth pressed together so little that no further pair touches: below " +
+                rounded_text(reach * 1e6) + " um";
+  limit.name = "further pairs of teeth touch";
+  limit.unit = "um";
+  Instant instant;
+  TeethAction action;
+  const auto pressed = [&](std::size_t row) {
+    samples.instant(row, instant);
+    model.teeth(instant, action);
+    double largest = 0;
+    for (const PairContact& pair : action.pairs) largest = std::max(largest, pair.approach);
+    return largest;
+  };
+  scan(
+      limit, table, [&](std::size_t row) { return reach - pressed(row); },
+      [&](std::size_t row) { return pressed(row) * 1e6; });
+  limit.consequence =
+      "three pairs of each flank are looked at; a fourth would carry a part of the force";
+  return limit;
 }
 
 }  // namespace
@@ -200,6 +227,8 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   if (the_case.pump.piston.contact &&
       *the_case.pump.piston.contact != the_case.pump.geometry.piston_length)
     limits.push_back(ring_limit(model, the_case, samples, table));
+  if (the_case.pump.gear.contact == ToothContact::teeth && assumptions.gear == BlockDrive::mesh)
+    limits.push_back(reach_limit(model, the_case, samples, table));
   return limits;
 }
 

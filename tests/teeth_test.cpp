@@ -9,6 +9,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
+#include <random>
 #include <string>
 
 #include "allocations.h"
@@ -17,6 +19,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/rounding.h"
 #include "bentaxis/analytic/simulation.h"
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/tooth_flexibility.h"
@@ -215,6 +218,54 @@ TEST(BevelGeometry, ContactRatioIsThatOfASearchForTheTips) {
         << tilt;
     EXPECT_EQ(shape.at.path_begin, -shape.at.path_end);
   }
+}
+
+TEST(BevelGeometry, GapsOfAnyShapeAreTheDistancesOfItsCurves) {
+  std::mt19937 random(20261122);
+  const auto draw = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  int accepted = 0, refused = 0;
+  while (accepted < 100 && refused < 4000) {
+    PumpParameters pump = toothed();
+    ToothData& t = *pump.gear.teeth;
+    pump.geometry.tilt = radians(draw(8, 80));
+    pump.gear.pressure_angle = radians(draw(12, 32));
+    t.count = static_cast<int>(draw(9, 70));
+    t.backlash = 0;
+    t.addendum = draw(0.6, 1.2) * pump.gear.pitch_diameter / t.count;
+    t.dedendum = 1.2 * t.addendum;
+    const Gears gears(pump);
+    analytic::closed_form::Bevel shape = analytic::closed_form::bevel(pump);
+    try {
+      analytic::closed_form::require_mesh(pump.gear, shape);
+    } catch (const InputError&) {
+      ++refused;
+      continue;
+    }
+    ++accepted;
+    std::optional<BevelTeeth> teeth;
+    try {
+      teeth.emplace(pump);
+    } catch (const InputError&) {
+      continue;  // a rack cuts no such tooth: the law of its flexibility says so
+    }
+    const double lag = -1e-4;
+    for (const double share : {-1.15, -1.02, 0.3, 1.05, 1.2}) {
+      const double quarter = kPi / 2 / gears.count;
+      const double theta = share * shape.at.path_end / std::sin(gears.base) - quarter;
+      if (theta + quarter <= -4.9 * quarter) continue;  // no longer looked at
+      const double gap = nearest(shaft_flank(gears, theta), block_flank(gears, theta - lag));
+      for (const PairContact& pair : teeth->act(theta, 0, {lag, 0}).pairs)
+        if (pair.flank == 1 && pair.shaft_tooth == 1) {
+          EXPECT_NEAR(pair.approach / shape.at.distance, -gap, 1e-10)
+              << share << ": Z " << gears.count << ", tilt " << pump.geometry.tilt << ", ap "
+              << pump.gear.pressure_angle << ", addendum " << t.addendum;
+        }
+    }
+  }
+  EXPECT_EQ(accepted, 100);
+  EXPECT_GT(refused, 3);
 }
 
 TEST(BevelGeometry, RefusesByName) {
@@ -426,6 +477,42 @@ TEST(BevelTeeth, SpeedOfApproachIsItsDerivative) {
       }
 }
 
+TEST(BevelTeeth, ForcesPointWhereApproachGrows) {
+  // By virtual work: the approach of a pair grows as the bodies' points move along its normal
+  // there, tips' edges and all.
+  PumpParameters pump = imperfect();
+  pump.gear.teeth->tip_relief = 0;
+  const BevelTeeth teeth(pump);
+  const Gears gears(pump);
+  const double r = teeth.geometry().distance;
+  int corners = 0;
+  for (const double lag : {-8e-4, 6e-4, 9e-4})
+    for (int i = 0; i < 300; ++i) {
+      const double theta = 8e-4 * i + 1e-5;
+      const TeethAction action = teeth.act(theta, 0, {lag, 0});
+      for (const double shaft : {1.0, 0.0}) {
+        const double block = 1 - shaft;
+        const double step = 1e-6;
+        const auto there = [&](double t) {
+          return teeth.act(theta + shaft * t, 0, {lag + (shaft - block) * t, 0});
+        };
+        const TeethAction after = there(step), before = there(-step);
+        for (std::size_t k = 0; k < action.pairs.size(); ++k) {
+          const PairContact& pair = action.pairs[k];
+          if (!(pair.force > 0) || after.pairs[k].shaft_tooth != pair.shaft_tooth) continue;
+          const V u = unit(pair.point);
+          const double expected =
+              r * dot(pair.normal, cross(shaft * gears.z1 - block * gears.z2, u));
+          EXPECT_NEAR((after.pairs[k].approach - before.pairs[k].approach) / (2 * step), expected,
+                      1e-8);
+          const V n0 = {pair.flank * gears.n0[0], gears.n0[1], gears.n0[2]};
+          if (std::abs(dot(cross(gears.u0, n0), u)) > 1e-9) ++corners;
+        }
+      }
+    }
+  EXPECT_GT(corners, 50);
+}
+
 TEST(BevelTeeth, ApproachIsContinuousAndThatOfThePairs) {
   const BevelTeeth teeth(imperfect());
   for (const int flank : {1, -1})
@@ -471,6 +558,15 @@ TEST(BevelTeeth, RestInvertsTheLaw) {
         EXPECT_NEAR(teeth.about_block_axis(action.moment), torque, 1e-12 * std::abs(torque) + 2e-10)
             << theta;
       }
+  }
+}
+
+TEST(BevelTeeth, SaysWhichTorqueNoLagCarries) {
+  try {
+    BevelTeeth(toothed()).rest(0.3, 1e9);
+    FAIL();
+  } catch (const ComputationError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("1e+09 Nm at theta = 17.2 deg"));
   }
 }
 
@@ -718,6 +814,64 @@ TEST(ToothedModel, RunWritesWhatTheTeethDo) {
   ResultTable none;
   analytic::run(rigid, rigid.analytic, samples, {}, &none);
   EXPECT_EQ(none.rows(), 0U);
+}
+
+TEST(ToothedModel, StatesAreThoseOfTheInstants) {
+  Case the_case = toothed_case();
+  the_case.pump.gear.teeth = imperfect().gear.teeth;
+  const analytic::Model model(the_case.pump, the_case.analytic);
+  States states;
+  states.pistons = the_case.pump.geometry.pistons;
+  for (const double theta_deg : {10.0, 100.0, 370.0}) {
+    states.motion.push_back(
+        {theta_deg, theta_deg - 0.2, 157, 155, 30, -500, the_case.pressure.ports});
+    const Instant at = instant_at(the_case, theta_deg, 157);
+    states.chamber_pressure.insert(states.chamber_pressure.end(), at.chamber_pressure.begin(),
+                                   at.chamber_pressure.end());
+  }
+  ResultTable teeth;
+  const MotionTable table = analytic::run_states(the_case, the_case.analytic, states, {}, &teeth);
+  ASSERT_EQ(teeth.rows(), states.rows());
+  std::vector<double> values(model.layout().size());
+  Instant instant;
+  TeethAction action;
+  for (std::size_t row = 0; row < states.rows(); ++row) {
+    states.instant(row, instant);
+    model.evaluate(instant, values);
+    model.teeth(instant, action);
+    for (std::size_t c = 0; c < model.layout().reactions(); ++c)
+      EXPECT_EQ(table.results.at(row, c), values[c]);
+    EXPECT_EQ(teeth.theta_deg[row], states.motion[row].theta_deg);
+    EXPECT_EQ(teeth.at(row, teeth.find("lag_urad")), action.lag * 1e6);
+    EXPECT_NEAR(table.results.at(row, table.results.find("power_balance_W")), 0, 1e-8);
+  }
+}
+
+TEST(ToothedModel, SaysWhereFurtherPairsWouldTouch) {
+  Case the_case = toothed_case();
+  const auto limit = [&] {
+    const Samples samples = sample_case(the_case, PressureTrace(the_case.pressure));
+    const ResultTable table = analytic::run(the_case, the_case.analytic, samples);
+    const auto limits = analytic::check_validity(the_case, the_case.analytic, samples, table);
+    EXPECT_EQ(limits.back().name, "further pairs of teeth touch");
+    return limits.back();
+  };
+  EXPECT_EQ(limit().violated_share, 0);
+  EXPECT_LT(limit().worst, 5);
+  // At the reach a pair on the border of those looked at nearly touches: it was measured without
+  // the lag, by which the block's tooth has still farther to go.
+  const BevelTeeth teeth(the_case.pump);
+  const double arm =
+      the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle);
+  const double lag = (teeth.geometry().reach + the_case.pump.gear.teeth->backlash / 2) / arm;
+  const double border = -kPi / the_case.pump.gear.teeth->count;  // half a pitch
+  const double gap = -teeth.act(border, 0, {lag, 0}).pairs[2].approach;
+  EXPECT_GT(gap, 0);
+  EXPECT_LT(gap, 0.1 * teeth.geometry().reach);
+  // Ever softer teeth are pressed that far.
+  the_case.pump.gear.teeth->youngs_modulus = 1e9;
+  EXPECT_GT(limit().violated_share, 0);
+  EXPECT_GT(limit().worst, teeth.geometry().reach * 1e6);
 }
 
 TEST(ToothedModel, WhatCannotFollowTeethSaysSo) {

@@ -124,6 +124,9 @@ Bevel bevel(const PumpParameters& pump) {
   const Vec3<double> kept = b.sin_base * b.block_axis;
   b.lever_ = {dot(shaft_axis, kept), dot(shaft_axis, normal - kept),
               dot(shaft_axis, cross(b.block_axis, normal))};
+  // Pairs are looked at from 5/4 of a pitch before O4 on.
+  const double past = 1.25 * b.pitch - at.path_end / b.sin_base;
+  at.reach = past > 0 ? at.distance * b.corner(past).gap : 0;
   return b;
 }
 

@@ -22,6 +22,9 @@ struct BevelGeometry {
   /// Its ends, rad from O4, positive in the direction of the force on the block.
   double path_begin = 0, path_end = 0;
   double contact_ratio = 0;
+  /// How far teeth may be pressed into each other, m, before a pair touches that is not among the
+  /// kPairsPerFlank that are looked at.
+  double reach = 0;
 };
 
 /// Teeth of a pump. Immutable; one object serves many threads, cheap to copy.
@@ -48,8 +51,8 @@ class BevelTeeth {
   };
   Wrench wrench(double theta, double shaft_speed, const ToothLag& lag,
                 bool dissipation = true) const;
-  /// Parts of a moment in S1 about z2 and about z1: on the block the torque, on the shaft the
-  /// opposite of the torque.
+  /// Parts of a vector in S1 along z2 and z1. Of the moment on the block: the torque on it, and the
+  /// opposite of the torque on the shaft.
   double about_block_axis(const std::array<double, 3>& moment) const;
   static double about_shaft_axis(const std::array<double, 3>& moment) { return moment[2]; }
 

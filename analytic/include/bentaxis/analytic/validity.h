@@ -26,7 +26,8 @@ struct ValidityLimit {
 /// Checks a table of results (of either model) against the limits of what was modelled: tooth force
 /// on the driving flank, and how far two flanks differ from the one that the paper prints, film
 /// force that only pushes, its point within the port plate, thrust of the tapered bearing, friction
-/// that only takes energy, bore forces that do no work.
+/// that only takes energy, bore forces that do no work, no more pairs of teeth in touch than are
+/// looked at.
 std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumptions& assumptions,
                                           const Samples& samples, const ResultTable& table);
 
