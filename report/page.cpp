@@ -49,7 +49,7 @@ std::string script() {
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
   for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "curves.js",
-                             "bars.js", "hand_out.js", "page.js"})
+                             "bars.js", "drawing.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
 }
