@@ -226,6 +226,36 @@ TEST(Picture, DrawingShowsOneFrameToScaleAndHandsOutAll) {
             "38,1,force,2,2,2\n38,1,force,2,2,3\n");
 }
 
+// A class has one colour in legend and cells, darker than the one before: it reads in grey. Lines
+// lie over the cells with a pale ground, and break where they have no place.
+TEST(Picture, MapOfClasses) {
+  MapFigure map{{"n", "rpm"}, {"p", "bar"}, {"class"}, {1, 2}, {3, 4}, {{0, 1}, {3, 2}}, {}, {}};
+  map.classes = {"a", "b", "c", "d"};
+  map.lines = {{"edge", {1, not_computed(), 1.5, 2}, {3, 3.5, 4, 4}}};
+  map.marks = XySeries{"odd", {2}, {4}};
+  const Figure figure{"id", "t", "", map};
+  EXPECT_EQ(csv_of(figure), "n (rpm),p (bar),class\n1,3,a\n2,3,b\n1,4,d\n2,4,c\n");
+  const auto document = read(svg_of(figure));
+  std::vector<std::string> fills;
+  for (const auto& node : document.select_nodes("//rect[not(@class)]"))
+    fills.emplace_back(node.node().attribute("fill").value());
+  ASSERT_EQ(fills.size(), 8U);
+  EXPECT_THAT((std::vector<std::string>(fills.begin() + 4, fills.end())),
+              testing::ElementsAre(fills[0], fills[1], fills[3], fills[2]));
+  const auto grey = [](const std::string& colour) {
+    const long rgb = std::stol(colour.substr(1), nullptr, 16);
+    return 0.3 * static_cast<double>(rgb >> 16) + 0.59 * static_cast<double>(rgb >> 8 & 255) +
+           0.11 * static_cast<double>(rgb & 255);
+  };
+  for (std::size_t k = 0; k + 1 < 4; ++k) EXPECT_GT(grey(fills[k]), grey(fills[k + 1]) + 30);
+  EXPECT_EQ(document.select_nodes("//circle").size(), 2U);  // the mark, and its key
+  const auto edges = document.select_nodes("//path[@class='boundary']");
+  ASSERT_EQ(edges.size(), 2U);
+  const std::string path = edges[1].node().attribute("d").value();
+  EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 2);
+  EXPECT_EQ(std::count(path.begin(), path.end(), 'L'), 1);
+}
+
 TEST(Picture, PngHasTwiceTheSize) {
   const std::string png = png_of(
       "<svg xmlns='http://www.w3.org/2000/svg' width='30' height='20'><rect width='9' "

@@ -281,5 +281,18 @@ TEST(Rattle, SimbodyFindsTheSameOrIsSaidNotTo) {
   EXPECT_THAT(rattle_text(other), HasSubstr("differs"));
 }
 
+TEST(Rattle, TeethOfBevelGearsAreMovedAlike) {
+  const Case c = read_case(kCases / "bap63_teeth.toml");
+  RattleOptions options = map_of({2000}, {100});
+  options.turns = options.discard = options.check = 1;
+  const RattleMap map = rattle_map(c, options);
+  EXPECT_EQ(map.rows[0].up[0].kind, RattleClass::hits_both);
+  EXPECT_TRUE(map.agrees());
+  // Rigid teeth know nothing of how teeth give way.
+  Case rigid = c;
+  rigid.pump.gear = read_case(kCases / "bap63_rated.toml").pump.gear;
+  EXPECT_EQ(rattle_map(rigid, options).rows[0].least, map.rows[0].least);
+}
+
 }  // namespace
 }  // namespace bentaxis::study
