@@ -61,11 +61,9 @@ class Maker {
            result_.first.the_case.analytic.gear == BlockDrive::mesh &&
            result_.second.the_case.multibody.gear == BlockDrive::mesh;
   }
-  // The parts of a torque budget are powers, which teeth that slip by micrometres pass on with a
-  // rest of their own.
   bool has_budget() const {
     const ChannelLayout layout(result_.first.the_case.pump.geometry.pistons);
-    return !has_teeth() && !integrated() && result_.options.scene.scene == multibody::Scene::full &&
+    return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
            result_.options.channels.wants(layout.channels()[layout.Td()]);
   }
 

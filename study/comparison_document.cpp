@@ -167,7 +167,8 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   if (r.teeth) {
     document.runs->push_back(teeth_section(*r.teeth, the_case.pump));
     document.figures->push_back(teeth_picture(the_case.pump, r.teeth->analytic));
-    for (auto& figure : teeth_figures(*r.teeth)) document.figures->push_back(std::move(figure));
+    for (auto& figure : teeth_figures(*r.teeth, the_case.pump))
+      document.figures->push_back(std::move(figure));
   }
   document.runs->push_back(rounding_section(r.rounding));
   if (r.with) add_reference(document, *r.with);

@@ -34,7 +34,7 @@ class TeethTest(ProgramTest):
         self.assertIn("The two models agree", result.out)
         self.assertEqual({p.name for p in (self.folder / "out").iterdir()},
                          {"report.html", "report.json", "analytic.csv", "multibody.csv", "teeth_analytic.csv",
-                          "teeth_multibody.csv"})
+                          "teeth_multibody.csv", "budget_analytic.csv", "budget_multibody.csv"})
         analytic, multibody = self.rows("teeth_analytic.csv"), self.rows("teeth_multibody.csv")
         self.assertEqual(analytic[0].keys(), multibody[0].keys())
         reactions = self.rows("analytic.csv")

@@ -22,8 +22,9 @@ TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, doubl
 /// comparison line by line.
 report::Section teeth_section(const TeethComparison& teeth, const PumpParameters& pump);
 
-/// Forces of the flanks and of the pairs, and the transmission error, over the shaft's angle.
-std::vector<report::Figure> teeth_figures(const TeethComparison& teeth);
+/// Forces of the flanks and of the pairs, and the transmission error, over the shaft's angle; the
+/// paths of contact of both models.
+std::vector<report::Figure> teeth_figures(const TeethComparison& teeth, const PumpParameters& pump);
 
 /// The teeth in mesh with lines of contact and forces, at angles over a turn: seen from outside on
 /// O4 towards O2, and the lines over the face width.
