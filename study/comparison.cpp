@@ -239,6 +239,7 @@ void Maker::split_assumptions() {
     RunOptions options = multibody_run(0);
     options.assumptions = to;
     options.assumptions->flanks = from.flanks;
+    options.budget = r.budget.has_value();
     involutes = study::run(r.second, multibody_samples_, options, progress_of_);
   }
   if (names.empty()) return;
@@ -250,12 +251,16 @@ void Maker::split_assumptions() {
       if ((mask & (1U << i)) != 0) changes[i](*options.assumptions, to);
     return study::run(r.first, samples_, options);
   };
-  const auto variant = [&](unsigned mask) {
-    ResultTable table = run_of(mask, false).table;
+  const auto shaped = [&](unsigned mask, ResultTable table, const ResultTable& other,
+                          const ResultTable& involute) {
     if (other_shape && (mask & shape) != 0)
       for (std::size_t i = 0; i < table.values.size(); ++i)
-        table.values[i] += r.multibody.values[i] - involutes->table.values[i];
+        table.values[i] += other.values[i] - involute.values[i];
     return table;
+  };
+  const auto variant = [&](unsigned mask) {
+    return shaped(mask, run_of(mask, false).table, r.multibody,
+                  involutes ? involutes->table : r.multibody);
   };
   // A tolerance that the user names counts as it is.
   const double tolerance = r.options.tolerance || integrated() ? r.tolerance : kDrivenRestTolerance;
@@ -266,7 +271,11 @@ void Maker::split_assumptions() {
   explain(*r.budget,
           compare::split_difference(
               r.budget->analytic, r.budget->multibody, names,
-              [&](unsigned mask) { return *run_of(mask, true).budget; }, zero_scales_, tolerance),
+              [&](unsigned mask) {
+                return shaped(mask, *run_of(mask, true).budget, r.budget->multibody,
+                              involutes ? *involutes->budget : r.budget->multibody);
+              },
+              zero_scales_, tolerance),
           zero_scales_);
 }
 
