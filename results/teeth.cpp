@@ -49,12 +49,12 @@ ResultTable teeth_table(const std::string& model) {
       add(name + "shaft_tooth", "number of the shaft's tooth", "", "tooth");
       add(name + "force_N", "force of the pair", "N", "tooth_force");
       add(name + "share", "its share of the flank's force", "", "share");
-      for (int i = 0; i < 3; ++i)
-        add(name + kAxes[i] + "_mm", "where the pair's force acts, from O2", "mm", "contact_point",
-            kAxes[i]);
-      for (int i = 0; i < 3; ++i)
-        add(name + "normal_" + kAxes[i], "direction of the pair's force on the block", "",
-            "contact_normal", kAxes[i]);
+      for (const char* axis : kAxes)
+        add(name + axis + "_mm", "where the pair's force acts, from O2", "mm", "contact_point",
+            axis);
+      for (const char* axis : kAxes)
+        add(name + "normal_" + axis, "direction of the pair's force on the block", "",
+            "contact_normal", axis);
     }
   return table;
 }
