@@ -54,7 +54,7 @@ int simulate(const Options& options, const CommandParser& command) {
     curves.emplace_back(std::string("simulation_") + name + ".csv", to_csv((*run)->table));
     if (!(*run)->teeth.empty())
       curves.emplace_back(std::string("teeth_") + name + ".csv",
-                          teeth_csv(**run, result.ready.the_case.pump.gear));
+                          to_csv(teeth_table_of(**run, result.ready.the_case.pump.gear)));
     if ((*run)->oil) curves.emplace_back(std::string("oil_") + name + ".csv", oil_csv(**run));
   }
   const auto paths = folders.write("report", study::simulation_document(result, versions()),

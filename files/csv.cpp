@@ -380,15 +380,6 @@ std::string to_csv(const MotionTable& table) {
   return text;
 }
 
-std::string teeth_csv(const Trajectory& run, const Gear& gear) {
-  MotionTable table{{"time_s"}, {}, teeth_table(run.table.results.name)};
-  for (std::size_t row = 0; row < run.teeth.size(); ++row) {
-    table.states.push_back(run.table.state(row, 0));
-    append_teeth(table.results, run.table.results.theta_deg[row], gear, run.teeth[row]);
-  }
-  return to_csv(table);
-}
-
 std::string oil_csv(const Trajectory& run) {
   std::string text = "time_s";
   for (const OilColumn& column : run.oil->columns) text += "," + column.name;

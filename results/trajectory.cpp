@@ -47,6 +47,15 @@ void append_trajectory_row(MotionTable& table, const std::vector<double>& state,
   }
 }
 
+MotionTable teeth_table_of(const Trajectory& run, const Gear& gear) {
+  MotionTable table{{"time_s"}, {}, teeth_table(run.table.results.name)};
+  for (std::size_t row = 0; row < run.teeth.size(); ++row) {
+    table.states.push_back(run.table.state(row, 0));
+    append_teeth(table.results, run.table.results.theta_deg[row], gear, run.teeth[row]);
+  }
+  return table;
+}
+
 const DriveSpec& drive_of(const Case& the_case) {
   const auto refuse = [&](const std::string& why) {
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") + why);

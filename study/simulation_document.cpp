@@ -11,6 +11,7 @@
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/teeth.h"
 
 namespace bentaxis::study {
 namespace {
@@ -446,6 +447,9 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
     document.models->push_back(std::move(model));
   }
   document.figures = figures_of(r);
+  if (r.has_teeth() && r.analytic)
+    document.figures->push_back(teeth_picture(
+        r.ready.the_case.pump, teeth_table_of(*r.analytic, r.ready.the_case.pump.gear).results));
   if (!r.difference.empty() && !r.choice.steady) document.figures->push_back(difference_figure(r));
   if (auto figure = effort_figure(r)) document.figures->push_back(std::move(*figure));
   return document;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/teeth.h"
@@ -113,9 +114,22 @@ report::Section teeth_section(const TeethComparison& teeth, const PumpParameters
       "flank + pushes the block towards +psi, flank - towards -psi. Each model finds contact and "
       "shares on its own.";
   const Extent error = extent(teeth.analytic, "transmission_error_um");
+  const analytic::BevelTeeth shape(pump);
+  const analytic::BevelGeometry& at = shape.geometry();
+  const auto degrees = [](double radians) { return radians / kRadPerDegree; };
   section.facts = {
       {"teeth", fmt::format("{} on either gear, module {:.4g} mm, face width {:.4g} mm", data.count,
                             1e3 * pump.gear.pitch_diameter / data.count, 1e3 * data.face_width)},
+      {"cones",
+       fmt::format("pitch {:.4g}, base {:.4g}, tip {:.4g}, root {:.4g} deg", degrees(at.pitch_cone),
+                   degrees(at.base_cone), degrees(at.tip_cone), degrees(at.root_cone))},
+      {"path of contact", fmt::format("{:.4g} to {:.4g} deg from O4 as seen from O2, base pitch "
+                                      "{:.4g} deg, contact ratio {:.4g}",
+                                      degrees(at.path_begin), degrees(at.path_end),
+                                      degrees(at.base_pitch), at.contact_ratio)},
+      {"stiffness of a pair at O4",
+       fmt::format("{:.4g} N/um, {:.4g} N/(mm um)", shape.stiffness() / 1e6,
+                   shape.stiffness() / 1e9 / data.face_width)},
       {"transmission error",
        fmt::format("{:.4g} to {:.4g} um along the line of action, backlash {:.4g} um", error.low,
                    error.high, 1e6 * data.backlash)}};

@@ -61,7 +61,10 @@ class TeethTest(ProgramTest):
             carrying = sum(float(v) > 0 for k, v in teeth.items() if k.endswith("_share"))
             self.assertEqual(len(frame["arrows"]), carrying)
             self.assertEqual(frame["theta_deg"], float(teeth["theta_deg"]))
-        self.assertIn("Teeth in contact", [s["title"] for s in report["runs"]])
+        (section,) = [s for s in report["runs"] if s["title"] == "Teeth in contact"]
+        facts = dict(section["facts"])
+        self.assertIn("pitch 70, base 62.01, tip 73.98", facts["cones"])  # asin(sin 70 deg cos 20 deg); atan(m / R)
+        self.assertIn("base pitch 11.77 deg", facts["path of contact"])   # 360 deg sin(62.01 deg) / 27
         self.assertIn("flexibility of a slice of teeth", [line["input"] for line in report["common"]])
 
     def test_octoids_are_told_apart(self):
@@ -88,6 +91,8 @@ class TeethTest(ProgramTest):
         self.assertEqual(len(rows), 41)
         self.assertEqual(float(rows[0]["lag_urad"]), 0)
         self.assertGreater(max(float(r["plus_force_N"]) for r in rows), 0)
+        (drawing,) = [f for f in self.report()["figures"] if f["kind"] == "drawing"]
+        self.assertEqual(len(drawing["frames"]), 41)
 
     def test_refusals(self):
         for options, text in (

@@ -63,9 +63,6 @@ States read_states(const std::filesystem::path& file, const Case& the_case,
 /// A table along a motion as CSV text: its states, then its channels.
 std::string to_csv(const MotionTable& table);
 
-/// What the teeth of a simulation do: time_s, then the columns of results/teeth.h.
-std::string teeth_csv(const Trajectory& run, const Gear& gear);
-
 /// What the oil of a simulation does: time_s, then its columns.
 std::string oil_csv(const Trajectory& run);
 

@@ -103,6 +103,9 @@ MotionTable trajectory_table(const std::string& model, const ChannelLayout& layo
 void append_trajectory_row(MotionTable& table, const std::vector<double>& state,
                            const std::vector<double>& row, const MotionChecks& checks);
 
+/// What the teeth of a simulation do: time_s, then the columns of results/teeth.h.
+MotionTable teeth_table_of(const Trajectory& run, const Gear& gear);
+
 /// The drive of a case that can be simulated.
 /// @throws InputError naming the key where [drive] is missing or cannot be simulated with the
 /// pump: dry friction that jumps (`regularization_m_per_s` = 0) where speeds may vanish.
