@@ -74,7 +74,7 @@ class Pieces {
 
   double operator()(double at) const {
     const double place = std::max(0.0, (at - from_) * per_piece_);
-    const int piece = std::min(static_cast<int>(place), kPieces - 1);
+    const int piece = static_cast<int>(std::min(place, kPieces - 1.0));
     const double x = 2 * (place - piece) - 1;
     const Piece& c = pieces_[piece];
     const double x2 = x * x;
@@ -410,7 +410,7 @@ ToothLag BevelTeeth::rest(double theta, double torque) const {
   double near_excess = excess(near);
   if (side * near_excess >= 0) return {near, 0};
   constexpr double kMost = 0.1;  // rad
-  double step = std::max(std::abs(near_excess) / stiffness, 1e-9);
+  double step = std::clamp(std::abs(near_excess) / stiffness, 1e-9, kMost);
   double far = near + side * step;
   double far_excess = excess(far);
   while (side * far_excess < 0) {

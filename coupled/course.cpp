@@ -91,7 +91,7 @@ void Course::find_interval() {
 }
 
 void Course::start_teeth() {
-  touching_ = 0;
+  touching_ = {};
   Mechanics& mechanics = system_.mechanics();
   if (!mechanics.compliant()) return;
   for (const int flank : {1, -1}) {
@@ -110,17 +110,21 @@ void Course::start_teeth() {
     }
     if (x <= kOnTouch && rate <= 0) continue;
     contact_changes(flank, true);
-    return;
   }
 }
 
 void Course::contact_changes(int flank, bool touch) {
-  if (touch == (touching_ == flank)) return;
-  if (touch && touching_ != 0) contact_changes(touching_, false);
+  Touching& of = touching_[flank > 0 ? 0 : 1];
+  if (touch == of.now) return;
+  // Teeth of unequal pitch may press on both flanks; with one line of action each a flank that
+  // touches has left the other.
+  if (touch && touching(-flank) &&
+      system_.mechanics().approach(time_, state_.motion, -flank) <= kOnTouch)
+    contact_changes(-flank, false);
   if (events_.size() >= kMostEvents)
     fail("after " + std::to_string(kMostEvents) + " touches of the teeth");
-  close_contact();
-  touching_ = touch ? flank : 0;
+  close_contact(of);
+  of.now = touch;
   ToothEvent event;
   event.time_s = time_;
   event.touch = touch;
@@ -129,15 +133,19 @@ void Course::contact_changes(int flank, bool touch) {
   event.block_speed = block(time_, state_).speed;
   event.approach_speed = system_.mechanics().approach_rate(time_, state_.motion, flank);
   if (touch) {
-    touch_ = events_.size();
-    impulse_ = state_.motion[kImpulse];
+    of.event = events_.size();
+    of.impulse = state_.motion[kImpulse];
   }
   events_.push_back(event);
 }
 
-void Course::close_contact() {
-  if (touch_ < events_.size()) events_[touch_].impulse = state_.motion[kImpulse] - impulse_;
-  touch_ = kNone;
+void Course::close_contact(Touching& of) {
+  if (of.event < events_.size()) events_[of.event].impulse = state_.motion[kImpulse] - of.impulse;
+  of.event = kNone;
+}
+
+void Course::close_contacts() {
+  for (Touching& of : touching_) close_contact(of);
 }
 
 void Course::state_at(double time, SystemState& state) const {
@@ -181,7 +189,7 @@ double Course::time_at(double block_angle) const {
 // nothing acted between them.
 bool Course::hidden_touch() {
   const Mechanics& mechanics = system_.mechanics();
-  if (!mechanics.compliant() || touching_ != 0) return false;
+  if (!mechanics.compliant() || touching()) return false;
   SystemState at;
   for (const int flank : {1, -1}) {
     double low = step_start_, high = time_;
@@ -274,7 +282,7 @@ void Course::advance(double end) {
   system_.unscaled(y_.data(), state_);
   if (!integrals_.empty()) integrator_.integrals_at(time_, integrals_.data());
 
-  if (touching_ == 0 && system_.mechanics().compliant()) {
+  if (!touching() && system_.mechanics().compliant()) {
     restart_ = hidden_touch();
     apart_ += time_ - before;
     if (restart_) {

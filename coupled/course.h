@@ -2,6 +2,7 @@
 // Internal.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -33,8 +34,8 @@ class Course {
 
   /// Time that is to be simulated in all, s: the steps it would take are foreseen from it.
   void foresee(double duration) { duration_ = duration; }
-  /// The flank that touched at last has its impulse until now.
-  void close_contact();
+  /// Flanks that touch have their impulse until now.
+  void close_contacts();
   const std::vector<ToothEvent>& events() const { return events_; }
   double time_apart() const { return apart_; }  ///< s, without touch of a flank
   long steps() const { return integrator_.steps(); }
@@ -48,12 +49,22 @@ class Course {
   }
 
  private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  struct Touching {
+    bool now = false;
+    std::size_t event = kNone;  // of its touch
+    double impulse = 0;         // then
+  };
+
   [[noreturn]] void fail(const std::string& why) const;
   double edge(std::ptrdiff_t index) const;
   void set_interval();
   void find_interval();
   void start_teeth();
+  bool touching(int flank) const { return touching_[flank > 0 ? 0 : 1].now; }
+  bool touching() const { return touching(1) || touching(-1); }
   void contact_changes(int flank, bool touch);
+  void close_contact(Touching& of);
   bool hidden_touch();
   double horizon(double end) const;
   void keep_going();
@@ -69,10 +80,7 @@ class Course {
   double time_ = 0, step_start_ = 0, apart_ = 0;
   SystemState state_;  // at time_
   std::vector<double> y_, integrals_;
-  int touching_ = 0;  // a flank
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::size_t touch_ = kNone;  // event of its
-  double impulse_ = 0;         // then
+  std::array<Touching, 2> touching_;  // flanks +1, -1
   std::vector<ToothEvent> events_;
   int short_steps_ = 0;
   mutable SystemState sampled_;

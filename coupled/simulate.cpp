@@ -126,7 +126,7 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oi
     course.integrals_at(time, integrals);
     rows.add(time, at, integrals);
   }
-  course.close_contact();
+  course.close_contacts();
   TrajectoryRecord& record = trajectory.record;
   record.steps = course.steps();
   record.evaluations = course.evaluations();

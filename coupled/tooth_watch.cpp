@@ -35,9 +35,8 @@ class ToothWatch::Watcher {
     state_.motion[kImpulse] = 0;
     course_.start(0, state_);
     // What touches now began before.
-    flank_ = 0;
-    hits_ = false;
-    for (const ToothEvent& event : course_.events()) flank_ = event.touch ? event.flank : 0;
+    touching_ = {};
+    for (const ToothEvent& event : course_.events()) of(event.flank).now = event.touch;
     seen_ = course_.events().size();
     known_ = 0;
   }
@@ -66,8 +65,16 @@ class ToothWatch::Watcher {
   long steps() const { return course_.steps(); }
 
  private:
+  struct Touching {
+    bool now = false;
+    bool hit = false;       // by an impact
+    std::size_t event = 0;  // of its touch
+  };
+  Touching& of(int flank) { return touching_[flank > 0 ? 0 : 1]; }
+
   void on_flank(ToothStretch& s, double until) {
-    if (flank_ != 0) (flank_ > 0 ? s.plus : s.minus) += until - since_;
+    if (of(1).now) s.plus += until - since_;
+    if (of(-1).now) s.minus += until - since_;
     since_ = until;
   }
 
@@ -76,22 +83,21 @@ class ToothWatch::Watcher {
       const ToothEvent& event = course_.events()[seen_];
       on_flank(s, event.time_s);
       known_ = 0;
+      Touching& flank = of(event.flank);
       if (event.touch) {
-        touch_ = seen_;
-        flank_ = event.flank;
-        hits_ = event.approach_speed >= impact_speed_;
-        s.impacts += hits_ ? 1 : 0;
+        flank = {true, event.approach_speed >= impact_speed_, seen_};
+        s.impacts += flank.hit ? 1 : 0;
       } else {
         ++s.separations;
-        if (hits_) s.largest_hit = std::max(s.largest_hit, course_.events()[touch_].impulse);
-        flank_ = 0;
-        hits_ = false;
+        if (flank.hit)
+          s.largest_hit = std::max(s.largest_hit, course_.events()[flank.event].impulse);
+        flank = {};
       }
     }
   }
 
   void note_force(ToothStretch& s) {
-    if (flank_ == 0) return;
+    if (!of(1).now && !of(-1).now) return;
     const double time = course_.time();
     oil_.loads(time, mechanics_.block(time, state_.motion), state_.oil.data(), loads_);
     MotionVector rates{};
@@ -122,9 +128,8 @@ class ToothWatch::Watcher {
   Course course_;
   SystemState state_;
   OilLoads loads_;
-  std::size_t seen_ = 0, touch_ = 0;  // events
-  int flank_ = 0;                     // that touches
-  bool hits_ = false;                 // it touched by an impact
+  std::size_t seen_ = 0;                // events
+  std::array<Touching, 2> touching_{};  // flanks +1, -1
   double since_ = 0;
   std::array<double, 3> times_{}, forces_{};  // of the contact's last steps
   int known_ = 0;

@@ -877,6 +877,9 @@ Table gear_table() {
                    return std::string("needs stiffness_N_per_um");
                  if (contact == ToothContact::teeth && v.teeth() == nullptr)
                    return std::string("needs tooth_number and face_width_mm");
+                 if (contact == ToothContact::teeth && v.pump->geometry.tilt == 0)
+                   return std::string(
+                       "bevel teeth need [pump] tilt_deg > 0: at 0 the axes do not meet");
                  return std::string();
                }}}};
 }

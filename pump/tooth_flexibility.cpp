@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis {
@@ -118,6 +119,9 @@ ToothFlexibility::ToothFlexibility(const Gear& gear, double pitch_cone)
     for (int i = 0; i < kNodes; ++i)
       coefficients_[i] += (i == 0 ? 1.0 : 2.0) / kNodes * value * std::cos(i * angle);
   }
+  if (!std::isfinite(coefficients_.front()))
+    throw InputError("[gear] youngs_modulus_GPa = " + number_text(youngs_modulus_ / 1e9) +
+                     ": the flexibility of the teeth is too large for a number");
   // What is rounding only costs time.
   while (std::abs(coefficients_.back()) < 1e-14 * coefficients_.front()) coefficients_.pop_back();
 }

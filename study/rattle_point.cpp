@@ -114,7 +114,10 @@ RattlePoint rigid_point(const ReadyCase& ready) {
 
 RattleClass class_of(const coupled::ToothStretch& s) {
   const bool both = s.plus > 0 && s.minus > 0;
-  if (s.apart <= kNoGap * s.duration) return both ? RattleClass::reverses : RattleClass::carries;
+  // Teeth of unequal pitch may press on the other flank while one touches throughout.
+  const bool throughout = std::max(s.plus, s.minus) >= (1 - kNoGap) * s.duration;
+  if (s.apart <= kNoGap * s.duration)
+    return both && !throughout ? RattleClass::reverses : RattleClass::carries;
   return both ? RattleClass::hits_both : RattleClass::loses_contact;
 }
 

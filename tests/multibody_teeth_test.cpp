@@ -160,6 +160,51 @@ TEST(MultibodyTeeth, RestWhereTheClosedFormDoes) {
 }
 
 // A turn of the pump with teeth at rest under its loads, with and without what teeth may have.
+// Teeth of unequal pitch without backlash are wedged: of no torque they stand where both flanks
+// press alike, not where one just touches.
+TEST(MultibodyTeeth, WedgedTeethRestWithoutTorque) {
+  Case the_case = teeth_case();
+  PumpParameters& pump = the_case.pump;
+  ToothData& teeth = *pump.gear.teeth;
+  teeth.backlash = 0;
+  for (int tooth = 1; tooth <= teeth.count; ++tooth)
+    teeth.shaft.pitch.push_back(tooth % 2 == 0 ? -15e-6 : 15e-6);
+  teeth.block.pitch.assign(teeth.count, 0.0);
+  pump.piston.mass = pump.block.mass = 0;
+  pump.friction = {};
+  multibody::Model model(pump, the_case.multibody, 1, multibody::Scene::full,
+                         multibody::Method::residual);
+  const analytic::BevelTeeth closed(pump);
+  std::vector<double> values(model.layout().size());
+  for (const double theta : {0.4, 1.1, 1.6, 3.3}) {
+    Instant now = turning(the_case, theta, 150);
+    now.chamber_pressure.assign(now.chamber_pressure.size(), 0);
+    now.ports = {0, 0};
+    model.evaluate(now, values);
+    ASSERT_NEAR(values[model.layout().Rcs()], 0, 1e-9);
+    const TeethAction& action = model.teeth();
+    double plus = 0, minus = 0;
+    for (const PairContact& pair : action.pairs) (pair.flank > 0 ? plus : minus) += pair.force;
+    EXPECT_GT(plus, 1000);
+    EXPECT_GT(minus, 1000);
+    EXPECT_NEAR(dot(action.moment, block_axis(pump)), 0, scaled(1e-9));
+    EXPECT_NEAR(action.lag, closed.rest(theta, 0).angle, scaled(1e-14));
+  }
+}
+
+// A flexibility so small that no lag in double gives the torque: the parts are numbers all the
+// same.
+TEST(MultibodyTeeth, BudgetOfTeethAsStiffAsRigidIsFinite) {
+  Case the_case = teeth_case();
+  the_case.pump.gear.teeth->youngs_modulus = 1e24;
+  multibody::Model model(the_case.pump, the_case.multibody, 1);
+  std::vector<double> values(model.layout().size());
+  for (int deg = 0; deg < 72; deg += 3) {
+    model.evaluate(turning(the_case, deg * kRadPerDegree, 157), values);
+    for (const double part : model.budget().drive) EXPECT_TRUE(std::isfinite(part)) << deg;
+  }
+}
+
 TEST(MultibodyTeeth, AreTheTwinOfTheClosedFormOverATurn) {
   RandomPump random(163);
   for (const int kind : {0, 1, 2, 3}) {

@@ -55,6 +55,9 @@ TEST(Rattle, StretchesHaveTheirClass) {
   s.plus = 0.5;
   s.minus = 0.5;
   EXPECT_EQ(class_of(s), RattleClass::reverses);
+  s.plus = 1;  // the other flank presses as well, now and then
+  EXPECT_EQ(class_of(s), RattleClass::carries);
+  s.plus = 0.5;
   s.apart = 1.01 * kNoGap;
   EXPECT_EQ(class_of(s), RattleClass::hits_both);
   s.minus = 0;
@@ -111,6 +114,43 @@ TEST(Rattle, ClassesByConstruction) {
   EXPECT_EQ(loses.kind, RattleClass::loses_contact);
   EXPECT_EQ(loses.minus, 0);
   EXPECT_GT(loses.apart, 0.01);
+}
+
+// Shaft's teeth that stand by turns ahead and back, without backlash: wedged between two of them
+// the block's teeth touch on both flanks nearly all the time, and that is no gap.
+TEST(Rattle, WedgedTeethTouchOnBothFlanks) {
+  Case c = read_case(kCases / "bap63_teeth.toml");
+  c.pump.friction.block_viscous = 0.01 * 60 / (2 * kPi);
+  ToothData& teeth = *c.pump.gear.teeth;
+  teeth.backlash = 0;
+  for (int tooth = 1; tooth <= teeth.count; ++tooth)
+    teeth.shaft.pitch.push_back(tooth % 2 == 0 ? -15e-6 : 15e-6);
+  teeth.block.pitch.assign(teeth.count, 0.0);
+  const ReadyCase ready = prepare(c);
+  const auto mechanics = analytic::mechanics(c, ready.assumptions(Model::analytic));
+  const auto oil =
+      coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
+  coupled::ToothWatch watch("analytic", *mechanics, *oil, 1e-8, kImpactSpeed);
+  watch.start(mechanics->start());
+  coupled::ToothStretch all;
+  double plus = 0, minus = 0, apart = 0;
+  constexpr int kParts = 2000;
+  for (int i = 0; i < kParts; ++i) {
+    TeethAction action;
+    const double time = 0.01 * (i + 0.5) / kParts;
+    all = all + watch.run_to(time);
+    ASSERT_TRUE(mechanics->teeth(time, watch.motion(), action));
+    double forces[2] = {};
+    for (const PairContact& pair : action.pairs) forces[pair.flank > 0 ? 0 : 1] += pair.force;
+    plus += (forces[0] > 0 ? 1.0 : 0.0) / kParts;
+    minus += (forces[1] > 0 ? 1.0 : 0.0) / kParts;
+    apart += (forces[0] == 0 && forces[1] == 0 ? 1.0 : 0.0) / kParts;
+  }
+  EXPECT_GT(plus + minus, 1.5);  // both at once
+  EXPECT_NEAR(all.plus / all.duration, plus, 2e-3);
+  EXPECT_NEAR(all.minus / all.duration, minus, 2e-3);
+  EXPECT_EQ(all.apart, 0);
+  EXPECT_EQ(apart, 0);
 }
 
 TEST(Rattle, RigidTeethCarryOrReverse) {

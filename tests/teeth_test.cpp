@@ -568,6 +568,11 @@ TEST(BevelTeeth, SaysWhichTorqueNoLagCarries) {
   } catch (const ComputationError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("1e+09 Nm at theta = 17.2 deg"));
   }
+  PumpParameters pump = toothed();
+  for (const double modulus : {1e-3, 1e-100, 1e-290}) {  // any force bends them round and round
+    pump.gear.teeth->youngs_modulus = modulus;
+    EXPECT_THROW(BevelTeeth(pump).rest(0.3, 10), ComputationError) << modulus;
+  }
 }
 
 TEST(BevelTeeth, UnloadedPerfectTeethHaveARatioOfOne) {

@@ -56,8 +56,10 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
   Vector mobilities;
   // The gear passes on to the shaft what the block needs; an imposed motion supplies it.
   double passed_on = 1;
-  if (pump.bevel() != nullptr && reactions.tooth != 0)
-    passed_on = -pump.bevel_torque_on_shaft(state) / pump.bevel_torque_on_block(state);
+  if (pump.bevel() != nullptr) {
+    const double on_block = pump.bevel_torque_on_block(state);
+    if (on_block != 0) passed_on = -pump.bevel_torque_on_shaft(state) / on_block;
+  }
   const auto put = [&](Cause cause, double on_shaft, double on_block) {
     budget.carrying_of(cause) = on_block;
     budget.drive_of(cause) = pump.has_gear() ? on_shaft + passed_on * on_block : on_shaft;

@@ -385,12 +385,23 @@ BevelTeeth::Closing BevelTeeth::closing(double theta, double shaft_speed, const 
 }
 
 ToothLag BevelTeeth::rest(double theta, double torque_on_block) const {
-  const bool none = std::abs(torque_on_block) <= kNoTorque;
-  const int flank = none || torque_on_block > 0 ? 1 : -1;
-  const auto excess = [&](double lag) {
-    if (none) return largest_approach(theta, lag, 1);
-    return this->torque_on_block(act(theta, 0, {lag, 0}, false)) - torque_on_block;
-  };
+  if (std::abs(torque_on_block) <= kNoTorque) {
+    // Flank +1 just touches, unless the other presses there: teeth of unequal pitch.
+    const double lag = root(theta, 1, 0, [&](double at) { return largest_approach(theta, at, 1); });
+    if (this->torque_on_block(act(theta, 0, {lag, 0}, false)) >= -kNoTorque) return {lag, 0};
+    torque_on_block = 0;
+  }
+  return {root(theta, torque_on_block < 0 ? -1 : 1, torque_on_block,
+               [&](double lag) {
+                 return this->torque_on_block(act(theta, 0, {lag, 0}, false)) - torque_on_block;
+               }),
+          0};
+}
+
+// Where a function of the lag that grows with it is 0.
+template <class Excess>
+double BevelTeeth::root(double theta, int flank, double torque_on_block,
+                        const Excess& excess) const {
   constexpr double kFirstStep = 1e-6;
   const double arm = gear_.pitch_diameter / 2 * std::cos(gear_.pressure_angle);
   double low = flank * teeth_.backlash / 2 / arm;
@@ -411,12 +422,12 @@ ToothLag BevelTeeth::rest(double theta, double torque_on_block) const {
       at_low = excess(low -= step);
     }
   }
-  if (at_low == 0) return {low, 0};
-  if (at_high == 0) return {high, 0};
+  if (at_low == 0) return low;
+  if (at_high == 0) return high;
   std::uintmax_t most = 200;
   const auto bracket = boost::math::tools::toms748_solve(
       excess, low, high, at_low, at_high, boost::math::tools::eps_tolerance<double>(52), most);
-  return {(bracket.first + bracket.second) / 2, 0};
+  return (bracket.first + bracket.second) / 2;
 }
 
 }  // namespace bentaxis::multibody

@@ -60,7 +60,7 @@ class BevelTeeth {
   TeethAction act(double theta, double shaft_speed, const ToothLag& lag,
                   bool dissipation = true) const;
   /// The lag at which teeth at rest carry this torque about z2, Nm; of no torque, that at which the
-  /// flank that pushes towards +psi just touches.
+  /// flank that pushes towards +psi just touches, or where both press on each other alike.
   ToothLag rest(double theta, double torque_on_block) const;
 
   /// The largest approach of any pair and slice of a flank, m, and its rate there, m/s.
@@ -90,6 +90,8 @@ class BevelTeeth {
   template <class Flank>
   bool foot_from(double start, const SimTK::Vec3& tip, const Flank& flank, double& roll) const;
   double largest_approach(double theta, double lag, int flank) const;
+  template <class Excess>
+  double root(double theta, int flank, double torque_on_block, const Excess& excess) const;
 
   Gear gear_;
   ToothData teeth_;
