@@ -238,6 +238,53 @@ TEST(Rattle, TopsBetweenStepsAreFound) {
   }
 }
 
+// A point is its observed turns, counted and averaged; without turns before them those from the
+// middle of the backlash on.
+TEST(Rattle, APointIsTheMeanOfItsTurns) {
+  constexpr double kRpm = 1500, kBar = 275;
+  const ReadyCase ready = prepare(rattle_case(pump_with(0, 20), kRpm, kBar));
+  RattleOptions options = map_of({kRpm}, {kBar});
+  options.discard = 0;
+  options.turns = 3;
+  double lag = 0, lag_rate = 0;
+  const RattlePoint p = settle(ready, options, lag, lag_rate, [] {});
+  EXPECT_EQ(p.observed, 3);
+  EXPECT_EQ(p.passed, 0);
+  EXPECT_EQ(p.period, 0);
+  EXPECT_EQ(p.lag, 0);
+
+  const Case& c = ready.the_case;
+  const auto oil =
+      coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
+  const auto mechanics = analytic::mechanics(c, ready.assumptions(Model::analytic));
+  coupled::ToothWatch watch("analytic", *mechanics, *oil, step_tolerance(options.error),
+                            kImpactSpeed);
+  watch.start(mechanics->start());
+  constexpr double kTurn = 60 / kRpm;
+  double apart = 0, plus = 0, impulse = 0, impacts = 0, least = INFINITY, largest = 0, hit = 0;
+  for (int n = 1; n <= 3; ++n) {
+    const coupled::ToothStretch s = watch.run_to(n * kTurn);
+    apart += s.apart;
+    plus += s.plus;
+    impulse += s.impulse;
+    impacts += s.impacts;
+    least = std::min(least, s.largest);
+    largest = std::max(largest, s.largest);
+    hit = std::max(hit, s.largest_hit);
+  }
+  EXPECT_EQ(lag, watch.motion()[kLag]);
+  EXPECT_EQ(lag_rate, watch.motion()[kLagRate]);
+  EXPECT_LT(least, largest);
+  EXPECT_EQ(p.least_turn, least);
+  EXPECT_EQ(p.largest, largest);
+  EXPECT_EQ(p.largest_impulse, hit);
+  EXPECT_NEAR(p.impacts, impacts / 3, 1e-12 * impacts);
+  EXPECT_NEAR(p.apart, apart / (3 * kTurn), 1e-12);
+  EXPECT_NEAR(p.plus, plus / (3 * kTurn), 1e-12);
+  EXPECT_NEAR(p.minus, 1 - p.apart - p.plus, 1e-12);
+  EXPECT_NEAR(p.mean, impulse / (3 * kTurn), 1e-12 * p.mean);
+}
+
 // What was watched before leaves no trace.
 TEST(Rattle, AWatchBeginsAnew) {
   Watched used(1e-9), fresh(1e-9);
