@@ -55,6 +55,46 @@ class Fig34Test(ProgramTest):
         self.assertEqual(len(self.report["rows"]), len(self.rows))
         (rigid,) = [r for r in self.report["runs"][0]["table"]["rows"] if r[0].endswith("without Cc, 0 deg")]
         self.assertEqual(rigid[-1], "inside")
+        self.check_counts()
+        self.check_points()
+        self.check_torque_that_keeps_the_sign()
+
+    def check_counts(self):
+        """The table by value, from the rows of the file."""
+        table = self.report["runs"][1]["table"]["rows"]
+        names = {"exponent": "exponent", "approach_at_100N_um": "approach at 100 N", "backlash_um": "backlash",
+                 "dissipation_s_per_m": "dissipation", "block_inertia_kg_mm2": "block inertia"}
+        self.assertEqual(len(table), 2 * (1 + 1 + 2 + 2 + 1))
+        for drag, value, *found in table:
+            (key,) = [k for k, name in names.items() if value.startswith(name)]
+            number = float(value[len(names[key]):].split()[0])
+            rows = [r for r in self.rows if drag == ("with Cc" if r["drag"] == "1" else "without Cc") and float(r[key]) == number]
+            self.assertEqual(found, [len(rows), sum(r["inside_axes"] == "1" for r in rows), sum(r["reverses"] == "1" for r in rows),
+                                     sum(r["inside_axes"] == r["reverses"] == "1" for r in rows)])
+
+    def check_points(self):
+        """The figure of all laws, from the rows of the file."""
+        (figure,) = [f for f in self.report["figures"] if f["id"] == "fig34_laws"]
+        points = [(s["name"], p) for s in figure["series"] for p in s["points"]]
+        self.assertEqual(len(points), len(self.rows))
+        for (name, point), row in zip(points, self.rows):
+            r = {k: float(v) for k, v in row.items() if v != ""}
+            self.assertEqual(name, f"0.5 um at 100 N, {'with' if r['drag'] else 'without'} Cc")
+            self.assertAlmostEqual(point["x"], 100 * r["share_without_contact"], 9)
+            self.assertAlmostEqual(point["y"], max(-r["least_Rcs_x2_N"], r["greatest_Rcs_x2_N"]), 9)
+            self.assertEqual(point["note"],
+                             f"e 1, j {r['backlash_um']:g} um, c {r['dissipation_s_per_m']:g} s/m, 1500 kg mm2, "
+                             + ("reverses" if r["reverses"] else "does not reverse in every pitch"))
+
+    def check_torque_that_keeps_the_sign(self):
+        """A drag of the torque that is said leaves the least force of rigid teeth at 0."""
+        (torque,) = [r[5] for r in self.report["runs"][0]["table"]["rows"] if r[0].startswith("drag Cc psi'")]
+        self.run_program("run", program.REPO / "cases/bap63_rated.toml", "--model", "analytic",
+                         "--set", f"friction.block_viscous_Nm_per_rpm={torque / 1500!r}",
+                         "--set", "operation.samples_per_revolution=7200", "--out", "dragged")
+        with open(self.folder / "dragged/analytic.csv") as file:
+            least = min(float(row["Rcs_z4_N"]) for row in csv.DictReader(file))
+        self.assertLess(abs(least), 0.02)  # of 100 N
 
     def test_a_case_without_drag(self):
         self.study(self.case(**{"friction.block_viscous_Nm_per_rpm": 0.0}), "--approaches-um", "5", "--backlashes-um", "0")

@@ -45,6 +45,21 @@ class RattleTest(ProgramTest):
         figure = {f["id"]: f for f in report["figures"]}["classes"]
         names = [figure["classes"][int(k)] for line in figure["values"] for k in line]
         self.assertEqual(names, [row["class"] for row in rows if row["sweep"] == "up"])
+        sections = {s["title"]: s for s in report["runs"]}
+        facts = dict(sections["How it was computed"]["facts"])
+        # Thresholds as docs/rattle.md has them.
+        for name, text in (("impact", "a touch at 0.001 m/s "), ("loses contact", " 1e-06 of the time"), ("discarded", "2 turns,"),
+                           ("two steady states", " 10 % larger"), ("repeats itself", "1 to 4 turns ago, within 0.001 ")):
+            self.assertIn(text, facts[name])
+        for name, up, down, most, apart in sections["Classes"]["table"]["rows"]:
+            of = [row for row in rows if row["class"] == name]
+            rising = [row for row in of if row["sweep"] == "up"]
+            self.assertEqual((up, down), (len(rising), len(of) - len(rising)))
+            if rising:
+                self.assertAlmostEqual(most, max(float(row["largest_over_mean"]) for row in rising), 9)
+                self.assertAlmostEqual(apart, sum(float(row["share_apart"]) for row in rising) / up, 9)
+            else:
+                self.assertEqual((most, apart), (None, None))
 
     def test_a_map_with_drag_has_its_boundary(self):
         self.run_program(*self.command("--set", "friction.block_viscous_Nm_per_rpm=0.0054", speeds="300:1900:3"))

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <set>
 
 #include "bentaxis/analytic/mechanics.h"
@@ -234,6 +236,133 @@ TEST(Rattle, TheWatchSeesWhatASimulationSees) {
   EXPECT_EQ(std::max(first.largest, all.largest), all.largest);
 }
 
+// What a watch needs, of the pump that rattles.
+struct Watched {
+  explicit Watched(double tolerance)
+      : the_case(read_case(kCases / "bap63_tooth_rattle.toml")),
+        pressure(the_case.pressure),
+        oil(coupled::prescribed_oil(the_case.pump.geometry.pistons, pressure,
+                                    the_case.pressure.ports)),
+        mechanics(analytic::mechanics(the_case, the_case.analytic)),
+        watch("analytic", *mechanics, *oil, tolerance, kImpactSpeed) {}
+  Case the_case;
+  PressureTrace pressure;
+  std::unique_ptr<Oil> oil;
+  std::unique_ptr<Mechanics> mechanics;
+  coupled::ToothWatch watch;
+};
+
+// Steps far apart find the largest force of every stretch nearly as the dense rows of
+// analytic::simulate do.
+TEST(Rattle, TopsBetweenStepsAreFound) {
+  Watched reference(1e-9);
+  Case c = reference.the_case;
+  c.drive->duration = 0.004;
+  c.drive->samples = 40000;
+  analytic::SimulationOptions options;
+  options.error = 1e-9;
+  const ResultTable rows =
+      analytic::simulate(c, c.analytic, reference.pressure, options).table.results;
+  const std::vector<double> force = test::column(rows, "Rcs_law_N");
+  for (const double tolerance : {1e-7, 1e-8}) {
+    Watched w(tolerance);
+    w.watch.start(w.mechanics->start());
+    std::size_t row = 0;
+    for (const int part : {5, 10, 20, 30, 40}) {  // ends, 0.1 ms
+      double largest = std::abs(force.at(row));
+      while (row < static_cast<std::size_t>(part) * 1000)
+        largest = std::max(largest, std::abs(force.at(++row)));
+      EXPECT_NEAR(w.watch.run_to(part * 1e-4).largest, largest, scaled(5e-5) * largest) << part;
+    }
+    EXPECT_LT(w.watch.steps(), 800);
+  }
+}
+
+// A point is its observed turns, counted and averaged; without turns before them those from the
+// middle of the backlash on.
+TEST(Rattle, APointIsTheMeanOfItsTurns) {
+  constexpr double kRpm = 1500, kBar = 275;
+  const ReadyCase ready = prepare(rattle_case(pump_with(0, 20), kRpm, kBar));
+  RattleOptions options = map_of({kRpm}, {kBar});
+  options.discard = 0;
+  options.turns = 3;
+  double lag = 0, lag_rate = 0;
+  const RattlePoint p = settle(ready, options, lag, lag_rate, [] {});
+  EXPECT_EQ(p.observed, 3);
+  EXPECT_EQ(p.passed, 0);
+  EXPECT_EQ(p.period, 0);
+  EXPECT_EQ(p.lag, 0);
+
+  const Case& c = ready.the_case;
+  const auto oil =
+      coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
+  const auto mechanics = analytic::mechanics(c, ready.assumptions(Model::analytic));
+  coupled::ToothWatch watch("analytic", *mechanics, *oil, step_tolerance(options.error),
+                            kImpactSpeed);
+  watch.start(mechanics->start());
+  constexpr double kTurn = 60 / kRpm;
+  double apart = 0, plus = 0, impulse = 0, impacts = 0, least = INFINITY, largest = 0, hit = 0;
+  for (int n = 1; n <= 3; ++n) {
+    const coupled::ToothStretch s = watch.run_to(n * kTurn);
+    apart += s.apart;
+    plus += s.plus;
+    impulse += s.impulse;
+    impacts += s.impacts;
+    least = std::min(least, s.largest);
+    largest = std::max(largest, s.largest);
+    hit = std::max(hit, s.largest_hit);
+  }
+  EXPECT_EQ(lag, watch.motion()[kLag]);
+  EXPECT_EQ(lag_rate, watch.motion()[kLagRate]);
+  EXPECT_LT(least, largest);
+  EXPECT_EQ(p.least_turn, least);
+  EXPECT_EQ(p.largest, largest);
+  EXPECT_EQ(p.largest_impulse, hit);
+  EXPECT_NEAR(p.impacts, impacts / 3, 1e-12 * impacts);
+  EXPECT_NEAR(p.apart, apart / (3 * kTurn), 1e-12);
+  EXPECT_NEAR(p.plus, plus / (3 * kTurn), 1e-12);
+  EXPECT_NEAR(p.minus, 1 - p.apart - p.plus, 1e-12);
+  EXPECT_NEAR(p.mean, impulse / (3 * kTurn), 1e-12 * p.mean);
+}
+
+// What was watched before leaves no trace.
+TEST(Rattle, AWatchBeginsAnew) {
+  Watched used(1e-9), fresh(1e-9);
+  used.watch.start(used.mechanics->start());
+  constexpr double kStretch = 2.5e-7;
+  std::optional<MotionVector> touching;
+  double first = 0, last = 0, now = 0;  // forces of a contact, as it grows
+  // Until the force hardly grows any more, nearly at its top: from there a parabola to another
+  // time would have a top.
+  const auto at_top = [&](int n) {
+    return touching && now > 3 * first && now > last &&
+           (now - last) / kStretch < 0.5 * (now - first) / (n * kStretch);
+  };
+  int n = 0;
+  while (!at_top(n) && n < 20000) {
+    const coupled::ToothStretch s = used.watch.run_to(++n * kStretch);
+    if (s.apart > 0) {
+      touching.reset();
+      continue;
+    }
+    last = now;
+    now = s.largest;
+    if (touching) continue;
+    touching = used.watch.motion();
+    first = now;
+  }
+  ASSERT_TRUE(at_top(n));
+  for (Watched* w : {&used, &fresh}) w->watch.start(*touching);
+  const coupled::ToothStretch a = used.watch.run_to(1e-7), b = fresh.watch.run_to(1e-7);
+  EXPECT_GT(b.largest, 0);
+  EXPECT_LT(b.largest, now);
+  EXPECT_EQ(a.largest, b.largest);
+  EXPECT_EQ(a.plus, b.plus);
+  EXPECT_EQ(a.minus, b.minus);
+  EXPECT_EQ(a.impulse, b.impulse);
+  EXPECT_EQ(used.watch.motion(), fresh.watch.motion());
+}
+
 TEST(Rattle, RowsDoNotDependOnThreads) {
   RattleOptions options = map_of({800, 1500}, {100, 200, 300});
   options.turns = options.discard = 2;
@@ -293,6 +422,10 @@ TEST(Rattle, PointsToCheckAreSpreadOverTheClasses) {
             chosen.size());
   map.options.check = 100;
   EXPECT_EQ(points_to_check(map).size(), 16U);
+  map.rows[0].up[3].observed = 0;  // as of rigid teeth: no motion to follow
+  EXPECT_EQ(points_to_check(map).size(), 15U);
+  EXPECT_THAT(points_to_check(map),
+              testing::Not(testing::Contains(std::pair<std::size_t, std::size_t>(0, 3))));
 }
 
 TEST(Rattle, SimbodyFindsTheSameOrIsSaidNotTo) {

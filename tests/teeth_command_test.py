@@ -16,6 +16,45 @@ from command_line_test import BAD_INPUT, ProgramTest
 
 FEW = ("--set", "operation.samples_per_revolution=36")
 
+# The case's tilt is 40 deg: both pitch cones have 70 deg. From O2 to O4, across that towards the block's axis, and mm.
+O4 = (0, math.sin(math.radians(70)), -math.cos(math.radians(70)))
+UP = (0, math.cos(math.radians(70)), math.sin(math.radians(70)))
+R = 106.466 / 2 / math.sin(math.radians(70))
+FORCES = tuple(f"{which}_force_N" for which in ("at", "before", "after"))
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return tuple(a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3))
+
+
+def scaled(a, factor):
+    return tuple(factor * x for x in a)
+
+
+def contacts(rows):
+    """Flank, row, force, point and normal of every loaded pair."""
+    for row in rows:
+        for flank in ("plus", "minus"):
+            for which in ("at", "before", "after"):
+                force, *numbers = (float(row[f"{flank}_{which}_{key}"] or 0) for key in (
+                    "force_N", "x1_mm", "y1_mm", "z1_mm", "normal_x1", "normal_y1", "normal_z1"))
+                if force > 0:
+                    yield flank, row, force, tuple(numbers[:3]), tuple(numbers[3:])
+
+
+def distance(line, x, y):
+    """From a point to the nearest stretch of a line."""
+    def of_stretch(x0, y0, x1, y1):
+        length2 = (x1 - x0) ** 2 + (y1 - y0) ** 2
+        part = min(1, max(0, ((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / length2)) if length2 else 0
+        return math.hypot(x0 + part * (x1 - x0) - x, y0 + part * (y1 - y0) - y)
+    points = list(zip(line["x"], line["y"]))
+    return min(of_stretch(*a, *b) for a, b in zip(points, points[1:]))
+
 
 class TeethTest(ProgramTest):
     @classmethod
@@ -77,6 +116,85 @@ class TeethTest(ProgramTest):
         split = {c["name"]: c for c in self.report()["channels"]}
         self.assertLess(split["Rcs_z4_N"]["max_over_peak"], 1e-10)
         self.assertGreater(split["Rcn_y2_N"]["max_over_peak"], 1e-4)
+
+    def test_path_of_contact(self):
+        self.run_program("compare", self.case_file(), *FEW, "--set", "assumptions.multibody.flank_shape=octoid", "--out", "out")
+        (figure,) = [f for f in self.report()["figures"] if f["id"] == "contact_path"]
+        # Involutes: the plane of action holds any regular contact and its force.
+        plane = {}
+        for flank, pair, force, point, normal in contacts(self.rows("teeth_analytic.csv")):
+            if abs(point[0]) < 0.1:
+                plane[flank] = cross(scaled(point, 1 / math.hypot(*point)), normal)
+        self.assertEqual(plane.keys(), {"plus", "minus"})
+        for series, model in zip(figure["series"], ("analytic", "multibody")):
+            self.assertEqual(series["name"], model)
+            expected = []
+            for flank, row, force, point, normal in contacts(self.rows(f"teeth_{model}.csv")):
+                unit = scaled(point, 1 / math.hypot(*point))
+                side = 1 if flank == "plus" else -1
+                beside = math.asin(side * dot(unit, plane[flank]))
+                # Pythagoras on the sphere; x1 looks away from where flank + pushes.
+                along = math.copysign(math.acos(dot(unit, O4) / math.cos(beside)), -side * point[0])
+                expected.append((f"flank {'+' if side > 0 else '-'} at {float(row['theta_deg']):g} deg",
+                                 R * along, 1e3 * R * beside))
+            found = [(p["note"], p["x"], p["y"]) for p in series["points"]]
+            self.assertEqual(len(found), len(expected))
+            for a, b in zip(sorted(found), sorted(expected)):
+                self.assertEqual(a[0], b[0])
+                self.assertAlmostEqual(a[1], b[1], 6)
+                self.assertAlmostEqual(a[2], b[2], 6)
+
+    def test_picture(self):
+        self.run_program("compare", self.case_file(), *FEW, "--out", "out")
+        (drawing,) = [f for f in self.report()["figures"] if f["kind"] == "drawing"]
+        rows = self.rows("teeth_analytic.csv")
+        carried = [sum(float(v) for k, v in row.items() if k.endswith(FORCES)) for row in rows]
+        self.assertEqual(drawing["shown"], carried.index(max(carried)))
+        largest = max(float(row[f"{flank}_force_N"]) for row in rows for flank in ("plus", "minus"))
+        half_pitch = math.pi * 106.466 / 27 / 2
+        sheet = drawing["panels"][1]
+        for frame, row in zip(drawing["frames"], rows):
+            outlines = [line for line in frame["lines"] if line["panel"] == 0]
+            self.assertEqual([line["look"] for line in outlines], [0, 1])
+            lines = [line for line in frame["lines"] if line["panel"] == 1]
+            self.assertEqual(len(frame["arrows"]), len(lines))
+            for arrow, line, (flank, _, force, point, normal) in zip(frame["arrows"], lines, contacts([row])):
+                # Seen along O4 -> O2: -x1 to the right, the block above.
+                away = dot(point, O4)
+                self.assertAlmostEqual(arrow["x"], -R * point[0] / away, 6)
+                self.assertAlmostEqual(arrow["y"], R * dot(point, UP) / away, 6)
+                self.assertAlmostEqual(arrow["dx"], -half_pitch * force / largest * normal[0], 6)
+                self.assertAlmostEqual(arrow["dy"], half_pitch * force / largest * dot(normal, UP), 6)
+                self.assertEqual(line["look"], arrow["look"])
+                self.assertEqual(drawing["looks"][line["look"]]["label"][-1], "+" if flank == "plus" else "-")
+                # The outlines meet there: the lag to scale, 25 um on either side of the middle of the backlash; chords of
+                # outlines leave some um.
+                for outline in outlines:
+                    self.assertLess(distance(outline, arrow["x"], arrow["y"]), 0.012)
+                # A ray from O2 over the face width, as thick as the force.
+                for x, y, edge in zip(line["x"], line["y"], (R - 8, R + 8)):
+                    self.assertAlmostEqual(y, edge, 2)
+                    self.assertAlmostEqual(x, arrow["x"] * edge / R, 2)
+                    self.assertTrue(sheet["y_range"][0] < y < sheet["y_range"][1])
+                self.assertAlmostEqual((line["width"] - 1.5) / 6, force / largest, 2)
+                self.assertIn(f"{force:.4g} N", frame["text"])
+
+    def test_section(self):
+        self.run_program("compare", self.case_file(), *FEW, "--out", "out")
+        (section,) = [s for s in self.report()["runs"] if s["title"] == "Teeth in contact"]
+        facts, rows = dict(section["facts"]), self.rows("teeth_analytic.csv")
+        error = [float(row["transmission_error_um"]) for row in rows]
+        self.assertEqual(facts["transmission error"],
+                         f"{min(error):.4g} to {max(error):.4g} um along the line of action, backlash 50 um")
+        self.assertEqual(facts["teeth"], f"27 on either gear, module {106.466 / 27:.4g} mm, face width 16 mm")
+        for flank, sign in (("plus", "+"), ("minus", "-")):
+            force = [float(row[f"{flank}_force_N"]) for row in rows]
+            self.assertEqual(facts[f"force of flank {sign}"],
+                             f"{min(force):.4g} to {max(force):.4g} N, largest at {10 * force.index(max(force))} deg")
+        loaded = [sum(float(v) > 0 for k, v in row.items() if k.endswith("_share")) for row in rows]
+        for pairs, word in ((0, "pairs"), (1, "pair"), (2, "pairs"), (3, "pairs")):
+            share = 100 * loaded.count(pairs) / len(rows)
+            self.assertEqual(facts.get(f"{pairs} {word} under load"), f"{share:.3g} % of the turn" if share else None)
 
     def test_run_of_one_model(self):
         for model in ("analytic", "multibody"):

@@ -319,6 +319,52 @@ TEST(BevelGeometry, RefusesByName) {
               StartsWith("[gear] face_width_mm = 120"));
 }
 
+// What a refusal says would do is what does: on one side of it that reason is no longer given.
+TEST(BevelGeometry, RefusalsNameTheLimit) {
+  const auto refusal = [](const PumpParameters& pump) {
+    try {
+      analytic::closed_form::require_mesh(pump.gear, analytic::closed_form::bevel(pump));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto expect_limit = [&](PumpParameters pump, double ToothData::*length,
+                                const std::string& reason, double inwards) {
+    SCOPED_TRACE(reason);
+    const std::string text = refusal(pump);
+    ASSERT_THAT(text, testing::HasSubstr(reason));
+    const auto below = text.rfind("be < ");  // what follows explains the limit
+    const double limit =
+        std::stod(text.substr(below != std::string::npos ? below + 5 : text.rfind(' '))) * 1e-3;
+    (*pump.gear.teeth).*length = limit * (1 + inwards);
+    EXPECT_THAT(refusal(pump), testing::Not(testing::HasSubstr(reason)));
+    (*pump.gear.teeth).*length = limit * (1 - inwards);
+    EXPECT_THAT(refusal(pump), testing::HasSubstr(reason));
+  };
+  constexpr double kNear = 0.01;  // limits have three digits
+  PumpParameters pump = toothed();
+  pump.gear.teeth->dedendum = 20e-3;
+  pump.gear.teeth->addendum = 1e-3;
+  expect_limit(pump, &ToothData::addendum, "must be >= 1", kNear);
+  pump.gear.teeth->face_width = 0.12;
+  expect_limit(pump, &ToothData::face_width, "face_width_mm", -kNear);
+  pump = toothed();
+  pump.gear.teeth->dedendum = 20e-3;
+  pump.gear.teeth->count = 60;
+  pump.gear.teeth->addendum = 2e-3;
+  pump.gear.pressure_angle = radians(12.0);
+  expect_limit(pump, &ToothData::addendum, "needs at most", -kNear);
+  pump.gear.pressure_angle = radians(5.0);
+  pump.geometry.tilt = radians(80.0);
+  pump.gear.teeth->addendum = 4e-3;
+  expect_limit(pump, &ToothData::addendum, "interference", -kNear);
+  pump.geometry.tilt = radians(88.0);
+  pump.gear.pressure_angle = radians(14.5);
+  pump.gear.teeth->addendum = 5.7e-3;
+  expect_limit(pump, &ToothData::addendum, "undercut", -kNear);
+}
+
 // Teeth with all that they can have.
 PumpParameters imperfect() {
   PumpParameters pump = toothed();
