@@ -105,7 +105,9 @@ Command add_compare_command(CommandParser program) {
   command
       .option("--analytic", options->analytic,
               "assumption of the analytic model: piston_friction=on|off, "
-              "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed; overrides the "
+              "inertia=lumped|real|dynamically_equivalent, gear=mesh|imposed, "
+              "flank_shape=involute|octoid; "
+              "overrides the "
               "case file")
       .text("KEY=VALUE ..");
   command.option("--multibody", options->multibody, "the same for the multibody model")

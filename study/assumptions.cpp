@@ -28,10 +28,14 @@ void apply_assumption(const std::string& text, const PumpParameters& pump,
       throw InputError("assumption \"" + text + "\": " + why);
   } else if (key == "gear") {
     assumptions.gear = pick("mesh", "imposed") ? BlockDrive::imposed : BlockDrive::mesh;
+  } else if (key == "flank_shape") {
+    if (pump.gear.contact != ToothContact::teeth)
+      throw InputError("assumption \"" + text + "\": needs [gear] contact = \"teeth\"");
+    assumptions.flanks = pick("involute", "octoid") ? FlankShape::octoid : FlankShape::involute;
   } else {
     throw InputError("assumption \"" + text +
                      "\": must be piston_friction=on|off, inertia=lumped|real|"
-                     "dynamically_equivalent or gear=mesh|imposed");
+                     "dynamically_equivalent, gear=mesh|imposed or flank_shape=involute|octoid");
   }
 }
 

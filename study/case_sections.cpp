@@ -50,7 +50,9 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
        the_case.pump.friction.regularization > 0 ? "Fc tanh(v/v_reg) + cv v" : "Fc sign(v) + cv v",
        "high-precision curves; power balance; written once in each model"},
       {"line of action of the teeth (22)",
-       the_case.pump.gear.flanks == Flanks::two
+       the_case.pump.gear.contact == ToothContact::teeth
+           ? "of each pair where it touches; the arm (d/2) cos alpha_p, over which Rcs is stated"
+       : the_case.pump.gear.flanks == Flanks::two
            ? "one for each flank, whose separating part pushes the gears apart; written once in "
              "each model"
            : "as printed, turned by the sense of rotation; written once in each model",
@@ -81,7 +83,9 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
   if (!motion) {
     inputs.push_back(
         {"constant speed, equal for shaft and block (1:1)",
-         "omega given; no torsion, no play in the gear",
+         the_case.pump.gear.contact == ToothContact::teeth
+             ? "omega given; no torsion; the teeth stand back by their lag"
+             : "omega given; no torsion, no play in the gear",
          "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, "
          "holds "
          "its speed"});

@@ -362,6 +362,37 @@ const Check kChecks[] = {
        return outside("pressure_angle_deg", deg(f.pump.gear.pressure_angle), 10, 35, "deg",
                       "teeth are cut at 14.5 to 30 deg", {kRadians, {2, "half of it?"}});
      }},
+    {"tooth-module", "module of the teeth, d/Z, below 1 or above 12 mm",
+     [](const Facts& f) -> std::string {
+       if (!f.pump.gear.teeth || f.pump.gear.contact != ToothContact::teeth) return "";
+       const int count = f.pump.gear.teeth->count;
+       return outside(fmt::format("tooth_number = {}: module", count),
+                      mm(f.pump.gear.pitch_diameter) / count, 1, 12, "mm",
+                      "teeth that carry a block are cut with 2 to 8 mm");
+     }},
+    {"tooth-shape",
+     "backlash above a tenth of the module, tip relief or crowning above a fiftieth, run-out above "
+     "a "
+     "twentieth, a face wider than half the distance from O2",
+     [](const Facts& f) -> std::string {
+       if (!f.pump.gear.teeth || f.pump.gear.contact != ToothContact::teeth) return "";
+       const ToothData& teeth = *f.pump.gear.teeth;
+       const double module = f.pump.gear.pitch_diameter / teeth.count;
+       const double um = 1e6;
+       const auto one = [&](const char* key, double value, double share, const char* why) {
+         return outside(key, um * std::abs(value), 0, um * share * module, "um", why,
+                        {{1e-3, "in um?"}});
+       };
+       return first_of(
+           {one("backlash_um", teeth.backlash, 0.1, "gears of this module have a few hundredths"),
+            one("tip_relief_um", teeth.tip_relief, 0.02, "reliefs are deflections, some microns"),
+            one("lead_crowning_um", teeth.lead_crowning, 0.02, "crownings are some microns"),
+            one("shaft_runout_um", teeth.shaft.runout, 0.05, "run-outs are some hundredths"),
+            one("block_runout_um", teeth.block.runout, 0.05, "run-outs are some hundredths"),
+            outside("face_width_mm", mm(teeth.face_width), 0,
+                    mm(f.pump.gear.pitch_diameter) / (4 * std::cos(f.g.tilt / 2)), "mm",
+                    "half the distance of the teeth from where the axes meet")});
+     }},
     // Bearings
     {"bearing-side", "a bearing at z1 > -Ra/4: on the pistons' side, or in the plane of the joints",
      [](const Facts& f) {

@@ -204,7 +204,7 @@ class MapFigures {
     for (const RattleRow& row : map.rows) most = std::max(most, row.boundary_rpm.size());
     for (std::size_t k = 0; k < most; ++k) {
       report::XySeries line{
-          k == 0 ? "criterion: rigid teeth reverse below it" : "criterion, again", {}, {}};
+          k == 0 ? "criterion: at lower speed rigid teeth reverse" : "criterion, again", {}, {}};
       for (const RattleRow& row : map.rows) {
         line.x.push_back(k < row.boundary_rpm.size() ? row.boundary_rpm[k] : not_computed());
         line.y.push_back(row.delivery_bar);

@@ -420,6 +420,10 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
             "method. Agreement says that both follow the same description; the error of the "
             "integration is that of another tolerance, the oil's are its balances; whether a pump "
             "does so is another question (docs/limits.md)."
+      : r.has_teeth()
+          ? "Two derivations of the mechanics, integrated by the same method. Agreement says that "
+            "both follow the same description; the error of the integration is that of another "
+            "tolerance; whether a pump does so is another question (docs/limits.md)."
           : "Two derivations of the motion, each integrated by its own method, against each other "
             "in time. Agreement says that both follow the same description; whether a pump does "
             "is another question (docs/limits.md).";

@@ -146,7 +146,8 @@ report::Section teeth_section(const TeethComparison& teeth, const PumpParameters
       section.facts.emplace_back(
           fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
           fmt::format("{:.3g} % of the turn", 100 * share));
-  section.table.columns = {"quantity", "peak", "unit", "largest difference", "of peak", "verdict"};
+  section.table.columns = {"furthest apart", "peak of its kind", "unit",
+                           "difference",     "of peak",          "verdict"};
   // The worst of each group.
   std::vector<const compare::ChannelComparison*> worst;
   for (const auto& line : teeth.comparison.channels) {

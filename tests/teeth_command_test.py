@@ -107,8 +107,7 @@ class TeethTest(ProgramTest):
         self.assertIn("flexibility of a slice of teeth", [line["input"] for line in report["common"]])
 
     def test_octoids_are_told_apart(self):
-        result = self.run_program("compare", self.case_file(), *FEW, "--set", "assumptions.multibody.flank_shape=octoid",
-                                  "--out", "out")
+        result = self.run_program("compare", self.case_file(), *FEW, "--multibody", "flank_shape=octoid", "--out", "out")
         self.assertIn("Explained", result.out)
         (row,) = self.report()["assumptions"]["rows"]
         self.assertEqual(row["name"], "flanks of the teeth")
@@ -219,6 +218,8 @@ class TeethTest(ProgramTest):
                 (("compare", "--set", "gear.dedendum_mm=1"), "no clearance"),
                 (("compare", "--set", "gear.flanks=one"), "flanks"),
                 (("compare", "--way", "integrated"), "contact = \"teeth\""),
+                (("compare", "--analytic", "flank_shape=octoid"), "flank_shape: must be involute in the analytic model"),
+                (("compare", "--multibody", "flank_shape=round"), "must be involute or octoid"),
                 (("simulate", "--steady"), "--steady"),
                 (("run", "--model", "analytic", "--set", "gear.pitch_error_file=none.csv"), "no such file")):
             result = self.run_program(options[0], self.case_file(), *options[1:], "--out", "refused", status=BAD_INPUT)
