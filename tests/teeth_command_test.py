@@ -29,6 +29,13 @@ class TeethTest(ProgramTest):
     def report(self):
         return json.loads((self.folder / "out/report.json").read_text())
 
+    def test_warns_of_pairs_that_are_not_looked_at(self):
+        soft = ("--set", "gear.youngs_modulus_GPa=0.5", "--set", "drive.duration_s=0.002", "--set", "drive.samples=40")
+        self.run_program("simulate", self.case_file(), *soft, "--model", "analytic", "--out", "out")
+        self.assertEqual([w["name"] for w in self.report()["warnings"]], ["further pairs of teeth touch"])
+        self.run_program("simulate", self.case_file(), *soft[2:], "--model", "analytic", "--out", "out")
+        self.assertEqual(self.report()["warnings"], [])
+
     def test_given_states(self):
         (self.folder / "states.csv").write_text(
             "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n"
