@@ -45,10 +45,14 @@ int run_states(const Options& options, const study::ReadyCase& ready,
   const auto doubts = study::state_doubts(ready.the_case, states);
   options.the_case.refuse(doubts, options.states + ": doubtful states, and --strict");
   for (const auto& doubt : doubts) warn({doubt.name + ": " + doubt.text});
-  MotionTable table = study::run_states(ready, states, run_options, progress_of);
+  ResultTable teeth;
+  MotionTable table = study::run_states(ready, states, run_options, progress_of,
+                                        run_options.teeth ? &teeth : nullptr);
   table.results = select_channels(table.results,
                                   [&](const Channel& channel) { return channels.wants(channel); });
-  folder.add(to_string(options.model) + ".csv", to_csv(table));
+  const std::string name = to_string(options.model);
+  folder.add(name + ".csv", to_csv(table));
+  if (run_options.teeth) folder.add("teeth_" + name + ".csv", to_csv(teeth));
   return finish(folder);
 }
 
@@ -77,8 +81,11 @@ int run(const Options& options) {
     options.the_case.refuse_timing(timing);
     for (const auto& warning : timing) warnings.push_back(warning.name + ": " + warning.text);
   }
+  const bool toothed = ready.the_case.pump.gear.contact == ToothContact::teeth &&
+                       assumptions.gear == BlockDrive::mesh;
   if (states) {
     run_options.scene.method = options.choice.method();
+    run_options.teeth = toothed;
     warn(warnings);
     return run_states(options, ready, run_options, channels, folder);
   }
@@ -97,9 +104,7 @@ int run(const Options& options) {
     warn(study::multibody_warnings(ready.the_case, assumptions, run_options.scene, lines));
   warn(warnings);
 
-  run_options.teeth = ready.the_case.pump.gear.contact == ToothContact::teeth && driven &&
-                      assumptions.gear == BlockDrive::mesh &&
-                      run_options.scene.scene == multibody::Scene::full;
+  run_options.teeth = toothed && driven && run_options.scene.scene == multibody::Scene::full;
   if (analytic && !run_options.teeth) {
     study::stream_analytic(ready, assumptions, wanted, folder.open("analytic.csv"), progress_of);
   } else {

@@ -139,7 +139,7 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
 }
 
 MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
-                       const PartProgress& progress_of) {
+                       const PartProgress& progress_of, ResultTable* teeth) {
   check(options);
   if (options.way == Way::integrated)
     throw InputError("given states are not integrated: the motion is an input");
@@ -148,9 +148,10 @@ MotionTable run_states(const ReadyCase& ready, const States& states, const RunOp
   const Assumptions& assumptions =
       options.assumptions ? *options.assumptions : ready.assumptions(options.model);
   if (options.model == Model::analytic)
-    return analytic::run_states(ready.the_case, assumptions, states, progress_of("analytic"));
+    return analytic::run_states(ready.the_case, assumptions, states, progress_of("analytic"),
+                                teeth);
   return multibody::run_states(ready.the_case, assumptions, states, progress_of("multibody"),
-                               options.scene.method);
+                               options.scene.method, teeth);
 }
 
 ResultTable run_turn(const ReadyCase& ready, Model model, const PartProgress& progress_of) {

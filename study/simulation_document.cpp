@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -388,13 +389,41 @@ std::vector<report::Warning> doubts_of(const SimulationResult& r) {
   return warnings;
 }
 
+// More pairs of teeth might touch than are looked at.
+void warn_of_further_pairs(const SimulationResult& r, std::vector<report::Warning>& warnings) {
+  const Trajectory& run = *runs_of(r).front().second;
+  if (run.teeth.empty()) return;
+  const double reach = analytic::BevelTeeth(r.ready.the_case.pump).geometry().reach;
+  double worst = 0;
+  std::size_t rows = 0;
+  for (const TeethAction& action : run.teeth) {
+    double largest = 0;
+    for (const PairContact& pair : action.pairs) largest = std::max(largest, pair.approach);
+    worst = std::max(worst, largest);
+    if (largest > reach) ++rows;
+  }
+  if (rows == 0) return;
+  warnings.push_back(
+      {"further pairs of teeth touch",
+       fmt::format("in {:.3g} % of the rows teeth are pressed together by more than {:.3g} um, at "
+                   "most {:.3g} um: three pairs of each flank are looked at; a fourth would carry "
+                   "a part of the force.",
+                   100.0 * static_cast<double>(rows) / static_cast<double>(run.teeth.size()),
+                   1e6 * reach, 1e6 * worst)});
+}
+
 std::vector<report::Warning> warnings_of(const SimulationResult& r) {
-  if (r.oil_follows) return doubts_of(r);
-  if (!r.ready.hydraulics) return {};
-  return {{"pressure of constant speed",
-           fmt::format("the chamber pressure is the periodic one of {:g} rpm at every speed of the "
-                       "motion; the oil does not follow it.",
-                       r.ready.the_case.operation.speed_rpm)}};
+  std::vector<report::Warning> warnings;
+  if (r.oil_follows)
+    warnings = doubts_of(r);
+  else if (r.ready.hydraulics)
+    warnings.push_back(
+        {"pressure of constant speed",
+         fmt::format("the chamber pressure is the periodic one of {:g} rpm at every speed of the "
+                     "motion; the oil does not follow it.",
+                     r.ready.the_case.operation.speed_rpm)});
+  warn_of_further_pairs(r, warnings);
+  return warnings;
 }
 
 report::Verdict verdict_of(const SimulationResult& r) {

@@ -68,6 +68,27 @@ class TeethTest(ProgramTest):
     def report(self):
         return json.loads((self.folder / "out/report.json").read_text())
 
+    def test_warns_of_pairs_that_are_not_looked_at(self):
+        soft = ("--set", "gear.youngs_modulus_GPa=0.5", "--set", "drive.duration_s=0.002", "--set", "drive.samples=40")
+        self.run_program("simulate", self.case_file(), *soft, "--model", "analytic", "--out", "out")
+        self.assertEqual([w["name"] for w in self.report()["warnings"]], ["further pairs of teeth touch"])
+        self.run_program("simulate", self.case_file(), *soft[2:], "--model", "analytic", "--out", "out")
+        self.assertEqual(self.report()["warnings"], [])
+
+    def test_given_states(self):
+        (self.folder / "states.csv").write_text(
+            "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n"
+            "0,0,1500,1500,0,0\n20,20,1500,1490,0,-5000\n400,400,-1500,-1500,0,0\n")
+        for model in ("analytic", "multibody"):
+            self.run_program("run", self.case_file(), "--model", model, "--states", "states.csv", "--out", "out")
+            teeth, reactions = self.rows(f"teeth_{model}.csv"), self.rows(f"{model}.csv")
+            self.assertEqual([row["theta_deg"] for row in teeth], ["0", "20", "400"])
+            for row, reaction in zip(teeth, reactions):
+                direction = math.copysign(1, float(reaction["theta_rpm"]))
+                tooth = direction * float(reaction["Rcs_z4_N"])
+                self.assertEqual(float(row["plus_force_N"]) > 0, tooth > 0)
+                self.assertEqual(float(row["minus_force_N"]) > 0, tooth < 0)
+
     def test_compare(self):
         result = self.run_program("compare", self.case_file(), *FEW, "--out", "out")
         self.assertIn("The two models agree", result.out)

@@ -89,8 +89,9 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
 /// Reactions at given states of shaft and block, as options.model and options.assumptions say;
 /// options.scene.method of the multibody model. The pump is whole.
 /// @throws InputError where the options say something that has no effect on given states
+/// @param teeth  if given: what the teeth do there, table of results/teeth.h
 MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
-                       const PartProgress& progress_of = silent());
+                       const PartProgress& progress_of = silent(), ResultTable* teeth = nullptr);
 
 /// One turn by one model, driven, as the case assumes.
 ResultTable run_turn(const ReadyCase& ready, Model model,
