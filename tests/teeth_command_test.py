@@ -8,6 +8,7 @@ import csv
 import json
 import math
 import pathlib
+import re
 import sys
 import unittest
 
@@ -196,7 +197,7 @@ class TeethTest(ProgramTest):
                     self.assertAlmostEqual(y, edge, 2)
                     self.assertAlmostEqual(x, arrow["x"] * edge / R, 2)
                     self.assertTrue(sheet["y_range"][0] < y < sheet["y_range"][1])
-                self.assertAlmostEqual((line["width"] - 1.5) / 6, force / largest, 2)
+                self.assertAlmostEqual((line["width"] - 1.5) / 6, force / largest, 6)
                 self.assertIn(f"{force:.4g} N", frame["text"])
 
     def test_section(self):
@@ -207,6 +208,21 @@ class TeethTest(ProgramTest):
         self.assertEqual(facts["transmission error"],
                          f"{min(error):.4g} to {max(error):.4g} um along the line of action, backlash 50 um")
         self.assertEqual(facts["teeth"], f"27 on either gear, module {106.466 / 27:.4g} mm, face width 16 mm")
+        # Right triangles on the sphere about O2: the path of contact lies on a great circle that touches the base cones, whose
+        # sine is sin 70 deg cos 20 deg.
+        ap, cone = math.radians(20), math.radians(70)
+        base = math.asin(math.sin(cone) * math.cos(ap))
+        tip, root = (cone + math.atan(mm / R) for mm in (106.466 / 27, -1.25 * 106.466 / 27))
+        self.assertEqual(facts["cones"], "pitch {:.4g}, base {:.4g}, tip {:.4g}, root {:.4g} deg".format(
+            *map(math.degrees, (cone, base, tip, root))))
+        leg = [math.acos(math.cos(polar) / math.cos(base)) for polar in (cone, tip)]
+        half, pitch = math.degrees(leg[1] - leg[0]), 360 / 27 * math.sin(base)
+        self.assertEqual(facts["path of contact"], f"{-half:.4g} to {half:.4g} deg from O4 as seen from O2, "
+                         f"base pitch {pitch:.4g} deg, contact ratio {2 * half / pitch:.4g}")
+        stiffness = re.fullmatch(r"(\S+) N/um, (\S+) N/\(mm um\)", facts["stiffness of a pair at O4"])
+        self.assertAlmostEqual(float(stiffness[1]) / float(stiffness[2]), 16, 1)  # mm of face width
+        # ISO 6336-1: 14 N/(mm um) is the maximum of a pair of standard spur teeth, 0.8 of it in practice.
+        self.assertTrue(10 < float(stiffness[2]) < 18)
         for flank, sign in (("plus", "+"), ("minus", "-")):
             force = [float(row[f"{flank}_force_N"]) for row in rows]
             self.assertEqual(facts[f"force of flank {sign}"],
