@@ -65,7 +65,7 @@ Command add_fig34_command(CommandParser program) {
   add_report(command, options->place, "fig34.html, fig34.json and the tables");
   command.option("--exponents", options->study.exponents, "exponents of the contact law")
       .list()
-      .number_in(1, 5)
+      .number_in(1, 3)
       .text("NUMBER[,NUMBER..] [1,1.5,2.2]");
   command.option("--approaches-um", options->approaches_um, "approach of the flanks at 100 N")
       .list()

@@ -72,6 +72,9 @@ int rattle(const Options& options) {
   rattle.speed_rpm = range_of("--speeds", options.speeds, kLeastSpeed);
   rattle.delivery_bar = range_of("--delivery-bar", options.delivery, 0);
   const Case the_case = options.the_case.read();
+  if (rattle.check > 0 && the_case.pump.gear.contact == ToothContact::rigid)
+    throw InputError(
+        "--check: changes nothing: with [gear] contact = \"rigid\" no motion is integrated");
   study::RattleFile file(std::filesystem::path(options.place.out) / "rattle.partial.csv",
                          origin_of(the_case, rattle));
   study::RattleKeeping keeping;

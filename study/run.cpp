@@ -9,6 +9,7 @@
 
 #include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
@@ -85,7 +86,23 @@ const Assumptions& ReadyCase::assumptions(Model model) const {
   return model == Model::analytic ? the_case.analytic : the_case.multibody;
 }
 
+namespace {
+
+// Refuses teeth that do not mesh, with the case that has them.
+void require_mesh(const Case& the_case) {
+  if (the_case.pump.gear.contact != ToothContact::teeth) return;
+  try {
+    const analytic::BevelTeeth teeth(the_case.pump);
+  } catch (const InputError& error) {
+    if (the_case.file.empty()) throw;
+    throw InputError(the_case.file.string() + ": " + error.what());
+  }
+}
+
+}  // namespace
+
 ReadyCase prepare(Case the_case, const PartProgress& progress_of) {
+  require_mesh(the_case);
   std::optional<hydraulics::SteadyState> state;
   if (the_case.pressure.kind == PressureKind::hydraulic) {
     state = hydraulics::steady_state(the_case, {}, progress_of("hydraulics"));

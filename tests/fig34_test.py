@@ -103,6 +103,7 @@ class Fig34Test(ProgramTest):
 
     def test_refusals(self):
         for options, text in ((("--approaches-um", "0"), "--approaches-um"), (("--backlashes-um", "-1"), "--backlashes-um"),
+                              (("--exponents", "4"), "--exponents"),
                               (("--set", "operation.speed_rpm=0"), "speed_rpm = 0")):
             result = self.run_program("fig34", *options, "--out", "refused", status=BAD_INPUT)
             self.assertIn(text, result.err)

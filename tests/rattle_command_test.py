@@ -127,6 +127,8 @@ class RattleTest(ProgramTest):
             self.assert_mentions(self.refused(*self.command(option, value)), option)
         self.assert_mentions(self.refused(*self.command("--turns", 0)[:2], "--speeds", "1:2:2"), "--delivery-bar")
         self.assert_mentions(self.refused(*self.command("--set", "friction.regularization_m_per_s=0")), "regularization_m_per_s")
+        rigid = ("rattle", program.REPO / "cases/bap63_rated.toml", "--speeds", "1000:1500:2", "--delivery-bar", "100:200:2")
+        self.assert_mentions(self.refused(*rigid, "--check", 3), "--check", "rigid")
 
     def test_check_counts_for_the_status(self):
         result = self.run_program(*self.command("--check", 1, speeds="1500:1500:1", delivery="275:275:1"))

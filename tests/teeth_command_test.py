@@ -76,6 +76,12 @@ class TeethTest(ProgramTest):
         self.run_program("simulate", self.case_file(), *soft[2:], "--model", "analytic", "--out", "out")
         self.assertEqual(self.report()["warnings"], [])
 
+    def test_teeth_that_do_not_mesh_are_refused_with_their_file(self):
+        for command in (("run", "--model", "multibody"), ("compare",), ("simulate",)):
+            result = self.run_program(command[0], self.case_file(), *command[1:], "--set", "gear.addendum_mm=1",
+                                      "--out", "out", status=BAD_INPUT)
+            self.assertIn("bap63_teeth.toml: [gear] addendum_mm = 1: contact ratio", result.err)
+
     def test_given_states(self):
         (self.folder / "states.csv").write_text(
             "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n"
