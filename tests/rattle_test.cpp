@@ -183,9 +183,12 @@ double least_by_brute_force(const Case& the_case, double rpm, double bar) {
 
 TEST(Rattle, CriterionIsThatOfASearchByBruteForce) {
   const Case c = pump_with(1, 20);
-  for (const double rpm : {400.0, 1100.0, 2900.0}) {
-    const auto [least, greatest] = rigid_extremes(prepare(rattle_case(c, rpm, 275)));
-    const auto [low, high] = extremes_by_brute_force(c, rpm, 275);
+  for (const double rpm : {400.0, 2900.0}) {
+    Case at = c;
+    // Also with kinks of the pressure between the angles of the coarse search.
+    if (rpm > 1000) at.pressure.delivery_start_deg += 0.2;
+    const auto [least, greatest] = rigid_extremes(prepare(rattle_case(at, rpm, 275)));
+    const auto [low, high] = extremes_by_brute_force(at, rpm, 275);
     EXPECT_NEAR(least, low, scaled(1e-3)) << rpm;  // of 100 N
     EXPECT_NEAR(greatest, high, scaled(1e-3)) << rpm;
   }
