@@ -79,7 +79,11 @@ const PumpParameters& checked(const PumpParameters& pump) {
 }  // namespace
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
-    : Model(checked(pump), assumptions, Unchecked{}) {}
+    : Model(checked(pump), assumptions, Unchecked{}) {
+  if (assumptions.flanks != FlankShape::involute)
+    throw InputError(
+        "flank_shape: must be involute in the analytic model, whose teeth are involutes");
+}
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked)
     : pump_(pump),

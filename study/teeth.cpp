@@ -96,6 +96,9 @@ TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, doubl
   // Where no force acts: lengths of a tooth under its usual load.
   for (const auto& [unit, scale] : {std::pair{"urad", 10.0}, {"um", 1.0}, {"mm", 1.0}, {"", 1.0}})
     options.zero_scales.emplace(unit, scale);
+  // Nothing to round-off of the loads is nothing.
+  constexpr double kNoSignal = 1e-12;
+  for (const auto& [unit, scale] : options.zero_scales) options.absolute[unit] = kNoSignal * scale;
   teeth.comparison = compare::compare_tables(analytic, multibody, options);
   // Forces tell, pair by pair; the share of a force that vanishes is round-off over round-off.
   for (auto& line : teeth.comparison.channels)
