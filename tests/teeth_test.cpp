@@ -365,6 +365,59 @@ TEST(BevelGeometry, RefusalsNameTheLimit) {
   expect_limit(pump, &ToothData::addendum, "undercut", -kNear);
 }
 
+// The deepest place to which a crown gear's plane flank cuts a gear that rolls on its pitch plane
+// without undercut: there the point of contact turns back on the flank of the gear.
+TEST(BevelGeometry, UndercutBeginsWhereTheCutFlankTurnsBack) {
+  PumpParameters pump = toothed();
+  pump.geometry.tilt = radians(88.0);
+  pump.gear.pressure_angle = radians(14.5);
+  pump.gear.teeth->dedendum = 20e-3;
+  const auto undercut = [&](double addendum) {
+    pump.gear.teeth->addendum = addendum;
+    try {
+      analytic::closed_form::require_mesh(pump.gear, analytic::closed_form::bevel(pump));
+    } catch (const InputError& error) {
+      return std::string(error.what()).find("undercut") != std::string::npos;
+    }
+    return false;
+  };
+  double below = 4e-3, above = 5.7e-3;
+  ASSERT_FALSE(undercut(below));
+  ASSERT_TRUE(undercut(above));
+  while (above - below > 1e-12)
+    (undercut((below + above) / 2) ? above : below) = (below + above) / 2;
+
+  // The crown gear turns about z, the gear about an axis at its pitch cone's angle from x, where
+  // both touch; the flank is a plane through the middle of the sphere.
+  const double pitch_cone = kPi / 2 - pump.geometry.tilt / 2, ap = pump.gear.pressure_angle;
+  const V x = {1, 0, 0}, z = {0, 0, 1};
+  const V axis = {std::cos(pitch_cone), 0, std::sin(pitch_cone)};
+  const auto normal = [&](double turn) {
+    return turned({0, std::cos(ap), -std::sin(ap)}, z, turn);
+  };
+  // Flanks touch where their common normal meets the axis about which one rolls on the other.
+  const auto touch = [&](double turn) {
+    const V n = normal(turn);
+    return unit(x - dot(x, n) * n);
+  };
+  const auto on_gear = [&](const V& v, double turn) {
+    return turned(v, axis, -turn / std::sin(pitch_cone));
+  };
+  const auto speed = [&](double turn) {  // along the gear's flank
+    constexpr double kStep = 1e-5;
+    const V moved =
+        on_gear(touch(turn + kStep), turn + kStep) - on_gear(touch(turn - kStep), turn - kStep);
+    return dot(moved, on_gear(cross(normal(turn), touch(turn)), turn)) / (2 * kStep);
+  };
+  double near = 0, far = 0;
+  while (speed(far) * speed(0) > 0 && far > -kPi / 2) far -= 0.01;
+  ASSERT_GT(far, -kPi / 2);
+  while (near - far > 1e-10)
+    (speed((near + far) / 2) * speed(0) > 0 ? near : far) = (near + far) / 2;
+  const double distance = pump.gear.pitch_diameter / 2 / std::sin(pitch_cone);
+  EXPECT_NEAR(std::atan(above / distance), std::asin(std::abs(dot(touch(far), z))), 1e-7);
+}
+
 // Teeth with all that they can have.
 PumpParameters imperfect() {
   PumpParameters pump = toothed();
