@@ -186,7 +186,7 @@ TEST(Rattle, CriterionIsThatOfASearchByBruteForce) {
   for (const double rpm : {400.0, 2900.0}) {
     Case at = c;
     // Also with kinks of the pressure between the angles of the coarse search.
-    if (rpm > 1000) at.pressure.delivery_start_deg += 0.2;
+    if (rpm > 1000) at.pressure.delivery_start_deg += 5.2;
     const auto [least, greatest] = rigid_extremes(prepare(rattle_case(at, rpm, 275)));
     const auto [low, high] = extremes_by_brute_force(at, rpm, 275);
     EXPECT_NEAR(least, low, scaled(1e-3)) << rpm;  // of 100 N
@@ -412,6 +412,27 @@ TEST(Rattle, RowsThatAreThereAreNotComputedAgain) {
   fs::remove(file);
 }
 
+// The boundary of the motion that is nearest to the criterion's, of those that the speeds show.
+TEST(Rattle, BoundariesAreComparedWithTheNearest) {
+  RattleMap map;
+  map.options = map_of({100, 200, 300, 500}, {1});
+  map.rows.resize(1);
+  RattleRow& row = map.rows[0];
+  row.up.resize(4);
+  row.up[0].kind = row.up[3].kind = RattleClass::hits_both;
+  row.least = {-1, 1, 1, 1};
+  row.greatest = {2, 2, 2, 2};
+  row.boundary_rpm = {160, 320};
+  const BoundaryAgreement found = boundary_agreement(map);
+  EXPECT_EQ(found.points, 4U);
+  EXPECT_EQ(found.same, 3U);  // at 500 it hits though rigid teeth would carry
+  ASSERT_EQ(found.places.size(), 2U);
+  EXPECT_EQ(found.places[0].simulated_rpm, 150);
+  EXPECT_EQ(found.places[0].spacing_rpm, 100);
+  EXPECT_EQ(found.places[1].simulated_rpm, 400);
+  EXPECT_EQ(found.places[1].spacing_rpm, 200);
+}
+
 TEST(Rattle, PointsToCheckAreSpreadOverTheClasses) {
   RattleMap map;
   map.options = map_of({1, 2, 3, 4}, {1, 2, 3, 4});
@@ -455,11 +476,12 @@ TEST(Rattle, SimbodyFindsTheSameOrIsSaidNotTo) {
   // Simbody without friction of the pistons: another pump.
   c.pump.friction.piston_coulomb = 500;
   c.multibody.piston_friction = false;
-  options = map_of({1500}, {100});
+  options = map_of({1500}, {90, 100});
   options.turns = options.discard = 2;  // still ringing
   options.check = 1;
   const RattleMap other = rattle_map(c, options);
   EXPECT_FALSE(other.agrees());
+  EXPECT_EQ(other.checks.at(0).row, 1U);
   EXPECT_THAT(rattle_text(other), HasSubstr("differs"));
 }
 
