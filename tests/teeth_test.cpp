@@ -512,7 +512,8 @@ TEST(BevelTeeth, ForceIsApproachOverTheLawsFlexibility) {
 }
 
 TEST(BevelTeeth, SlicesAreIntegratedExactly) {
-  const PumpParameters pump = imperfect();
+  PumpParameters pump = imperfect();
+  pump.gear.teeth->dissipation = 0.5;
   const BevelTeeth teeth(pump);
   const BevelGeometry& g = teeth.geometry();
   const ToothData& t = *pump.gear.teeth;
