@@ -28,32 +28,6 @@ struct Options {
   int transient = 0;
 };
 
-// FROM:TO:STEP or one number, bar.
-std::vector<double> delivery_pressures(const std::string& text) {
-  const auto fail = [&](const std::string& why) {
-    throw InputError("--delivery-bar " + text + ": " + why);
-  };
-  std::vector<double> numbers;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(':', at), text.size());
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data() + at, text.data() + end, value);
-    if (error != std::errc() || stop != text.data() + end || !std::isfinite(value) || value < 0)
-      fail("must be FROM:TO:STEP or one number, in bar, >= 0");
-    numbers.push_back(value);
-    at = end + 1;
-  }
-  if (numbers.size() == 1) return numbers;
-  if (numbers.size() != 3) fail("must be FROM:TO:STEP or one number, in bar");
-  const double from = numbers[0], to = numbers[1], step = numbers[2];
-  if (!(step > 0) || to < from) fail("must have STEP > 0 and FROM <= TO");
-  const double count = std::floor((to - from) / step + 1e-9) + 1;
-  if (count > kMostPoints) fail("must not be more than " + std::to_string(kMostPoints) + " points");
-  std::vector<double> pressures;
-  for (int i = 0; i < static_cast<int>(count); ++i) pressures.push_back(from + i * step);
-  return pressures;
-}
-
 // saturation, vapour or a pressure in bar.
 double suction_limit(const std::string& text, const HydraulicData& data) {
   if (text == "saturation") return data.saturation_pressure;
@@ -79,7 +53,8 @@ int pressure(const Options& options) {
   std::optional<compare::Published> published;
   if (!options.published.empty()) published = compare::read_published(options.published);
   std::vector<double> pressures;
-  if (!options.delivery.empty()) pressures = delivery_pressures(options.delivery);
+  if (!options.delivery.empty())
+    pressures = spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
   std::optional<double> limit;
   if (!options.suction_speed.empty())
     limit = suction_limit(options.suction_speed, *read.hydraulics);
@@ -132,7 +107,7 @@ Command add_pressure_command(CommandParser program) {
   command
       .option("--delivery-bar", options->delivery,
               "also mean torque and flow at these delivery pressures; 0 is an open line")
-      .text("FROM:TO:STEP");
+      .text("FROM:TO:STEP|FROM:TO:#N");
   command
       .option("--overlay", options->overlay,
               "another hydraulic case, drawn into one figure with the first over three turns")

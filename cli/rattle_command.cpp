@@ -1,5 +1,3 @@
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -30,33 +28,6 @@ struct Options {
   study::RattleOptions rattle;
 };
 
-// FROM:TO:COUNT, equally spaced.
-std::vector<double> range_of(const std::string& option, const std::string& text, double least) {
-  const auto fail = [&](const std::string& why) {
-    throw InputError(option + " " + text + ": must be FROM:TO:COUNT, " + why);
-  };
-  std::vector<double> numbers;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t end = std::min(text.find(':', at), text.size());
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data() + at, text.data() + end, value);
-    if (error != std::errc() || stop != text.data() + end || !std::isfinite(value))
-      fail("three numbers");
-    numbers.push_back(value);
-    at = end + 1;
-  }
-  if (numbers.size() != 3) fail("three numbers");
-  const double from = numbers[0], to = numbers[1], count = numbers[2];
-  if (from < least) fail("FROM >= " + number_text(least));
-  if (!(count >= 1 && count <= kMostPoints && count == std::floor(count)))
-    fail("COUNT an integer from 1 to " + std::to_string(kMostPoints));
-  if (count == 1 ? to != from : !(to > from)) fail("FROM < TO, or FROM = TO with COUNT = 1");
-  std::vector<double> values;
-  for (int i = 0; i < static_cast<int>(count); ++i)
-    values.push_back(i == 0 ? from : from + i * (to - from) / (count - 1));
-  return values;
-}
-
 // What rows of this map are computed from.
 std::string origin_of(const Case& the_case, const study::RattleOptions& options) {
   std::string text = case_text(the_case);
@@ -69,8 +40,8 @@ std::string origin_of(const Case& the_case, const study::RattleOptions& options)
 int rattle(const Options& options) {
   study::RattleOptions rattle = options.rattle;
   constexpr double kLeastSpeed = 1;  // rpm
-  rattle.speed_rpm = range_of("--speeds", options.speeds, kLeastSpeed);
-  rattle.delivery_bar = range_of("--delivery-bar", options.delivery, 0);
+  rattle.speed_rpm = spaced_values("--speeds", options.speeds, "rpm", kLeastSpeed, kMostPoints);
+  rattle.delivery_bar = spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
   const Case the_case = options.the_case.read();
   if (rattle.check > 0 && the_case.pump.gear.contact == ToothContact::rigid)
     throw InputError(
@@ -107,12 +78,12 @@ Command add_rattle_command(CommandParser program) {
       "rattle", "Map where the gear carries, reverses, loses contact or hits both flanks");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and rattle.csv");
-  command.option("--speeds", options->speeds, "speeds of the shaft, rpm, equally spaced")
+  command.option("--speeds", options->speeds, "speeds of the shaft, rpm")
       .required()
-      .text("FROM:TO:COUNT");
-  command.option("--delivery-bar", options->delivery, "delivery pressures, bar, equally spaced")
+      .text("FROM:TO:STEP|FROM:TO:#N");
+  command.option("--delivery-bar", options->delivery, "delivery pressures, bar")
       .required()
-      .text("FROM:TO:COUNT");
+      .text("FROM:TO:STEP|FROM:TO:#N");
   study::RattleOptions& rattle_options = options->rattle;
   command
       .option("--turns", rattle_options.turns,

@@ -372,7 +372,7 @@ class UsageTest(ProgramTest):
         for command in (
             ["run", case, "--model", "analytic"], ["run", case, "--model", "multibody"], ["compare", case],
             ["compare", case, "--multibody-case", case], ["inertia", case], ["tradeoff", case],
-            ["pressure", hydraulic], ["rattle", case, "--speeds", "1:2:2", "--delivery-bar", "1:2:2"], ["reference", "new", case, "--from", "curve.csv"],
+            ["pressure", hydraulic], ["rattle", case, "--speeds", "1:2:#2", "--delivery-bar", "1:2:#2"], ["reference", "new", case, "--from", "curve.csv"],
             ["reference", "golden", case, "--out", "golden"], ["calibrate", hydraulic, "--with", "294.7", "--without", "293.4"],
             ["blocktorque", case, hydraulic],
         ):

@@ -19,7 +19,7 @@ FILES = {"report.html", "report.json", "rattle.csv"}
 
 
 class RattleTest(ProgramTest):
-    def command(self, *options, speeds="1000:2000:2", delivery="100:300:3", out="out"):
+    def command(self, *options, speeds="1000:2000:#2", delivery="100:300:#3", out="out"):
         return ("rattle", program.REPO / "cases" / "bap63_tooth_rattle.toml", "--turns", 2, "--discard", 2,
                 "--speeds", speeds, "--delivery-bar", delivery, "--out", out, *options)
 
@@ -62,7 +62,7 @@ class RattleTest(ProgramTest):
                 self.assertEqual((most, apart), (None, None))
 
     def test_a_map_with_drag_has_its_boundary(self):
-        self.run_program(*self.command("--set", "friction.block_viscous_Nm_per_rpm=0.0054", speeds="300:1900:3"))
+        self.run_program(*self.command("--set", "friction.block_viscous_Nm_per_rpm=0.0054", speeds="300:1900:#3"))
         report = json.loads((self.folder / "out" / "report.json").read_text())
         table = {s["title"]: s["table"] for s in report["runs"]}["Boundary by the criterion"]
         self.assertEqual([row[0] for row in table["rows"]], [100, 200, 300])
@@ -72,7 +72,7 @@ class RattleTest(ProgramTest):
         self.assertEqual(line["x"], criterion)
 
     def test_an_interrupted_map_goes_on(self):
-        command = self.command(delivery="100:300:12")
+        command = self.command(delivery="100:300:#12")
         self.run_program(*command, "--threads", 2)
         whole = (self.folder / "out" / "rattle.csv").read_bytes()
 
@@ -105,42 +105,52 @@ class RattleTest(ProgramTest):
         self.assertIn(",4321,", (self.folder / "out" / "rattle.csv").read_text())
 
     def test_resume_without_rows_begins(self):
-        self.run_program(*self.command("--resume", delivery="100:100:1"))
+        self.run_program(*self.command("--resume", delivery="100:100:#1"))
         self.assertEqual(self.files(), FILES)
+
+    def test_spacing(self):
+        for speeds, expected in (("1000", [1000]), ("1000:1500:200", [1000, 1200, 1400]), ("1000:1500:#3", [1000, 1250, 1500])):
+            self.run_program("rattle", program.REPO / "cases/bap63_rated.toml", "--speeds", speeds, "--delivery-bar", "100", "--out", "out")
+            with open(self.folder / "out" / "rattle.csv") as file:
+                rows = [row for row in csv.DictReader(file) if row["sweep"] == "up"]
+            self.assertEqual([float(row["speed_rpm"]) for row in rows], expected)
 
     def test_bad_options(self):
         for options, word in (
-            ({"speeds": "1000:2000"}, "three numbers"),
-            ({"speeds": "1000:2000:x"}, "three numbers"),
-            ({"speeds": "0:2000:3"}, "FROM >= 1"),
-            ({"speeds": "2000:1000:3"}, "FROM < TO"),
-            ({"speeds": "1000:2000:1"}, "COUNT = 1"),
-            ({"speeds": "1000:2000:2.5"}, "COUNT"),
-            ({"delivery": "-5:100:3"}, "FROM >= 0"),
-            ({"delivery": "100:200:1001"}, "1000"),
-            ({"delivery": "nan:200:3"}, "three numbers"),
+            ({"speeds": "1000:2000"}, "FROM:TO:#N"),
+            ({"speeds": "1000:2000:x"}, "FROM:TO:STEP"),
+            ({"speeds": "0:2000:#3"}, "in rpm, >= 1"),
+            ({"speeds": "2000:1000:#3"}, "FROM < TO"),
+            ({"speeds": "1000:2000:#1"}, "#1"),
+            ({"speeds": "1000:2000:#2.5"}, "an integer"),
+            ({"speeds": "1000:2000:0"}, "STEP > 0"),
+            ({"delivery": "-5:100:3"}, "in bar, >= 0"),
+            ({"delivery": "100:200:#1001"}, "1000"),
+            ({"delivery": "100:2000:1"}, "1000"),
+            ({"delivery": "#3"}, "FROM:TO:#N"),
+            ({"delivery": "nan:200:#3"}, "FROM:TO:STEP"),
         ):
             with self.subTest(options):
                 option = "--speeds" if "speeds" in options else "--delivery-bar"
                 self.assert_mentions(self.refused(*self.command(**options)), option, word)
         for option, value in (("--error", "0"), ("--check", "-1"), ("--threads", "x")):
             self.assert_mentions(self.refused(*self.command(option, value)), option)
-        self.assert_mentions(self.refused(*self.command("--turns", 0)[:2], "--speeds", "1:2:2"), "--delivery-bar")
+        self.assert_mentions(self.refused(*self.command("--turns", 0)[:2], "--speeds", "1:2:#2"), "--delivery-bar")
         self.assert_mentions(self.refused(*self.command("--set", "friction.regularization_m_per_s=0")), "regularization_m_per_s")
-        rigid = ("rattle", program.REPO / "cases/bap63_rated.toml", "--speeds", "1000:1500:2", "--delivery-bar", "100:200:2")
+        rigid = ("rattle", program.REPO / "cases/bap63_rated.toml", "--speeds", "1000:1500:#2", "--delivery-bar", "100:200:#2")
         self.assert_mentions(self.refused(*rigid, "--check", 3), "--check", "rigid")
 
     def test_check_counts_for_the_status(self):
-        result = self.run_program(*self.command("--check", 1, speeds="1500:1500:1", delivery="275:275:1"))
+        result = self.run_program(*self.command("--check", 1, speeds="1500:1500:#1", delivery="275:275:#1"))
         self.assertIn("Simbody agrees at 1 of 1 points", result.out)
         other = ("--set", "friction.block_viscous_Nm_per_rpm=0.0054", "--set", "friction.piston_coulomb_N=500",
                  "--set", "assumptions.multibody.piston_friction=false", "--check", 1)
-        result = self.run_program(*self.command(*other, speeds="1500:1500:1", delivery="100:100:1"), status=1)
+        result = self.run_program(*self.command(*other, speeds="1500:1500:#1", delivery="100:100:#1"), status=1)
         self.assertIn("Simbody agrees at 0 of 1 points", result.out)
 
     def test_rigid_teeth_and_hydraulic_pressure(self):
-        self.run_program("rattle", program.REPO / "cases" / "bap63_rated_hydraulic.toml", "--speeds", "500:1500:2",
-                         "--delivery-bar", "275:275:1", "--out", "out")
+        self.run_program("rattle", program.REPO / "cases" / "bap63_rated_hydraulic.toml", "--speeds", "500:1500:#2",
+                         "--delivery-bar", "275:275:#1", "--out", "out")
         self.assertEqual([row["class"] for row in self.table()], ["reverses"] * 2 + ["carries"] * 2)
 
 
