@@ -104,7 +104,8 @@ Command add_rattle_command(CommandParser program) {
       .integer_in(0, 10000)
       .text("NUMBER [0]");
   command
-      .option("--threads", rattle_options.threads, "rows computed at a time; 0: one per processor")
+      .option("--threads", rattle_options.threads,
+              "rows computed at a time, at most one per processor; 0: as many")
       .integer_in(0, 1024)
       .text("NUMBER [0]");
   command.flag("--resume", options->resume,

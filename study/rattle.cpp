@@ -100,7 +100,7 @@ template <class Job>
 void in_threads(int threads, std::size_t count, const Job& job) {
   if (count == 0) return;
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  oneapi::tbb::task_arena(threads > 0 ? threads : processors).execute([&] {
+  oneapi::tbb::task_arena(threads > 0 ? std::min(threads, processors) : processors).execute([&] {
     // One by one: a row may take many times as long as another.
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<std::size_t>(0, count, 1),
