@@ -6,6 +6,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <mutex>
@@ -96,19 +97,27 @@ class Reporting {
   Progress progress_;
 };
 
+// Orders what threads hand to each other once more than oneTBB does, whose library a thread
+// sanitizer does not see.
+std::atomic<long> handed_over{0};
+
 template <class Job>
 void in_threads(int threads, std::size_t count, const Job& job) {
   if (count == 0) return;
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  handed_over.fetch_add(1);
   oneapi::tbb::task_arena(threads > 0 ? std::min(threads, processors) : processors).execute([&] {
     // One by one: a row may take many times as long as another.
     oneapi::tbb::parallel_for(
         oneapi::tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const auto& range) {
+          handed_over.fetch_add(1);
           for (std::size_t i = range.begin(); i < range.end(); ++i) job(i);
+          handed_over.fetch_add(1);
         },
         oneapi::tbb::simple_partitioner());
   });
+  handed_over.fetch_add(1);
 }
 
 }  // namespace
