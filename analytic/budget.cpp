@@ -149,15 +149,14 @@ Budget BudgetModel::Implementation::causes(const Instant& instant, const State& 
 
 Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
   // Tcs is a reaction where the gear carries the block, else it follows from the bores' forces.
+  TeethAction teeth;
   if (prepared.imposed)
     model.evaluate(instant, values);
   else
-    model.reactions(instant, values);
+    model.reactions(instant, values, &teeth);
   const closed_form::Pump<double>& p = prepared.numbers;
-  TeethAction teeth;
-  const bool toothed = prepared.teeth && !prepared.imposed;
+  const bool toothed = model.has_teeth();
   if (toothed) {
-    model.teeth(instant, teeth);
     const double on_block = prepared.teeth->about_block_axis(teeth.moment);
     passed_on = on_block == 0 ? 1 : BevelTeeth::about_shaft_axis(teeth.moment) / on_block;
   }

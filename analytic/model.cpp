@@ -118,18 +118,33 @@ void all_reactions(const closed_form::Common& common, const closed_form::Pump<Re
 
 }  // namespace
 
-void Model::reactions(const Instant& instant, std::vector<double>& values) const {
+bool Model::has_teeth() const { return prepared_->teeth && !prepared_->imposed; }
+
+std::optional<Model::Settled> Model::find(const Instant& instant,
+                                          std::vector<double>& values) const {
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
-  if (prepared_->teeth && !prepared_->imposed) let_teeth_act(instant, values);
+  if (!has_teeth()) return {};
+  return let_teeth_act(instant, values);
+}
+
+void Model::act(const Instant& instant, const ToothLag& lag, TeethAction& teeth) const {
+  teeth =
+      prepared_->teeth->act(instant.shaft.angle, instant.shaft.speed, lag, instant.lag.has_value());
+}
+
+void Model::reactions(const Instant& instant, std::vector<double>& values,
+                      TeethAction* teeth) const {
+  const auto settled = find(instant, values);
+  if (settled && teeth != nullptr) act(instant, settled->lag, *teeth);
 }
 
 void Model::reactions(const Instant& instant, std::vector<long double>& values) const {
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), extended(prepared_->numbers), instant, values.data());
-  if (prepared_->teeth && !prepared_->imposed) let_teeth_act(instant, values);
+  if (has_teeth()) let_teeth_act(instant, values);
 }
 
 namespace {
@@ -139,28 +154,21 @@ double on_block(const Instant& instant, double rcs) {
   return closed_form::Math<double>::direction(instant.shaft.speed) * rcs;
 }
 
-BevelTeeth::Wrench wrench_at(const BevelTeeth& teeth, const Instant& instant, const ToothLag& lag) {
-  return teeth.wrench(instant.shaft.angle, instant.shaft.speed, lag, instant.lag.has_value());
-}
-
 }  // namespace
 
-// Of the law where the instant says how the teeth stand, else at rest under the force `tooth_force`
-// along the line of action at O4.
-ToothLag Model::lag_at(const Instant& instant, double tooth_force) const {
-  if (instant.lag) return *instant.lag;
-  return prepared_->teeth->rest(instant.shaft.angle,
-                                tooth_force / prepared_->numbers.gear.inverse_arm);
-}
-
-// Reactions were found with the whole tooth force at O4: what the teeth's own force and moment
-// differ by comes on top.
+// By the law where the instant says how the teeth stand, else at rest under the block's tooth
+// force. Reactions were found with all of that at O4: what the teeth's own force and moment differ
+// by comes on top.
 template <class Real>
-void Model::let_teeth_act(const Instant& instant, std::vector<Real>& values) const {
+Model::Settled Model::let_teeth_act(const Instant& instant, std::vector<Real>& values) const {
   using closed_form::Vec3;
   const closed_form::Pump<double>& p = prepared_->numbers;
+  const BevelTeeth& teeth = *prepared_->teeth;
   const double tooth = on_block(instant, static_cast<double>(values[layout_.Rcs()]));
-  const BevelTeeth::Wrench w = wrench_at(*prepared_->teeth, instant, lag_at(instant, tooth));
+  const ToothLag lag =
+      instant.lag ? *instant.lag : teeth.rest(instant.shaft.angle, tooth / p.gear.inverse_arm);
+  const BevelTeeth::Wrench w =
+      teeth.wrench(instant.shaft.angle, instant.shaft.speed, lag, instant.lag.has_value());
   const Vec3<double> force = {w.force[0], w.force[1], w.force[2]};
   const Vec3<double> moment = {w.moment[0], w.moment[1], w.moment[2]};
   const auto to_s2 = [&](const Vec3<double>& v) {
@@ -191,18 +199,7 @@ void Model::let_teeth_act(const Instant& instant, std::vector<Real>& values) con
   add(layout_.Rb2(0), held.cylindrical_x);
   add(layout_.Rb2(1), held.cylindrical_y);
   add(layout_.Td(), -shaft_moment.z * p.shaft.inverse_torque_factor);
-}
-
-void Model::teeth(const Instant& instant, TeethAction& action) const {
-  if (!prepared_->teeth || prepared_->imposed)
-    throw InputError(
-        "analytic model: teeth act where [gear] contact = \"teeth\" and the shaft moves the block");
-  std::vector<double> values(layout_.reactions());
-  require_sizes(instant, values, layout_.pistons(), layout_.reactions());
-  all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
-  const ToothLag lag = lag_at(instant, on_block(instant, values[layout_.Rcs()]));
-  action =
-      prepared_->teeth->act(instant.shaft.angle, instant.shaft.speed, lag, instant.lag.has_value());
+  return {lag, w};
 }
 
 namespace {
@@ -311,23 +308,20 @@ MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
 
 }  // namespace
 
-void Model::evaluate(const Instant& instant, std::vector<double>& values,
-                     MotionChecks* checks) const {
+void Model::evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
+                     TeethAction* teeth) const {
   require_sizes(instant, values, layout_.pistons(), layout_.size());
-  reactions(instant, values);
+  const auto settled = find(instant, values);
+  if (settled && teeth != nullptr) act(instant, settled->lag, *teeth);
   const ChannelLayout& at = layout_;
   const double fh = values[at.Fh()];
   values[at.xh()] = fh == 0 ? not_computed() : -values[at.Th(1)] / fh;  // (53)
   values[at.yh()] = fh == 0 ? not_computed() : values[at.Th(0)] / fh;
 
-  BevelTeeth::Wrench wrench;
-  const BevelTeeth* teeth = prepared_->imposed || !prepared_->teeth ? nullptr : &*prepared_->teeth;
-  if (teeth != nullptr)
-    wrench = wrench_at(*teeth, instant, lag_at(instant, on_block(instant, values[at.Rcs()])));
   MotionChecks found;
   with_state<double>(instant, [&](const auto& state) {
     found =
-        judge(*prepared_, pump_, at, instant, state, teeth != nullptr ? &wrench : nullptr, values);
+        judge(*prepared_, pump_, at, instant, state, settled ? &settled->wrench : nullptr, values);
   });
   if (checks != nullptr) *checks = found;
 }
@@ -388,19 +382,26 @@ void note(Provenance& provenance, std::chrono::steady_clock::time_point start, i
       {"kinematics", kinematics}};
 }
 
-// What the teeth do at each instant of a table.
-template <class At>
-ResultTable act_along(const Model& model, const Gear& gear, std::size_t rows, const At& at) {
-  ResultTable table = teeth_table("analytic");
-  Instant instant;
-  TeethAction action;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const double theta_deg = at(row, instant);
-    model.teeth(instant, action);
-    append_teeth(table, theta_deg, gear, action);
+// Takes what the teeth do at each row of a table; nothing where there are none.
+class TeethRows {
+ public:
+  /// @param table  null: not asked for
+  TeethRows(const Model& model, const Gear& gear, ResultTable* table)
+      : gear_(gear), table_(model.has_teeth() ? table : nullptr) {
+    if (table_ != nullptr) *table_ = teeth_table("analytic");
   }
-  return table;
-}
+  /// Where the next row's is put.
+  TeethAction* next() { return table_ != nullptr ? &action_ : nullptr; }
+  void add(double theta_deg) {
+    if (table_ != nullptr) append_teeth(*table_, theta_deg, gear_, action_);
+  }
+  std::size_t rows() const { return table_ != nullptr ? table_->rows() : 0; }
+
+ private:
+  const Gear& gear_;
+  ResultTable* table_;
+  TeethAction action_;
+};
 
 }  // namespace
 
@@ -408,18 +409,16 @@ ResultTable run(const Case& the_case, const Assumptions& assumptions, const Samp
                 const Progress& progress, ResultTable* teeth) {
   const auto start = std::chrono::steady_clock::now();
   const Model model(validate(the_case).pump, assumptions);
+  TeethRows acting(model, the_case.pump.gear, teeth);
   ResultTable table = tabulate(
       "analytic", model.layout(), samples,
-      [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
+      [&](const Instant& instant, std::vector<double>& row) {
+        model.evaluate(instant, row, nullptr, acting.next());
+        acting.add(samples.theta_deg[acting.rows()]);
+      },
       progress);
   note(table.provenance, start, model.layout().pistons(),
        "exact derivatives with respect to theta (9)-(23)");
-  if (teeth != nullptr && the_case.pump.gear.contact == ToothContact::teeth)
-    *teeth = act_along(model, the_case.pump.gear, samples.theta_deg.size(),
-                       [&](std::size_t row, Instant& instant) {
-                         samples.instant(row, instant);
-                         return samples.theta_deg[row];
-                       });
   return table;
 }
 
@@ -427,21 +426,17 @@ MotionTable run_states(const Case& the_case, const Assumptions& assumptions, con
                        const Progress& progress, ResultTable* teeth) {
   const auto start = std::chrono::steady_clock::now();
   const Model model(validate(the_case).pump, assumptions);
+  TeethRows acting(model, the_case.pump.gear, teeth);
   MotionTable table = tabulate_states(
       "analytic", model.layout(), states,
       [&](const Instant& instant, std::vector<double>& row, MotionChecks& checks) {
-        model.evaluate(instant, row, &checks);
+        model.evaluate(instant, row, &checks, acting.next());
+        acting.add(states.motion[acting.rows()].theta_deg);
       },
       progress);
   note(table.results.provenance, start, model.layout().pistons(),
        "exact total derivatives with respect to time of (9)-(12), shaft and block each at its own "
        "angle");
-  if (teeth != nullptr && the_case.pump.gear.contact == ToothContact::teeth)
-    *teeth =
-        act_along(model, the_case.pump.gear, states.rows(), [&](std::size_t row, Instant& instant) {
-          states.instant(row, instant);
-          return states.motion[row].theta_deg;
-        });
   return table;
 }
 

@@ -107,16 +107,18 @@ ValidityLimit reach_limit(const Model& model, const Case& the_case, const Sample
   limit.unit = "um";
   Instant instant;
   TeethAction action;
-  const auto pressed = [&](std::size_t row) {
+  std::vector<double> values(model.layout().reactions());
+  std::vector<double> pressed;  // m, by row
+  for (std::size_t row = 0; row < table.rows(); ++row) {
     samples.instant(row, instant);
-    model.teeth(instant, action);
-    double largest = 0;
-    for (const PairContact& pair : action.pairs) largest = std::max(largest, pair.approach);
-    return largest;
-  };
+    model.reactions(instant, values, &action);
+    pressed.push_back(0);
+    for (const PairContact& pair : action.pairs)
+      pressed.back() = std::max(pressed.back(), pair.approach);
+  }
   scan(
-      limit, table, [&](std::size_t row) { return reach - pressed(row); },
-      [&](std::size_t row) { return pressed(row) * 1e6; });
+      limit, table, [&](std::size_t row) { return reach - pressed[row]; },
+      [&](std::size_t row) { return pressed[row] * 1e6; });
   limit.consequence =
       "three pairs of each flank are looked at; a fourth would carry a part of the force";
   return limit;

@@ -51,19 +51,31 @@ int rattle(const Options& options) {
   study::RattleKeeping keeping;
   if (options.resume) keeping.finished = file.read();
   ReportFolders folders(options.place);
+  if (options.resume && file.rows() == 0)
+    std::fprintf(stderr, "bentaxis: %s: no rows to resume from; all are computed\n",
+                 file.file().c_str());
+  if (std::filesystem::exists(std::filesystem::path(options.place.out) / "rattle.csv"))
+    std::fprintf(stderr, "bentaxis: %s holds an earlier map until this one is finished\n",
+                 options.place.out.c_str());
   keeping.keep = [&](const study::RattleRow& row) { file.keep(row); };
+  const auto say_kept = [&](const char* why) {
+    std::fprintf(stderr, "bentaxis: %s%zu of %zu rows are in %s: --resume goes on from them\n", why,
+                 file.rows(), rattle.delivery_bar.size(), file.file().c_str());
+  };
   study::RattleMap map;
+  std::vector<std::filesystem::path> paths;
   try {
     map = study::rattle_map(the_case, rattle, keeping, progress_of);
+    paths = folders.write("report", study::rattle_document(map, versions()), {},
+                          {{"rattle.csv", study::rattle_csv(map)}});
   } catch (const Interrupted&) {
     if (file.rows() == 0) throw;
-    std::fprintf(stderr,
-                 "bentaxis: interrupted; %zu of %zu rows are in %s: --resume goes on from them\n",
-                 file.rows(), rattle.delivery_bar.size(), file.file().c_str());
+    say_kept("interrupted; ");
     return kInterrupted;
+  } catch (...) {
+    if (file.rows() > 0) say_kept("");
+    throw;
   }
-  const auto paths = folders.write("report", study::rattle_document(map, versions()), {},
-                                   {{"rattle.csv", study::rattle_csv(map)}});
   file.remove();
   std::printf("%s\n", study::rattle_text(map).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());

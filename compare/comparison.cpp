@@ -136,6 +136,14 @@ const char* to_string(Verdict verdict) {
   return "not computed";
 }
 
+Options above_round_off(double tolerance, const ZeroScales& scales) {
+  Options options;
+  options.tolerance = tolerance;
+  options.zero_scales = scales;
+  for (const auto& [unit, scale] : scales) options.absolute[unit] = kNoSignal * scale;
+  return options;
+}
+
 bool Comparison::agrees() const {
   return compared() > 0 && incomplete() == nullptr &&
          std::none_of(channels.begin(), channels.end(),

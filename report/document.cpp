@@ -299,7 +299,8 @@ Json json_of(const DerivedQuantity& q) {
 }
 
 Json json_of(const Verdict& verdict) {
-  Json json = {{"agrees", verdict.agrees}, {"headline", verdict.headline}};
+  Json json = {{"agrees", verdict.agrees ? Json(*verdict.agrees) : Json()},
+               {"headline", verdict.headline}};
   if (!verdict.word.empty()) json["word"] = verdict.word;
   if (verdict.tolerance) json["tolerance"] = *verdict.tolerance;
   if (verdict.compared) {

@@ -230,7 +230,7 @@ struct Panel {
   Margin x_margin = Margin::none, y_margin = Margin::some;
   std::function<void(pugi::xml_node, const Scale&, const Scale&)> draw = {};
   std::string title = {};
-  std::vector<Tick> x_ticks = {};  ///< instead of numbers
+  std::vector<Tick> x_ticks = {}, y_ticks = {};  ///< instead of numbers
 };
 
 // A piece of line, a filled box or a mark, with a text.
@@ -279,7 +279,8 @@ void draw_panel(pugi::xml_node root, const Panel& panel, double top) {
   const double bottom = top + panel.height;
   Scale x = scale_of(panel.x, panel.xs, kLeft, kRight, panel.x_margin, panel.angle);
   if (!panel.x_ticks.empty()) x.ticks = panel.x_ticks;
-  const Scale y = scale_of(panel.y, panel.ys, bottom, top, panel.y_margin);
+  Scale y = scale_of(panel.y, panel.ys, bottom, top, panel.y_margin);
+  if (!panel.y_ticks.empty()) y.ticks = panel.y_ticks;
   const Attributes grid = {{"stroke", "#e1e6ec"}, {"class", "grid"}};
   if (panel.x_ticks.empty())
     for (const Tick& tick : x.ticks)
@@ -857,6 +858,25 @@ void draw_dot_over(pugi::xml_node root, double x, double y) {
       {{"cx", px(x)}, {"cy", px(y)}, {"r", "2.4"}, {"fill", "#fff"}, {"stroke", "#000"}});
 }
 
+// Where the cells of a map begin and end: half way between its values, and at either end as far
+// from them as there. A single value's cell is a band about it.
+Values edges_of(const Axis& axis, const Values& values) {
+  Values at = values;
+  if (axis.log)
+    for (double& v : at) v = std::log10(v);
+  Values edges;
+  for (std::size_t k = 0; k + 1 < at.size(); ++k) edges.push_back((at[k] + at[k + 1]) / 2);
+  if (edges.empty()) {
+    for (const double v : at) edges = {v - 0.5, v + 0.5};
+  } else {
+    edges.insert(edges.begin(), 2 * at.front() - edges.front());
+    edges.push_back(2 * at.back() - edges.back());
+  }
+  if (axis.log)
+    for (double& v : edges) v = std::pow(10, v);
+  return edges;
+}
+
 // Shades and contours go by the logarithm of z, where it is not to be linear.
 Picture picture_of(const MapFigure& figure, const Curves&) {
   Picture picture;
@@ -870,8 +890,10 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
     }
   if (range.empty()) return picture;
   if (linear) range.low = std::min(range.low, 0.0);
-  xs.include(figure.x_values);
-  ys.include(figure.y_values);
+  const Values x_edges = edges_of(figure.x, figure.x_values);
+  const Values y_edges = edges_of(figure.y, figure.y_values);
+  xs.include(x_edges);
+  ys.include(y_edges);
   const auto text = [&figure](double v) {
     if (!figure.classes.empty()) return figure.classes.at(static_cast<std::size_t>(v));
     return with_unit(short_number(v), figure.z.unit);
@@ -903,19 +925,23 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
     picture.legend[1].push_back({figure.marks->label, [](pugi::xml_node root, double x, double y) {
                                    draw_dot_over(root, x + 15, y);
                                  }});
-  Panel panel{figure.x, figure.y, 330, xs, ys};
+  Panel panel{figure.x, figure.y, figure.y_values.size() > 1 ? 330.0 : 180.0, xs, ys};
   panel.y_margin = Margin::none;
+  // Beside a single value an axis has nothing to say.
+  for (const auto& [values, ticks] :
+       {std::pair{&figure.x_values, &panel.x_ticks}, std::pair{&figure.y_values, &panel.y_ticks}})
+    if (values->size() == 1) *ticks = {{values->front(), fmt::format("{:.6g}", values->front())}};
   panel.draw = [=](pugi::xml_node root, const Scale& x, const Scale& y) {
     Values px_x, px_y;
     for (const double v : figure.x_values) px_x.push_back(x.place(v));
     for (const double v : figure.y_values) px_y.push_back(y.place(v));
-    const auto edge = [](const Values& p, std::size_t k) {  // before the k-th
-      return k == 0 ? p.front() : k == p.size() ? p.back() : (p[k - 1] + p[k]) / 2;
+    const auto in_frame = [](const Scale& s, double v) {
+      return std::clamp(s.place(v), std::min(s.first, s.last), std::max(s.first, s.last));
     };
     for (std::size_t i = 0; i < z.size(); ++i)
       for (std::size_t j = 0; j < z[i].size(); ++j) {
-        const double x1 = edge(px_x, j), x2 = edge(px_x, j + 1), y1 = edge(px_y, i + 1),
-                     y2 = edge(px_y, i);
+        const double x1 = in_frame(x, x_edges[j]), x2 = in_frame(x, x_edges[j + 1]);
+        const double y1 = in_frame(y, y_edges[i + 1]), y2 = in_frame(y, y_edges[i]);
         pugi::xml_node cell = add(root, "rect",
                                   {{"x", px(x1)},
                                    {"y", px(y1)},
@@ -953,16 +979,22 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
     }
     for (std::size_t i = 0; i < figure.lines.size(); ++i) {
       const XySeries& line = figure.lines[i];
+      const auto shown = [&](std::size_t k) {
+        return k < line.x.size() && x.shows(line.x[k]) && y.shows(line.y[k]);
+      };
       std::string path;
-      bool drawing = false;
       for (std::size_t k = 0; k < line.x.size(); ++k) {
-        if (!x.shows(line.x[k]) || !y.shows(line.y[k])) {
-          drawing = false;
-          continue;
+        if (!shown(k)) continue;
+        const bool begins = k == 0 || !shown(k - 1);
+        const double at_x = x.place(line.x[k]), at_y = y.place(line.y[k]);
+        if (begins && !shown(k + 1)) {  // a place alone: across its row
+          const auto row = std::upper_bound(y_edges.begin(), y_edges.end(), line.y[k]);
+          if (row == y_edges.begin() || row == y_edges.end()) continue;
+          path += fmt::format("M{0} {1}L{0} {2}", px(at_x), px(in_frame(y, *(row - 1))),
+                              px(in_frame(y, *row)));
+        } else {
+          path += fmt::format("{}{} {}", begins ? "M" : "L", px(at_x), px(at_y));
         }
-        path += fmt::format("{}{} {}", drawing ? "L" : "M", px(x.place(line.x[k])),
-                            px(y.place(line.y[k])));
-        drawing = true;
       }
       if (!path.empty()) draw_line_over(root, path, i);
     }

@@ -14,9 +14,6 @@
 namespace bentaxis::study {
 namespace {
 
-// A line may be off by this share of the case's loads: what is below it is no signal.
-constexpr double kNoSignal = 1e-12;
-
 struct CauseText {
   Cause cause;
   const char* name;
@@ -255,11 +252,8 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
 BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, double tolerance,
                                  const compare::ZeroScales& scales) {
   BudgetComparison budgets;
-  compare::Options options;
-  options.tolerance = tolerance;
-  options.zero_scales = scales;
-  for (const auto& [unit, scale] : scales) options.absolute[unit] = kNoSignal * scale;
-  budgets.comparison = compare::compare_tables(analytic, multibody, options);
+  budgets.comparison =
+      compare::compare_tables(analytic, multibody, compare::above_round_off(tolerance, scales));
   const std::pair<const char*, const char*> sums[] = {
       {"Td_open_Nm", "Td_z1_Nm"}, {"Tcs_open_Nm", "Tcs_z2_Nm"}, {"Fh_open_N", "Fpress_z2_N"}};
   for (const ResultTable* table : {&analytic, &multibody})
@@ -290,7 +284,8 @@ void explain(BudgetComparison& budgets, const compare::Split& split,
     for (const compare::ChannelSplit& part : split.channels)
       if (line.verdict == compare::Verdict::differs && part.computed &&
           part.channel.name == line.channel.name &&
-          part.rest <= split.tolerance * part.peak + kNoSignal * scales.at(line.channel.unit))
+          part.rest <=
+              split.tolerance * part.peak + compare::kNoSignal * scales.at(line.channel.unit))
         line.verdict = compare::Verdict::explained;
 }
 

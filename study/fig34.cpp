@@ -1,16 +1,14 @@
 #include "bentaxis/study/fig34.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/run.h"
+#include "in_threads.h"
 
 namespace bentaxis::study {
 namespace {
@@ -141,13 +139,10 @@ class Study {
   std::vector<Fig34Curve> simulate(const std::vector<Fig34Point>& points,
                                    const Progress& progress) const {
     std::vector<Fig34Curve> curves(points.size());
-    std::mutex reporting;  // whoever listens is called by one thread at a time, and may throw
-    std::size_t done = 0;
-    oneapi::tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-      Fig34Curve curve = simulate(points[i], false);
-      const std::lock_guard lock(reporting);
-      curves[i] = std::move(curve);
-      progress(static_cast<double>(++done) / static_cast<double>(points.size()));
+    Reporting reporting(points.size(), progress);
+    in_threads(0, points.size(), [&](std::size_t i) {
+      curves[i] = simulate(points[i], false);
+      reporting.done();
     });
     return curves;
   }

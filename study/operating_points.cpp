@@ -1,17 +1,13 @@
 #include "bentaxis/study/operating_points.h"
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <mutex>
-#include <thread>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "in_threads.h"
 
 namespace bentaxis::study {
 namespace {
@@ -22,15 +18,14 @@ constexpr double kPressureTolerance = 1e-6;
 // The first guess is in proportion and off by a few per cent: the first step to either side of it.
 constexpr double kBracketFactor = 1.05;
 
-// @throws InputError where a load says which pressure it is
+}  // namespace
+
 void require_pressure_asked_for(const Case& the_case) {
   if (the_case.hydraulics && the_case.hydraulics->load &&
       the_case.hydraulics->load->sets_pressure())
     throw InputError(the_case.file.string() +
                      ": [load] sets the delivery pressure: there is no other to compute");
 }
-
-}  // namespace
 
 void require_hydraulic(const Case& the_case) {
   if (the_case.pressure.kind != PressureKind::hydraulic)
@@ -63,19 +58,10 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
   for (auto* values :
        {&curve.analytic, &curve.multibody, &curve.ideal, &curve.flow, &curve.efficiency})
     values->resize(count);
-  // Whoever listens is called by one thread at a time, and may throw. The lock also shows the
-  // thread sanitizer, which cannot see into oneTBB, that points come between what lies before and
-  // after.
-  std::mutex reporting;
-  std::size_t done = 0;
-  const auto report = [&](std::size_t more) {
-    const std::lock_guard lock(reporting);
-    done += more;
-    if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
-  };
-  const PartProgress within = [&](const std::string&) { return [&](double) { report(0); }; };
-  const auto compute = [&](std::size_t i) {
-    report(0);
+  Reporting reporting(count, progress);
+  const PartProgress within = [&](const std::string&) { return [&](double) { reporting.tick(); }; };
+  in_threads(kMostThreads, count, [&](std::size_t i) {
+    reporting.tick();
     Case at = the_case;
     at.pressure.ports.delivery = pascals(delivery_bar[i]);
     const OperatingPoint point = run_point(std::move(at), within);
@@ -86,14 +72,8 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
         s.displacement * (pascals(delivery_bar[i]) - the_case.pressure.ports.suction) / (2 * kPi);
     curve.flow[i] = s.flow * 6e4;
     curve.efficiency[i] = 100 * s.volumetric_efficiency;
-    report(1);
-  };
-  report(0);
-  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  oneapi::tbb::task_arena(std::min(processors, kMostThreads)).execute([&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, count, compute);
+    reporting.done();
   });
-  report(0);
   return curve;
 }
 

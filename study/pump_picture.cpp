@@ -82,7 +82,7 @@ Point unit(Point a) {
 }
 
 // To six digits: 22.5 and not 22.500000000000004.
-std::string mm(double metres) { return fmt::format("{:.6g}", metres * 1e3); }
+std::string mm_text(double metres) { return fmt::format("{:.6g}", metres * 1e3); }
 std::string px(double x) { return fmt::format("{:.1f}", x); }
 std::string at(double x) { return fmt::format("{:.6g}", std::abs(x) < 1e-9 ? 0 : x); }
 
@@ -339,7 +339,7 @@ void Picture::draw_side() {
   draw_bearing(p_.bearings.tapered_z, true);
   draw_bearing(p_.bearings.cylindrical_z, false);
   if (is_far(p_.block.pin_z)) {
-    v.words(fmt::format("pin at {} mm", mm(p_.block.pin_z)),
+    v.words(fmt::format("pin at {} mm", mm_text(p_.block.pin_z)),
             from_block(std::copysign(0.6 * size_, p_.block.pin_z), 0), 0, -8, "middle");
   } else {
     v.line("pin", from_block(0, 0), from_block(p_.block.pin_z, 0));
@@ -351,13 +351,13 @@ void Picture::draw_side() {
     v.dot("mass", from_block(p_.block.centre_of_mass_z, 0), 3.5);
   // Dimensions.
   v.dimension({0, 0}, {0, -g_.joint_circle_radius}, -14, "", "", 0, 0);
-  v.words("Ra " + mm(g_.joint_circle_radius), {0, -flange_radius()}, -16, 16);
+  v.words("Ra " + mm_text(g_.joint_circle_radius), {0, -flange_radius()}, -16, 16);
   const double behind = block_to_ + 0.42 * bore();
   v.dimension(from_block(behind, 0), from_block(behind, -g_.bore_circle_radius), 0,
-              "Rd " + mm(g_.bore_circle_radius), "", 8, 6);
+              "Rd " + mm_text(g_.bore_circle_radius), "", 8, 6);
   const Point a{0, g_.joint_circle_radius};
   const Point b = from_block(near_, g_.bore_circle_radius);
-  v.dimension(a, b, 24, "b1 " + mm(g_.piston_length), "end", -8, -8);
+  v.dimension(a, b, 24, "b1 " + mm_text(g_.piston_length), "end", -8, -8);
   // Tilt, as an arc about O2.
   if (g_.tilt > 0.02) {
     const double r = 0.62 * size_;
@@ -414,7 +414,7 @@ void Picture::draw_bearing(double z, bool tapered) {
   const double shaft = 0.42 * g_.joint_circle_radius, height = 0.34 * size_;
   if (is_far(z)) {
     const Point edge{std::copysign(kFar * size_, z), 0};
-    v.words(fmt::format("{} at {} mm {}", name, mm(z), z < 0 ? "\u2190" : "\u2192"), edge, 0,
+    v.words(fmt::format("{} at {} mm {}", name, mm_text(z), z < 0 ? "\u2190" : "\u2192"), edge, 0,
             tapered ? -34 : 44, z < 0 ? "" : "end");
     return;
   }
@@ -429,7 +429,7 @@ void Picture::draw_bearing(double z, bool tapered) {
   }
   v.line("axis", {z, -shaft - height}, {z, shaft + height});
   v.words(tapered ? "C1 tapered" : "C2 cylindrical", {z, -shaft - height}, 0, 16, "middle");
-  v.words(mm(z), {z, -shaft - height}, 0, 31, "middle small");
+  v.words(mm_text(z), {z, -shaft - height}, 0, 31, "middle small");
 }
 
 void Picture::draw_gear_cones() {
@@ -467,8 +467,8 @@ void Picture::draw_joints() {
   const double left = v.column();
   v.paper("Joints and gear", {left, 20}, "title");
   v.paper("against the shaft axis: x1 right, y1 up", {left, 36}, "small");
-  v.paper("joint circle Ra " + mm(g_.joint_circle_radius) + " mm", {left, bottom_ + 24});
-  v.paper(fmt::format("pitch circle d {} mm{}", mm(p_.gear.pitch_diameter),
+  v.paper("joint circle Ra " + mm_text(g_.joint_circle_radius) + " mm", {left, bottom_ + 24});
+  v.paper(fmt::format("pitch circle d {} mm{}", mm_text(p_.gear.pitch_diameter),
                       gear_is_far() ? " (beyond the picture)" : ""),
           {left, bottom_ + 42});
 }
@@ -483,9 +483,9 @@ void Picture::draw_port(const PortArc& arc, const char* style) {
     };
     const int large = span > kPi ? 1 : 0;
     block_.raw(fmt::format("<path class=\"{}\" d=\"M{}A{} {} 0 {} 1 {}L{}A{} {} 0 {} 0 {}Z\"/>\n",
-                           look, point(outer, from), mm(outer), mm(outer), large,
-                           point(outer, from + span), point(inner, from + span), mm(inner),
-                           mm(inner), large, point(inner, from)));
+                           look, point(outer, from), mm_text(outer), mm_text(outer), large,
+                           point(outer, from + span), point(inner, from + span), mm_text(inner),
+                           mm_text(inner), large, point(inner, from)));
   };
   ring(plate.r1, plate.r4, std::string(style) + " land");
   ring(plate.r2, plate.r3, style);
@@ -506,8 +506,8 @@ void Picture::draw_block() {
   v.line("axis", {0, -arm}, {0, arm});
   v.circle("thin", {0, 0}, g_.bore_circle_radius);
   v.raw(fmt::format("<ellipse class=\"joints\" cx=\"0\" cy=\"{}\" rx=\"{}\" ry=\"{}\"/>\n",
-                    at(g_.axis_offset * sine_ * 1e3), mm(g_.joint_circle_radius),
-                    mm(g_.joint_circle_radius * cosine_)));
+                    at(g_.axis_offset * sine_ * 1e3), mm_text(g_.joint_circle_radius),
+                    mm_text(g_.joint_circle_radius * cosine_)));
   for (int k = 0; k < g_.pistons; ++k) {
     const double theta = -2 * kPi * k / g_.pistons;
     const Point c{-g_.bore_circle_radius * std::sin(theta),
@@ -520,13 +520,13 @@ void Picture::draw_block() {
   const double left = v.column();
   v.paper("Bores and port plate", {left, 20}, "title");
   v.paper("against the block axis: x2 right, y2 up", {left, 36}, "small");
-  v.paper(
-      fmt::format("bores Dpi {} mm on Rd {} mm", mm(g_.bore_diameter), mm(g_.bore_circle_radius)),
-      {left, bottom_ + 24});
+  v.paper(fmt::format("bores Dpi {} mm on Rd {} mm", mm_text(g_.bore_diameter),
+                      mm_text(g_.bore_circle_radius)),
+          {left, bottom_ + 24});
   v.paper(plate == nullptr
               ? std::string("no port plate")
-              : fmt::format("lands {}..{} and {}..{} mm{}", mm(plate->r1), mm(plate->r2),
-                            mm(plate->r3), mm(plate->r4), plate_fits ? "" : " (beyond)"),
+              : fmt::format("lands {}..{} and {}..{} mm{}", mm_text(plate->r1), mm_text(plate->r2),
+                            mm_text(plate->r3), mm_text(plate->r4), plate_fits ? "" : " (beyond)"),
           {left, bottom_ + 42});
 }
 
@@ -545,7 +545,7 @@ void Picture::draw_rule(double scale) {
       "y=\"{4}\">{5} mm. Blue: pistons, dashed the circle of their joints; green: pitch circle; "
       "pale: "
       "outlines that the case does not give; dots: centres of mass</text>\n",
-      px(left), px(y), px(step * scale), px(left + step * scale + 8), px(y + 8), mm(step));
+      px(left), px(y), px(step * scale), px(left + step * scale + 8), px(y + 8), mm_text(step));
 }
 
 }  // namespace

@@ -1,20 +1,14 @@
 #include "bentaxis/study/rattle.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/partitioner.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
-#include <atomic>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <mutex>
 #include <optional>
-#include <thread>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/operating_points.h"
+#include "in_threads.h"
 #include "rattle_pieces.h"
 
 namespace bentaxis::study {
@@ -71,55 +65,6 @@ RattleRow compute_row(const Case& the_case, const RattleOptions& options, double
   return row;
 }
 
-// Whoever listens is called by one thread at a time, and may throw. The lock also shows the thread
-// sanitizer, which cannot see into oneTBB, that tasks come between what lies before and after.
-class Reporting {
- public:
-  Reporting(std::size_t all, Progress progress) : all_(all), progress_(std::move(progress)) {}
-
-  void done() {
-    const std::lock_guard lock(mutex_);
-    ++done_;
-    tell();
-  }
-  void tick(const std::function<void()>& first = {}) {
-    const std::lock_guard lock(mutex_);
-    if (first) first();
-    tell();
-  }
-
- private:
-  void tell() {
-    if (progress_) progress_(static_cast<double>(done_) / static_cast<double>(all_));
-  }
-  std::mutex mutex_;
-  std::size_t all_, done_ = 0;
-  Progress progress_;
-};
-
-// Orders what threads hand to each other once more than oneTBB does, whose library a thread
-// sanitizer does not see.
-std::atomic<long> handed_over{0};
-
-template <class Job>
-void in_threads(int threads, std::size_t count, const Job& job) {
-  if (count == 0) return;
-  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  handed_over.fetch_add(1);
-  oneapi::tbb::task_arena(threads > 0 ? std::min(threads, processors) : processors).execute([&] {
-    // One by one: a row may take many times as long as another.
-    oneapi::tbb::parallel_for(
-        oneapi::tbb::blocked_range<std::size_t>(0, count, 1),
-        [&](const auto& range) {
-          handed_over.fetch_add(1);
-          for (std::size_t i = range.begin(); i < range.end(); ++i) job(i);
-          handed_over.fetch_add(1);
-        },
-        oneapi::tbb::simple_partitioner());
-  });
-  handed_over.fetch_add(1);
-}
-
 }  // namespace
 
 const std::vector<std::string>& rattle_class_names() {
@@ -148,10 +93,7 @@ bool RattleMap::agrees() const {
 }
 
 Case rattle_case(Case the_case, double speed_rpm, double delivery_bar) {
-  if (the_case.hydraulics && the_case.hydraulics->load &&
-      the_case.hydraulics->load->sets_pressure())
-    throw InputError(the_case.file.string() +
-                     ": [load] sets the delivery pressure: a map over it has none to give");
+  require_pressure_asked_for(the_case);
   the_case.operation.speed_rpm = speed_rpm;
   the_case.pressure.ports.delivery = pascals(delivery_bar);
   DriveSpec drive;

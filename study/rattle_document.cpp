@@ -51,9 +51,17 @@ std::string headline(const RattleMap& map) {
   text += fmt::format(" of {} points", map.rows.size() * map.options.speed_rpm.size());
   if (const std::size_t both = two_states_of(map); both > 0)
     text += fmt::format("; another steady state swept down at {}", both);
-  if (!map.checks.empty())
-    text += fmt::format("; Simbody agrees at {} of {} points", agreeing(map), map.checks.size());
+  if (map.checks.empty()) return text;
+  text += fmt::format("; Simbody agrees at {} of {} points", agreeing(map), map.checks.size());
+  const auto partly = std::count_if(map.checks.begin(), map.checks.end(),
+                                    [](const RattleCheck& check) { return check.chaotic(); });
+  if (partly > 0) text += fmt::format(", {} of them judged over part of their turns only", partly);
   return text;
+}
+
+std::string against(RattleClass analytic, RattleClass multibody) {
+  return analytic == multibody ? to_string(analytic)
+                               : to_string(analytic) + " against " + to_string(multibody);
 }
 
 std::string agreement_text(const BoundaryAgreement& agreement) {
@@ -72,8 +80,8 @@ std::string agreement_text(const BoundaryAgreement& agreement) {
   if (count > 0)
     text += fmt::format(
         "; the simulated boundary lies {:.3g} rpm {} it on average, {:.3g} rpm from it at most, "
-        "where speeds are {:.3g} rpm apart",
-        std::abs(sum / count), sum < 0 ? "below" : "above", most, spacing);
+        "where speeds are {:.3g} rpm apart and leave {:.3g} rpm open on either side",
+        std::abs(sum / count), sum < 0 ? "below" : "above", most, spacing, spacing / 2);
   return text;
 }
 
@@ -103,6 +111,9 @@ report::Section settings_section(const RattleMap& map) {
   add("in touch throughout",
       fmt::format("{} turns without separation: the last of them is observed", kTurnsInTouch));
   add("impact", fmt::format("a touch at {:g} m/s of approach or more", kImpactSpeed));
+  add("largest impulse",
+      "from an impact until its flank leaves (rattle.csv: largest_impulse_Ns): of teeth that hit "
+      "once and then carry, with what they carry");
   add("loses contact", fmt::format("no flank touches for more than {:g} of the time", kNoGap));
   add("two steady states",
       fmt::format("up and down differ in class, or the largest force of every turn of one is above "
@@ -159,19 +170,22 @@ report::Section boundary_section(const BoundaryAgreement& agreement) {
 
 report::Section states_section(const RattleMap& map) {
   report::Section section{"Two steady states",
-                          "Where the upward and the downward sweep settle differently.",
+                          "Where the upward and the downward sweep settle differently. No period: "
+                          "irregular, longer, or still ringing.",
                           {{"points", std::to_string(two_states_of(map))}},
                           {{"delivery pressure, bar", "speed, rpm", "up", "down", "largest up, N",
                             "largest down, N", "period up, turns", "period down, turns"},
                            {}}};
   constexpr std::size_t kMostRows = 100;  // the rest is in the CSV file
+  const auto period = [](const RattlePoint& p) {
+    return p.period > 0 ? report::Cell(static_cast<long>(p.period)) : report::Cell("none");
+  };
   for (const RattleRow& row : map.rows)
     for (std::size_t j = 0; j < row.up.size(); ++j) {
       const RattlePoint &u = row.up[j], &d = row.down[j];
       if (!two_states(u, d) || section.table.rows.size() >= kMostRows) continue;
       section.table.rows.push_back({row.delivery_bar, map.options.speed_rpm[j], to_string(u.kind),
-                                    to_string(d.kind), u.largest, d.largest,
-                                    static_cast<long>(u.period), static_cast<long>(d.period)});
+                                    to_string(d.kind), u.largest, d.largest, period(u), period(d)});
     }
   return section;
 }
@@ -182,18 +196,19 @@ report::Section checks_section(const RattleMap& map) {
       "Points spread over the classes, through the observed turns from the state at which they "
       "begin. A second start of the closed form, moved a little, tells how disturbances grow: the "
       "largest force may differ by the errors of the steps grown so. Where they have grown too far "
-      "nothing more is judged; such a motion is chaotic, and what follows agrees only in kind.",
+      "nothing more is judged; such a motion is chaotic, and what follows agrees only in kind. "
+      "Where both "
+      "differ in class, the closed form's stands first.",
       {{"agree", fmt::format("{} of {}", agreeing(map), map.checks.size())}},
-      {{"delivery pressure, bar", "speed, rpm", "class", "Simbody", "turns judged", "of", "growth",
-        "difference of largest force", "allowed", "agrees", "class over all turns", "Simbody",
-        "largest, N", "Simbody, N"},
+      {{"bar", "rpm", "class", "turns judged", "of", "growth", "largest force apart by", "allowed",
+        "agrees", "all turns: class", "largest, N", "Simbody, N"},
        {}}};
   for (const RattleCheck& c : map.checks)
     section.table.rows.push_back({map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
-                                  to_string(c.analytic), to_string(c.multibody), turns_of(c.judged),
+                                  against(c.analytic, c.multibody), turns_of(c.judged),
                                   turns_of(c.parts), c.growth, c.difference, c.allowed, c.agrees(),
-                                  to_string(c.analytic_whole), to_string(c.multibody_whole),
-                                  c.largest_analytic, c.largest_multibody});
+                                  against(c.analytic_whole, c.multibody_whole), c.largest_analytic,
+                                  c.largest_multibody});
   return section;
 }
 
@@ -322,7 +337,10 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
   describe_case(document, map.the_case);
   document.derived = derived_section(map.the_case);
   document.verdict = report::Verdict{map.agrees(), headline(map)};
-  if (map.checks.empty()) document.verdict->word = "Map";
+  if (map.checks.empty()) {
+    document.verdict->agrees.reset();
+    document.verdict->word = "Map";
+  }
   document.meaning =
       map.checks.empty()
           ? "What the closed form's teeth do; a class is that of the observed turns, under the "
@@ -352,10 +370,8 @@ std::string rattle_text(const RattleMap& map) {
         "Simbody at {:g} bar, {:g} rpm: {}: {}, largest force {:.1e} apart, {:.1e} allowed, {:g} "
         "of {:g} turns judged{}\n",
         map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
-        c.agrees() ? "agrees" : "differs",
-        c.analytic == c.multibody ? to_string(c.analytic)
-                                  : to_string(c.analytic) + " against " + to_string(c.multibody),
-        c.difference, c.allowed, turns_of(c.judged), turns_of(c.parts),
+        c.agrees() ? "agrees" : "differs", against(c.analytic, c.multibody), c.difference,
+        c.allowed, turns_of(c.judged), turns_of(c.parts),
         c.chaotic() ? fmt::format(", chaotic; over all {} against {}", to_string(c.analytic_whole),
                                   to_string(c.multibody_whole))
                     : "");

@@ -1,5 +1,6 @@
 #include "bentaxis/study/rattle_file.h"
 
+#include <cerrno>
 #include <charconv>
 #include <fstream>
 #include <sstream>
@@ -161,23 +162,26 @@ std::vector<RattleRow> RattleFile::read() {
 }
 
 void RattleFile::keep(const RattleRow& row) {
-  text_ += text_of(row);
+  std::string text = text_ + text_of(row);
+  write(text);
+  text_ = std::move(text);
   ++rows_;
-  write();
 }
 
-void RattleFile::write() const {
+void RattleFile::write(const std::string& text) const {
   const std::filesystem::path beside = file_.string() + ".new";
   std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-  out << text_;
+  out << text;
   out.close();
   std::error_code error;
-  if (out) std::filesystem::rename(beside, file_, error);
-  if (!out || error) {
+  if (out)
+    std::filesystem::rename(beside, file_, error);
+  else
+    error.assign(errno, std::generic_category());
+  if (error || !out) {
     std::error_code ignored;
     std::filesystem::remove(beside, ignored);
-    throw InputError(file_.string() + ": cannot be written" +
-                     (error ? ": " + error.message() : std::string()));
+    throw InputError(file_.string() + ": cannot be written: " + error.message());
   }
 }
 

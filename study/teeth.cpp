@@ -88,18 +88,13 @@ report::ScatterSeries path_of(const ResultTable& table, const PumpParameters& pu
 }  // namespace
 
 TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, double tolerance,
-                              const compare::ZeroScales& scales) {
+                              compare::ZeroScales scales) {
   TeethComparison teeth;
-  compare::Options options;
-  options.tolerance = tolerance;
-  options.zero_scales = scales;
   // Where no force acts: lengths of a tooth under its usual load.
   for (const auto& [unit, scale] : {std::pair{"urad", 10.0}, {"um", 1.0}, {"mm", 1.0}, {"", 1.0}})
-    options.zero_scales.emplace(unit, scale);
-  // Nothing to round-off of the loads is nothing.
-  constexpr double kNoSignal = 1e-12;
-  for (const auto& [unit, scale] : options.zero_scales) options.absolute[unit] = kNoSignal * scale;
-  teeth.comparison = compare::compare_tables(analytic, multibody, options);
+    scales.emplace(unit, scale);
+  teeth.comparison =
+      compare::compare_tables(analytic, multibody, compare::above_round_off(tolerance, scales));
   // Forces tell, pair by pair; the share of a force that vanishes is round-off over round-off.
   for (auto& line : teeth.comparison.channels)
     if (line.channel.group == "share") line.judged = false;

@@ -75,7 +75,9 @@ class Fig34Test(ProgramTest):
     def check_points(self):
         """The figure of all laws, from the rows of the file."""
         (figure,) = [f for f in self.report["figures"] if f["id"] == "fig34_laws"]
-        points = [(s["name"], p) for s in figure["series"] for p in s["points"]]
+        axes, *series = figure["series"]
+        self.assertEqual([p["y"] for p in axes["points"]], [250, 250])
+        points = [(s["name"], p) for s in series for p in s["points"]]
         self.assertEqual(len(points), len(self.rows))
         for (name, point), row in zip(points, self.rows):
             r = {k: float(v) for k, v in row.items() if v != ""}

@@ -83,7 +83,7 @@ class RattleTest(ProgramTest):
             time.sleep(0.002)
         process.send_signal(signal.SIGINT)
         self.finish(process, INTERRUPTED)
-        self.assertRegex(process.err, "^bentaxis: interrupted; [0-9]+ of 12 rows are in out/rattle.partial.csv: --resume goes on")
+        self.assertRegex(process.err, "^bentaxis: out holds an earlier map until this one is finished\nbentaxis: interrupted; [0-9]+ of 12 rows are in out/rattle.partial.csv: --resume goes on")
         self.assertEqual(self.files(), FILES | {"rattle.partial.csv"})  # those of the earlier map
         self.assertEqual((self.folder / "out" / "rattle.csv").read_bytes(), whole)
         kept = partial.read_text().count("\nrow,")

@@ -786,8 +786,7 @@ TEST(ToothedModel, FreeBodiesBalanceUnderTheForcesOfThePairs) {
   for (const double speed : {157.0, -157.0})
     for (double theta = 0; theta < 360; theta += 7.3) {
       const Instant instant = instant_at(the_case, theta, speed);
-      model.evaluate(instant, values, &checks);
-      model.teeth(instant, action);
+      model.evaluate(instant, values, &checks, &action);
       EXPECT_LT(free_body_residual(the_case.pump, the_case.analytic, instant, values, &action),
                 1e-12)
           << theta;
@@ -815,8 +814,7 @@ TEST(ToothedModel, TakesTheLagOfAnInstant) {
     instant.lag = ToothLag{6e-4, 0.4};
     instant.block = {instant.shaft.angle - 6e-4, 157.0 - 0.4, -300.0};
     instant.shaft.acceleration = 100;
-    model.evaluate(instant, values, &checks);
-    model.teeth(instant, action);
+    model.evaluate(instant, values, &checks, &action);
     const BevelTeeth::Wrench w = teeth.wrench(instant.shaft.angle, 157.0, *instant.lag);
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(action.force[i], w.force[i], 1e-9);
     const double arm =
@@ -942,8 +940,7 @@ TEST(ToothedModel, StatesAreThoseOfTheInstants) {
   TeethAction action;
   for (std::size_t row = 0; row < states.rows(); ++row) {
     states.instant(row, instant);
-    model.evaluate(instant, values);
-    model.teeth(instant, action);
+    model.evaluate(instant, values, nullptr, &action);
     for (std::size_t c = 0; c < model.layout().reactions(); ++c)
       EXPECT_EQ(table.results.at(row, c), values[c]);
     EXPECT_EQ(teeth.theta_deg[row], states.motion[row].theta_deg);
@@ -1074,7 +1071,8 @@ TEST(ToothedMechanics, RestsWhereTheQuasiStaticTeethDo) {
     const double time = radians(theta_deg) / omega;
     const Instant instant = instant_at(the_case, theta_deg, omega);
     TeethAction action;
-    model.teeth(instant, action);
+    std::vector<double> values(model.layout().reactions());
+    model.reactions(instant, values, &action);
     MotionVector y = mechanics->start();
     y[kLag] = action.lag;
     MotionVector dy;

@@ -246,84 +246,60 @@ double Equations::drive_torque_at(double time, const State& y) const {
          drive_.motor->coupling_damping * y[kTwistRate];
 }
 
+// What the teeth do at the instant, by their law.
+void Equations::find_tooth_force(const State& y, Motion& m) {
+  if (law_ && teeth.pressing != 0)
+    m.tooth_force =
+        teeth.pressing * flank_force(approach(y, teeth.pressing), approach_rate(y, teeth.pressing));
+  if (!bevel_) return;
+  instant_.lag = ToothLag{y[kLag], y[kLagRate]};
+  const BevelTeeth::Wrench w =
+      bevel_->wrench(instant_.shaft.angle, instant_.shaft.speed, *instant_.lag);
+  m.shaft_moment = -BevelTeeth::about_shaft_axis(w.moment);
+  m.tooth_force = bevel_->about_block_axis(w.moment) / arm_;
+}
+
 // Of the instant, whose speeds and pressures are set.
 Motion Equations::accelerate(double time, const State& y) {
-  if (bevel_) return accelerate_with_teeth(time, y);
   Motion m;
   const bool speed_given = drive_.kind == DriveKind::speed;
   const double given = instant_.shaft.acceleration;
   if (!speed_given) m.drive_torque = drive_torque_at(time, y);
   double shaft = given, block = given;
-  if (!law_) {
+  if (!compliant()) {
     if (!speed_given) {
       const Response still = respond(model_, 0, 0);
       const Response moved = respond(model_, probe_, probe_);
       shaft = block = (m.drive_torque - still.drive_torque) /
                       (moved.drive_torque - still.drive_torque) * probe_;
     }
-    m.tooth_force = 0;
   } else {
-    if (teeth.pressing != 0)
-      m.tooth_force = teeth.pressing *
-                      flank_force(approach(y, teeth.pressing), approach_rate(y, teeth.pressing));
-    const Response still = respond(model_, given, 0);
-    const Response by_block = respond(model_, given, probe_);
+    find_tooth_force(y, m);
+    const Model& model = bevel_ ? *at_o4_ : model_;
+    // Td beyond what it is with the force at O4.
+    const double more = bevel_ ? -(m.shaft_moment + m.tooth_force * arm_) / torque_factor_ : 0.0;
+    const Response still = respond(model, given, 0);
+    const Response by_block = respond(model, given, probe_);
     const double block_force = by_block.tooth_force - still.tooth_force;
     const double block_torque = by_block.drive_torque - still.drive_torque;
     const double force = m.tooth_force - still.tooth_force;
     if (speed_given) {
       block = force / block_force;  // in probes
+      m.drive_torque = still.drive_torque + block * block_torque + more;
     } else {
-      const Response by_shaft = respond(model_, probe_, 0);
+      const Response by_shaft = respond(model, probe_, 0);
       const double shaft_force = by_shaft.tooth_force - still.tooth_force;
       const double shaft_torque = by_shaft.drive_torque - still.drive_torque;
-      const double torque = m.drive_torque - still.drive_torque;
+      const double torque = m.drive_torque - more - still.drive_torque;
       const double determinant = shaft_torque * block_force - block_torque * shaft_force;
       shaft = (torque * block_force - block_torque * force) / determinant * probe_;
       block = (shaft_torque * force - torque * shaft_force) / determinant;
     }
-    if (speed_given) m.drive_torque = still.drive_torque + block * block_torque;
     block *= probe_;
   }
   instant_.shaft.acceleration = shaft;
   instant_.block.acceleration = block;
-  if (speed_given && !law_) m.drive_torque = respond(model_, shaft, block).drive_torque;
-  m.shaft = instant_.shaft;
-  m.block = instant_.block;
-  return m;
-}
-
-Motion Equations::accelerate_with_teeth(double time, const State& y) {
-  Motion m;
-  instant_.lag = ToothLag{y[kLag], y[kLagRate]};
-  const BevelTeeth::Wrench w =
-      bevel_->wrench(instant_.shaft.angle, instant_.shaft.speed, *instant_.lag);
-  m.shaft_moment = -BevelTeeth::about_shaft_axis(w.moment);
-  m.tooth_force = bevel_->about_block_axis(w.moment) / arm_;
-  // Td beyond what it is with the force at O4.
-  const double more = -(m.shaft_moment + m.tooth_force * arm_) / torque_factor_;
-  const double given = instant_.shaft.acceleration;
-  const Response still = respond(*at_o4_, given, 0);
-  const Response by_block = respond(*at_o4_, given, probe_);
-  const double block_force = by_block.tooth_force - still.tooth_force;
-  const double block_torque = by_block.drive_torque - still.drive_torque;
-  const double force = m.tooth_force - still.tooth_force;
-  double shaft = given;
-  double block = force / block_force;  // in probes
-  if (drive_.kind == DriveKind::speed) {
-    m.drive_torque = still.drive_torque + block * block_torque + more;
-  } else {
-    m.drive_torque = drive_torque_at(time, y);
-    const Response by_shaft = respond(*at_o4_, probe_, 0);
-    const double shaft_force = by_shaft.tooth_force - still.tooth_force;
-    const double shaft_torque = by_shaft.drive_torque - still.drive_torque;
-    const double torque = m.drive_torque - more - still.drive_torque;
-    const double determinant = shaft_torque * block_force - block_torque * shaft_force;
-    shaft = (torque * block_force - block_torque * force) / determinant * probe_;
-    block = (shaft_torque * force - torque * shaft_force) / determinant;
-  }
-  instant_.shaft.acceleration = shaft;
-  instant_.block.acceleration = block * probe_;
+  if (speed_given && !compliant()) m.drive_torque = respond(model_, shaft, block).drive_torque;
   m.shaft = instant_.shaft;
   m.block = instant_.block;
   return m;
@@ -358,15 +334,13 @@ void Equations::add_rates(const State& y, const Motion& m, State& dy) {
     dy[kTurn] = y[kTurnRate];
     dy[kTurnRate] = m.shaft.acceleration;
   }
-  if (bevel_) {
+  if (compliant()) {
     dy[kLag] = y[kLagRate];
     dy[kLagRate] = m.shaft.acceleration - m.block.acceleration;
-    loads += m.shaft_moment * shaft_speed + m.tooth_force * arm_ * m.block.speed;
     dy[kImpulse] = std::abs(m.tooth_force);
   }
+  if (bevel_) loads += m.shaft_moment * shaft_speed + m.tooth_force * arm_ * m.block.speed;
   if (law_) {
-    dy[kLag] = y[kLagRate];
-    dy[kLagRate] = m.shaft.acceleration - m.block.acceleration;
     // What the flanks take in beyond what their springs hold.
     for (const int flank : {1, -1}) {
       const double x = approach(y, flank);
@@ -374,7 +348,6 @@ void Equations::add_rates(const State& y, const Motion& m, State& dy) {
         loads -= (teeth.pressing == flank ? flank * m.tooth_force : 0.0) * approach_rate(y, flank) -
                  spring_force(x) * approach_rate(y, flank);
     }
-    dy[kImpulse] = std::abs(m.tooth_force);
   }
   if (drive_.kind == DriveKind::motor) {
     const MotorData& motor = *drive_.motor;

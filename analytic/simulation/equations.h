@@ -98,7 +98,7 @@ class Equations {
   Teeth teeth_at(const State& y) const;
   void set_speeds(double time, const State& y);
   void set_pressures(double block_angle);
-  Motion accelerate_with_teeth(double time, const State& y);
+  void find_tooth_force(const State& y, Motion& m);
   double drive_torque_at(double time, const State& y) const;
   double spring_force(double approach) const;
   double flank_force(double approach, double rate) const;

@@ -49,7 +49,7 @@ function pumpHead({ plausibility }) {
 const summary = ({ summary }) => !summary ? null : el("div", {},
   summary.text ? el("p", {}, summary.text) : null,
   list(summary.groups).map(g => el("div.block", {}, g.title ? el("h3", {}, g.title) : null,
-    el("ul.plain", {}, list(g.lines).map(line => el("li", {}, line))))));
+    el("ul.plain", {}, list(g.lines).map(line => line.startsWith("- ") ? el("li.item", {}, line.slice(2)) : el("li", {}, line))))));
 
 const warnings = ({ warnings }) => !list(warnings).length ? null :
   el("ul.warnings", {}, warnings.map(w => el("li", {}, el("strong", {}, w.name), el("span", {}, w.text))));

@@ -6,8 +6,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "bentaxis/analytic/teeth.h"
 #include "bentaxis/pump/parameters.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
@@ -42,7 +44,9 @@ class Model {
   /// that of teeth, pin, film, bearings and Td are those of the force and moment that the teeth
   /// have at the instant's lag, or at rest under that Rcs. Allocates nothing. Many instants, or
   /// many pumps, at a time: batch.h.
-  void reactions(const Instant& instant, std::vector<double>& values) const;
+  /// @param teeth  where not null and the contact is that of teeth: what they do to each other
+  void reactions(const Instant& instant, std::vector<double>& values,
+                 TeethAction* teeth = nullptr) const;
 
   /// The same algebra with `long double` (64 bits of mantissa on x86): what reactions() loses to
   /// rounding is the difference. For judging errors, not for speed.
@@ -51,12 +55,11 @@ class Model {
   /// Like reactions(), and the derived, input and check channels too: layout().size() values.
   /// power_residual is not_computed() where the block moves on its own and the shaft is at rest.
   /// @param checks  where not null: what general motion is judged by
-  void evaluate(const Instant& instant, std::vector<double>& values,
-                MotionChecks* checks = nullptr) const;
-
-  /// What the teeth do to each other at an instant, as reactions() takes them.
-  /// @throws InputError where the contact is not that of teeth, or the block's speed is imposed
-  void teeth(const Instant& instant, TeethAction& action) const;
+  /// @param teeth   as of reactions()
+  void evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks = nullptr,
+                TeethAction* teeth = nullptr) const;
+  /// Whether the shaft moves the block by teeth that touch where they are.
+  bool has_teeth() const;
 
   /// By how much reactions with two flanks differ from those with one line of action, as printed,
   /// where that one's separating part would pull the gears together; 0 where it pushes them apart.
@@ -85,9 +88,15 @@ class Model {
   struct Unchecked {};
   Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked);
 
-  ToothLag lag_at(const Instant& instant, double tooth_force) const;
+  // How teeth stand and what they then do.
+  struct Settled {
+    ToothLag lag;
+    BevelTeeth::Wrench wrench;
+  };
   template <class Real>
-  void let_teeth_act(const Instant& instant, std::vector<Real>& values) const;
+  Settled let_teeth_act(const Instant& instant, std::vector<Real>& values) const;
+  std::optional<Settled> find(const Instant& instant, std::vector<double>& values) const;
+  void act(const Instant& instant, const ToothLag& lag, TeethAction& teeth) const;
 
   PumpParameters pump_;
   ChannelLayout layout_;

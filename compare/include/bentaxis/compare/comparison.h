@@ -78,6 +78,12 @@ struct Options {
   std::function<bool(const Channel& channel, std::size_t row)> may_be_missing;
 };
 
+/// Share of a load scale up to which a value is round-off of it.
+inline constexpr double kNoSignal = 1e-12;
+
+/// Options in which what is round-off of these scales counts as nothing.
+Options above_round_off(double tolerance, const ZeroScales& scales);
+
 struct Comparison {
   std::string first, second;  ///< names of the tables
   std::vector<ChannelComparison> channels;

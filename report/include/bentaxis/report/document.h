@@ -138,7 +138,7 @@ struct MapFigure {
   /// logarithm, or from 0 by itself where `linear`.
   std::vector<std::string> classes = {};
   bool linear = false;
-  std::vector<XySeries> lines = {};              ///< drawn over it
+  std::vector<XySeries> lines = {};              ///< drawn over it; a place alone, across its row
   std::optional<XySeries> marks = std::nullopt;  ///< places of the map, each a dot
 };
 
@@ -237,7 +237,7 @@ struct WorstChannel {
 
 /// What is absent does not apply to this report.
 struct Verdict {
-  bool agrees = false;
+  std::optional<bool> agrees;  ///< nothing where nothing was compared: a finding, not a verdict
   std::string headline;
   std::string word = {};  ///< instead of "Agrees" or "Differs", or ""
   std::optional<double> tolerance = std::nullopt;

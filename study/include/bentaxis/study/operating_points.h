@@ -13,6 +13,9 @@ namespace bentaxis::study {
 /// @throws InputError where the pressure of a case is not of kind "hydraulic"
 void require_hydraulic(const Case& the_case);
 
+/// @throws InputError where a load says which delivery pressure it is
+void require_pressure_asked_for(const Case& the_case);
+
 /// One operating point: its periodic hydraulic state, and a turn by both models as the case
 /// assumes.
 struct OperatingPoint {

@@ -30,7 +30,7 @@ class RattleFile {
   void remove() const;
 
  private:
-  void write() const;
+  void write(const std::string& text) const;
 
   std::filesystem::path file_;
   std::string from_, text_;

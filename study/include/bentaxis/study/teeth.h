@@ -16,7 +16,7 @@ struct TeethComparison {
 
 /// @param scales  of the case's loads
 TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, double tolerance,
-                              const compare::ZeroScales& scales);
+                              compare::ZeroScales scales);
 
 /// The teeth for a report: transmission error, share of the pairs, largest force, and the
 /// comparison line by line.
