@@ -72,6 +72,7 @@ ValidityLimit ring_limit(const Model& model, const Case& the_case, const Samples
   ValidityLimit ring;
   ring.limit = "bore forces act where the bore guides the piston: they do no work on the play";
   ring.name = "Rc works on the play";
+  ring.key = "ring";
   ring.unit = "W";
   Instant instant;
   std::vector<double> values(model.layout().size());
@@ -104,6 +105,7 @@ ValidityLimit reach_limit(const Model& model, const Case& the_case, const Sample
   limit.limit = "teeth pressed together so little that no further pair touches: below " +
                 rounded_text(reach * 1e6) + " um";
   limit.name = "further pairs of teeth touch";
+  limit.key = "reach";
   limit.unit = "um";
   Instant instant;
   TeethAction action;
@@ -143,6 +145,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   flank.limit = two ? "tooth force on the driving flank: Rcs >= 0"
                     : "tooth force on the modelled flank: Rcs >= 0";
   flank.name = "Rcs < 0";
+  flank.key = "flank";
   flank.unit = "N";
   scan(flank, table, value(at.Rcs()), value(at.Rcs()));
   flank.consequence = "no tooth force: the block's speed is imposed";
@@ -161,6 +164,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
     ValidityLimit turned;
     turned.limit = "separating part of the tooth force pushes the gears apart";
     turned.name = "separating force reversed by sign(omega)";
+    turned.key = "turned";
     turned.unit = "N";
     scan(turned, table, negated(at.Rcs()), value(at.Rcs()));
     turned.consequence =
@@ -175,6 +179,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   ValidityLimit film;
   film.limit = "film force pushes the block off the port plate: Fh <= 0";
   film.name = "Fh reversed";
+  film.key = "film";
   film.unit = "N";
   scan(film, table, negated(at.Fh()), value(at.Fh()));
   film.consequence =
@@ -184,6 +189,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   ValidityLimit point;
   point.limit = "film force acts within the plate: radius of (xh, yh) <= r4";
   point.name = "(xh, yh) beyond r4";
+  point.key = "point";
   point.unit = "mm";
   point.applicable = the_case.pump.port_plate.has_value();
   if (point.applicable) {
@@ -204,6 +210,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   ValidityLimit thrust;
   thrust.limit = "tapered bearing loaded in its direction: Rb1_z1 >= 0";
   thrust.name = "Rb1_z1 reversed";
+  thrust.key = "thrust";
   thrust.unit = "N";
   scan(thrust, table, value(at.Rb1(2)), value(at.Rb1(2)));
   thrust.consequence = "a tapered roller bearing takes thrust one way only; the shaft would move";
@@ -212,6 +219,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   ValidityLimit friction;
   friction.limit = "friction takes energy: no friction with positive power";
   friction.name = "friction feeds energy in";
+  friction.key = "friction";
   friction.unit = "W";
   Instant instant;
   const auto power = [&](std::size_t row) {

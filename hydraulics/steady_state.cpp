@@ -438,18 +438,18 @@ Line load_line(const Summary& s) {
   switch (s.load) {
     case LoadKind::laminar:
       return {"load, laminar conductance", s.load_size * kPascalPerBar / kLitrePerMinute,
-              "l/min/bar"};
+              "l/min/bar", "load_l_per_min_per_bar"};
     case LoadKind::relief_valve:
       return {"load, relief valve's cracking pressure",
-              (s.load_size - s.atmosphere) / kPascalPerBar, "bar"};
+              (s.load_size - s.atmosphere) / kPascalPerBar, "bar", "load_cracking_bar"};
     case LoadKind::constant_pressure:
-      return {"load, constant pressure", s.delivery_mean / kPascalPerBar, "bar"};
+      return {"load, constant pressure", s.delivery_mean / kPascalPerBar, "bar", "load_bar"};
     case LoadKind::flow:
-      return {"load, given flow", s.flow / kLitrePerMinute, "l/min"};
+      return {"load, given flow", s.flow / kLitrePerMinute, "l/min", "load_l_per_min"};
     case LoadKind::orifice:
       break;
   }
-  return {"load orifice", s.load_size * 1e6, "mm2"};
+  return {"load orifice", s.load_size * 1e6, "mm2", "load_mm2"};
 }
 
 }  // namespace
@@ -458,36 +458,44 @@ std::vector<Line> lines(const SteadyState& state) {
   const Summary& s = state.summary;
   const double bar = kPascalPerBar;
   return {
-      {"displacement", s.displacement * 1e6, "cm3/rev"},
-      {"density of all volume flows, that in the suction port", s.density, "kg/m3"},
-      {"ideal flow, displacement x speed", s.ideal_flow / kLitrePerMinute, "l/min"},
-      {"mean flow to the load", s.flow / kLitrePerMinute, "l/min"},
-      {"mean mass flow to the load", s.mass_flow, "kg/s"},
+      {"displacement", s.displacement * 1e6, "cm3/rev", "displacement_cm3"},
+      {"density of all volume flows, that in the suction port", s.density, "kg/m3",
+       "density_kg_per_m3"},
+      {"ideal flow, displacement x speed", s.ideal_flow / kLitrePerMinute, "l/min",
+       "ideal_flow_l_per_min"},
+      {"mean flow to the load", s.flow / kLitrePerMinute, "l/min", "flow_l_per_min"},
+      {"mean mass flow to the load", s.mass_flow, "kg/s", "mass_flow_kg_per_s"},
       {"volumetric efficiency, mean flow to the load over ideal flow",
-       100 * s.volumetric_efficiency, "%"},
-      {"leakage", s.leakage / kLitrePerMinute, "l/min"},
-      {"mean delivery pressure", s.delivery_mean / bar, "bar"},
-      {"delivery pressure, least", s.delivery_least / bar, "bar"},
-      {"delivery pressure, greatest", s.delivery_greatest / bar, "bar"},
+       100 * s.volumetric_efficiency, "%", "volumetric_efficiency_percent"},
+      {"leakage", s.leakage / kLitrePerMinute, "l/min", "leakage_l_per_min"},
+      {"mean delivery pressure", s.delivery_mean / bar, "bar", "delivery_mean_bar"},
+      {"delivery pressure, least", s.delivery_least / bar, "bar", "delivery_least_bar"},
+      {"delivery pressure, greatest", s.delivery_greatest / bar, "bar", "delivery_greatest_bar"},
       {"delivery pressure ripple, peak to peak", (s.delivery_greatest - s.delivery_least) / bar,
-       "bar"},
-      {"ripple of the flow to the load, peak to peak", 100 * s.flow_ripple, "% of mean"},
+       "bar", "delivery_ripple_bar"},
+      {"ripple of the flow to the load, peak to peak", 100 * s.flow_ripple, "% of mean",
+       "flow_ripple_percent"},
       {"ripple of the flow through the delivery port, peak to peak", 100 * s.port_flow_ripple,
-       "% of mean"},
-      {"chamber pressure, greatest", s.chamber_greatest / bar, "bar"},
-      {"angle of the greatest", s.chamber_greatest_deg, "deg"},
-      {"overshoot over mean delivery pressure", s.overshoot / bar, "bar"},
-      {"chamber pressure, least", s.chamber_least / bar, "bar"},
-      {"angle of the least", s.chamber_least_deg, "deg"},
-      {"undershoot under suction pressure", s.undershoot / bar, "bar"},
-      {"work of the pistons per turn", s.work, "J"},
-      {"mean torque of that work", s.work / (2 * kPi), "Nm"},
-      {"mass in minus mass out, over mass in", (s.mass_in - s.mass_out) / s.mass_in, ""},
+       "% of mean", "port_flow_ripple_percent"},
+      {"chamber pressure, greatest", s.chamber_greatest / bar, "bar", "chamber_greatest_bar"},
+      {"angle of the greatest", s.chamber_greatest_deg, "deg", "chamber_greatest_deg"},
+      {"overshoot over mean delivery pressure", s.overshoot / bar, "bar", "overshoot_bar"},
+      {"chamber pressure, least", s.chamber_least / bar, "bar", "chamber_least_bar"},
+      {"angle of the least", s.chamber_least_deg, "deg", "chamber_least_deg"},
+      {"undershoot under suction pressure", s.undershoot / bar, "bar", "undershoot_bar"},
+      {"work of the pistons per turn", s.work, "J", "work_J"},
+      {"mean torque of that work", s.work / (2 * kPi), "Nm", "work_torque_Nm"},
+      {"mass in minus mass out, over mass in", (s.mass_in - s.mass_out) / s.mass_in, "",
+       "mass_balance"},
       load_line(s),
-      {"both ports open to a chamber (negative overlap)", s.both_open_deg, "deg per turn"},
-      {"both ports closed (positive overlap)", s.both_closed_deg, "deg per turn"},
-      {"chamber below saturation pressure: air comes out", s.below_saturation_deg, "deg per turn"},
-      {"chamber below vapour pressure: oil boils", s.below_vapour_deg, "deg per turn"},
+      {"both ports open to a chamber (negative overlap)", s.both_open_deg, "deg per turn",
+       "both_open_deg"},
+      {"both ports closed (positive overlap)", s.both_closed_deg, "deg per turn",
+       "both_closed_deg"},
+      {"chamber below saturation pressure: air comes out", s.below_saturation_deg, "deg per turn",
+       "below_saturation_deg"},
+      {"chamber below vapour pressure: oil boils", s.below_vapour_deg, "deg per turn",
+       "below_vapour_deg"},
   };
 }
 

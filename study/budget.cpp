@@ -6,10 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/budget.h"
+#include "bentaxis/study/efficiency.h"
 
 namespace bentaxis::study {
 namespace {
@@ -69,20 +69,12 @@ struct Turn {
   double power(const std::string& column) const {
     return statistics(budget, column).mean * omega();
   }
-  // Between the ports, Pa.
-  double pressure_difference() const {
-    const PortPressures& ports = ready.the_case.pressure.ports;
-    const double delivery =
-        ready.hydraulics ? ready.hydraulics->summary.delivery_mean : ports.delivery;
-    return delivery - ports.suction;
+  Efficiencies efficiencies() const {
+    return study::efficiencies(ready, statistics(budget, "Td_z1_Nm").mean);
   }
-  // Of volume, m3/s.
-  double ideal_flow() const {
-    return analytic::derived_quantities(ready.the_case.pump.geometry).displacement * omega() /
-           (2 * kPi);
-  }
-  // Power goes in and pressure is raised.
-  bool pumps() const { return power("Td_z1_Nm") > 0 && pressure_difference() * ideal_flow() > 0; }
+  double pressure_difference() const { return study::pressure_difference(ready); }
+  double ideal_flow() const { return study::ideal_flow(ready.the_case); }
+  bool pumps() const { return is_computed(efficiencies().mechanical); }
 };
 
 // A quantity of both models.
@@ -167,31 +159,24 @@ std::vector<report::Budget::Quantity> efficiency_lines(const std::vector<Turn>& 
   const bool pumps =
       std::all_of(turns.begin(), turns.end(), [](const Turn& turn) { return turn.pumps(); });
   const bool hydraulic = turns.front().ready.hydraulics.has_value();
-  const auto volumetric = [&](const Turn& turn) {
-    return hydraulic ? 100 * turn.ready.hydraulics->summary.volumetric_efficiency : not_computed();
-  };
-  const auto of_torque = [](const Turn& turn) {
-    return 100 * turn.pressure_difference() * turn.ideal_flow() / turn.power("Td_z1_Nm");
-  };
-  const auto where = [&](bool known, const std::function<double(const Turn&)>& value) {
-    return [=](const Turn& turn) { return known ? value(turn) : not_computed(); };
+  const auto of = [&](bool known, double Efficiencies::*which) {
+    return [known, which](const Turn& turn) {
+      return known ? turn.efficiencies().*which : not_computed();
+    };
   };
   const std::string none = "not pumping: no power goes in, or no pressure is raised";
   const std::string ideal =
       "not modelled: the pressure is given, and nothing leaks or is compressed";
-  return {
-      quantity(turns, "volumetric", "", "%", where(hydraulic, volumetric),
-               hydraulic ? "mass flow to the load over that of the ideal flow at the density "
-                           "of the inlet"
-                         : ideal),
-      quantity(turns, "hydraulic-mechanical", "", "%", where(pumps, of_torque),
-               pumps ? "ideal torque V dp / 2 pi over mean Td" : none),
-      quantity(turns, "total", "", "%",
-               where(pumps && hydraulic,
-                     [&](const Turn& turn) { return volumetric(turn) * of_torque(turn) / 100; }),
-               !hydraulic ? ideal
-               : pumps    ? "product of the two"
-                          : none)};
+  return {quantity(turns, "volumetric", "", "%", of(hydraulic, &Efficiencies::volumetric),
+                   hydraulic ? "mass flow to the load over that of the ideal flow at the density "
+                               "of the inlet"
+                             : ideal),
+          quantity(turns, "hydraulic-mechanical", "", "%", of(pumps, &Efficiencies::mechanical),
+                   pumps ? "ideal torque V dp / 2 pi over mean Td" : none),
+          quantity(turns, "total", "", "%", of(pumps && hydraulic, &Efficiencies::overall),
+                   !hydraulic ? ideal
+                   : pumps    ? "product of the two"
+                              : none)};
 }
 
 std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns) {

@@ -7,8 +7,8 @@
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/run.h"
-#include "in_threads.h"
 
 namespace bentaxis::study {
 namespace {

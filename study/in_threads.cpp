@@ -1,4 +1,4 @@
-#include "in_threads.h"
+#include "bentaxis/study/in_threads.h"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>

@@ -7,7 +7,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "in_threads.h"
+#include "bentaxis/study/in_threads.h"
 
 namespace bentaxis::study {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/operating_points.h"
-#include "in_threads.h"
 #include "rattle_pieces.h"
 
 namespace bentaxis::study {

@@ -14,6 +14,7 @@ namespace bentaxis::analytic {
 struct ValidityLimit {
   std::string limit;          ///< what must hold
   std::string name;           ///< short name of the violation
+  std::string key;            ///< one word for it: "flank", "film", ..
   bool applicable = true;     ///< false where the run has nothing to check it by
   double violated_share = 0;  ///< of the angles, 0..1
   double worst = 0;           ///< worst value, in `unit`; meaningful where something was violated

@@ -139,11 +139,12 @@ std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count);
 /// Effective bulk modulus of the oil, Pa, at a gauge pressure, Pa.
 double effective_bulk_modulus(const SteadyState& state, double gauge);
 
-/// The summary as lines: name, value, unit.
+/// The summary as lines.
 struct Line {
   std::string name;
   double value = 0;
   std::string unit;
+  std::string key;  ///< one word with its unit: "flow_l_per_min"
 };
 std::vector<Line> lines(const SteadyState& state);
 

@@ -1,4 +1,4 @@
-// Jobs side by side, and how far they are. Internal.
+// Jobs side by side, and how far they are.
 #pragma once
 
 #include <cstddef>

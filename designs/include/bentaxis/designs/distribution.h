@@ -1,0 +1,55 @@
+// What is not known exactly: distributions of parameters, and correlated points drawn from them.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bentaxis/designs/variable.h"
+#include "bentaxis/pump/case.h"
+
+namespace bentaxis::designs {
+
+/// Names as in a case file, in the order of the enumeration.
+enum class Shape {
+  normal,      ///< mean, standard deviation
+  uniform,     ///< low, high
+  triangular,  ///< low, most likely, high
+  lognormal,   ///< median, standard deviation of the logarithm
+};
+
+/// Of a number in the file's unit of its parameter.
+struct Distribution {
+  Shape shape = Shape::normal;
+  std::vector<double> numbers;  ///< as the shape says
+
+  double quantile(double share) const;  ///< share in (0, 1)
+  double cumulative(double value) const;
+  double density(double value) const;
+  double mean() const;
+  double standard_deviation() const;
+  std::string text() const;  ///< "normal(40, 0.1)"
+};
+
+/// @param text  "normal(40, 0.1)" @param what  for messages
+/// @throws InputError where the shape is unknown or its numbers are none it can have
+Distribution distribution(const std::string& text, const std::string& what);
+
+/// Variables with their distributions and the correlations of their normal scores (a Gaussian
+/// copula): [uncertainty] of a case.
+struct UncertainVariables {
+  std::vector<Variable> variables;
+  std::vector<Distribution> distributions;
+  std::vector<double> correlation;  ///< row by row, variables x variables; unit where none is given
+
+  bool independent() const;
+  /// Values from independent shares in (0, 1), one per variable.
+  void values(std::span<const double> shares, std::span<double> values) const;
+};
+
+/// What the table [uncertainty] of a case says.
+/// @throws InputError where it has none, names no parameter, or its correlations are impossible
+UncertainVariables uncertain_variables(const Case& the_case);
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,363 @@
+#include "bentaxis/designs/output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "bentaxis/analytic/budget.h"
+#include "bentaxis/analytic/derived.h"
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/analytic/validity.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/pump/words.h"
+#include "bentaxis/results/budget.h"
+#include "bentaxis/results/channels.h"
+#include "bentaxis/study/efficiency.h"
+
+namespace bentaxis::designs {
+namespace {
+
+const std::vector<std::string>& statistic_names() {
+  static const std::vector<std::string> names = {"mean", "min", "max", "peak", "rms", "range"};
+  return names;
+}
+
+std::string without_unit(const std::string& column, const std::string& unit) {
+  return unit.empty() ? column : column.substr(0, column.size() - unit.size() - 1);
+}
+
+// Names by which a channel can be asked for.
+std::vector<std::string> names_of(const Channel& c) {
+  std::vector<std::string> names = {c.name, without_unit(c.name, c.unit)};
+  if (c.piston == 1)
+    for (std::string& name : std::vector<std::string>(names)) {
+      const std::size_t at = name.find("_1");
+      names.push_back(name.substr(0, at) + name.substr(at + 2));
+    }
+  return names;
+}
+
+std::string meaning_of(const Channel& c, bool vector) {
+  std::string text = c.meaning;
+  if (!c.on_body.empty()) text += " on " + c.on_body;
+  if (!c.by_body.empty()) text += " by " + c.by_body;
+  if (!c.point.empty()) text += ", at " + c.point;
+  if (!c.frame.empty()) text += vector ? ", magnitude" : ", along " + c.axis;
+  return text;
+}
+
+bool can_be_asked_for(const Channel& c) { return c.kind != ChannelKind::check; }
+
+// Fills in what a statistic is of; false where there is no such channel.
+bool find_channels(const std::string& wanted, const std::vector<Channel>& channels, Output& o) {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!can_be_asked_for(channels[i])) continue;
+    const auto names = names_of(channels[i]);
+    if (std::find(names.begin(), names.end(), wanted) == names.end()) continue;
+    o.columns = {i};
+    o.item = channels[i].name;
+    o.unit = channels[i].unit;
+    o.meaning = meaning_of(channels[i], false);
+    return true;
+  }
+  // A vector: "Rs", of piston 1, or "Rs_3".
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const Channel& c = channels[i];
+    if (!can_be_asked_for(c) || c.frame == "S3") continue;
+    const std::string piston = c.piston > 0 ? "_" + std::to_string(c.piston) : "";
+    if (wanted != c.quantity + piston && !(c.piston == 1 && wanted == c.quantity)) continue;
+    o.columns.push_back(i);
+    o.item = c.quantity + piston;
+    o.unit = c.unit;
+    o.meaning = meaning_of(c, true);
+  }
+  return !o.columns.empty();
+}
+
+struct DerivedEntry {
+  const char *name, *unit, *meaning;
+  double (*value)(const analytic::DerivedQuantities&);
+};
+const DerivedEntry kDerived[] = {
+    {"displacement_cm3", "cm3", "displacement per turn",
+     [](const analytic::DerivedQuantities& d) { return d.displacement * 1e6; }},
+    {"stroke_mm", "mm", "stroke of a piston",
+     [](const analytic::DerivedQuantities& d) { return d.stroke * 1e3; }},
+    {"largest_tilt_deg", "deg", "largest angle between a piston and the block axis",
+     [](const analytic::DerivedQuantities& d) { return d.largest_tilt * 180 / kPi; }},
+};
+
+struct EfficiencyEntry {
+  const char* name;
+  double study::Efficiencies::*which;
+  const char* meaning;
+};
+const EfficiencyEntry kEfficiencies[] = {
+    {"overall", &study::Efficiencies::overall, "total efficiency"},
+    {"mechanical", &study::Efficiencies::mechanical, "hydraulic-mechanical efficiency"},
+    {"volumetric", &study::Efficiencies::volumetric, "volumetric efficiency"},
+};
+
+std::vector<std::string> validity_keys() {
+  return {"flank", "turned", "film", "point", "thrust", "friction", "ring", "reach"};
+}
+
+std::string after(const std::string& text, const std::string& prefix) {
+  return text.starts_with(prefix) ? text.substr(prefix.size()) : "";
+}
+
+const std::vector<Channel>& budget_channels(const Case& the_case) {
+  static const std::vector<Channel> plain = budget_table("", false).channels;
+  static const std::vector<Channel> with_ring = budget_table("", true).channels;
+  return the_case.pump.piston.contact ? with_ring : plain;
+}
+
+[[noreturn]] void unknown(const std::string& name, const Case& base) {
+  const auto names = output_names(base);
+  throw InputError("output " + name + ": there is none of this name" +
+                   suggestion(name, {names.begin(), names.end()}));
+}
+
+}  // namespace
+
+std::string to_string(Statistic statistic) {
+  return statistic_names()[static_cast<std::size_t>(statistic)];
+}
+
+Output output(const std::string& name, const Case& base) {
+  Output o;
+  o.name = name;
+  if (const std::size_t colon = name.find(':'); colon != std::string::npos) {
+    const auto& statistics = statistic_names();
+    const auto found = std::find(statistics.begin(), statistics.end(), name.substr(0, colon));
+    if (found == statistics.end())
+      throw InputError("output " + name + ": no statistic " + name.substr(0, colon) +
+                       suggestion(name.substr(0, colon), {statistics.begin(), statistics.end()}));
+    o.statistic = static_cast<Statistic>(found - statistics.begin());
+    std::string of = name.substr(colon + 1);
+    const bool budget = of.starts_with("budget.");
+    if (budget) of = of.substr(7);
+    o.source = budget ? Source::budget : Source::curve;
+    const ChannelLayout layout(base.pump.geometry.pistons);
+    const auto& channels = budget ? budget_channels(base) : layout.channels();
+    if (!find_channels(of, channels, o)) unknown(name, base);
+    o.name = *found + ":" + (budget ? "budget." : "") + o.item;
+    o.meaning = *found + " of " + o.meaning;
+    return o;
+  }
+  for (const DerivedEntry& d : kDerived)
+    if (name == d.name) {
+      o.source = Source::derived;
+      o.item = name;
+      o.unit = d.unit;
+      o.meaning = d.meaning;
+      return o;
+    }
+  if (std::string item = after(name, "validity."); !item.empty()) {
+    o.source = Source::validity;
+    o.share = item.ends_with(".share");
+    if (o.share) item = item.substr(0, item.size() - 6);
+    const auto keys = validity_keys();
+    if (std::find(keys.begin(), keys.end(), item) == keys.end()) unknown(name, base);
+    o.item = item;
+    o.unit = o.share ? "" : item == "point" ? "mm" : item == "reach" ? "um" : "";
+    if (!o.share && (item == "flank" || item == "turned" || item == "film" || item == "thrust"))
+      o.unit = "N";
+    if (!o.share && (item == "friction" || item == "ring")) o.unit = "W";
+    o.meaning = o.share ? "share of the turn in which the limit is violated"
+                        : "worst value against the limit";
+    return o;
+  }
+  if (const std::string item = after(name, "efficiency."); !item.empty()) {
+    o.source = Source::efficiency;
+    for (const EfficiencyEntry& e : kEfficiencies)
+      if (item == e.name) {
+        if (item != "mechanical" && base.pressure.kind != PressureKind::hydraulic)
+          throw InputError("output " + name + ": needs [pressure] kind = \"hydraulic\"");
+        o.item = item;
+        o.unit = "%";
+        o.meaning = e.meaning;
+        return o;
+      }
+    unknown(name, base);
+  }
+  if (const std::string item = after(name, "hydraulics."); !item.empty()) {
+    if (base.pressure.kind != PressureKind::hydraulic)
+      throw InputError("output " + name + ": needs [pressure] kind = \"hydraulic\"");
+    hydraulics::SteadyState empty;
+    if (base.hydraulics && base.hydraulics->load) empty.summary.load = base.hydraulics->load->kind;
+    for (const hydraulics::Line& line : hydraulics::lines(empty))
+      if (line.key == item) {
+        o.source = Source::hydraulics;
+        o.item = item;
+        o.unit = line.unit;
+        o.meaning = line.name;
+        return o;
+      }
+    unknown(name, base);
+  }
+  unknown(name, base);
+}
+
+std::vector<std::string> output_names(const Case& base) {
+  std::vector<std::string> names;
+  const ChannelLayout layout(base.pump.geometry.pistons);
+  for (const Channel& c : layout.channels())
+    if (can_be_asked_for(c) && c.piston <= 1) names.push_back("max:" + c.name);
+  for (const Channel& c : layout.channels()) {  // vectors
+    Output o;
+    const std::string name = c.quantity + (c.piston > 0 ? "_1" : "");
+    if (c.piston <= 1 && find_channels(name, layout.channels(), o) && o.columns.size() > 1 &&
+        std::find(names.begin(), names.end(), "peak:" + name) == names.end())
+      names.push_back("peak:" + name);
+  }
+  for (const Channel& c : budget_channels(base))
+    if (can_be_asked_for(c)) names.push_back("mean:budget." + c.name);
+  for (const DerivedEntry& d : kDerived) names.emplace_back(d.name);
+  for (const std::string& key : validity_keys()) {
+    names.push_back("validity." + key);
+    names.push_back("validity." + key + ".share");
+  }
+  names.emplace_back("efficiency.mechanical");
+  if (base.pressure.kind == PressureKind::hydraulic) {
+    names.insert(names.end(), {"efficiency.overall", "efficiency.volumetric"});
+    hydraulics::SteadyState empty;
+    if (base.hydraulics && base.hydraulics->load) empty.summary.load = base.hydraulics->load->kind;
+    for (const hydraulics::Line& line : hydraulics::lines(empty))
+      names.push_back("hydraulics." + line.key);
+  }
+  return names;
+}
+
+double statistic_of(Statistic statistic, const std::vector<double>& values) {
+  if (values.empty() || !is_computed(values.front())) return not_computed();
+  double sum = 0, squares = 0, low = values.front(), high = low;
+  for (const double v : values) {
+    if (!is_computed(v)) return not_computed();
+    sum += v;
+    squares += v * v;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  const auto count = static_cast<double>(values.size());
+  switch (statistic) {
+    case Statistic::mean:
+      return sum / count;
+    case Statistic::min:
+      return low;
+    case Statistic::max:
+      return high;
+    case Statistic::peak:
+      return std::max(std::abs(low), std::abs(high));
+    case Statistic::rms:
+      return std::sqrt(squares / count);
+    case Statistic::range:
+      break;
+  }
+  return high - low;
+}
+
+namespace {
+
+double statistic_in(const Output& o, const ResultTable& table) {
+  std::vector<double> values(table.rows());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (o.columns.size() == 1) {
+      values[row] = table.at(row, o.columns[0]);
+      continue;
+    }
+    double squares = 0;
+    for (const std::size_t column : o.columns)
+      squares += table.at(row, column) * table.at(row, column);
+    values[row] = std::sqrt(squares);
+  }
+  return statistic_of(o.statistic, values);
+}
+
+// What several outputs of one design are read off, each found once.
+class Turn {
+ public:
+  Turn(const study::ReadyCase& ready, study::Model model, bool budget)
+      : ready_(ready), model_(model) {
+    study::RunOptions options;
+    options.model = model;
+    options.budget = budget;
+    run_ = study::run(ready, options);
+  }
+
+  double value(const Output& o) {
+    switch (o.source) {
+      case Source::curve:
+        return statistic_in(o, run_.table);
+      case Source::budget:
+        return statistic_in(o, *run_.budget);
+      case Source::validity:
+        return validity(o);
+      case Source::efficiency:
+        return efficiency(o);
+      case Source::derived:
+      case Source::hydraulics:
+      case Source::life:
+        break;
+    }
+    return not_computed();
+  }
+
+ private:
+  double validity(const Output& o) {
+    if (limits_.empty())
+      limits_ = analytic::check_validity(ready_.the_case, ready_.assumptions(model_),
+                                         ready_.samples(study::Way::driven), run_.table);
+    for (const analytic::ValidityLimit& limit : limits_)
+      if (limit.key == o.item && limit.applicable)
+        return o.share ? limit.violated_share : limit.worst;
+    return not_computed();
+  }
+  double efficiency(const Output& o) const {
+    const std::size_t column = ChannelLayout(ready_.the_case.pump.geometry.pistons).Td();
+    std::vector<double> torque;
+    for (std::size_t row = 0; row < run_.table.rows(); ++row)
+      torque.push_back(run_.table.at(row, column));
+    const study::Efficiencies all =
+        study::efficiencies(ready_, statistic_of(Statistic::mean, torque));
+    for (const EfficiencyEntry& e : kEfficiencies)
+      if (o.item == e.name) return all.*e.which;
+    return not_computed();
+  }
+
+  const study::ReadyCase& ready_;
+  study::Model model_;
+  study::ModelRun run_;
+  std::vector<analytic::ValidityLimit> limits_;
+};
+
+}  // namespace
+
+std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::ReadyCase& ready,
+                               study::Model model) {
+  std::optional<Turn> turn;
+  std::vector<double> values;
+  const auto is = [](Source source) {
+    return [source](const Output& o) { return o.source == source; };
+  };
+  const bool budget = std::any_of(outputs.begin(), outputs.end(), is(Source::budget));
+  for (const Output& o : outputs) {
+    if (o.source == Source::derived) {
+      const auto derived = analytic::derived_quantities(ready.the_case.pump.geometry);
+      for (const DerivedEntry& d : kDerived)
+        if (o.item == d.name) values.push_back(d.value(derived));
+    } else if (o.source == Source::hydraulics) {
+      values.push_back(not_computed());
+      for (const hydraulics::Line& line : hydraulics::lines(*ready.hydraulics))
+        if (line.key == o.item) values.back() = line.value;
+    } else {
+      if (!turn) turn.emplace(ready, model, budget);
+      values.push_back(turn->value(o));
+    }
+  }
+  return values;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,108 @@
+// Variables, families, outputs and their evaluation.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bentaxis/designs/evaluator.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::designs {
+namespace {
+
+const std::string kRated = std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated.toml";
+
+std::string refusal(const std::function<void()>& job) {
+  try {
+    job();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Variable, IsAParameterByItsName) {
+  const Case base = read_case(kRated);
+  const Variable tilt("pump.tilt_deg", base);
+  EXPECT_EQ(tilt.value(base), 40);
+  EXPECT_EQ(tilt.unit(), "deg");
+  EXPECT_FALSE(tilt.discrete());
+  EXPECT_EQ(Variable("pump.pistons", base).value(base), 5);
+  EXPECT_TRUE(Variable("pump.pistons", base).discrete());
+  const Variable inertia("assumptions.analytic.inertia", base);
+  EXPECT_EQ(inertia.text(1), "real");
+  EXPECT_EQ(inertia.value_of("lumped"), 0);
+  EXPECT_THAT(refusal([&] { Variable("pump.tilt", base); }), testing::HasSubstr("pump.tilt_deg"));
+  EXPECT_THAT(refusal([&] { Variable("name", base); }), testing::HasSubstr("cannot vary"));
+  EXPECT_THAT(refusal([&] { Variable("gear.backlash_um", base); }),
+              testing::HasSubstr("changes nothing"));
+  EXPECT_THAT(refusal([&] { Variable("port_plate.delivery_arc_deg", base); }),
+              testing::HasSubstr("delivery_arc_deg.1"));
+}
+
+// A family's member is the case that --set makes, with what follows from it.
+TEST(Family, IsWhatSetMakes) {
+  const Case base = read_case(kRated);
+  const Family family(base, {Variable("pump.tilt_deg", base), Variable("piston.mass_kg", base),
+                             Variable("port_plate.delivery_arc_deg.2", base)});
+  Case made = base;
+  const double values[] = {35, 0.101, family.variables()[2].value(base) - 1};
+  family.make(values, made);
+  EXPECT_EQ(made.pump.geometry.tilt, read_case(kRated, {"pump.tilt_deg=35"}).pump.geometry.tilt);
+  EXPECT_EQ(made.pump.piston.mass, read_case(kRated, {"piston.mass_kg=0.101"}).pump.piston.mass);
+  EXPECT_EQ(made.pump.port_plate->delivery.to_deg, values[2]);
+  const double impossible[] = {95, 0.101, values[2]};
+  EXPECT_THAT(refusal([&] { family.make(impossible, made); }), testing::HasSubstr("tilt_deg = 95"));
+}
+
+TEST(Output, IsFoundByItsName) {
+  const Case base = read_case(kRated);
+  EXPECT_EQ(output("max:Rb1_z1", base).name, "max:Rb1_z1_N");
+  EXPECT_EQ(output("min:Rs_z2", base).name, "min:Rs_1_z2_N");
+  EXPECT_EQ(output("peak:Rb1", base).columns.size(), 3U);
+  EXPECT_EQ(output("mean:budget.Td_inertia", base).unit, "Nm");
+  EXPECT_THAT(refusal([&] { output("most:Td", base); }), testing::HasSubstr("no statistic"));
+  EXPECT_THAT(refusal([&] { output("max:Rb3", base); }), testing::HasSubstr("did you mean"));
+  for (const std::string& name : output_names(base)) EXPECT_EQ(output(name, base).name, name);
+}
+
+// Against numbers of the tables that the outputs are of.
+TEST(Evaluator, GivesNumbersOfTheTurn) {
+  const Case base = read_case(kRated);
+  const Evaluator evaluator(
+      Family(base, {Variable("pump.tilt_deg", base)}),
+      {output("mean:Td", base), output("peak:Rb1", base), output("displacement_cm3", base),
+       output("validity.film", base), output("efficiency.mechanical", base),
+       output("mean:budget.Td_pressure", base)});
+  const double values[] = {40};
+  const Evaluation found = evaluator.evaluate(values);
+  ASSERT_TRUE(found.feasible()) << found.reason;
+  const study::ReadyCase ready = study::prepare(base);
+  const ResultTable table = study::run_turn(ready, study::Model::analytic);
+  const ChannelLayout at(5);
+  double torque = 0, peak = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    torque += table.at(row, at.Td()) / static_cast<double>(table.rows());
+    peak = std::max(peak, std::hypot(table.at(row, at.Rb1(0)), table.at(row, at.Rb1(1)),
+                                     table.at(row, at.Rb1(2))));
+  }
+  EXPECT_NEAR(found.values[0], torque, 1e-12 * torque);
+  EXPECT_NEAR(found.values[1], peak, 1e-12 * peak);
+  const double difference = base.pressure.ports.delivery - base.pressure.ports.suction;
+  EXPECT_NEAR(found.values[4], 100 * found.values[2] * 1e-6 * difference / (2 * M_PI * torque),
+              1e-9);
+  double film = -HUGE_VAL;  // Fh along z2 must not be positive
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    film = std::max(film, table.at(row, at.Fh()));
+  EXPECT_EQ(found.values[3], film);
+
+  const double impossible[] = {95};
+  const Evaluation refused = evaluator.evaluate(impossible);
+  EXPECT_THAT(refused.reason, testing::HasSubstr("tilt_deg"));
+  EXPECT_FALSE(is_computed(refused.values[0]));
+}
+
+}  // namespace
+}  // namespace bentaxis::designs
