@@ -29,7 +29,7 @@ std::string to_string(Sampling sampling);
 /// One variable of a sweep.
 struct Varied {
   Variable variable;
-  std::vector<double> levels;       ///< of a grid; else, where not empty, each is as likely
+  std::vector<double> levels;      ///< of a grid; else, where not empty, each is as likely
   Distribution distribution = {};  ///< of the others; a whole number is the nearest one
 };
 
@@ -83,8 +83,8 @@ struct SweepCheck {
   /// Both refuse the design, or all outputs are within the tolerance.
   bool agrees(double tolerance) const;
 };
-/// Of an output's scale: the peak of the reaction over the turn. Both models have been seen to agree
-/// to 1e-12 of it; 1e-9 is what `compare` asks for.
+/// Of an output's scale: the peak of the reaction over the turn. Both models have been seen to
+/// agree to 1e-12 of it; 1e-9 is what `compare` asks for.
 inline constexpr double kCheckTolerance = 1e-9;
 
 /// Consecutive designs: what is computed as one and kept in a file of its own.
@@ -125,8 +125,8 @@ class Sweep {
 struct SweepResult {
   SweepPlan plan;
   Case base;
-  std::size_t designs = 0;  ///< here
-  std::size_t every = 1;    ///< they are designs 0, every, 2 every, .. of the plan
+  std::size_t designs = 0;      ///< here
+  std::size_t every = 1;        ///< they are designs 0, every, 2 every, .. of the plan
   std::vector<double> values;   ///< designs x variables, row by row, files' units
   std::vector<double> results;  ///< designs x outputs, row by row
   /// Reasons of infeasible designs: by number of the design here, rising.
