@@ -99,7 +99,7 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
                         OutputFolder& folder, const Progress& progress, std::size_t most) {
   SweepResult result;
   result.plan = sweep.plan();
-  result.base = sweep.base();
+  result.base = sweep.family().base();
   result.every = (sweep.designs() + most - 1) / most;
   OutputFolder::Stream* csv = formats.csv ? &folder.open("sweep.csv") : nullptr;
   if (csv != nullptr) {

@@ -201,7 +201,9 @@ TEST(SweepParts, AreOfOneSweepOnly) {
   checked.check_share = 0.5;
   for (const SweepRecord& other :
        {record(tilts("20:40:#6"), base, "test 1"), record(checked, base, "test 1"),
-        record(tilts(), rated({"piston.mass_kg=0.1"}), "test 1")}) {
+        record(tilts(), rated({"piston.mass_kg=0.1"}), "test 1"),
+        // The same numbers, but one of them does not follow from another any more.
+        record(tilts(), rated({"assumptions.analytic.inertia=lumped"}), "test 1")}) {
     EXPECT_THAT(refusal([&] { SweepParts(place, other).begin(); }),
                 HasSubstr("another case or plan"));
     EXPECT_THAT(refusal([&] { SweepParts(folder.path() / "other", other).add(place); }),
