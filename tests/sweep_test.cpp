@@ -296,7 +296,7 @@ TEST(SweepResult, IsThinnedEvenly) {
   const auto results = [&](std::size_t most) {
     OutputFolder out(folder.path() / "out");
     return write_sweep(
-        sweep, parts, {.csv = true, .hdf5 = false}, out, [](double) {}, most);
+        sweep, parts, {.csv = true, .hdf5 = false}, out, 2, [](double) {}, most);
   };
   const SweepResult whole = results(9), some = results(4);
   EXPECT_EQ(whole.every, 1U);
