@@ -103,10 +103,11 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
     parts.begin();
   }
   ranks.wait();
-  const std::size_t before = compute_or_say(sweep, parts, share);
+  const auto before = compute_or_say(sweep, parts, share);
+  if (!before) return kInterrupted;
   ranks.wait();
   if (!first) return kDone;
-  if (share.resume) std::fprintf(stderr, "bentaxis: %zu blocks were there already\n", before);
+  if (share.resume) std::fprintf(stderr, "bentaxis: %zu blocks were there already\n", *before);
   if (share.parts > 1) {
     std::printf("part %s is in %s; bentaxis merge %s makes results of all parts\n",
                 options.part.c_str(), parts.folder().c_str(), options.place.out.c_str());

@@ -43,16 +43,25 @@ designs::SweepFormats formats_of(const std::vector<std::string>& formats) {
 
 std::filesystem::path parts_in(const std::filesystem::path& out) { return out / "sweep.parts"; }
 
-std::size_t compute_or_say(const designs::Sweep& sweep, const designs::SweepParts& parts,
-                           const designs::SweepShare& share) {
-  try {
-    return designs::compute_blocks(sweep, parts, share, progress_of("sweep"));
-  } catch (...) {
-    const std::size_t kept = parts.count();
+std::optional<std::size_t> compute_or_say(const designs::Sweep& sweep,
+                                          const designs::SweepParts& parts,
+                                          const designs::SweepShare& share) {
+  std::size_t kept = 0;
+  const auto say_kept = [&](const char* why) {
+    kept = parts.count();
     if (kept == 0 && share.ranks == 1 && share.parts == 1) parts.remove(0);
     if (kept > 0 && share.rank == 0)
-      std::fprintf(stderr, "bentaxis: %zu of %zu blocks are in %s: --resume goes on from them\n",
-                   kept, sweep.blocks(), parts.folder().c_str());
+      std::fprintf(stderr, "bentaxis: %s%zu of %zu blocks are in %s: --resume goes on from them\n",
+                   why, kept, sweep.blocks(), parts.folder().c_str());
+  };
+  try {
+    return designs::compute_blocks(sweep, parts, share, progress_of("sweep"));
+  } catch (const Interrupted&) {
+    say_kept("interrupted; ");
+    if (kept == 0 || share.ranks > 1) throw;  // other ranks would wait for this one
+    return std::nullopt;
+  } catch (...) {
+    say_kept("");
     throw;
   }
 }

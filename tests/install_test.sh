@@ -9,8 +9,8 @@ cmake --install "$build" --prefix "$scratch/usr" > /dev/null
 cmake -S "$source_dir/tests/install" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/usr" \
   -DCMAKE_BUILD_TYPE=Release > "$scratch/log" || { cat "$scratch/log"; exit 1; }
 cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
-"$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
 cd "$scratch"
+"$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
 share=usr/share
 for file in doc/bentaxis/{LICENSE,README.md,CHANGELOG.md,docs/command_line.md} man/man1/bentaxis.1 \
     bash-completion/completions/bentaxis zsh/site-functions/_bentaxis fish/vendor_completions.d/bentaxis.fish; do

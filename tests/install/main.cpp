@@ -1,9 +1,11 @@
-// Evaluates both models at one instant, then compares them on a hydraulic case in one call.
+// Evaluates both models at one instant, sweeps over the tilt, then compares both on a
+// hydraulic case in one call.
 // usage: uses_bentaxis CASE HYDRAULIC_CASE
 #include <cmath>
 #include <cstdio>
 
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/study/comparison.h"
@@ -22,6 +24,19 @@ int main(int, char** argv) {
   const double torque = a[analytic.layout().Td()];
   const double difference = std::abs(m[analytic.layout().Td()] - torque);
   std::printf("Td = %.6f Nm, difference %.1e Nm\n", torque, difference);
+
+  // A sweep of three designs, kept in block files and written with what the library was built with.
+  bentaxis::designs::SweepRequest request;
+  request.vary = {{"pump.tilt_deg", "20:40:10"}};
+  request.outputs = {"mean:Td"};
+  const bentaxis::designs::Sweep sweep(the_case, bentaxis::designs::sweep_plan(request, the_case));
+  const bentaxis::designs::SweepParts parts("parts", bentaxis::designs::record_of(sweep, "test"));
+  parts.begin();
+  bentaxis::designs::compute_blocks(sweep, parts, {}, [](double) {});
+  bentaxis::OutputFolder folder("out");
+  const auto designs = bentaxis::designs::write_sweep(
+      sweep, parts, {.csv = true, .hdf5 = bentaxis::designs::has_hdf5()}, folder, 0, [](double) {});
+  std::printf("mean torque at 40 deg: %.6f Nm\n", designs.results.at(2));
 
   const auto result = bentaxis::study::compare_models(bentaxis::read_case(argv[2]), {}, {});
   std::printf("%s\n", result.headline().c_str());
