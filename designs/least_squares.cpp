@@ -143,6 +143,58 @@ class AllResiduals final : public ceres::CostFunction {
   std::vector<double> units_;
 };
 
+double sum_of_squares(const std::vector<double>& residuals) {
+  double sum = 0;
+  for (const double r : residuals) sum += r * r;
+  return sum;
+}
+
+// Gauss-Newton steps, shortest where the data leave a choice, of the parameters that no bound
+// holds. Where Ceres stops, the sum of squares is right to round-off, the parameters to half as
+// many digits; and along a bound it may have stopped early, because its steps are cut off there.
+void finish(const LeastSquaresProblem& problem, const std::vector<double>& units,
+            int most_iterations, LeastSquaresFit& fit) {
+  constexpr double kRank = 1e-9;    // of the longest column: shorter ones are left alone
+  constexpr double kRounding = 1e-13;
+  const std::size_t n = problem.parameters, m = problem.residuals;
+  double last = HUGE_VAL;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    const Eigen::Map<const RowMajor> jacobian(fit.jacobian.data(), static_cast<Eigen::Index>(m),
+                                              static_cast<Eigen::Index>(n));
+    const Eigen::Map<const Eigen::VectorXd> residuals(fit.residuals.data(),
+                                                      static_cast<Eigen::Index>(m));
+    Eigen::MatrixXd free = jacobian;
+    const Eigen::VectorXd slope = jacobian.transpose() * residuals;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      const bool held = !problem.low.empty() &&
+                        ((fit.x[i] <= problem.low[i] && slope[column] >= 0) ||
+                         (fit.x[i] >= problem.high[i] && slope[column] <= 0));
+      free.col(column) *= held ? 0 : units[i];
+    }
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr;
+    qr.setThreshold(kRank);
+    qr.compute(free);
+    const Eigen::VectorXd step = qr.solve(-residuals);
+    LeastSquaresFit next = fit;
+    for (std::size_t i = 0; i < n; ++i) {
+      next.x[i] += step[static_cast<Eigen::Index>(i)] * units[i];
+      if (!problem.low.empty()) next.x[i] = std::clamp(next.x[i], problem.low[i], problem.high[i]);
+    }
+    if (!problem.evaluate(next.x, next.residuals)) return;
+    next.sum_of_squares = sum_of_squares(next.residuals);
+    // At the end of it only rounding is left in the sum, while steps still become shorter.
+    const double length = step.norm();
+    const bool better = next.sum_of_squares < fit.sum_of_squares * (1 - kRounding);
+    const bool nearer = next.sum_of_squares <= fit.sum_of_squares * (1 + kRounding) &&
+                        length < last / 2;
+    if (!(better || nearer) || !derivatives_of(problem, next.x, next.jacobian)) return;
+    last = length;
+    fit = std::move(next);
+    ++fit.iterations;
+  }
+}
+
 }  // namespace
 
 std::string least_squares_library() { return "Ceres " CERES_VERSION_STRING; }
@@ -188,7 +240,8 @@ LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<cons
   fit.jacobian.resize(problem.residuals * n);
   if (!problem.evaluate(fit.x, fit.residuals) || !derivatives_of(problem, fit.x, fit.jacobian))
     throw ComputationError("least squares: nothing can be computed at the solution");
-  for (const double r : fit.residuals) fit.sum_of_squares += r * r;
+  fit.sum_of_squares = sum_of_squares(fit.residuals);
+  finish(problem, units, options.most_iterations, fit);
   return fit;
 }
 #else
