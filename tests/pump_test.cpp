@@ -529,6 +529,19 @@ TEST(CaseWriter, NamesAreQuoted) {
   EXPECT_EQ(parse_case(case_text(the_case), "/written.toml").name, the_case.name);
 }
 
+// A limit in a message must itself be allowed.
+TEST(Number, LimitsAreRoundedToTheirAllowedSide) {
+  EXPECT_EQ(rounded_text(3.4567), "3.46");
+  EXPECT_EQ(rounded_down_text(3.4567), "3.45");
+  EXPECT_EQ(rounded_up_text(3.4567), "3.46");
+  EXPECT_EQ(rounded_down_text(3.4512), "3.45");
+  EXPECT_EQ(rounded_up_text(3.4512), "3.46");
+  EXPECT_EQ(rounded_up_text(9.996), "10");
+  EXPECT_EQ(rounded_down_text(9.996), "9.99");
+  EXPECT_EQ(rounded_down_text(-0.012345), "-0.0124");
+  EXPECT_EQ(rounded_up_text(2), "2");
+}
+
 TEST(NumberRange, SlackIsAShareOfTheBound) {
   NumberRange range{-4, 8};
   range.slack = 0.25;
