@@ -48,7 +48,8 @@ std::string rounded_to(double value, double direction) {
   double rounded = 0;
   std::from_chars(text.data(), text.data() + text.size(), rounded);
   if (!((rounded - value) * direction < 0)) return text;
-  return rounded_text(rounded + direction * std::pow(10, std::floor(std::log10(std::abs(value))) - 2));
+  return rounded_text(rounded +
+                      direction * std::pow(10, std::floor(std::log10(std::abs(value))) - 2));
 }
 
 }  // namespace
