@@ -105,12 +105,41 @@ class IdealPressure {
   PressureTrace share_;
 };
 
+// Samples this near to the largest, of the output's scale, attain it as well.
+constexpr double kTie = 1e-12;
+
+// The largest of some values, with its derivative: on either side that of whichever of those that
+// attain it then grows most.
+class LargestRate {
+ public:
+  explicit LargestRate(std::size_t directions) : least_(directions), most_(directions) {}
+
+  template <class Rate>
+  void add(double value, double tie, const Rate& rate) {
+    if (value < largest_ - tie) return;
+    const bool alone = value > largest_ + tie;
+    for (std::size_t d = 0; d < least_.size(); ++d) {
+      least_[d] = alone ? rate(d) : std::min(least_[d], rate(d));
+      most_[d] = alone ? rate(d) : std::max(most_[d], rate(d));
+    }
+    largest_ = std::max(largest_, value);
+  }
+  // The mean of both sides, and by how much each differs from it.
+  Derivative rate(std::size_t d) const {
+    return {(least_[d] + most_[d]) / 2, (most_[d] - least_[d]) / 2};
+  }
+
+ private:
+  double largest_ = -std::numeric_limits<double>::infinity();
+  std::vector<double> least_, most_;  // one per direction
+};
+
 // Statistics of one output with their derivatives, sample by sample.
 class StatisticRates {
  public:
-  StatisticRates(const Output& output, std::size_t directions)
-      : output_(output), sum_(directions), squares_(directions), low_(directions),
-        high_(directions) {}
+  StatisticRates(const Output& output, double scale, std::size_t directions)
+      : output_(output), tie_(kTie * scale), sum_(directions), squares_(directions),
+        low_(directions), high_(directions), peak_(directions) {}
 
   // `derivatives` as of DerivativeModel, of `reactions` each.
   void add(const std::vector<double>& values, const std::vector<double>& derivatives,
@@ -126,43 +155,43 @@ class StatisticRates {
       for (const std::size_t c : output_.columns) product += values[c] * row[c];
       return value > 0 ? product / value : 0;
     };
-    const bool lower = count_ == 0 || value < least_, higher = count_ == 0 || value > largest_;
-    if (lower) least_ = value;
-    if (higher) largest_ = value;
+    const double sign = value < 0 ? -1 : 1;
+    low_.add(-value, tie_, [&](std::size_t d) { return -rate(d); });
+    high_.add(value, tie_, rate);
+    peak_.add(sign * value, tie_, [&](std::size_t d) { return sign * rate(d); });
     mean_square_ += value * value;
     ++count_;
     for (std::size_t d = 0; d < sum_.size(); ++d) {
       const double r = rate(d);
       sum_[d] += r;
       squares_[d] += value * r;
-      if (lower) low_[d] = r;
-      if (higher) high_[d] = r;
     }
   }
 
-  double derivative(std::size_t d) const {
+  Derivative derivative(std::size_t d) const {
+    const Derivative low = low_.rate(d), high = high_.rate(d);
     switch (output_.statistic) {
       case Statistic::mean:
-        return sum_[d] / count_;
+        return {sum_[d] / count_};
       case Statistic::min:
-        return low_[d];
+        return {-low.value, low.error};
       case Statistic::max:
-        return high_[d];
+        return high;
       case Statistic::peak:
-        return std::abs(least_) > std::abs(largest_) ? (least_ < 0 ? -low_[d] : low_[d])
-                                                     : (largest_ < 0 ? -high_[d] : high_[d]);
+        return peak_.rate(d);
       case Statistic::rms:
-        return mean_square_ > 0 ? squares_[d] / std::sqrt(mean_square_ * count_) : 0;
+        return {mean_square_ > 0 ? squares_[d] / std::sqrt(mean_square_ * count_) : 0};
       case Statistic::range:
         break;
     }
-    return high_[d] - low_[d];
+    return {high.value + low.value, high.error + low.error};
   }
 
  private:
   const Output& output_;
-  double count_ = 0, least_ = 0, largest_ = 0, mean_square_ = 0;
-  std::vector<double> sum_, squares_, low_, high_;  // one per direction
+  double tie_, count_ = 0, mean_square_ = 0;
+  std::vector<double> sum_, squares_;  // one per direction
+  LargestRate low_, high_, peak_;      // of what is lowest the negative
 };
 
 void find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
@@ -175,7 +204,8 @@ void find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
     pumps.push_back(rates.back().pump);
   }
   std::vector<StatisticRates> statistics;
-  for (const std::size_t o : outputs) statistics.emplace_back(s.outputs[o], variables.size());
+  for (const std::size_t o : outputs) 
+    statistics.emplace_back(s.outputs[o], s.scales[o], variables.size());
   const analytic::DerivativeModel model(base.pump, base.analytic, pumps);
   const std::size_t reactions = model.layout().reactions();
   const int n = model.layout().pistons();
@@ -201,12 +231,15 @@ void find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
   }
   for (std::size_t i = 0; i < outputs.size(); ++i)
     for (std::size_t d = 0; d < variables.size(); ++d)
-      s.derivatives[outputs[i]][variables[d]] = {statistics[i].derivative(d)};
+      s.derivatives[outputs[i]][variables[d]] = statistics[i].derivative(d);
 }
 
 // ---- Differences
 
-constexpr double kFirstStep = 0.02;  // of the parameter
+// Of the parameter: short, so that another sample seldom becomes the largest and friction at a dead
+// centre is followed through its change of sign; longer where the
+// pressure is found by a search that ends at 1e-9 or so.
+constexpr double kFirstStep = 1e-4, kFirstStepOfSearch = 0.02;
 constexpr double kStepOfZero = 0.01;  // in the file's unit
 constexpr int kMostShorter = 8;      // times a first step that leads nowhere is halved
 // Halvings: where an evaluation is quick, and where it is a search or takes Simbody.
@@ -215,7 +248,9 @@ constexpr int kLevels = 8, kSlowLevels = 5;
 // The first step from which all of both sides is inside of the range; 0 where there is none.
 double first_step(const Variable& variable, const Case& base, double at) {
   const NumberRange range = variable.range(base);
-  double step = at == 0 ? kStepOfZero : kFirstStep * std::abs(at);
+  const bool search = base.pressure.kind == PressureKind::hydraulic;
+  double step =
+      at == 0 ? kStepOfZero : (search ? kFirstStepOfSearch : kFirstStep) * std::abs(at);
   const double room = std::min(at - range.low, range.high - at);
   if (step >= room) step = room / 2;
   return step > 1e-9 * std::abs(at) && step > 0 ? step : 0;
@@ -409,9 +444,11 @@ SensitivityCheck check(const Sensitivities& found, const study::PartProgress& pr
     const double size = found.at[v] == 0 ? 1 : std::abs(found.at[v]);
     for (const std::size_t o : all) {
       double& difference = result.differences[o][v];
-      difference = std::abs(result.other.derivatives[o][v].value - found.derivatives[o][v].value) *
-                   size / (found.scales[o] > 0 ? found.scales[o] : 1);
-      if (!is_computed(difference)) {
+      const double over_scale = size / (found.scales[o] > 0 ? found.scales[o] : 1);
+      const Derivative &one = found.derivatives[o][v], &other = result.other.derivatives[o][v];
+      difference = std::abs(other.value - one.value) * over_scale;
+      if (!is_computed(difference) ||
+          (one.error + other.error) * over_scale > SensitivityCheck::kTolerance) {
         ++result.missing;
       } else if (difference > result.worst) {
         result.worst = difference;

@@ -66,7 +66,7 @@ Section derivatives_section(const Sensitivities& s, std::size_t o) {
         {variable.name(), variable.meaning(), s.at[v], variable.unit(), d.value,
          per(output.unit, variable.unit()), effect(s, o, v), s.elasticity(o, v),
          d.reason.empty() ? to_string(d.way) : d.reason,
-         d.way == Way::exact ? Cell("round-off") : Cell(d.error)});
+         d.way == Way::exact && d.error == 0 ? Cell("round-off") : Cell(d.error)});
   }
   return section;
 }
@@ -122,7 +122,8 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
       {},
       {{"output", "parameter", "derivative", "by the other model", "its error", "difference"}, {}}};
   if (check.missing > 0)
-    section.facts = {{"not compared", fmt::format("{}: one model has none", check.missing)}};
+    section.facts = {{"not compared", fmt::format("{}: one model has none, or differences that are not as sharp",
+                                  check.missing)}};
   for (std::size_t o = 0; o < s.outputs.size(); ++o)
     for (std::size_t v = 0; v < s.variables.size(); ++v)
       section.table.rows.push_back({s.outputs[o].name, s.variables[v].name(),
@@ -147,7 +148,8 @@ report::Document sensitivity_document(const Sensitivities& s,
   document.meaning =
       "A derivative holds for small changes of one parameter, the others staying. An exact one is "
       "right to round-off; one by differences has the error beside it. A largest or least value "
-      "changes as at the sample that attains it.";
+      "changes as at the sample that attains it; where several do, the derivative is the mean of "
+      "those to either side, and its error what each differs by.";
   std::vector<Section> sections = {outputs_section(s)};
   std::vector<report::Figure> figures;
   for (std::size_t o = 0; o < s.outputs.size(); ++o) {
@@ -179,7 +181,7 @@ std::string sensitivity_csv(const Sensitivities& s, const std::optional<Sensitiv
       number(d.value);
       number(s.elasticity(o, v));
       text += "," + (is_computed(d.value) ? to_string(d.way) : std::string());
-      number(d.way == Way::exact ? 0 : d.error);
+      number(d.error);
       if (check) {
         number(check->other.derivatives[o][v].value);
         number(check->differences[o][v]);

@@ -21,7 +21,9 @@ std::string to_string(Way way);
 
 struct Derivative {
   double value;       ///< in the files' units; not_computed() where there is none
-  double error = 0;   ///< of differences: estimate
+  /// Of differences: estimate. Of an exact one 0, but at a kink, where several samples attain an
+  /// extreme: derivatives to either side are value - error and value + error.
+  double error = 0;
   Way way = Way::exact;
   std::string reason = {};  ///< why there is none
 };
@@ -48,8 +50,7 @@ std::vector<Variable> continuous_variables(const Case& base);
 
 /// Derivatives at the case itself. Exact are those by the analytic model of statistics of
 /// reactions, under ideal pressure or a curve and without teeth, with respect to what pump, speed
-/// and pressure are made of; a largest or least value changes as at the sample that attains it, the
-/// first where several do.
+/// and pressure are made of; a largest or least value changes as at the sample that attains it.
 /// @throws InputError where a variable is no continuous number, or as the case; ComputationError
 Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
                             const std::vector<Output>& outputs,
@@ -66,7 +67,8 @@ struct SensitivityCheck {
   std::vector<std::vector<double>> differences;  ///< over that scale; by output, then variable
   double worst = 0;
   std::size_t output = 0, variable = 0;  ///< of the worst
-  std::size_t missing = 0;               ///< that one of the models does not give
+  /// Not compared: one of the models has none, or differences that are not as sharp.
+  std::size_t missing = 0;
   bool agrees() const { return worst <= kTolerance; }
 };
 /// The same derivatives by differences of the other model.
