@@ -39,6 +39,7 @@ Command add_regress_command(CommandParser program);
 Command add_reference_command(CommandParser program);
 Command add_schema_command(CommandParser program);
 Command add_show_command(CommandParser program);
+Command add_sensitivity_command(CommandParser program);
 Command add_simulate_command(CommandParser program);
 Command add_sweep_command(CommandParser program);
 Command add_tradeoff_command(CommandParser program);
