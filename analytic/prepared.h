@@ -27,5 +27,7 @@ struct PreparedPump {
 
 /// @throws InputError if real pistons are asked for and the pump has no data of them.
 PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions);
+/// The same in place: allocates nothing where `result` has been a pump with as many pistons.
+void prepare(const PumpParameters& pump, const Assumptions& assumptions, PreparedPump& result);
 
 }  // namespace bentaxis::analytic

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <utility>
 
@@ -132,44 +131,26 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   return result;
 }
 
-std::string sweep_text(const SweepResult& result) {
-  const std::size_t all = result.plan.size();
-  std::string text =
-      fmt::format("{} design{}, {} infeasible", all, all == 1 ? "" : "s", result.all_infeasible);
-  std::map<std::string, std::size_t> reasons;  // without their numbers' places: as they are said
-  for (const auto& [design, reason] : result.infeasible) ++reasons[reason];
-  const auto most =
-      std::max_element(reasons.begin(), reasons.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most != reasons.end()) text += fmt::format("; such as: {}", most->first);
-  if (result.checks.empty()) return text;
-  const std::string other =
-      study::to_string(result.plan.model == study::Model::analytic ? study::Model::multibody
-                                                                   : study::Model::analytic);
-  double worst = 0;
-  std::size_t differ = 0;
-  std::string lines;
-  constexpr std::size_t kMostLines = 20;
+std::string disagreements_text(const SweepResult& result) {
+  std::string text;
+  constexpr int kMost = 20;
+  int lines = 0;
+  const auto add = [&](const std::string& line) {
+    if (lines++ < kMost) text += line + "\n";
+  };
   for (const SweepCheck& c : result.checks) {
-    const bool agrees = c.agrees(result.tolerance);
-    if (!agrees) ++differ;
-    if (c.own_reason.empty() != c.reason.empty() && differ <= kMostLines)
-      lines += fmt::format("\n  design {}: refused by one model alone: {}", c.design,
-                           c.own_reason + c.reason);
-    for (std::size_t k = 0; k < c.values.size(); ++k) {
-      worst = std::max(worst, c.error(k));
-      if (!(c.error(k) <= result.tolerance) && differ <= kMostLines)
-        lines += fmt::format("\n  design {}, {}: {} against {}, {} of the peak", c.design,
-                             result.plan.outputs[k].name, number_text(c.own[k]),
-                             number_text(c.values[k]), rounded_text(c.error(k)));
-    }
+    if (c.own_reason.empty() != c.reason.empty())
+      add(fmt::format("design {}: refused by one model alone: {}", c.design,
+                      c.own_reason + c.reason));
+    for (std::size_t k = 0; k < c.values.size(); ++k)
+      if (!(c.error(k) <= result.tolerance))
+        add(fmt::format("design {}, {}: {} against {}, {} of the peak", c.design,
+                        result.plan.outputs[k].name, number_text(c.own[k]),
+                        number_text(c.values[k]), rounded_text(c.error(k))));
   }
-  return text + fmt::format(
-                    "\n{} of them by the {} model too: {}, at most {} of the peak apart "
-                    "(tolerance {}){}",
-                    result.checks.size(), other,
-                    differ == 0 ? "all agree" : fmt::format("{} differ", differ),
-                    rounded_text(worst), number_text(result.tolerance), lines);
+  if (lines > kMost)
+    text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMost);
+  return text;
 }
 
 }  // namespace bentaxis::designs
