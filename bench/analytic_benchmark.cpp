@@ -127,9 +127,9 @@ void statistics(benchmark::State& state, InstructionSet set) {
 void designs(benchmark::State& state) {
   Case base = rated();
   base.operation.samples_per_revolution = 360;
-  const designs::Family family(base, {designs::Variable("pump.tilt_deg", base),
-                                      designs::Variable("piston.mass_kg", base),
-                                      designs::Variable("pressure.delivery_bar", base)});
+  const designs::Family family(
+      base, {designs::Variable("pump.tilt_deg", base), designs::Variable("piston.mass_kg", base),
+             designs::Variable("pressure.delivery_bar", base)});
   std::vector<designs::Output> outputs;
   const ChannelLayout layout(5);
   for (std::size_t c = 0; c < layout.reactions(); ++c)

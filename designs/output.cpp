@@ -268,8 +268,8 @@ namespace {
 double statistic_in(Output o, const ResultTable& table) {
   // The number of pistons moves columns, and may take some away.
   const auto stands = [&](std::size_t column) {
-    return column < table.columns() && (table.channels[column].name == o.item ||
-                                        vector_name(table.channels[column]) == o.item);
+    return column < table.columns() &&
+           (table.channels[column].name == o.item || vector_name(table.channels[column]) == o.item);
   };
   if (!std::all_of(o.columns.begin(), o.columns.end(), stands)) {
     o.columns.clear();

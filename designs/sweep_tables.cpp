@@ -148,8 +148,7 @@ std::string disagreements_text(const SweepResult& result) {
                         result.plan.outputs[k].name, number_text(c.own[k]),
                         number_text(c.values[k]), rounded_text(c.error(k))));
   }
-  if (lines > kMost)
-    text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMost);
+  if (lines > kMost) text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMost);
   return text;
 }
 

@@ -128,14 +128,14 @@ bool TurnStatistics::find(const Case& the_case, std::span<double> results) {
   set_samples(static_cast<std::size_t>(the_case.operation.samples_per_revolution), pistons);
   set_pressure(the_case.pressure, pistons);
   const PortPressures& ports = the_case.pressure.ports;
-  const analytic::BatchInstants instants = {.count = theta_.size(),
-                                            .theta = {theta_.data(), 0},
-                                            .omega = {nullptr, rad_per_second(
-                                                         the_case.operation.speed_rpm)},
-                                            .omega_dot = {},
-                                            .chamber_pressure = chambers_,
-                                            .suction = {nullptr, ports.suction},
-                                            .delivery = {nullptr, ports.delivery}};
+  const analytic::BatchInstants instants = {
+      .count = theta_.size(),
+      .theta = {theta_.data(), 0},
+      .omega = {nullptr, rad_per_second(the_case.operation.speed_rpm)},
+      .omega_dot = {},
+      .chamber_pressure = chambers_,
+      .suction = {nullptr, ports.suction},
+      .delivery = {nullptr, ports.delivery}};
   model_->statistics(instants, outputs_.measured, statistics_);
   const bool tooth = the_case.analytic.gear == BlockDrive::mesh;
   for (std::size_t i = 0; i < results.size(); ++i) {

@@ -1,5 +1,5 @@
-// Outputs of many designs by the kernel of the closed form: statistics of reactions over a turn, made
-// while the reactions are, without tables. Internal.
+// Outputs of many designs by the kernel of the closed form: statistics of reactions over a turn,
+// made while the reactions are, without tables. Internal.
 #pragma once
 
 #include <optional>

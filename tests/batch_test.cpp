@@ -403,7 +403,8 @@ void expect_statistics_of_columns(const BatchModel& model, const BatchInstants& 
   double scale = 0;  // largest reaction
   for (std::size_t c = 0; c < model.layout().reactions(); ++c)
     for (std::size_t i = 0; i < instants.count; ++i)
-      if (is_computed(columns.column(c)[i])) scale = std::max(scale, std::abs(columns.column(c)[i]));
+      if (is_computed(columns.column(c)[i]))
+        scale = std::max(scale, std::abs(columns.column(c)[i]));
   const double tolerance = scaled(kSumTolerance) * scale;
   for (std::size_t m = 0; m < measured.size(); ++m) {
     Statistics expected{0, HUGE_VAL, -HUGE_VAL, 0};
@@ -435,8 +436,7 @@ TEST(Statistics, AreThoseOfTheColumns) {
   for (const std::size_t count : {1, 3, 8, 63, 64, 65, 360, 1023, 2500}) {
     const PumpParameters pump = random.pump();
     std::vector<Instant> instants;
-    for (std::size_t i = 0; i < count; ++i)
-      instants.push_back(random.instant(pump, true));
+    for (std::size_t i = 0; i < count; ++i) instants.push_back(random.instant(pump, true));
     const Arrays arrays(instants);
     for (const BlockDrive gear : {BlockDrive::mesh, BlockDrive::imposed}) {
       const BatchModel model(pump, {.inertia = pump.piston.inertia, .gear = gear});

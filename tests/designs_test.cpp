@@ -104,9 +104,9 @@ TEST(Evaluator, GivesNumbersOfTheTurn) {
   EXPECT_FALSE(is_computed(refused.values[0]));
 }
 
-// Statistics by the kernel against those of tables, for designs that differ in everything the kernel
-// keeps from one to the next. Of the largest reaction: sums of some hundred numbers that are right
-// to 1e-14.
+// Statistics by the kernel against those of tables, for designs that differ in everything the
+// kernel keeps from one to the next. Of the largest reaction: sums of some hundred numbers that are
+// right to 1e-14.
 constexpr double kKernelTolerance = 1e-12;
 
 void expect_kernel_equals_tables(const Case& base, const std::vector<std::string>& names,
@@ -153,21 +153,20 @@ void expect_kernel_equals_tables(const Case& base, const std::vector<std::string
 TEST(Evaluator, GivesTheSameByTheKernel) {
   Case base = read_case(kRated);
   base.operation.samples_per_revolution = 60;
-  expect_kernel_equals_tables(
-      base,
-      {"pump.tilt_deg", "pressure.delivery_bar", "operation.speed_rpm",
-       "operation.samples_per_revolution", "pressure.transition_deg", "assumptions.analytic.gear",
-       "pressure.suction_bar"},
-      {{40, 275, 1500, 60, 20, 0, 0},
-       {35, 275, 1500, 60, 20, 0, 0},
-       {35, 100, 1500, 60, 20, 0, 0},   // the ports' pressure alone
-       {95, 100, 1500, 60, 20, 0, 0},   // refused
-       {35, 100, -900, 60, 20, 0, 3},
-       {35, 100, -900, 61, 20, 0, 3},   // chambers at places of their own
-       {35, 100, -900, 61, 0, 0, 3},
-       {35, 100, -900, 60, 0, 0, 3},
-       {0, 100, 900, 1, 10, 1, 3},      // no tooth force
-       {40, 275, 1500, 720, 20, 0, 0}});
+  expect_kernel_equals_tables(base,
+                              {"pump.tilt_deg", "pressure.delivery_bar", "operation.speed_rpm",
+                               "operation.samples_per_revolution", "pressure.transition_deg",
+                               "assumptions.analytic.gear", "pressure.suction_bar"},
+                              {{40, 275, 1500, 60, 20, 0, 0},
+                               {35, 275, 1500, 60, 20, 0, 0},
+                               {35, 100, 1500, 60, 20, 0, 0},  // the ports' pressure alone
+                               {95, 100, 1500, 60, 20, 0, 0},  // refused
+                               {35, 100, -900, 60, 20, 0, 3},
+                               {35, 100, -900, 61, 20, 0, 3},  // chambers at places of their own
+                               {35, 100, -900, 61, 0, 0, 3},
+                               {35, 100, -900, 60, 0, 0, 3},
+                               {0, 100, 900, 1, 10, 1, 3},  // no tooth force
+                               {40, 275, 1500, 720, 20, 0, 0}});
 }
 
 TEST(Evaluator, GivesTheSameByTheKernelUnderACurve) {
@@ -189,8 +188,7 @@ TEST(Evaluator, FindsChannelsOfAnotherNumberOfPistons) {
   ASSERT_TRUE(found.feasible()) << found.reason;
   const Case other = read_case(kRated, {"pump.pistons=3"});
   const std::vector<Output> of_other = {output("mean:Td", other), output("peak:Rb1", other)};
-  const auto expected =
-      outputs_of(of_other, study::prepare(other), study::Model::analytic);
+  const auto expected = outputs_of(of_other, study::prepare(other), study::Model::analytic);
   EXPECT_EQ(found.values[0], expected[0]);
   EXPECT_EQ(found.values[2], expected[1]);
   EXPECT_FALSE(is_computed(found.values[1]));

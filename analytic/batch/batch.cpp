@@ -319,7 +319,8 @@ void BatchModel::statistics(const BatchInstants& instants, std::span<const Measu
         add_up(begin / kGrain, &sums[begin / kGrain * measured.size()], room);
     });
     std::copy_n(sums.begin(), results.size(), results.begin());
-    for (std::size_t i = results.size(); i < sums.size(); ++i) add(results[i % results.size()], sums[i]);
+    for (std::size_t i = results.size(); i < sums.size(); ++i)
+      add(results[i % results.size()], sums[i]);
   }
   const auto count = static_cast<double>(instants.count);
   for (std::size_t i = 0; i < results.size(); ++i) {
