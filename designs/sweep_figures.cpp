@@ -14,7 +14,7 @@ using report::Values;
 
 // What a page can hold and a reader can look through.
 constexpr std::size_t kMostMaps = 12, kMostSlices = 12, kMostPairs = 6, kMostLines = 6;
-constexpr std::size_t kMostDrawn = 60;    // of either axis of a map
+constexpr std::size_t kMostDrawnLevels = 60;   // of either axis of a map
 constexpr std::size_t kMostPoints = 300;  // of a figure of designs
 constexpr std::size_t kMostMarked = 60;   // designs of the front drawn among them
 constexpr std::size_t kMostColumns = 10;  // parallel axes
@@ -108,8 +108,8 @@ class Figures {
   }
 
   void map(std::size_t a, std::size_t b, std::size_t k, std::string note) {
-    const auto columns = spread(view_.levels(a).size(), kMostDrawn, view_.home()[a]);
-    const auto rows = spread(view_.levels(b).size(), kMostDrawn, view_.home()[b]);
+    const auto columns = spread(view_.levels(a).size(), kMostDrawnLevels, view_.home()[a]);
+    const auto rows = spread(view_.levels(b).size(), kMostDrawnLevels, view_.home()[b]);
     report::MapFigure m{view_.axis(a), view_.axis(b), {}, {}, {}, {}, {}, {}};
     for (const std::size_t j : columns) m.x_values.push_back(view_.levels(a)[j]);
     for (const std::size_t i : rows) m.y_values.push_back(view_.levels(b)[i]);
