@@ -57,6 +57,8 @@ class SchemaTest(unittest.TestCase):
                                    "drive.duration_s=0.001", "--set", "drive.samples=10", "--error", "1e-4"),
             "teeth": cls.report("report.json", "compare", REPO / "cases" / "bap63_teeth.toml", "--set",
                                 "operation.samples_per_revolution=36"),
+            "life": cls.report("life.json", "life", REPO / "cases" / "bap63_bearing_life.toml", "--set",
+                               "operation.samples_per_revolution=36"),
             "rattle": cls.report("report.json", "rattle", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                  "friction.block_viscous_Nm_per_rpm=0.0054", "--speeds", "900:1200:#2", "--delivery-bar",
                                  "350", "--turns", "2", "--check", "1"),
