@@ -197,6 +197,29 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
   return result;
 }
 
+std::string outputs_csv(const UncertaintyResult& result) {
+  std::string text =
+      "output,unit,nominal,mean,mean_error,deviation,deviation_error,low,low_from,low_to,median,"
+      "median_from,median_to,high,high_from,high_to,first_order_value,first_order_deviation\n";
+  const FirstOrder& first = result.first_order;
+  for (std::size_t o = 0; o < result.outputs.size(); ++o) {
+    const auto& [output, nominal, s] = result.outputs[o];
+    std::vector<double> numbers = {nominal, s.mean, s.mean_error, s.deviation, s.deviation_error};
+    for (const Estimate& e : {s.low, s.median, s.high})
+      numbers.insert(numbers.end(), {e.value, e.low, e.high});
+    const bool is_there = !first.values.empty();
+    numbers.push_back(is_there ? first.values[o] : not_computed());
+    numbers.push_back(is_there ? first.deviations[o] : not_computed());
+    text += output.name + "," + output.unit;
+    for (const double number : numbers) {
+      text += ",";
+      append_number(text, number);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 std::string bands_csv(const UncertaintyResult& result) {
   if (result.bands.empty()) return "";
   std::string text = "theta_deg";

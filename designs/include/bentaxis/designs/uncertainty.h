@@ -67,6 +67,8 @@ std::vector<std::size_t> banded_channels(const Case& the_case);
 UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& options,
                               const study::PartProgress& progress_of = study::silent());
 
+/// Every number of every output, a line each.
+std::string outputs_csv(const UncertaintyResult& result);
 /// Bands by angle: theta_deg, then CHANNEL_nominal, _low, _median, _high; "" where there are none.
 std::string bands_csv(const UncertaintyResult& result);
 /// Values of parameters and outputs of every sample that has some.
