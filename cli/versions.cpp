@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <fstream>
 
+#include "bentaxis/designs/propagation.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
 
@@ -22,7 +23,7 @@ std::string processor() {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> versions() {
-  return {
+  std::vector<std::pair<std::string, std::string>> all = {
       {"bentaxis", BENTAXIS_VERSION},
       {"compiler",
 #ifdef __clang__
@@ -37,6 +38,9 @@ std::vector<std::pair<std::string, std::string>> versions() {
       {"Simbody", multibody::simbody_version()},
       {"BLAS", multibody::blas_library()},
       {"processor", processor()}};
+  if (const std::string openturns = designs::openturns_version(); !openturns.empty())
+    all.emplace_back("OpenTURNS", openturns);
+  return all;
 }
 
 }  // namespace bentaxis::cli

@@ -57,6 +57,8 @@ class SchemaTest(unittest.TestCase):
                                    "drive.duration_s=0.001", "--set", "drive.samples=10", "--error", "1e-4"),
             "teeth": cls.report("report.json", "compare", REPO / "cases" / "bap63_teeth.toml", "--set",
                                 "operation.samples_per_revolution=36"),
+            "uncertainty": cls.report("report.json", "uncertainty", rated, "--vary", "pump.tilt_deg=normal(0.1)", "--samples", "150",
+                                      "--sobol", "32"),
             "rattle": cls.report("report.json", "rattle", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                  "friction.block_viscous_Nm_per_rpm=0.0054", "--speeds", "900:1200:#2", "--delivery-bar",
                                  "350", "--turns", "2", "--check", "1"),
