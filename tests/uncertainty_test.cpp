@@ -465,7 +465,7 @@ TEST(Uncertainty, ToFirstOrderIsThatOfAProduct) {
 }
 
 TEST(Uncertainty, RefusesWhatMostlyIsNoPump) {
-  const Case the_case = uncertain({{"pump.piston_length_mm", "uniform(1, 10)"}});
+  const Case the_case = uncertain({{"pump.axis_offset_mm", "uniform(80, 200)"}});
   UncertaintyOptions options;
   options.samples = 200;
   try {
