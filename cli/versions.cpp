@@ -6,8 +6,10 @@
 #include <fstream>
 
 #include "bentaxis/designs/propagation.h"
+#include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
+#include "ranks.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -23,7 +25,7 @@ std::string processor() {
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> versions() {
-  std::vector<std::pair<std::string, std::string>> all = {
+  return {
       {"bentaxis", BENTAXIS_VERSION},
       {"compiler",
 #ifdef __clang__
@@ -37,10 +39,10 @@ std::vector<std::pair<std::string, std::string>> versions() {
                     "." + std::to_string(EIGEN_MINOR_VERSION)},
       {"Simbody", multibody::simbody_version()},
       {"BLAS", multibody::blas_library()},
+      {"HDF5", designs::hdf5_version()},
+      {"MPI", mpi_library()},
+      {"OpenTURNS", designs::openturns_version()},
       {"processor", processor()}};
-  if (const std::string openturns = designs::openturns_version(); !openturns.empty())
-    all.emplace_back("OpenTURNS", openturns);
-  return all;
 }
 
 }  // namespace bentaxis::cli

@@ -99,7 +99,7 @@ std::string openturns_version() {
 #ifdef BENTAXIS_HAS_OPENTURNS
   return BENTAXIS_HAS_OPENTURNS;
 #else
-  return "";
+  return "none";
 #endif
 }
 

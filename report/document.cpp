@@ -195,6 +195,8 @@ Json json_of(const MapFigure& figure) {
   if (!figure.lines.empty())
     json["lines"] = list_of(figure.lines, [](const XySeries& s) { return json_of(s); });
   if (figure.marks) json["marks"] = json_of(*figure.marks);
+  if (figure.z.from) json["z"]["from"] = *figure.z.from;
+  if (!figure.reasons.empty()) json["reasons"] = figure.reasons;
   return json;
 }
 

@@ -864,6 +864,18 @@ Key shade_key(const std::string& label, const std::string& colour) {
           }};
 }
 
+// Three strokes over a box.
+void hatch(pugi::xml_node root, double x, double y, double width, double height) {
+  std::string path;
+  for (const double t : {0.5, 1.0, 1.5}) {
+    const double low = std::max(0.0, t - 1), high = std::min(1.0, t);
+    path += fmt::format("M{} {}L{} {}", px(x + low * width), px(y + high * height),
+                        px(x + high * width), px(y + low * height));
+  }
+  add(root, "path",
+      {{"d", path}, {"class", "hatch"}, {"stroke", "#8a939d"}, {"pointer-events", "none"}});
+}
+
 // A line or a dot that is seen on any shade.
 void draw_line_over(pugi::xml_node root, const std::string& path, std::size_t which) {
   const Attributes common = {{"d", path}, {"fill", "none"}, {"stroke-linejoin", "round"}};
@@ -901,6 +913,17 @@ Values edges_of(const Axis& axis, const Values& values) {
   return edges;
 }
 
+// Digits enough to tell values apart that are a part of the range.
+std::string distinct_number(double value, const Range& range) {
+  const double part = (range.high - range.low) / 8, size = std::abs(value);
+  if (!(part > 0) || size < 1e-3 || size >= 1e6) return short_number(value);
+  const int decimals = -static_cast<int>(std::floor(std::log10(part)));
+  const std::string text = short_number(value);
+  const auto point = text.find('.');
+  const int shown = point == std::string::npos ? 0 : static_cast<int>(text.size() - point) - 1;
+  return decimals <= std::max(shown, 0) ? text : fmt::format("{:.{}f}", value, decimals);
+}
+
 // Shades and contours go by the logarithm of z, where it is not to be linear.
 Picture picture_of(const MapFigure& figure, const Curves&) {
   Picture picture;
@@ -913,14 +936,14 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
       range.include(v);
     }
   if (range.empty()) return picture;
-  if (linear) range.low = std::min(range.low, 0.0);
+  if (linear) range.low = figure.z.from.value_or(std::min(range.low, 0.0));
   const Values x_edges = edges_of(figure.x, figure.x_values);
   const Values y_edges = edges_of(figure.y, figure.y_values);
   xs.include(x_edges);
   ys.include(y_edges);
-  const auto text = [&figure](double v) {
+  const auto text = [&figure, linear, range](double v) {
     if (!figure.classes.empty()) return figure.classes.at(static_cast<std::size_t>(v));
-    return with_unit(short_number(v), figure.z.unit);
+    return with_unit(linear ? distinct_number(v, range) : short_number(v), figure.z.unit);
   };
   const auto colour = [&figure, range](double v) {
     if (!is_computed(v)) return std::string("#fff");
@@ -940,6 +963,13 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
     picture.legend[0][0].label = figure.z.label + ": " + picture.legend[0][0].label;
   }
   picture.legend.emplace_back();
+  if (std::any_of(figure.reasons.begin(), figure.reasons.end(), [](const auto& row) {
+        return std::any_of(row.begin(), row.end(),
+                           [](const auto& reason) { return !reason.empty(); });
+      }))
+    picture.legend[1].push_back({"infeasible", [](pugi::xml_node root, double x, double y) {
+                                   hatch(root, x, y - 6, 30, 12);
+                                 }});
   for (std::size_t i = 0; i < figure.lines.size(); ++i)
     picture.legend[1].push_back(
         {figure.lines[i].label, [i](pugi::xml_node root, double x, double y) {
@@ -966,6 +996,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
       for (std::size_t j = 0; j < z[i].size(); ++j) {
         const double x1 = in_frame(x, x_edges[j]), x2 = in_frame(x, x_edges[j + 1]);
         const double y1 = in_frame(y, y_edges[i + 1]), y2 = in_frame(y, y_edges[i]);
+        const std::string reason = figure.reasons.empty() ? "" : figure.reasons.at(i).at(j);
         pugi::xml_node cell = add(root, "rect",
                                   {{"x", px(x1)},
                                    {"y", px(y1)},
@@ -973,12 +1004,15 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
                                    {"height", px(y2 - y1 + 0.6)},
                                    {"fill", colour(z[i][j])}});
         cell.append_child("title").text() =
-            fmt::format(
-                "{} {}, {} {}: {}", figure.x.label,
-                with_unit(short_number(figure.x_values[j]), figure.x.unit), figure.y.label,
-                with_unit(short_number(figure.y_values[i]), figure.y.unit),
-                is_computed(figure.values[i][j]) ? text(figure.values[i][j]) : "not computed")
+            fmt::format("{} {}, {} {}: {}", figure.x.label,
+                        with_unit(short_number(figure.x_values[j]), figure.x.unit), figure.y.label,
+                        with_unit(short_number(figure.y_values[i]), figure.y.unit),
+                        is_computed(figure.values[i][j]) ? text(figure.values[i][j])
+                        : reason.empty()                 ? "not computed"
+                                                         : reason)
                 .c_str();
+        if (!is_computed(figure.values[i][j]) && !reason.empty())
+          hatch(root, x1, y1, x2 - x1, y2 - y1);
       }
     const Attributes label = {{"text-anchor", "middle"}, {"font-weight", "bold"},
                               {"fill", "#7a0c0c"},       {"stroke", "#fff"},

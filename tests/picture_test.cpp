@@ -367,6 +367,23 @@ TEST(Picture, ParallelAxesAreScaledEachByItself) {
   EXPECT_EQ(csv_of(figure), "a (mm),b (h),c,d,marked\n1,1,yes,5,0\n2,10,no,7,1\n3,1000,yes,,0\n");
 }
 
+// An infeasible place says why; shades can begin anywhere.
+TEST(Picture, MapHatchesWhatHasAReason) {
+  const double gap = not_computed();
+  MapFigure map{{"n", "rpm"}, {"p"}, {"e", "%"}, {1, 2, 3}, {4}, {{90, gap, gap}}, {}, {}};
+  map.linear = true;
+  map.z.from = 80;
+  map.reasons = {{"", "pistons <touch>", ""}};
+  const auto document = read(svg_of({"id", "t", "", map}));
+  EXPECT_EQ(document.select_nodes("//path[@class='hatch']").size(), 2U);  // of the cell, of its key
+  std::vector<std::string> titles;
+  for (const auto& node : document.select_nodes("//rect/title"))
+    titles.emplace_back(node.node().text().get());
+  EXPECT_THAT(titles, testing::ElementsAre("n 1 rpm, p 4: 90 %", "n 2 rpm, p 4: pistons <touch>",
+                                           "n 3 rpm, p 4: not computed"));
+  EXPECT_STREQ(document.select_node("//text[starts-with(., 'e:')]").node().text().get(), "e: 80 %");
+}
+
 TEST(Picture, PngHasTwiceTheSize) {
   const std::string png = png_of(
       "<svg xmlns='http://www.w3.org/2000/svg' width='30' height='20'><rect width='9' "

@@ -135,11 +135,13 @@ struct MapFigure {
   std::vector<double> contours;
   std::vector<Point> points;
   /// What the values 0, 1, .. stand for, drawn light to dark. None: shades go by the quantity's
-  /// logarithm, or from 0 by itself where `linear`.
+  /// logarithm, or from 0 (from z.from, where that is set) by itself where `linear`.
   std::vector<std::string> classes = {};
   bool linear = false;
   std::vector<XySeries> lines = {};              ///< drawn over it; a place alone, across its row
   std::optional<XySeries> marks = std::nullopt;  ///< places of the map, each a dot
+  /// Why values are not there, as `values`: such a place is hatched, where there is a reason.
+  std::vector<std::vector<std::string>> reasons = {};
 };
 
 struct ScatterPoint {
