@@ -257,14 +257,17 @@ LeastSquaresFit least_squares(const LeastSquaresProblem&, std::span<const double
 
 std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
                                            const std::vector<std::vector<double>>& starts,
-                                           const LeastSquaresOptions& options, int threads) {
+                                           const LeastSquaresOptions& options, int threads,
+                                           const Progress& progress) {
   std::vector<std::optional<LeastSquaresFit>> found(starts.size());
+  study::Reporting reporting(starts.size(), progress);
   study::in_threads(threads, starts.size(), [&](std::size_t i) {
     try {
       found[i] = least_squares(problem, starts[i], options);
     } catch (const ComputationError&) {
       found[i].reset();  // no residuals there: a start like this leads nowhere
     }
+    reporting.done();
   });
   std::vector<LeastSquaresFit> fits;
   for (auto& fit : found)

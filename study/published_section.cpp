@@ -10,10 +10,9 @@
 #include "bentaxis/study/reference_set.h"
 
 namespace bentaxis::study {
-namespace {
 
-// Applies a variant's settings. @throws InputError for a fact that cannot be set.
-void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions& assumptions) {
+void apply_variant(const compare::PublishedVariant& variant, Case& the_case,
+                   Assumptions& assumptions) {
   for (const auto& [name, value] : variant.set) {
     if (name == "block_viscous_Nm_per_rpm")
       the_case.pump.friction.block_viscous = value / kRadPerSecondPerRpm;
@@ -27,8 +26,6 @@ void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions
                        "gear_imposed");
   }
 }
-
-}  // namespace
 
 compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
   const PumpParameters& pump = the_case.pump;
@@ -79,7 +76,7 @@ compare::PublishedSection judge_case(const compare::Published& published,
         const PublishedInput& input = model == Model::analytic ? analytic : multibody;
         Case the_case = *input.the_case;
         Assumptions assumptions = input.assumptions;
-        apply(variant, the_case, assumptions);
+        apply_variant(variant, the_case, assumptions);
         compare::PublishedRun run{input.table, facts_of(the_case, assumptions)};
         if (variant.set.empty()) return run;
         PressureTrace pressure(the_case.pressure);

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/results/result_table.h"
+
 namespace bentaxis::designs {
 
 /// Residuals as a function of parameters, each over its standard uncertainty.
@@ -62,6 +64,7 @@ bool derivatives_of(const LeastSquaresProblem& problem, std::span<const double> 
 /// Starts that have no residuals, or end without, are left out.
 std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
                                            const std::vector<std::vector<double>>& starts,
-                                           const LeastSquaresOptions& options, int threads);
+                                           const LeastSquaresOptions& options, int threads,
+                                           const Progress& progress = {});
 
 }  // namespace bentaxis::designs
