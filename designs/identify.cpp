@@ -313,8 +313,8 @@ Identification identify(const DataModel& model, const IdentifyOptions& options,
     starts.push_back(std::move(x));
   }
   LeastSquaresOptions fitting;
-  fitting.most_iterations = 100;
-  fitting.tolerance = 1e-12;
+  fitting.most_iterations = 60;
+  fitting.enough = 1e-3;
   const std::vector<LeastSquaresFit> fits =
       least_squares(model.problem(), starts, fitting, options.threads, progress_of("fit"));
   if (fits.empty())

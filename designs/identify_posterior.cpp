@@ -91,7 +91,7 @@ Vector scattered(const DataModel& model, const Density& density, const LeastSqua
   };
   LeastSquaresOptions rough;
   rough.most_iterations = 15;
-  rough.tolerance = 1e-4;
+  rough.enough = 0.1;
   double share = 1;
   for (int attempt = 0; attempt < 4; ++attempt, share /= 3) {
     Vector start(fit.x);

@@ -34,7 +34,7 @@ class Held {
     x[held_] = value;
     LeastSquaresOptions options;
     options.most_iterations = 20;
-    options.tolerance = 1e-6;
+    options.enough = 0.01;
     if (problem_.parameters == 0) {
       Vector residuals(whole_.residuals);
       if (!whole_.evaluate(x, residuals)) throw ComputationError("profile: no pump there");
@@ -158,7 +158,7 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
     out.datum = rows[r];
     LeastSquaresOptions options;
     options.most_iterations = 40;
-    options.tolerance = 1e-9;
+    options.enough = 1e-3;
     const LeastSquaresFit refit =
         least_squares(model.problem(rows[r], true), fit.x, options);
     std::vector<double> numbers(model.numbers());

@@ -44,6 +44,7 @@ struct LeastSquaresFit {
 struct LeastSquaresOptions {
   int most_iterations = 500;
   double tolerance = 1e-15;  ///< of the sum of squares, and of a step over the parameters
+  double enough = 0;         ///< change of the sum of squares that does not matter; 0: all do
 };
 
 /// Whether this program was built with Ceres, and its version.
