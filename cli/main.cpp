@@ -63,6 +63,7 @@ int run_program(int argc, char** argv) {
       add_run_command(program),         add_compare_command(program),
       add_regress_command(program),     add_reference_command(program),
       add_hardcases_command(program),   add_inertia_command(program),
+      add_identify_command(program),
       add_pressure_command(program),    add_tradeoff_command(program),
       add_schema_command(program),      add_calibrate_command(program),
       add_blocktorque_command(program), add_completion_command(program),

@@ -308,7 +308,6 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
     if (channel.piston > 1 || !is_computed(turns[0].at(0, column))) continue;
     ReactionBand band;
     band.column = column;
-    double peak = 0;
     for (std::size_t row = 0; row < rows; ++row) {
       Vector values;
       for (const ResultTable& turn : turns) values.push_back(turn.at(row, column));
@@ -317,10 +316,10 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
       band.middle.push_back(quantile_of(values, 0.5));
       band.high.push_back(quantile_of(values, 0.975));
       band.half_width = std::max(band.half_width, (band.high.back() - band.low.back()) / 2);
-      peak = std::max(peak, std::abs(band.middle.back()));
+      band.peak = std::max(band.peak, std::abs(band.middle.back()));
     }
-    if (peak == 0) continue;  // no force there in this pump
-    band.half_width /= peak;
+    if (band.peak == 0) continue;  // no force there in this pump
+    band.half_width /= band.peak;
     result.bands.push_back(std::move(band));
   }
 
@@ -350,7 +349,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
     const Moments of_measured = moments_of(measured);
     Candidate candidate;
     candidate.output = o;
-    candidate.deviation = options.measured * std::abs(of_measured.mean);
+    candidate.deviation = options.measured * result.bands[c / 3].peak;  // three of each reaction
     const double variance =
         of_measured.variance + candidate.deviation * candidate.deviation;
     for (std::size_t b = 0; b < result.bands.size() && variance > 0; ++b) {

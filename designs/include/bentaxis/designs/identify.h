@@ -164,7 +164,8 @@ struct Posterior {
 struct ReactionBand {
   std::size_t column = 0;
   std::vector<double> low, middle, high;  ///< 2.5 %, 50 %, 97.5 %
-  double half_width = 0;  ///< largest over the turn, of the peak of the middle curve
+  double half_width = 0;  ///< largest over the turn, of the peak
+  double peak = 0;        ///< largest magnitude of the middle curve
 };
 
 /// A measurement that could be made.
@@ -189,7 +190,7 @@ struct IdentifyOptions {
   std::uint64_t seed = 1;
   int draws = 400;  ///< of the posterior that are kept
   int steps = 2000;  ///< of every walker of the ensemble
-  double measured = 0.01;  ///< standard uncertainty of candidates, of their value
+  double measured = 0.01;  ///< standard uncertainty of candidates, of the reaction's peak
   bool profiles = true, posterior = true, leave_one_out = true;
   int threads = 0;
 };
