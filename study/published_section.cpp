@@ -9,10 +9,9 @@
 #include "bentaxis/study/reference_set.h"
 
 namespace bentaxis::study {
-namespace {
 
-// Applies a variant's settings. @throws InputError for a fact that cannot be set.
-void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions& assumptions) {
+void apply_variant(const compare::PublishedVariant& variant, Case& the_case,
+                   Assumptions& assumptions) {
   for (const auto& [name, value] : variant.set) {
     if (name == "block_viscous_Nm_per_rpm")
       the_case.pump.friction.block_viscous = value / kRadPerSecondPerRpm;
@@ -26,8 +25,6 @@ void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions
                        "gear_imposed");
   }
 }
-
-}  // namespace
 
 compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
   const PumpParameters& pump = the_case.pump;
@@ -94,6 +91,20 @@ compare::PublishedSection judge_case(const compare::Published& published,
       published, {to_string(Model::analytic), to_string(Model::multibody)},
       [&](const std::string& name, const compare::PublishedVariant& variant) {
         return name == to_string(Model::analytic) ? of_analytic(variant) : of_multibody(variant);
+        const Model model = name == to_string(Model::analytic) ? Model::analytic : Model::multibody;
+        const PublishedInput& input = model == Model::analytic ? analytic : multibody;
+        Case the_case = *input.the_case;
+        Assumptions assumptions = input.assumptions;
+        apply_variant(variant, the_case, assumptions);
+        compare::PublishedRun run{input.table, facts_of(the_case, assumptions)};
+        if (variant.set.empty()) return run;
+        PressureTrace pressure(the_case.pressure);
+        RunOptions options;
+        options.model = model;
+        options.assumptions = assumptions;
+        const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
+        run.table = &(tables[{name, variant.name}] = study::run(ready, options, progress_of).table);
+        return run;
       });
 }
 
