@@ -68,7 +68,7 @@ compare::PublishedRun VariantRuns::operator()(const compare::PublishedVariant& v
   RunOptions options;
   options.model = model_;
   options.assumptions = input_.assumptions;
-  apply(variant, the_case, *options.assumptions);
+  apply_variant(variant, the_case, *options.assumptions);
   compare::PublishedRun run{input_.table, facts_of(the_case, *options.assumptions)};
   if (variant.set.empty()) return run;
   ResultTable& table = tables_[variant.name];
@@ -91,20 +91,6 @@ compare::PublishedSection judge_case(const compare::Published& published,
       published, {to_string(Model::analytic), to_string(Model::multibody)},
       [&](const std::string& name, const compare::PublishedVariant& variant) {
         return name == to_string(Model::analytic) ? of_analytic(variant) : of_multibody(variant);
-        const Model model = name == to_string(Model::analytic) ? Model::analytic : Model::multibody;
-        const PublishedInput& input = model == Model::analytic ? analytic : multibody;
-        Case the_case = *input.the_case;
-        Assumptions assumptions = input.assumptions;
-        apply_variant(variant, the_case, assumptions);
-        compare::PublishedRun run{input.table, facts_of(the_case, assumptions)};
-        if (variant.set.empty()) return run;
-        PressureTrace pressure(the_case.pressure);
-        RunOptions options;
-        options.model = model;
-        options.assumptions = assumptions;
-        const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
-        run.table = &(tables[{name, variant.name}] = study::run(ready, options, progress_of).table);
-        return run;
       });
 }
 
