@@ -22,50 +22,11 @@ namespace {
 struct Options {
   CaseOption the_case;
   ReportPlace place;
-  std::string study, part, check;
-  std::vector<std::string> vary, formats;
-  designs::SweepRequest request;
-  int samples = 0, seed = 1;
+  PlanOptions plan;
+  std::string part;
+  std::vector<std::string> formats;
   designs::SweepShare share;
 };
-
-double check_share(const std::string& text) {
-  const bool percent = text.ends_with('%');
-  const char* const end = text.data() + text.size() - (percent ? 1 : 0);
-  double share = -1;
-  const auto [stop, error] = std::from_chars(text.data(), end, share);
-  if (percent) share /= 100;
-  if (error != std::errc() || stop != end || !(share >= 0 && share <= 1))
-    throw InputError("--check " + text + ": must be a share of the designs, 0% to 100%");
-  return share;
-}
-
-// What the study file says, and the options that were given.
-designs::SweepRequest request_of(const Options& options, const CommandParser& command) {
-  designs::SweepRequest request;
-  if (!options.study.empty()) request = designs::read_sweep_request(options.study);
-  const designs::SweepRequest& given = options.request;
-  for (const std::string& text : options.vary) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos)
-      throw InputError("--vary " + text + ": must be NAME=VALUES, as in pump.tilt_deg=20:40:5");
-    const std::string name = text.substr(0, equals);
-    std::erase_if(request.vary, [&](const auto& old) { return old.first == name; });
-    request.vary.emplace_back(name, text.substr(equals + 1));
-  }
-  const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
-    to.insert(to.end(), more.begin(), more.end());
-  };
-  append(request.outputs, given.outputs);
-  append(request.minimise, given.minimise);
-  append(request.maximise, given.maximise);
-  if (command.given("--sampling")) request.sampling = given.sampling;
-  if (command.given("--samples")) request.samples = static_cast<std::size_t>(options.samples);
-  if (command.given("--seed")) request.seed = static_cast<std::uint64_t>(options.seed);
-  if (command.given("--model")) request.model = given.model;
-  if (!options.check.empty()) request.check_share = check_share(options.check);
-  return request;
-}
 
 // Which blocks a rank of a part computes.
 designs::SweepShare share_of(const Options& options, const Ranks& ranks) {
@@ -88,7 +49,7 @@ designs::SweepShare share_of(const Options& options, const Ranks& ranks) {
 
 int sweep(const Options& options, const CommandParser& command, const Ranks& ranks) {
   const bool first = ranks.rank() == 0;
-  const designs::SweepRequest request = request_of(options, command);
+  const designs::SweepRequest request = request_of(options.plan, command);
   const designs::SweepShare share = share_of(options, ranks);
   const designs::SweepFormats formats = formats_of(options.formats);
   const Case base =
@@ -127,23 +88,7 @@ Command add_sweep_command(CommandParser program) {
       "Outputs of many designs: grids and samples of any parameters, on any number of cores");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json, sweep.csv and sweep.h5");
-  command.option("--vary", options->vary, "a parameter and its values (docs/sweeps.md)")
-      .repeatable()
-      .text("NAME=VALUES");
-  add_outputs(command, options->request);
-  command.option("--study", options->study, "the same in a file; options come on top").text("FILE");
-  command.choice("--sampling", options->request.sampling, designs::sampling_words(),
-                 "every combination, or points in distributions");
-  command.option("--samples", options->samples, "number of points; not of a grid")
-      .integer_in(1, 1000000000)
-      .text("NUMBER");
-  command.option("--seed", options->seed, "of the points; 0: Sobol's sequence as it is")
-      .integer_in(0, 2147483647)
-      .text("NUMBER [1]");
-  command.choice("--model", options->request.model, {"analytic", "multibody"}, "which model");
-  command
-      .option("--check", options->check, "share of the designs that the other model computes too")
-      .text("SHARE [0%]");
+  add_plan(command, options->plan);
   add_formats(command, options->formats);
   command.option("--part", options->part, "compute this part of the blocks only; then merge")
       .text("I/N");

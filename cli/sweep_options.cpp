@@ -1,5 +1,6 @@
 #include "sweep_options.h"
 
+#include <charconv>
 #include <cstdio>
 
 #include "bentaxis/designs/sweep_document.h"
@@ -10,17 +11,75 @@
 
 namespace bentaxis::cli {
 
-void add_outputs(CommandParser command, designs::SweepRequest& request) {
+namespace {
+
+double check_share(const std::string& text) {
+  const bool percent = text.ends_with('%');
+  const char* const end = text.data() + text.size() - (percent ? 1 : 0);
+  double share = -1;
+  const auto [stop, error] = std::from_chars(text.data(), end, share);
+  if (percent) share /= 100;
+  if (error != std::errc() || stop != end || !(share >= 0 && share <= 1))
+    throw InputError("--check " + text + ": must be a share of the designs, 0% to 100%");
+  return share;
+}
+
+}  // namespace
+
+void add_plan(CommandParser command, PlanOptions& options) {
+  command.option("--vary", options.vary, "a parameter and its values (docs/sweeps.md)")
+      .repeatable()
+      .text("NAME=VALUES");
   const std::string names = "NAME[,NAME..]";
-  command.option("--output", request.outputs, "numbers asked for, as max:Rb1_z1 (docs/sweeps.md)")
+  command
+      .option("--output", options.request.outputs,
+              "numbers asked for, as max:Rb1_z1 (docs/sweeps.md)")
       .list()
       .text(names);
-  command.option("--minimise", request.minimise, "outputs of which less is better")
+  command.option("--minimise", options.request.minimise, "outputs of which less is better")
       .list()
       .text(names);
-  command.option("--maximise", request.maximise, "outputs of which more is better")
+  command.option("--maximise", options.request.maximise, "outputs of which more is better")
       .list()
       .text(names);
+  command.option("--study", options.study, "the same in a file; options come on top").text("FILE");
+  command.choice("--sampling", options.request.sampling, designs::sampling_words(),
+                 "every combination, or points in distributions");
+  command.option("--samples", options.samples, "number of points; not of a grid")
+      .integer_in(1, 1000000000)
+      .text("NUMBER");
+  command.option("--seed", options.seed, "of the points; 0: Sobol's sequence as it is")
+      .integer_in(0, 2147483647)
+      .text("NUMBER [1]");
+  command.choice("--model", options.request.model, {"analytic", "multibody"}, "which model");
+  command.option("--check", options.check, "share of the designs that the other model computes too")
+      .text("SHARE [0%]");
+}
+
+designs::SweepRequest request_of(const PlanOptions& options, const CommandParser& command) {
+  designs::SweepRequest request;
+  if (!options.study.empty()) request = designs::read_sweep_request(options.study);
+  const designs::SweepRequest& given = options.request;
+  for (const std::string& text : options.vary) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+      throw InputError("--vary " + text + ": must be NAME=VALUES, as in pump.tilt_deg=20:40:5");
+    const std::string name = text.substr(0, equals);
+    std::erase_if(request.vary, [&](const auto& old) { return old.first == name; });
+    request.vary.emplace_back(name, text.substr(equals + 1));
+  }
+  const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
+    to.insert(to.end(), more.begin(), more.end());
+  };
+  append(request.outputs, given.outputs);
+  append(request.minimise, given.minimise);
+  append(request.maximise, given.maximise);
+  if (command.given("--sampling")) request.sampling = given.sampling;
+  if (command.given("--samples")) request.samples = static_cast<std::size_t>(options.samples);
+  if (command.given("--seed")) request.seed = static_cast<std::uint64_t>(options.seed);
+  if (command.given("--model")) request.model = given.model;
+  if (!options.check.empty()) request.check_share = check_share(options.check);
+  return request;
 }
 
 void add_formats(CommandParser command, std::vector<std::string>& formats) {

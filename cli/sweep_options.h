@@ -12,8 +12,19 @@
 
 namespace bentaxis::cli {
 
-/// --output, --minimise, --maximise.
-void add_outputs(CommandParser command, designs::SweepRequest& request);
+/// What is to be computed, as the line says it.
+struct PlanOptions {
+  std::string study, check;
+  std::vector<std::string> vary;
+  designs::SweepRequest request;
+  int samples = 0, seed = 1;
+};
+/// --vary, --output, --minimise, --maximise, --study, --sampling, --samples, --seed, --model,
+/// --check.
+void add_plan(CommandParser command, PlanOptions& options);
+/// What the study file says, and the options that were given. @throws InputError
+designs::SweepRequest request_of(const PlanOptions& options, const CommandParser& command);
+
 /// --format.
 void add_formats(CommandParser command, std::vector<std::string>& formats);
 /// Of none: all that this program can write. @throws InputError
