@@ -39,7 +39,8 @@ std::vector<std::size_t> by_effect(const Sensitivities& s, std::size_t o) {
 
 std::string per(const std::string& unit, const std::string& by) {
   const std::string above = unit.empty() ? "1" : unit;
-  return by.empty() ? above : above + "/(" + by + ")";
+  if (by.empty()) return above;
+  return above + "/" + (by.find('/') == std::string::npos ? by : "(" + by + ")");
 }
 
 Section outputs_section(const Sensitivities& s) {
@@ -55,19 +56,25 @@ Section derivatives_section(const Sensitivities& s, std::size_t o) {
   Section section{"Derivatives of " + output.name,
                   "",
                   {},
-                  {{"parameter", "meaning", "value", "unit", "derivative", "of unit",
+                  {{"parameter", "value", "unit", "derivative", "of unit",
                     "by +1 % (" + output.unit + ")", "elasticity (%/%)", "found by",
                     "error of the derivative"},
                    {}}};
+  std::string none;
   for (const std::size_t v : by_effect(s, o)) {
     const Derivative& d = s.derivatives[o][v];
     const Variable& variable = s.variables[v];
+    if (d.value == 0) {
+      none += (none.empty() ? "" : ", ") + variable.name();
+      continue;
+    }
     section.table.rows.push_back(
-        {variable.name(), variable.meaning(), s.at[v], variable.unit(), d.value,
+        {variable.name(), s.at[v], variable.unit(), d.value,
          per(output.unit, variable.unit()), effect(s, o, v), s.elasticity(o, v),
          d.reason.empty() ? to_string(d.way) : d.reason,
          d.way == Way::exact && d.error == 0 ? Cell("round-off") : Cell(d.error)});
   }
+  if (!none.empty()) section.facts = {{"no influence", none}};
   return section;
 }
 
@@ -150,6 +157,9 @@ report::Document sensitivity_document(const Sensitivities& s,
       "right to round-off; one by differences has the error beside it. A largest or least value "
       "changes as at the sample that attains it; where several do, the derivative is the mean of "
       "those to either side, and its error what each differs by.";
+  if (s.base.pressure.kind == PressureKind::hydraulic)
+    document.meaning +=
+        " The pressure is that of a periodic state: each difference is one of two such states.";
   std::vector<Section> sections = {outputs_section(s)};
   std::vector<report::Figure> figures;
   for (std::size_t o = 0; o < s.outputs.size(); ++o) {
