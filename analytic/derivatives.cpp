@@ -72,8 +72,7 @@ DerivativeModel::DerivativeModel(const PumpParameters& pump, const Assumptions& 
                                  std::span<const PumpParameters> directions)
     : layout_(validate(pump).geometry.pistons), directions_(directions.size()) {
   if (pump.gear.contact == ToothContact::teeth)
-    throw InputError(
-        "derivatives: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\"");
+    throw InputError("derivatives: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\"");
   Prepared prepared{prepare(pump, assumptions), {}};
   std::size_t first = 0;
   do {

@@ -18,8 +18,7 @@ void prepare(const PumpParameters& pump, const Assumptions& assumptions, Prepare
   const PistonInertia inertia = assumptions.inertia;
   if (const std::string why = piston_inertia_refusal(inertia, pump); !why.empty())
     throw InputError(to_string(inertia) + " pistons: " + why);
-  result.friction =
-      prepare_numbers(closed_form::raw(pump), pump, assumptions, result.numbers);
+  result.friction = prepare_numbers(closed_form::raw(pump), pump, assumptions, result.numbers);
   result.tooth_law = closed_form::tooth_law(pump.gear);
   result.teeth.reset();
   if (pump.gear.contact == ToothContact::teeth)

@@ -13,8 +13,8 @@ namespace bentaxis::analytic {
 /// All numbers of a pump from the raw ones. @return the friction law it has
 template <class T>
 closed_form::FrictionLaw prepare_numbers(const closed_form::RawPump<T>& raw,
-                                         const PumpParameters& pump,
-                                         const Assumptions& assumptions, closed_form::Pump<T>& p) {
+                                         const PumpParameters& pump, const Assumptions& assumptions,
+                                         closed_form::Pump<T>& p) {
   closed_form::prepare(raw.geometry, p.frame);
   closed_form::prepare(raw.geometry, p.frame, p.piston);
   closed_form::prepare(raw, assumptions.inertia, p.frame, p.piston);

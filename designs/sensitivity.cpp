@@ -41,9 +41,9 @@ bool is_of_closed_form(const Variable& variable) {
   for (const char* known :
        {"pump", "gear", "bearings", "piston", "shaft", "block", "friction", "port_plate"})
     if (table == known) return true;
-  for (const char* known : {"operation.speed_rpm", "operation.gravity_m_per_s2",
-                            "pressure.suction_bar", "pressure.delivery_bar",
-                            "pressure.transition_deg", "pressure.delivery_start_deg"})
+  for (const char* known :
+       {"operation.speed_rpm", "operation.gravity_m_per_s2", "pressure.suction_bar",
+        "pressure.delivery_bar", "pressure.transition_deg", "pressure.delivery_start_deg"})
     if (variable.name() == known) return true;
   return false;
 }
@@ -82,12 +82,11 @@ class IdealPressure {
     double slope = 0;
     if (width > 0) {
       for (const double edge : {0.0, 180.0}) {
-        const double past =
-            wrap_degrees(theta_k_deg - spec_.delivery_start_deg - edge + 180) - 180;
+        const double past = wrap_degrees(theta_k_deg - spec_.delivery_start_deg - edge + 180) - 180;
         if (std::abs(past) > width / 2) continue;
         const double t = past / width + 0.5;
-        const double t_rate = (-along.delivery_start_deg - past / width * along.transition_deg) /
-                              width;
+        const double t_rate =
+            (-along.delivery_start_deg - past / width * along.transition_deg) / width;
         slope += (edge == 0 ? 6 : -6) * t * (1 - t) * t_rate;
       }
     }
@@ -138,8 +137,13 @@ class LargestRate {
 class StatisticRates {
  public:
   StatisticRates(const Output& output, double scale, std::size_t directions)
-      : output_(output), tie_(kTie * scale), sum_(directions), squares_(directions),
-        low_(directions), high_(directions), peak_(directions) {}
+      : output_(output),
+        tie_(kTie * scale),
+        sum_(directions),
+        squares_(directions),
+        low_(directions),
+        high_(directions),
+        peak_(directions) {}
 
   // `derivatives` as of DerivativeModel, of `reactions` each.
   void add(const std::vector<double>& values, const std::vector<double>& derivatives,
@@ -204,7 +208,7 @@ void find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
     pumps.push_back(rates.back().pump);
   }
   std::vector<StatisticRates> statistics;
-  for (const std::size_t o : outputs) 
+  for (const std::size_t o : outputs)
     statistics.emplace_back(s.outputs[o], s.scales[o], variables.size());
   const analytic::DerivativeModel model(base.pump, base.analytic, pumps);
   const std::size_t reactions = model.layout().reactions();
@@ -241,7 +245,7 @@ void find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
 // pressure is found by a search that ends at 1e-9 or so.
 constexpr double kFirstStep = 1e-4, kFirstStepOfSearch = 0.02;
 constexpr double kStepOfZero = 0.01;  // in the file's unit
-constexpr int kMostShorter = 8;      // times a first step that leads nowhere is halved
+constexpr int kMostShorter = 8;       // times a first step that leads nowhere is halved
 // Halvings: where an evaluation is quick, and where it is a search or takes Simbody.
 constexpr int kLevels = 8, kSlowLevels = 5;
 
@@ -249,8 +253,7 @@ constexpr int kLevels = 8, kSlowLevels = 5;
 double first_step(const Variable& variable, const Case& base, double at) {
   const NumberRange range = variable.range(base);
   const bool search = base.pressure.kind == PressureKind::hydraulic;
-  double step =
-      at == 0 ? kStepOfZero : (search ? kFirstStepOfSearch : kFirstStep) * std::abs(at);
+  double step = at == 0 ? kStepOfZero : (search ? kFirstStepOfSearch : kFirstStep) * std::abs(at);
   const double room = std::min(at - range.low, range.high - at);
   if (step >= room) step = room / 2;
   return step > 1e-9 * std::abs(at) && step > 0 ? step : 0;
@@ -432,8 +435,8 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
 }
 
 SensitivityCheck check(const Sensitivities& found, const study::PartProgress& progress_of) {
-  const study::Model model = found.model == study::Model::analytic ? study::Model::multibody
-                                                                   : study::Model::analytic;
+  const study::Model model =
+      found.model == study::Model::analytic ? study::Model::multibody : study::Model::analytic;
   SensitivityCheck result{begin(found.base, found.variables, found.outputs, model), {}};
   const Progress progress = progress_of("derivatives of " + study::to_string(model));
   const auto all = numbers(found.outputs.size(), [](std::size_t) { return true; });
@@ -456,7 +459,8 @@ SensitivityCheck check(const Sensitivities& found, const study::PartProgress& pr
         result.variable = v;
       }
     }
-    if (progress) progress(static_cast<double>(v + 1) / static_cast<double>(found.variables.size()));
+    if (progress)
+      progress(static_cast<double>(v + 1) / static_cast<double>(found.variables.size()));
   }
   return result;
 }

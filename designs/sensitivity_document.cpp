@@ -16,8 +16,10 @@ namespace {
 using report::Cell;
 using report::Section;
 
-constexpr std::size_t kBars = 20;      // of a figure
-constexpr std::size_t kTextLines = 8;  // of an output
+constexpr std::size_t kBars = 20;       // of a figure, at most,
+constexpr double kShortestBar = 1e-3;   // of the longest
+constexpr double kNoInfluence = 1e-12;  // of the output's scale: round-off
+constexpr std::size_t kTextLines = 8;   // of an output
 
 // What one percent of a variable changes in an output.
 double effect(const Sensitivities& s, std::size_t o, std::size_t v) {
@@ -53,25 +55,25 @@ Section outputs_section(const Sensitivities& s) {
 
 Section derivatives_section(const Sensitivities& s, std::size_t o) {
   const Output& output = s.outputs[o];
-  Section section{"Derivatives of " + output.name,
-                  "",
-                  {},
-                  {{"parameter", "value", "unit", "derivative", "of unit",
-                    "by +1 % (" + output.unit + ")", "elasticity (%/%)", "found by",
-                    "error of the derivative"},
-                   {}}};
+  Section section{
+      "Derivatives of " + output.name,
+      "",
+      {},
+      {{"parameter", "value", "unit", "derivative", "of unit", "by +1 % (" + output.unit + ")",
+        "elasticity (%/%)", "found by", "error of the derivative"},
+       {}}};
   std::string none;
   for (const std::size_t v : by_effect(s, o)) {
     const Derivative& d = s.derivatives[o][v];
     const Variable& variable = s.variables[v];
-    if (d.value == 0) {
+    const double size = s.at[v] == 0 ? 1 : std::abs(s.at[v]);
+    if (std::abs(d.value) * size <= kNoInfluence * s.scales[o]) {
       none += (none.empty() ? "" : ", ") + variable.name();
       continue;
     }
     section.table.rows.push_back(
-        {variable.name(), s.at[v], variable.unit(), d.value,
-         per(output.unit, variable.unit()), effect(s, o, v), s.elasticity(o, v),
-         d.reason.empty() ? to_string(d.way) : d.reason,
+        {variable.name(), s.at[v], variable.unit(), d.value, per(output.unit, variable.unit()),
+         effect(s, o, v), s.elasticity(o, v), d.reason.empty() ? to_string(d.way) : d.reason,
          d.way == Way::exact && d.error == 0 ? Cell("round-off") : Cell(d.error)});
   }
   if (!none.empty()) section.facts = {{"no influence", none}};
@@ -82,13 +84,14 @@ report::Figure tornado(const Sensitivities& s, std::size_t o) {
   const Output& output = s.outputs[o];
   report::BarsFigure bars{{"change of " + output.name + " by +1 % of the parameter", output.unit},
                           {}};
+  double longest = 0;
   for (const std::size_t v : by_effect(s, o)) {
     const double e = effect(s, o, v);
-    if (bars.bars.size() == kBars || !(std::abs(e) > 0)) break;
-    bars.bars.push_back(
-        {s.variables[v].name(), std::min(e, 0.0), std::max(e, 0.0),
-         fmt::format("{} {}, elasticity {:.4g}", s.variables[v].text(s.at[v]),
-                     s.variables[v].unit(), s.elasticity(o, v))});
+    if (bars.bars.empty()) longest = std::abs(e);
+    if (bars.bars.size() == kBars || !(std::abs(e) > kShortestBar * longest)) break;
+    bars.bars.push_back({s.variables[v].name(), std::min(e, 0.0), std::max(e, 0.0),
+                         fmt::format("{} {}, elasticity {:.4g}", s.variables[v].text(s.at[v]),
+                                     s.variables[v].unit(), s.elasticity(o, v))});
   }
   return {fmt::format("tornado_{}", o + 1), "What moves " + output.name, "", std::move(bars)};
 }
@@ -108,11 +111,10 @@ std::string headline(const Sensitivities& s, const std::optional<SensitivityChec
   if (!check)
     return fmt::format("{} derivatives exact, {} by differences", count_of(s, Way::exact),
                        count_of(s, Way::differences));
-  const std::string worst =
-      check->worst > 0
-          ? fmt::format(" ({} by {})", s.outputs[check->output].name,
-                        s.variables[check->variable].name())
-          : "";
+  const std::string worst = check->worst > 0
+                                ? fmt::format(" ({} by {})", s.outputs[check->output].name,
+                                              s.variables[check->variable].name())
+                                : "";
   return fmt::format(
       "derivatives {} differences of {}: largest difference {:.2g} of the output's scale per "
       "relative change{}, allowed {:g}",
@@ -129,14 +131,14 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
       {},
       {{"output", "parameter", "derivative", "by the other model", "its error", "difference"}, {}}};
   if (check.missing > 0)
-    section.facts = {{"not compared", fmt::format("{}: one model has none, or differences that are not as sharp",
-                                  check.missing)}};
+    section.facts = {
+        {"not compared", fmt::format("{}: one model has none, or differences that are not as sharp",
+                                     check.missing)}};
   for (std::size_t o = 0; o < s.outputs.size(); ++o)
     for (std::size_t v = 0; v < s.variables.size(); ++v)
       section.table.rows.push_back({s.outputs[o].name, s.variables[v].name(),
                                     s.derivatives[o][v].value, check.other.derivatives[o][v].value,
-                                    check.other.derivatives[o][v].error,
-                                    check.differences[o][v]});
+                                    check.other.derivatives[o][v].error, check.differences[o][v]});
   return section;
 }
 
@@ -150,8 +152,8 @@ report::Document sensitivity_document(const Sensitivities& s,
   document.program = program;
   study::describe_case(document, s.base);
   document.derived = study::derived_section(s.base);
-  document.verdict = report::Verdict{
-      check ? std::optional<bool>(check->agrees()) : std::nullopt, headline(s, check)};
+  document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
+                                     headline(s, check)};
   document.meaning =
       "A derivative holds for small changes of one parameter, the others staying. An exact one is "
       "right to round-off; one by differences has the error beside it. A largest or least value "
@@ -205,8 +207,8 @@ std::string sensitivity_text(const Sensitivities& s, const std::optional<Sensiti
   std::string text = s.base.name + "\n" + headline(s, check) + "\n";
   for (std::size_t o = 0; o < s.outputs.size(); ++o) {
     text += fmt::format("\n{} = {:.7g} {}\n{:<34}{:>12}{:>14}{:>12}  {}\n", s.outputs[o].name,
-                        s.values[o], s.outputs[o].unit, "parameter", "value", "derivative",
-                        "%/%", "found by");
+                        s.values[o], s.outputs[o].unit, "parameter", "value", "derivative", "%/%",
+                        "found by");
     const auto order = by_effect(s, o);
     for (std::size_t i = 0; i < std::min(kTextLines, order.size()); ++i) {
       const std::size_t v = order[i];

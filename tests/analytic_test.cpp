@@ -450,7 +450,8 @@ TEST(RingFriction, OpposesMotionAndRestsAtRest) {
   pump.friction.piston_viscous = 10;
   const auto force = [&](double velocity, double omega) {
     analytic::closed_form::FrictionNumbers<double> numbers;
-    const auto law = analytic::closed_form::prepare(analytic::closed_form::raw(pump), true, numbers);
+    const auto law =
+        analytic::closed_form::prepare(analytic::closed_form::raw(pump), true, numbers);
     return analytic::closed_form::friction_force(law, numbers, velocity, omega);
   };
   pump.friction.regularization = 0.01;

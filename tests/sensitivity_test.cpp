@@ -36,8 +36,8 @@ std::vector<Variable> variables_of(const Case& base, const std::vector<std::stri
 }
 
 // Central differences of the outputs over kStep of a parameter: truncation of its square and
-// round-off of 1e-15 / kStep, of an output's scale per relative change. So short that no other sample
-// becomes the largest.
+// round-off of 1e-15 / kStep, of an output's scale per relative change. So short that no other
+// sample becomes the largest.
 constexpr double kStep = 1e-6;
 constexpr double kDifferences = 5e-9;
 
@@ -53,9 +53,9 @@ TEST(Sensitivity, ExactDerivativesAreDifferencesOfTheOutputs) {
       base.operation.samples_per_revolution = 44;  // not whole per chamber
     }
     const auto variables = continuous_variables(base);
-    const auto outputs = outputs_of(
-        base, {"mean:Td", "max:Rb1_y1", "min:Rb1_y1", "peak:Rb1", "rms:Rb2", "range:Td", "mean:Rc_2",
-               "peak:Th", "rms:Rcs", "peak:Rs_3_x2", "max:Fh"});
+    const auto outputs =
+        outputs_of(base, {"mean:Td", "max:Rb1_y1", "min:Rb1_y1", "peak:Rb1", "rms:Rb2", "range:Td",
+                          "mean:Rc_2", "peak:Th", "rms:Rcs", "peak:Rs_3_x2", "max:Fh"});
     const Sensitivities found = sensitivities(base, variables, outputs);
     const Evaluator evaluator(Family(base, variables), outputs);
     std::size_t exact = 0;
@@ -63,7 +63,8 @@ TEST(Sensitivity, ExactDerivativesAreDifferencesOfTheOutputs) {
       const double size = found.at[v] == 0 ? 1 : std::abs(found.at[v]);
       const NumberRange range = variables[v].range(base);
       if (found.derivatives[0][v].way != Way::exact) continue;
-      if (found.at[v] - kStep * size < range.low || found.at[v] + kStep * size > range.high) continue;
+      if (found.at[v] - kStep * size < range.low || found.at[v] + kStep * size > range.high)
+        continue;
       ++exact;
       const auto difference = [&](std::size_t o, double step) {
         auto at = found.at;
@@ -88,9 +89,8 @@ TEST(Sensitivity, OfTheMeanTorqueByThePressureIsTheDisplacement) {
   Case base = rated();
   base.operation.samples_per_revolution = 720;
   base.pressure.transition_deg = 0;
-  const Sensitivities found =
-      sensitivities(base, variables_of(base, {"pressure.delivery_bar"}),
-                    outputs_of(base, {"mean:Td", "displacement_cm3"}));
+  const Sensitivities found = sensitivities(base, variables_of(base, {"pressure.delivery_bar"}),
+                                            outputs_of(base, {"mean:Td", "displacement_cm3"}));
   const double expected = found.values[1] * 1e-6 * 1e5 / (2 * M_PI);
   const double factor = base.pump.friction.shaft_torque_factor;
   // Trapezoidal sum over samples of a piecewise smooth torque: (2 pi / 720)^2 and the edges.

@@ -17,6 +17,7 @@ FrictionLaw prepare(const RawPump<T>& pump, bool any, FrictionNumbers<T>& p) {
 }
 template FrictionLaw prepare(const RawPump<double>& pump, bool any, FrictionNumbers<double>& p);
 template FrictionLaw prepare(const RawPump<Dual>& pump, bool any, FrictionNumbers<Dual>& p);
-template FrictionLaw prepare(const RawPump<long double>& pump, bool any, FrictionNumbers<long double>& p);
+template FrictionLaw prepare(const RawPump<long double>& pump, bool any,
+                             FrictionNumbers<long double>& p);
 
 }  // namespace bentaxis::analytic::closed_form

@@ -20,7 +20,7 @@ enum class Way {
 std::string to_string(Way way);
 
 struct Derivative {
-  double value;       ///< in the files' units; not_computed() where there is none
+  double value;  ///< in the files' units; not_computed() where there is none
   /// Of differences: estimate. Of an exact one 0, but at a kink, where several samples attain an
   /// extreme: derivatives to either side are value - error and value + error.
   double error = 0;
