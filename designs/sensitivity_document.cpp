@@ -40,7 +40,7 @@ std::vector<std::size_t> by_effect(const Sensitivities& s, std::size_t o) {
 }
 
 std::string per(const std::string& unit, const std::string& by) {
-  const std::string above = unit.empty() ? "1" : unit;
+  std::string above = unit.empty() ? "1" : unit;
   if (by.empty()) return above;
   return above + "/" + (by.find('/') == std::string::npos ? by : "(" + by + ")");
 }
@@ -144,54 +144,55 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
 
 }  // namespace
 
-report::Document sensitivity_document(const Sensitivities& s,
+report::Document sensitivity_document(const Sensitivities& found,
                                       const std::optional<SensitivityCheck>& check,
                                       const report::Lines& program) {
   report::Document document;
-  document.title = "Sensitivities: " + s.base.name;
+  document.title = "Sensitivities: " + found.base.name;
   document.program = program;
-  study::describe_case(document, s.base);
-  document.derived = study::derived_section(s.base);
+  study::describe_case(document, found.base);
+  document.derived = study::derived_section(found.base);
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
-                                     headline(s, check)};
+                                     headline(found, check)};
   document.meaning =
       "A derivative holds for small changes of one parameter, the others staying. An exact one is "
       "right to round-off; one by differences has the error beside it. A largest or least value "
       "changes as at the sample that attains it; where several do, the derivative is the mean of "
       "those to either side, and its error what each differs by.";
-  if (s.base.pressure.kind == PressureKind::hydraulic)
+  if (found.base.pressure.kind == PressureKind::hydraulic)
     document.meaning +=
         " The pressure is that of a periodic state: each difference is one of two such states.";
-  std::vector<Section> sections = {outputs_section(s)};
+  std::vector<Section> sections = {outputs_section(found)};
   std::vector<report::Figure> figures;
-  for (std::size_t o = 0; o < s.outputs.size(); ++o) {
-    sections.push_back(derivatives_section(s, o));
-    figures.push_back(tornado(s, o));
+  for (std::size_t o = 0; o < found.outputs.size(); ++o) {
+    sections.push_back(derivatives_section(found, o));
+    figures.push_back(tornado(found, o));
   }
-  if (check) sections.push_back(check_section(s, *check));
+  if (check) sections.push_back(check_section(found, *check));
   document.runs = std::move(sections);
   document.figures = std::move(figures);
   return document;
 }
 
-std::string sensitivity_csv(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
+std::string sensitivity_csv(const Sensitivities& found,
+                            const std::optional<SensitivityCheck>& check) {
   std::string text =
       "output,output_unit,output_value,parameter,parameter_unit,parameter_value,derivative,"
       "elasticity,found_by,error";
   text += check ? ",derivative_of_other_model,difference\n" : "\n";
-  for (std::size_t o = 0; o < s.outputs.size(); ++o)
-    for (std::size_t v = 0; v < s.variables.size(); ++v) {
-      const Derivative& d = s.derivatives[o][v];
+  for (std::size_t o = 0; o < found.outputs.size(); ++o)
+    for (std::size_t v = 0; v < found.variables.size(); ++v) {
+      const Derivative& d = found.derivatives[o][v];
       const auto number = [&](double value) {
         text += ',';
         append_number(text, value);
       };
-      text += s.outputs[o].name + "," + s.outputs[o].unit;
-      number(s.values[o]);
-      text += "," + s.variables[v].name() + "," + s.variables[v].unit();
-      number(s.at[v]);
+      text += found.outputs[o].name + "," + found.outputs[o].unit;
+      number(found.values[o]);
+      text += "," + found.variables[v].name() + "," + found.variables[v].unit();
+      number(found.at[v]);
       number(d.value);
-      number(s.elasticity(o, v));
+      number(found.elasticity(o, v));
       text += "," + (is_computed(d.value) ? to_string(d.way) : std::string());
       number(d.error);
       if (check) {
@@ -203,21 +204,22 @@ std::string sensitivity_csv(const Sensitivities& s, const std::optional<Sensitiv
   return text;
 }
 
-std::string sensitivity_text(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
-  std::string text = s.base.name + "\n" + headline(s, check) + "\n";
-  for (std::size_t o = 0; o < s.outputs.size(); ++o) {
-    text += fmt::format("\n{} = {:.7g} {}\n{:<34}{:>12}{:>14}{:>12}  {}\n", s.outputs[o].name,
-                        s.values[o], s.outputs[o].unit, "parameter", "value", "derivative", "%/%",
-                        "found by");
-    const auto order = by_effect(s, o);
+std::string sensitivity_text(const Sensitivities& found,
+                             const std::optional<SensitivityCheck>& check) {
+  std::string text = found.base.name + "\n" + headline(found, check) + "\n";
+  for (std::size_t o = 0; o < found.outputs.size(); ++o) {
+    text += fmt::format("\n{} = {:.7g} {}\n{:<34}{:>12}{:>14}{:>12}  {}\n", found.outputs[o].name,
+                        found.values[o], found.outputs[o].unit, "parameter", "value", "derivative",
+                        "%/%", "found by");
+    const auto order = by_effect(found, o);
     for (std::size_t i = 0; i < std::min(kTextLines, order.size()); ++i) {
       const std::size_t v = order[i];
-      const Derivative& d = s.derivatives[o][v];
+      const Derivative& d = found.derivatives[o][v];
       const auto number = [](double value) {
         return is_computed(value) ? fmt::format("{:.6g}", value) : std::string("-");
       };
-      text += fmt::format("{:<34}{:>12.6g}{:>14}{:>12}  {}\n", s.variables[v].name(), s.at[v],
-                          number(d.value), number(s.elasticity(o, v)),
+      text += fmt::format("{:<34}{:>12.6g}{:>14}{:>12}  {}\n", found.variables[v].name(),
+                          found.at[v], number(d.value), number(found.elasticity(o, v)),
                           d.reason.empty() ? to_string(d.way) : d.reason);
     }
     if (order.size() > kTextLines)
