@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/constants/constants.hpp>
 #include <boost/math/distributions/lognormal.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/triangular.hpp>
@@ -58,6 +59,25 @@ std::string broken(const Distribution& d) {
   }
   if (n[0] <= 0) return "the median must be > 0";
   return n[1] > 0 ? "" : "the standard deviation of the logarithm must be > 0";
+}
+
+// Of values whose normal scores have the correlation r: the integral over both scores by the
+// trapezoidal rule, which converges exponentially for what falls off as the normal law does.
+double covariance(const Distribution& a, const Distribution& b, double r) {
+  constexpr double kWidest = 8.5, kStep = 0.1;  // what lies beyond is below 1e-16
+  const double rest = std::sqrt(std::max(0.0, 1 - r * r));
+  double sum = 0;
+  const int steps = static_cast<int>(kWidest / kStep);
+  for (int i = -steps; i <= steps; ++i) {
+    const double z = i * kStep;
+    double inner = 0;
+    for (int j = -steps; j <= steps; ++j) {
+      const double y = j * kStep;
+      inner += std::exp(-y * y / 2) * (b.at_score(r * z + rest * y) - b.mean());
+    }
+    sum += std::exp(-z * z / 2) * (a.at_score(z) - a.mean()) * inner;
+  }
+  return sum * kStep * kStep / (2 * law::constants::pi<double>());
 }
 
 std::string trimmed(const std::string& text) {
@@ -158,56 +178,74 @@ Distribution distribution(const std::string& text, const std::string& what,
 bool UncertainVariables::independent() const { return factor.empty(); }
 
 void UncertainVariables::correlate(const std::vector<Pair>& pairs) {
-  const std::size_t size = variables.size();
+  const std::size_t n = size();
+  const auto name_of = [&](std::size_t i) {
+    return variables.empty() ? "number " + std::to_string(i + 1) : variables[i].name();
+  };
   correlation.clear();
   factor.clear();
   if (pairs.empty()) return;
-  correlation.assign(size * size, 0);
-  for (std::size_t i = 0; i < size; ++i) correlation[i * size + i] = 1;
+  correlation.assign(n * n, 0);
+  for (std::size_t i = 0; i < n; ++i) correlation[i * n + i] = 1;
   for (const Pair& p : pairs) {
     const auto name = [&] {
-      return "correlation of " + variables[p.first].name() + " and " + variables[p.second].name();
+      return "correlation of " + name_of(p.first) + " and " + name_of(p.second);
     };
     if (p.first == p.second) throw InputError(name() + ": must be of two parameters");
     if (!(std::abs(p.coefficient) <= 1))
       throw InputError(name() + " = " + number_text(p.coefficient) + ": must be in [-1, 1]");
-    double& entry = correlation[p.first * size + p.second];
+    double& entry = correlation[p.first * n + p.second];
     if (entry != 0) throw InputError(name() + ": is given twice");
-    entry = correlation[p.second * size + p.first] = p.coefficient;
+    entry = correlation[p.second * n + p.first] = p.coefficient;
   }
   // Cholesky's factor; a pivot of 0 (within round-off) is a number that others determine.
   constexpr double kRoundOff = 1e-12;
-  factor.assign(size * size, 0);
-  for (std::size_t i = 0; i < size; ++i)
+  factor.assign(n * n, 0);
+  for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j <= i; ++j) {
-      double rest = correlation[i * size + j];
-      for (std::size_t k = 0; k < j; ++k) rest -= factor[i * size + k] * factor[j * size + k];
-      const double pivot = factor[j * size + j];
+      double rest = correlation[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) rest -= factor[i * n + k] * factor[j * n + k];
+      const double pivot = factor[j * n + j];
       const bool possible = i == j ? rest > -kRoundOff : pivot > 0 || std::abs(rest) < 1e-6;
       if (!possible)
         throw InputError("[uncertainty] correlation: no numbers have all of these correlations (" +
-                         variables[i].name() + " contradicts those before it)");
+                         name_of(i) + " contradicts those before it)");
       if (i == j)
-        factor[i * size + j] = rest > kRoundOff ? std::sqrt(rest) : 0;
+        factor[i * n + j] = rest > kRoundOff ? std::sqrt(rest) : 0;
       else
-        factor[i * size + j] = pivot > 0 ? rest / pivot : 0;
+        factor[i * n + j] = pivot > 0 ? rest / pivot : 0;
     }
 }
 
 void UncertainVariables::values(std::span<const double> shares, std::span<double> values) const {
-  const std::size_t size = variables.size();
+  const std::size_t n = size();
   if (independent()) {
-    for (std::size_t i = 0; i < size; ++i) values[i] = distributions[i].quantile(shares[i]);
+    for (std::size_t i = 0; i < n; ++i) values[i] = distributions[i].quantile(shares[i]);
     return;
   }
   const law::normal standard;
-  for (std::size_t i = 0; i < size; ++i) values[i] = law::quantile(standard, shares[i]);
-  for (std::size_t i = size; i-- > 0;) {  // downwards: those above are still independent
+  for (std::size_t i = 0; i < n; ++i) values[i] = law::quantile(standard, shares[i]);
+  for (std::size_t i = n; i-- > 0;) {  // downwards: those above are still independent
     double score = 0;
-    for (std::size_t j = 0; j <= i; ++j) score += factor[i * size + j] * values[j];
+    for (std::size_t j = 0; j <= i; ++j) score += factor[i * n + j] * values[j];
     values[i] = score;
   }
-  for (std::size_t i = 0; i < size; ++i) values[i] = distributions[i].at_score(values[i]);
+  for (std::size_t i = 0; i < n; ++i) values[i] = distributions[i].at_score(values[i]);
+}
+
+std::vector<double> UncertainVariables::covariances() const {
+  const std::size_t n = size();
+  std::vector<double> all(n * n, 0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double r = i == j ? 1 : independent() ? 0 : correlation[i * n + j];
+      const Distribution &a = distributions[i], &b = distributions[j];
+      const bool normal = a.shape == Shape::normal && b.shape == Shape::normal;
+      all[i * n + j] = all[j * n + i] = i == j || normal || r == 0
+                                            ? r * a.standard_deviation() * b.standard_deviation()
+                                            : covariance(a, b, r);
+    }
+  return all;
 }
 
 UncertainVariables uncertain_variables(const Case& the_case) {

@@ -14,6 +14,7 @@
 #include "bentaxis/pump/words.h"
 #include "bentaxis/results/budget.h"
 #include "bentaxis/results/channels.h"
+#include "bentaxis/study/bearing_life.h"
 #include "bentaxis/study/efficiency.h"
 
 namespace bentaxis::designs {
@@ -104,6 +105,30 @@ const EfficiencyEntry kEfficiencies[] = {
     {"volumetric", &study::Efficiencies::volumetric, "volumetric efficiency"},
 };
 
+struct LifeEntry {
+  const char *name, *unit, *meaning;
+  double (*value)(const study::PumpLife&);
+};
+const LifeEntry kLives[] = {
+    {"tapered_h", "h", "rating life L10h of the tapered bearing",
+     [](const study::PumpLife& l) { return l.of(study::Bearing::tapered).hours; }},
+    {"cylindrical_h", "h", "rating life L10h of the cylindrical bearing",
+     [](const study::PumpLife& l) { return l.of(study::Bearing::cylindrical).hours; }},
+    {"system_h", "h", "rating life L10h of both bearings together",
+     [](const study::PumpLife& l) { return l.hours; }},
+    {"tapered_P_N", "N", "mean equivalent load of the tapered bearing",
+     [](const study::PumpLife& l) { return l.of(study::Bearing::tapered).mean_load; }},
+    {"cylindrical_P_N", "N", "mean equivalent load of the cylindrical bearing",
+     [](const study::PumpLife& l) { return l.of(study::Bearing::cylindrical).mean_load; }},
+    {"tapered_static_safety", "", "static safety C0 / P0 of the tapered bearing",
+     [](const study::PumpLife& l) { return l.of(study::Bearing::tapered).static_safety; }},
+    {"cylindrical_static_safety", "", "static safety C0 / P0 of the cylindrical bearing",
+     [](const study::PumpLife& l) { return l.of(study::Bearing::cylindrical).static_safety; }},
+};
+bool has_ratings(const Case& the_case) {
+  return the_case.ratings.tapered && the_case.ratings.cylindrical;
+}
+
 std::vector<std::string> validity_keys() {
   return {"flank", "turned", "film", "point", "thrust", "friction", "ring", "reach"};
 }
@@ -187,6 +212,19 @@ Output output(const std::string& name, const Case& base) {
       }
     unknown(name, base);
   }
+  if (const std::string item = after(name, "life."); !item.empty()) {
+    if (!has_ratings(base))
+      throw InputError("output " + name + ": needs ratings of both bearings in [bearings]");
+    for (const LifeEntry& e : kLives)
+      if (item == e.name) {
+        o.source = Source::life;
+        o.item = item;
+        o.unit = e.unit;
+        o.meaning = e.meaning;
+        return o;
+      }
+    unknown(name, base);
+  }
   if (const std::string item = after(name, "hydraulics."); !item.empty()) {
     if (base.pressure.kind != PressureKind::hydraulic)
       throw InputError("output " + name + ": needs [pressure] kind = \"hydraulic\"");
@@ -232,6 +270,8 @@ std::vector<std::string> output_names(const Case& base) {
     for (const hydraulics::Line& line : hydraulics::lines(empty))
       names.push_back("hydraulics." + line.key);
   }
+  if (has_ratings(base))
+    for (const LifeEntry& e : kLives) names.push_back(std::string("life.") + e.name);
   return names;
 }
 
@@ -310,9 +350,10 @@ class Turn {
         return validity(o);
       case Source::efficiency:
         return efficiency(o);
+      case Source::life:
+        return life(o);
       case Source::derived:
       case Source::hydraulics:
-      case Source::life:
         break;
     }
     return not_computed();
@@ -340,10 +381,19 @@ class Turn {
     return not_computed();
   }
 
+  double life(const Output& o) {
+    const Case& the_case = ready_.the_case;
+    if (!life_) life_ = study::pump_life(the_case, {study::life_point(the_case, run_.table)});
+    for (const LifeEntry& e : kLives)
+      if (o.item == e.name) return e.value(*life_);
+    return not_computed();
+  }
+
   const study::ReadyCase& ready_;
   study::Model model_;
   study::ModelRun run_;
   std::vector<analytic::ValidityLimit> limits_;
+  std::optional<study::PumpLife> life_;
 };
 
 }  // namespace

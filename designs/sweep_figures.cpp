@@ -14,10 +14,10 @@ using report::Values;
 
 // What a page can hold and a reader can look through.
 constexpr std::size_t kMostMaps = 12, kMostSlices = 12, kMostPairs = 6, kMostLines = 6;
-constexpr std::size_t kMostLevels = 60;   // of either axis of a map
-constexpr std::size_t kMostPoints = 300;  // of a figure of designs
-constexpr std::size_t kMostMarked = 60;   // designs of the front drawn among them
-constexpr std::size_t kMostColumns = 10;  // parallel axes
+constexpr std::size_t kMostDrawnLevels = 60;  // of either axis of a map
+constexpr std::size_t kMostPoints = 300;      // of a figure of designs
+constexpr std::size_t kMostMarked = 60;       // designs of the front drawn among them
+constexpr std::size_t kMostColumns = 10;      // parallel axes
 
 bool is_number(const Variable& variable) { return variable.words().empty(); }
 
@@ -85,7 +85,7 @@ class Figures {
     for (const std::size_t k : varied_) {
       if (std::find(shown.begin(), shown.end(), k) != shown.end()) continue;
       text += (text.empty() ? "At " : ", ") + view_.variable(k).name() + " " +
-              view_.variable(k).text(view_.levels(k)[view_.home()[k]]);
+              value_text(view_.variable(k), view_.levels(k)[view_.home()[k]]);
     }
     return text.empty() ? "" : text + ", next to the case's own. ";
   }
@@ -108,8 +108,8 @@ class Figures {
   }
 
   void map(std::size_t a, std::size_t b, std::size_t k, std::string note) {
-    const auto columns = spread(view_.levels(a).size(), kMostLevels, view_.home()[a]);
-    const auto rows = spread(view_.levels(b).size(), kMostLevels, view_.home()[b]);
+    const auto columns = spread(view_.levels(a).size(), kMostDrawnLevels, view_.home()[a]);
+    const auto rows = spread(view_.levels(b).size(), kMostDrawnLevels, view_.home()[b]);
     report::MapFigure m{view_.axis(a), view_.axis(b), {}, {}, {}, {}, {}, {}};
     for (const std::size_t j : columns) m.x_values.push_back(view_.levels(a)[j]);
     for (const std::size_t i : rows) m.y_values.push_back(view_.levels(b)[i]);
@@ -218,7 +218,7 @@ class Figures {
       for (const std::size_t i : spread(count, kMostLines, view_.home()[family])) {
         level[family] = i;
         const Variable& variable = view_.variable(family);
-        line(variable.name() + " " + variable.text(view_.levels(family)[i]));
+        line(variable.name() + " " + value_text(variable, view_.levels(family)[i]));
       }
     }
     add(fmt::format("slice_{}_{}", v + 1, k + 1),

@@ -113,6 +113,7 @@ AnyView whole_view(AnyCase& the_case) {
   AnyView view;
   view.pump = &the_case.pump;
   view.name = &the_case.name;
+  view.ratings = &the_case.ratings;
   view.operation = &the_case.operation;
   view.pressure = &the_case.pressure;
   view.hydraulics = &the_case.hydraulics;
@@ -145,6 +146,7 @@ ConstView as_const(const View& v) {
   ConstView view;
   view.pump = v.pump;
   view.name = v.name;
+  view.ratings = v.ratings;
   view.operation = v.operation;
   view.pressure = v.pressure;
   view.hydraulics = v.hydraulics;

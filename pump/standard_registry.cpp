@@ -31,6 +31,7 @@ constexpr Unit kBar{"bar", pascals};
 constexpr Unit kKilograms{"kg"};
 constexpr Unit kInertia{"kg mm2", square_metres};
 constexpr Unit kNewtons{"N"};
+constexpr Unit kKilonewtons{"kN", [](double x) { return x * 1e3; }};
 constexpr Unit kTorquePerSpeed{"Nm/rpm", [](double x) { return x / kRadPerSecondPerRpm; }};
 constexpr Unit kMegapascals{"MPa", [](double x) { return x * 1e6; }};
 constexpr Unit kMilliseconds{"ms", [](double x) { return x / 1000; }};
@@ -71,6 +72,16 @@ const When kGivenTorque{"drive", "kind", {"torque", "motor"}};
 const Part kRealPiston{{"piston", "inertia", {"real", "dynamically_equivalent"}},
                        [](const ConstView& v) { return v.real_piston() != nullptr; },
                        [](const View& v) { v.pump->piston.real = PistonMass::Real(); }};
+const Part kTaperedRating{{},
+                          [](const ConstView& v) { return v.tapered_rating() != nullptr; },
+                          [](const View& v) {
+                            if (v.ratings != nullptr) v.ratings->tapered.emplace();
+                          }};
+const Part kCylindricalRating{{},
+                              [](const ConstView& v) { return v.cylindrical_rating() != nullptr; },
+                              [](const View& v) {
+                                if (v.ratings != nullptr) v.ratings->cylindrical.emplace();
+                              }};
 // A single key without which something else is meant.
 const Part kRingContact{{},
                         [](const ConstView& v) { return v.ring_contact() != nullptr; },
@@ -884,10 +895,89 @@ Table gear_table() {
                }}}};
 }
 
+// Ratings of a bearing; `Place` finds them.
+template <class Place>
+std::vector<Parameter> rating_parameters(const std::string& bearing, const Part* part, Place) {
+  const auto dynamic_rating = [](const auto& v) {
+    return in(Place{}(v), &BearingRating::dynamic_rating);
+  };
+  const auto static_rating = [](const auto& v) {
+    return in(Place{}(v), &BearingRating::static_rating);
+  };
+  const auto designation = [](const auto& v) {
+    return in(Place{}(v), &BearingRating::designation);
+  };
+  return {{.key = bearing + "_designation",
+           .field = text_at(designation),
+           .fallback = {std::string()},
+           .meaning = "which one it is, for reports",
+           .part = part},
+          {.key = bearing + "_dynamic_rating_kN",
+           .field = number_at(dynamic_rating),
+           .symbol = "C",
+           .unit = kKilonewtons,
+           .range = kPositive,
+           .meaning = "basic dynamic radial load rating (ISO 281)",
+           .part = part},
+          {.key = bearing + "_static_rating_kN",
+           .field = number_at(static_rating),
+           .symbol = "C0",
+           .unit = kKilonewtons,
+           .range = kPositive,
+           .meaning = "basic static radial load rating (ISO 76)",
+           .part = part}};
+}
+
+// How radial and axial load count together. Of a contact angle a, Y = 0.4 cot a, e = 1.5 tan a and
+// Y0 = 0.22 cot a (ISO 281, ISO 76): Y alone says the rest.
+std::vector<Parameter> tapered_factors() {
+  return {{.key = "tapered_Y",
+           .field = number_at(
+               [](const auto& v) { return in(v.tapered_rating(), &TaperedRating::axial_factor); }),
+           .symbol = "Y",
+           .range = kPositive,
+           .meaning = "axial load factor",
+           .practice = "0.7..2.1",
+           .part = &kTaperedRating},
+          {.key = "tapered_e",
+           .field = number_at(
+               [](const auto& v) { return in(v.tapered_rating(), &TaperedRating::ratio_limit); }),
+           .symbol = "e",
+           .range = kPositive,
+           .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                          return 0.6 / v.tapered_rating()->axial_factor;
+                        },
+                        .words = "0.6 / `tapered_Y`"},
+           .meaning = "Fa / Fr up to which the axial load does not count",
+           .part = &kTaperedRating},
+          {.key = "tapered_X",
+           .field = number_at(
+               [](const auto& v) { return in(v.tapered_rating(), &TaperedRating::radial_factor); }),
+           .symbol = "X",
+           .range = {0, 1},
+           .fallback = {0.4},
+           .meaning = "radial load factor beyond that",
+           .part = &kTaperedRating},
+          {.key = "tapered_Y0",
+           .field = number_at([](const auto& v) {
+             return in(v.tapered_rating(), &TaperedRating::static_axial_factor);
+           }),
+           .symbol = "Y0",
+           .range = kNotNegative,
+           .fallback = {.computed = [](const ConstView& v) -> std::optional<Value> {
+                          return 0.55 * v.tapered_rating()->axial_factor;
+                        },
+                        .words = "0.55 `tapered_Y`"},
+           .meaning = "static axial load factor",
+           .part = &kTaperedRating}};
+}
+
 Table bearings_table() {
-  return {
+  Table table{
       .name = "bearings",
-      .meaning = "places of the bearings on the shaft axis",
+      .meaning =
+          "places of the bearings on the shaft axis, and where their life is asked for their "
+          "ratings",
       .parameters = {{.key = "tapered_z_mm",
                       .field = number_at([](const auto& v) { return &v.pump->bearings.tapered_z; }),
                       .path = {"bearings.tapered_z"},
@@ -903,6 +993,15 @@ Table bearings_table() {
                       .range_words = "other than `tapered_z_mm`",
                       .meaning = "z1 of the cylindrical roller bearing, which takes x and y"}},
       .rules = {{.key = "cylindrical_z_mm", .after = "cylindrical_z_mm", .broken = same_bearings}}};
+  const auto add = [&](const std::vector<Parameter>& more) {
+    table.parameters.insert(table.parameters.end(), more.begin(), more.end());
+  };
+  add(rating_parameters("tapered", &kTaperedRating,
+                        [](const auto& v) { return v.tapered_rating(); }));
+  add(tapered_factors());
+  add(rating_parameters("cylindrical", &kCylindricalRating,
+                        [](const auto& v) { return v.cylindrical_rating(); }));
+  return table;
 }
 
 Table piston_table() {

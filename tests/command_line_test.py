@@ -100,8 +100,9 @@ CURVE = "theta_deg,pressure_bar\n0,5\n90,6\n180,100\n270,90\n"
 
 PUMP = re.compile(r"^(pump|bentaxis: warning: [a-z0-9-]+): [^\n]+\n", re.MULTILINE)
 
-# Tables whose numbers tests/hydraulics_test.cpp, tests/circuit_test.cpp and, of [drive], tests/simulation_test.cpp hold to count.
-HELD_ELSEWHERE = {"hydraulics", "oil", "leakage", "suction_line", "delivery_line", "load", "accumulator", "loop", "drive"}
+# Tables whose numbers tests/hydraulics_test.cpp, tests/circuit_test.cpp and, of [drive], tests/simulation_test.cpp hold to count;
+# [uncertainty] holds no numbers of the pump.
+HELD_ELSEWHERE = {"uncertainty", "hydraulics", "oil", "leakage", "suction_line", "delivery_line", "load", "accumulator", "loop", "drive"}
 
 
 class ProgramTest(unittest.TestCase):
@@ -121,7 +122,7 @@ class ProgramTest(unittest.TestCase):
                    for key, parameter in schema.get("properties", {}).items()
                    if parameter.get("type") in ("number", "integer", "array")} - STRUCTURE
         self.assertGreater(len(numbers), 40)
-        without_effect = {name for base, name, _ in WITHOUT_EFFECT if base is RATED}
+        without_effect = {name for base, name, _ in WITHOUT_EFFECT if base is RATED or base is RATED_BEARINGS}
         rated = {name for name in numbers if Case(**RATED).line_of(name)} - HIDDEN_BY_PRESSURE - without_effect
         tried = rated.union(*(names for _, names in CONTROLS))
         self.assertEqual(numbers - tried - without_effect, set(), "forgotten")
@@ -375,6 +376,7 @@ class UsageTest(ProgramTest):
             ["pressure", hydraulic], ["rattle", case, "--speeds", "1:2:#2", "--delivery-bar", "1:2:#2"], ["reference", "new", case, "--from", "curve.csv"],
             ["reference", "golden", case, "--out", "golden"], ["calibrate", hydraulic, "--with", "294.7", "--without", "293.4"],
             ["blocktorque", case, hydraulic],
+            ["uncertainty", case],
         ):
             with self.subTest(command):
                 self.assert_mentions(self.refused(*command, "--set", "pump.tilt_deg=95"), "tilt_deg", "95")
@@ -1290,12 +1292,18 @@ CONTROLS = (
 )
 # Numbers that say how much is computed, not what of.
 STRUCTURE = {"pump.pistons", "gear.tooth_number", "operation.samples_per_revolution", "operation.revolutions", "pressure.points"}
+# Ratings of bearings: only their life depends on them (tests/bearing_life_test.cpp).
+RATINGS = {"bearings.tapered_dynamic_rating_kN": 105.0, "bearings.tapered_static_rating_kN": 125.0, "bearings.tapered_Y": 0.73,
+           "bearings.tapered_e": 0.83, "bearings.tapered_X": 0.4, "bearings.tapered_Y0": 0.4,
+           "bearings.cylindrical_dynamic_rating_kN": 106.0, "bearings.cylindrical_static_rating_kN": 98.0}
+RATED_BEARINGS = {**RATED, **RATINGS}
 # Without effect at constant speed, whatever their size.
 WITHOUT_EFFECT = (
     (RATED, "shaft.axial_inertia_kg_mm2", 20000.0), (RATED, "block.axial_inertia_kg_mm2", 15000.0),
     (LIGHT, "shaft.axial_inertia_kg_mm2", 0.0), (LIGHT, "block.axial_inertia_kg_mm2", 0.0),
     (REAL, "piston.joint_mass_fraction", 0.7), (LIGHT, "piston.spin_rpm", 900.0),
     (TEETH, "gear.dissipation_s_per_m", 0.1),
+    *((RATED_BEARINGS, name, 2 * value) for name, value in RATINGS.items()),
     # Compliant teeth act where the motion is not given; rigid ones have nothing of this.
     *((base, f"gear.{key}", value) for base in (COMPLIANT, RATED)
       for key, value in (("stiffness_N_per_um", 300.0), ("stiffness_exponent", 1.5), ("dissipation_s_per_m", 0.1), ("backlash_um", 20.0))),

@@ -46,11 +46,12 @@ Distribution distribution(const std::string& text, const std::string& what,
 /// Variables with their distributions and the correlations of their normal scores (a Gaussian
 /// copula): [uncertainty] of a case.
 struct UncertainVariables {
-  std::vector<Variable> variables;
+  std::vector<Variable> variables;  ///< empty: numbers of some other function
   std::vector<Distribution> distributions;
-  std::vector<double> correlation;  ///< row by row, variables x variables; empty: independent
+  std::vector<double> correlation = {};  ///< row by row; empty: independent
   std::vector<double> factor = {};  ///< L of correlation = L L^T, lower triangular, by correlate()
 
+  std::size_t size() const { return distributions.size(); }
   bool independent() const;
   /// Correlates pairs of variables, by their places.
   struct Pair {
@@ -61,6 +62,9 @@ struct UncertainVariables {
   void correlate(const std::vector<Pair>& pairs);
   /// Values from independent shares in (0, 1), one per variable.
   void values(std::span<const double> shares, std::span<double> values) const;
+  /// Covariances of the values themselves, row by row: of normal numbers the correlation times
+  /// both deviations, of others what the correlation of their scores makes of it.
+  std::vector<double> covariances() const;
 };
 
 /// What the table [uncertainty] of a case says.

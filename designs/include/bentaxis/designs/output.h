@@ -44,7 +44,7 @@ enum class Source {
 ///   validity.NAME          worst value of the limit of that name; validity.NAME.share of the turn
 ///   hydraulics.NAME        of the summary: "hydraulics.flow_l_per_min"
 ///   efficiency.overall, efficiency.mechanical, efficiency.volumetric
-///   life.NAME              of the bearings
+///   life.NAME              of the bearings: life.system_h, life.tapered_P_N, ..
 struct Output {
   std::string name;  ///< as asked for, complete: "max:Rb1_z1_N"
   std::string unit;

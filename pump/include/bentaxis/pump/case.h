@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/bearing_ratings.h"
 #include "bentaxis/pump/drive_spec.h"
 #include "bentaxis/pump/hydraulic_data.h"
 #include "bentaxis/pump/parameters.h"
@@ -46,6 +47,7 @@ struct Case {
   std::filesystem::path file;
   std::string name;
   PumpParameters pump;
+  BearingRatings ratings;  ///< of the pump's bearings, where their life may be asked for
   Operation operation;
   PressureSpec pressure;
   std::optional<HydraulicData> hydraulics;  ///< present where pressure.kind is hydraulic

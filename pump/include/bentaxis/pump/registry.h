@@ -30,6 +30,7 @@ struct BasicView {
 
   Pointer<PumpParameters> pump = nullptr;  ///< never null
   Pointer<std::string> name = nullptr;
+  Pointer<BearingRatings> ratings = nullptr;
   Pointer<Operation> operation = nullptr;
   Pointer<PressureSpec> pressure = nullptr;
   Pointer<std::optional<HydraulicData>> hydraulics = nullptr;
@@ -45,6 +46,12 @@ struct BasicView {
   }
   Pointer<ToothCompliance> compliance() const { return address(pump->gear.compliance); }
   Pointer<ToothData> teeth() const { return address(pump->gear.teeth); }
+  Pointer<TaperedRating> tapered_rating() const {
+    return ratings == nullptr ? nullptr : address(ratings->tapered);
+  }
+  Pointer<BearingRating> cylindrical_rating() const {
+    return ratings == nullptr ? nullptr : address(ratings->cylindrical);
+  }
   Pointer<double> ring_contact() const { return address(pump->piston.contact); }
   Pointer<DriveSpec> drive_spec() const { return drive == nullptr ? nullptr : address(*drive); }
   Pointer<MotorData> motor() const {

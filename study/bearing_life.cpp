@@ -1,0 +1,248 @@
+#include "bentaxis/study/bearing_life.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr double kMinutesPerHour = 60;
+
+const BearingRatings& rated(const Case& the_case) {
+  const BearingRatings& b = the_case.ratings;
+  if (!b.tapered || !b.cylindrical)
+    throw InputError(the_case.file.string() + ": [bearings] " +
+                     (b.tapered
+                          ? "cylindrical_dynamic_rating_kN, cylindrical_static_rating_kN"
+                          : "tapered_dynamic_rating_kN, tapered_static_rating_kN, tapered_Y") +
+                     ": must all be given: the life of the bearings follows from their ratings");
+  return b;
+}
+
+const BearingRating& rating_of(const BearingRatings& b, Bearing bearing) {
+  return bearing == Bearing::tapered ? *b.tapered : *b.cylindrical;
+}
+
+// Revolutions of every point, in proportion.
+std::vector<double> revolutions_of(const std::vector<LifePoint>& points) {
+  std::vector<double> revolutions;
+  for (const LifePoint& p : points) revolutions.push_back(p.share * std::abs(p.speed_rpm));
+  return revolutions;
+}
+
+double hours(double revolutions, double mean_speed_rpm) {
+  return mean_speed_rpm > 0 ? revolutions * 1e6 / (kMinutesPerHour * mean_speed_rpm)
+                            : not_computed();
+}
+
+BearingLife life_of(Bearing bearing, const BearingRating& rating,
+                    const std::vector<LifePoint>& points, const std::vector<double>& shares,
+                    double mean_speed_rpm) {
+  BearingLife life;
+  std::vector<double> of_point;
+  double largest0 = 0;
+  for (const LifePoint& p : points) {
+    const BearingLoads& loads = p.loads[static_cast<std::size_t>(bearing)];
+    of_point.push_back(
+        mean_load(loads.equivalent, std::vector<double>(loads.equivalent.size(), 1.0)));
+    largest0 =
+        std::max(largest0, *std::max_element(loads.equivalent0.begin(), loads.equivalent0.end()));
+  }
+  life.static_safety = largest0 > 0 ? rating.static_rating / largest0 : not_computed();
+  if (mean_speed_rpm == 0) {
+    life.mean_load = life.revolutions = life.hours = not_computed();
+    life.life_share.assign(points.size(), not_computed());
+    return life;
+  }
+  life.mean_load = mean_load(of_point, shares);
+  life.revolutions = rating_life(rating.dynamic_rating, life.mean_load);
+  life.hours = hours(life.revolutions, mean_speed_rpm);
+  double all = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    life.life_share.push_back(shares[i] * std::pow(of_point[i], kLifeExponent));
+    all += life.life_share.back();
+  }
+  for (double& share : life.life_share) share = all > 0 ? share / all : not_computed();
+  return life;
+}
+
+// Scans what must not be negative at any angle; `shown` is what is said of it.
+class LimitScan {
+ public:
+  LimitScan(const std::vector<LifePoint>& points, const std::vector<double>& revolutions,
+            std::vector<LifeLimit>& limits)
+      : points_(points), revolutions_(revolutions), limits_(limits) {}
+
+  using OfAngle = std::function<double(const BearingLoads&, std::size_t)>;
+  void add(LifeLimit limit, const OfAngle& not_negative, const OfAngle& shown) {
+    double all = 0, violated = 0, smallest = 0;
+    bool first = true;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const LifePoint& p = points_[i];
+      const BearingLoads& loads = p.loads[static_cast<std::size_t>(limit.bearing)];
+      const double each = revolutions_[i] / static_cast<double>(p.theta_deg.size());
+      for (std::size_t k = 0; k < p.theta_deg.size(); ++k) {
+        const double value = not_negative(loads, k);
+        all += each;
+        if (value < 0) violated += each;
+        if (!first && value >= smallest) continue;
+        first = false;
+        smallest = value;
+        limit.worst = shown(loads, k);
+        limit.point = i;
+        limit.theta_deg = p.theta_deg[k];
+      }
+    }
+    // At standstill every angle counts alike: there are no revolutions to weigh them by.
+    limit.violated_share = all > 0 ? violated / all : smallest < 0 ? 1 : 0;
+    limits_.push_back(std::move(limit));
+  }
+
+ private:
+  const std::vector<LifePoint>& points_;
+  const std::vector<double>& revolutions_;
+  std::vector<LifeLimit>& limits_;
+};
+
+std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<LifePoint>& points,
+                                 const std::vector<double>& revolutions) {
+  std::vector<LifeLimit> limits;
+  LimitScan scan(points, revolutions, limits);
+  const LimitScan::OfAngle axial = [](const BearingLoads& l, std::size_t k) { return l.axial[k]; };
+  const LimitScan::OfAngle load = [](const BearingLoads& l, std::size_t k) {
+    return l.equivalent[k];
+  };
+  const LimitScan::OfAngle load0 = [](const BearingLoads& l, std::size_t k) {
+    return l.equivalent0[k];
+  };
+  scan.add({Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
+            "it takes thrust one way only; its life is computed from the magnitude and says "
+            "nothing there"},
+           axial, axial);
+  const double per_radial = 1 / (2 * b.tapered->axial_factor);
+  scan.add(
+      {Bearing::tapered, "seated", "thrust exceeds what the taper itself makes: Fa >= Fr/(2Y)",
+       "without a bearing opposed to it fewer than half of the rollers carry; P is too small "
+       "there"},
+      [&](const BearingLoads& l, std::size_t k) { return l.axial[k] - per_radial * l.radial[k]; },
+      axial);
+  for (const Bearing bearing : kBearings) {
+    const BearingRating& rating = rating_of(b, bearing);
+    scan.add(
+        {bearing, "smallest", "load enough for the rollers to roll: P >= 0.02 C",
+         "rollers may slide instead of rolling: wear that no rating life counts"},
+        [&](const BearingLoads& l, std::size_t k) {
+          return l.equivalent[k] - kSmallestLoad * rating.dynamic_rating;
+        },
+        load);
+    scan.add(
+        {bearing, "largest", "load within what ISO 281 holds for: P <= 0.5 C",
+         "the rating life is too long there"},
+        [&](const BearingLoads& l, std::size_t k) {
+          return kLargestLoad * rating.dynamic_rating - l.equivalent[k];
+        },
+        load);
+    scan.add(
+        {bearing, "static", "no lasting dents: P0 <= C0", "rollers leave dents at standstill"},
+        [&](const BearingLoads& l, std::size_t k) {
+          return rating.static_rating - l.equivalent0[k];
+        },
+        load0);
+  }
+  return limits;
+}
+
+}  // namespace
+
+double equivalent_load(const TaperedRating& rating, double radial, double axial) {
+  const double thrust = std::abs(axial);
+  return thrust <= rating.ratio_limit * radial
+             ? radial
+             : rating.radial_factor * radial + rating.axial_factor * thrust;
+}
+
+double equivalent_static_load(const TaperedRating& rating, double radial, double axial) {
+  return std::max(radial, radial / 2 + rating.static_axial_factor * std::abs(axial));
+}
+
+double mean_load(std::span<const double> loads, std::span<const double> shares) {
+  // Over the largest, so that no power leaves the range of numbers.
+  double largest = 0, sum = 0, all = 0;
+  for (const double load : loads) largest = std::max(largest, load);
+  if (largest == 0) return 0;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    sum += shares[i] * std::pow(loads[i] / largest, kLifeExponent);
+    all += shares[i];
+  }
+  return largest * std::pow(sum / all, 1 / kLifeExponent);
+}
+
+double rating_life(double dynamic_rating, double load) {
+  return load > 0 ? std::pow(dynamic_rating / load, kLifeExponent) : not_computed();
+}
+
+double combined_life(std::span<const double> lives) {
+  double sum = 0;
+  for (const double life : lives) {
+    if (!is_computed(life)) return not_computed();
+    sum += std::pow(life, -kWeibullSlope);
+  }
+  return std::pow(sum, -1 / kWeibullSlope);
+}
+
+std::string to_string(Bearing bearing) {
+  return bearing == Bearing::tapered ? "tapered" : "cylindrical";
+}
+
+void require_ratings(const Case& the_case) { rated(the_case); }
+
+LifePoint life_point(const Case& the_case, const ResultTable& table, double share) {
+  const BearingRatings& b = rated(the_case);
+  LifePoint point;
+  point.share = share;
+  point.speed_rpm = the_case.operation.speed_rpm;
+  point.theta_deg = table.theta_deg;
+  const ChannelLayout at(the_case.pump.geometry.pistons);
+  BearingLoads &tapered = point.loads[0], &cylindrical = point.loads[1];
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double fr = std::hypot(table.at(row, at.Rb1(0)), table.at(row, at.Rb1(1)));
+    const double fa = table.at(row, at.Rb1(2));
+    tapered.radial.push_back(fr);
+    tapered.axial.push_back(fa);
+    tapered.equivalent.push_back(equivalent_load(*b.tapered, fr, fa));
+    tapered.equivalent0.push_back(equivalent_static_load(*b.tapered, fr, fa));
+    cylindrical.radial.push_back(std::hypot(table.at(row, at.Rb2(0)), table.at(row, at.Rb2(1))));
+  }
+  cylindrical.axial.assign(table.rows(), 0.0);
+  cylindrical.equivalent = cylindrical.equivalent0 = cylindrical.radial;
+  return point;
+}
+
+PumpLife pump_life(const Case& the_case, const std::vector<LifePoint>& points) {
+  const BearingRatings& b = rated(the_case);
+  const std::vector<double> revolutions = revolutions_of(points);
+  double turned = 0, time = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    turned += revolutions[i];
+    time += points[i].share;
+  }
+  PumpLife life;
+  life.mean_speed_rpm = turned / time;
+  std::array<double, 2> lives{};
+  for (const Bearing bearing : kBearings) {
+    const auto i = static_cast<std::size_t>(bearing);
+    life.bearings[i] =
+        life_of(bearing, rating_of(b, bearing), points, revolutions, life.mean_speed_rpm);
+    lives[i] = life.bearings[i].revolutions;
+  }
+  life.revolutions = combined_life(lives);
+  life.hours = hours(life.revolutions, life.mean_speed_rpm);
+  life.limits = limits_of(b, points, revolutions);
+  return life;
+}
+
+}  // namespace bentaxis::study

@@ -1,0 +1,234 @@
+// Rating life of the bearings: printed worked examples of manufacturers, and what must hold of any.
+//
+// Examples compute with factors of three digits: f_n for the speed, f_h = f_n C / P, L = 500
+// f_h^(10/3) hours. A half of the last digit of f_h is allowed: (10/3) 0.005 / f_h of the life.
+#include "bentaxis/study/bearing_life.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "bentaxis/designs/output.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/run.h"
+
+namespace bentaxis::study {
+namespace {
+
+const std::string kCases = std::string(BENTAXIS_SOURCE_DIR) + "/cases/";
+const std::vector<std::string> kRatings = {"bearings.tapered_dynamic_rating_kN=105",
+                                           "bearings.tapered_static_rating_kN=125",
+                                           "bearings.tapered_Y=0.73",
+                                           "bearings.cylindrical_dynamic_rating_kN=106",
+                                           "bearings.cylindrical_static_rating_kN=98",
+                                           "operation.samples_per_revolution=72"};
+
+TaperedRating tapered(double c, double e, double x, double y) {
+  TaperedRating r;
+  r.dynamic_rating = c;
+  r.ratio_limit = e;
+  r.radial_factor = x;
+  r.axial_factor = y;
+  return r;
+}
+
+double hours(double million_revolutions, double rpm) {
+  return million_revolutions * 1e6 / 60 / rpm;
+}
+double of_factor(double f_h) { return 10.0 / 3 * 0.005 / f_h; }
+
+// NTN, Ball and Roller Bearings, CAT. No. 2202/E, "Bearing life calculation examples", example
+// 3: two tapered roller bearings on the shaft of a helical gear, 2000 rpm.
+TEST(WorkedExample, NtnTaperedPairOnAGearShaft) {
+  const TaperedRating first = tapered(54500, 0.37, 0.4, 1.60);   // 4T-32206
+  const TaperedRating second = tapered(42000, 0.37, 0.4, 1.60);  // 4T-32205
+  EXPECT_EQ(equivalent_load(first, 5980, 0), 5980);
+  EXPECT_NEAR(equivalent_load(second, 4180, 1870), 4660, 5);
+  EXPECT_NEAR(hours(rating_life(54500, 5980), 2000), 13200, 13200 * of_factor(2.67));
+  EXPECT_NEAR(hours(rating_life(42000, 4660), 2000), 12700, 12700 * of_factor(2.64));
+  const double lives[] = {13200, 12700};
+  EXPECT_NEAR(combined_life(lives), 6990, 5);
+}
+
+// The same, example 5: mean load under five conditions, shares of time and speeds.
+TEST(WorkedExample, NtnMeanLoadUnderStepwiseConditions) {
+  const TaperedRating spherical = tapered(1, 0.18, 0.67, 5.50);  // rolls as any roller bearing
+  const double radial[] = {10, 12, 20, 25, 30}, axial[] = {2, 4, 6, 7, 10};
+  const double printed[] = {17.7, 30.0, 46.4, 55.3, 75.1};
+  const double time[] = {5, 10, 60, 15, 10}, rpm[] = {1200, 1000, 800, 600, 400};
+  std::vector<double> loads, revolutions;
+  for (std::size_t i = 0; i < 5; ++i) {
+    loads.push_back(equivalent_load(spherical, radial[i], axial[i]));
+    revolutions.push_back(time[i] * rpm[i]);
+    EXPECT_NEAR(loads.back(), printed[i], 0.05 + 1e-9);
+  }
+  EXPECT_NEAR(mean_load(loads, revolutions), 48.1, 0.05);
+}
+
+// NSK, Rolling Bearings, CAT. No. E1102, "Examples of bearing calculations", example 5: tapered
+// roller bearings back to back, 600 rpm; f_n = 0.42 there, 0.4201 unrounded.
+TEST(WorkedExample, NskTaperedBearingsBackToBack) {
+  const TaperedRating steep = tapered(38000, 0.83, 0.4, 0.73);   // HR30305DJ
+  const TaperedRating normal = tapered(43000, 0.38, 0.4, 1.60);  // HR30206J
+  EXPECT_NEAR(equivalent_load(steep, 1569, 3474), 3164, 0.5);
+  EXPECT_EQ(equivalent_load(normal, 3931, 0), 3931);
+  EXPECT_NEAR(hours(rating_life(38000, 3164), 600), 109750, 109750 * (of_factor(5.04) + 2e-3));
+  EXPECT_NEAR(hours(rating_life(43000, 3931), 600), 80400, 80400 * (of_factor(4.59) + 2e-3));
+}
+
+// Budynas & Nisbett, Shigley's Mechanical Engineering Design, solution of problem 11-3: a straight
+// roller bearing that is to last 1440 million revolutions under 1.4 x 1650 lbf = 10.279 kN.
+TEST(WorkedExample, ShigleyStraightRoller) {
+  EXPECT_NEAR(rating_life(91.1, 10.279), 1440, 1440 * 10.0 / 3 * 0.05 / 91.1);
+}
+
+// ISO 281 and ISO 76 make e, Y and Y0 of one angle. FAG 31310: Y 0.73, e 0.83, Y0 0.4.
+TEST(Ratings, FollowFromTheAxialFactor) {
+  const Case made = read_case(kCases + "bap63_rated.toml", kRatings);
+  const TaperedRating& r = made.ratings.tapered.value();
+  EXPECT_EQ(r.dynamic_rating, 105000);
+  EXPECT_EQ(r.radial_factor, 0.4);
+  EXPECT_NEAR(r.ratio_limit, 0.83, 0.01);
+  EXPECT_NEAR(r.static_axial_factor, 0.4, 0.05);
+  // P hardly jumps where the axial load begins to count.
+  const double edge = r.ratio_limit * 1000;
+  EXPECT_NEAR(equivalent_load(r, 1000, edge * 1.0001), equivalent_load(r, 1000, edge), 2);
+}
+
+TEST(Ratings, AreAskedForByName) {
+  const Case bare = read_case(kCases + "bap63_rated.toml");
+  EXPECT_FALSE(bare.ratings.tapered);
+  const ResultTable table = run_turn(prepare(bare), Model::analytic);
+  try {
+    life_point(bare, table);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("tapered_dynamic_rating_kN"));
+  }
+  // One key alone makes no rating.
+  EXPECT_FALSE(read_case(kCases + "bap63_rated.toml", {"bearings.tapered_Y=0.7"}).ratings.tapered);
+}
+
+Case rated(const std::vector<std::string>& changes = {}) {
+  std::vector<std::string> all = kRatings;
+  all.insert(all.end(), changes.begin(), changes.end());
+  return read_case(kCases + "bap63_rated.toml", all);
+}
+LifePoint turn(const Case& the_case, double share = 1) {
+  return life_point(the_case, run_turn(prepare(the_case), Model::analytic), share);
+}
+
+// Against the definition, written out.
+TEST(PumpLife, IsThatOfTheReactions) {
+  const Case the_case = rated();
+  const ResultTable table = run_turn(prepare(the_case), Model::analytic);
+  const auto column = [&](const char* name, std::size_t row) {
+    return table.at(row, table.find(name));
+  };
+  double tapered_sum = 0, cylindrical_sum = 0, largest0 = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double fr = std::hypot(column("Rb1_x1_N", row), column("Rb1_y1_N", row));
+    const double fa = std::abs(column("Rb1_z1_N", row));
+    const double p = fa / fr > 0.6 / 0.73 ? 0.4 * fr + 0.73 * fa : fr;
+    tapered_sum += std::pow(p / 105000, 10.0 / 3);
+    largest0 = std::max({largest0, fr, fr / 2 + 0.55 * 0.73 * fa});
+    cylindrical_sum +=
+        std::pow(std::hypot(column("Rb2_x1_N", row), column("Rb2_y1_N", row)) / 106000, 10.0 / 3);
+  }
+  const auto rows = static_cast<double>(table.rows());
+  const PumpLife life = pump_life(the_case, {life_point(the_case, table)});
+  const auto near = [](double value, double expected) {
+    EXPECT_NEAR(value, expected, 1e-12 * expected);
+  };
+  near(life.of(Bearing::tapered).revolutions, rows / tapered_sum);
+  near(life.of(Bearing::cylindrical).revolutions, rows / cylindrical_sum);
+  near(life.of(Bearing::tapered).hours, rows / tapered_sum * 1e6 / (60 * 1500));
+  near(life.of(Bearing::tapered).static_safety, 125000 / largest0);
+  near(std::pow(life.hours, -9.0 / 8), std::pow(life.of(Bearing::tapered).hours, -9.0 / 8) +
+                                           std::pow(life.of(Bearing::cylindrical).hours, -9.0 / 8));
+  EXPECT_LT(life.hours, life.of(Bearing::tapered).hours);
+}
+
+// Palmgren's and Miner's rule: what a duty cycle uses up in an hour is the sum of what its points
+// do.
+TEST(PumpLife, OfADutyCycleAddsUpWhatItUses) {
+  const Case slow = rated({"operation.speed_rpm=700", "pressure.delivery_bar=300"});
+  const Case back = rated({"operation.speed_rpm=-1500", "pressure.delivery_bar=120"});
+  const Case rest = rated({"operation.speed_rpm=0"});
+  const std::vector<LifePoint> points = {turn(slow, 3), turn(back, 5), turn(rest, 2)};
+  const PumpLife all = pump_life(slow, points);
+  EXPECT_NEAR(all.mean_speed_rpm, 0.3 * 700 + 0.5 * 1500, 1e-9);
+  for (const Bearing bearing : kBearings) {
+    const double used = 0.3 / pump_life(slow, {points[0]}).of(bearing).hours +
+                        0.5 / pump_life(back, {points[1]}).of(bearing).hours;
+    EXPECT_NEAR(all.of(bearing).hours * used, 1, 1e-12);
+    const auto& shares = all.of(bearing).life_share;
+    EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1, 1e-12);
+    EXPECT_EQ(shares[2], 0);
+    // The dents of standstill count all the same.
+    EXPECT_LE(all.of(bearing).static_safety,
+              pump_life(rest, {points[2]}).of(bearing).static_safety);
+  }
+  const PumpLife still = pump_life(rest, {points[2]});
+  EXPECT_FALSE(is_computed(still.hours));
+  EXPECT_TRUE(is_computed(still.of(Bearing::tapered).static_safety));
+}
+
+const LifeLimit& limit_of(const PumpLife& life, Bearing bearing, const std::string& key) {
+  for (const LifeLimit& l : life.limits)
+    if (l.bearing == bearing && l.key == key) return l;
+  throw std::logic_error("no limit " + key);
+}
+
+TEST(PumpLife, SaysWhereItsLimitsAre) {
+  const Case the_case = rated();
+  LifePoint made = turn(the_case);
+  BearingLoads& loads = made.loads[0];
+  const std::size_t rows = loads.axial.size();
+  EXPECT_EQ(limit_of(pump_life(the_case, {made}), Bearing::tapered, "pulled").violated_share, 0);
+  loads.axial[3] = -50;                                  // pulled, and so not seated either
+  loads.axial[7] = loads.radial[7] / (2 * 0.73) * 0.99;  // not seated
+  loads.equivalent[9] = 0.0199 * 105000;
+  loads.equivalent[11] = 0.501 * 105000;
+  loads.equivalent0[13] = 1.001 * 125000;
+  const PumpLife life = pump_life(the_case, {made});
+  const auto share = [&](const char* key) {
+    return limit_of(life, Bearing::tapered, key).violated_share * static_cast<double>(rows);
+  };
+  const LifeLimit& pulled = limit_of(life, Bearing::tapered, "pulled");
+  EXPECT_NEAR(share("pulled"), 1, 1e-9);
+  EXPECT_EQ(pulled.worst, -50);
+  EXPECT_EQ(pulled.theta_deg, made.theta_deg[3]);
+  const LifePoint before = turn(the_case);
+  int unseated = 0;
+  for (std::size_t k = 0; k < rows; ++k)
+    if (k != 3 && k != 7 && before.loads[0].axial[k] < before.loads[0].radial[k] / 1.46) ++unseated;
+  EXPECT_NEAR(share("seated"), 2 + unseated, 1e-9);
+  EXPECT_NEAR(share("smallest"), 1, 1e-9);
+  EXPECT_NEAR(share("largest"), 1, 1e-9);
+  EXPECT_NEAR(share("static"), 1, 1e-9);
+  for (const char* key : {"smallest", "largest", "static"})
+    EXPECT_EQ(limit_of(life, Bearing::cylindrical, key).violated_share, 0) << key;
+}
+
+TEST(PumpLife, IsAnOutputOfADesign) {
+  const Case the_case = rated();
+  const auto hours_of = [&](const char* name) { return designs::output(name, the_case); };
+  const auto values = designs::outputs_of({hours_of("life.system_h"), hours_of("life.tapered_P_N"),
+                                           hours_of("life.cylindrical_static_safety")},
+                                          prepare(the_case), Model::analytic);
+  const PumpLife life = pump_life(the_case, {turn(the_case)});
+  EXPECT_EQ(values[0], life.hours);
+  EXPECT_EQ(values[1], life.of(Bearing::tapered).mean_load);
+  EXPECT_EQ(values[2], life.of(Bearing::cylindrical).static_safety);
+  const Case bare = read_case(kCases + "bap63_rated.toml");
+  EXPECT_THROW(designs::output("life.system_h", bare), InputError);
+  EXPECT_THROW(hours_of("life.ball_h"), InputError);
+}
+
+}  // namespace
+}  // namespace bentaxis::study
