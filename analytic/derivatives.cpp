@@ -53,14 +53,14 @@ PumpParameters no_rates(const PumpParameters& pump) {
   return rates;
 }
 
-PumpParameters rate_of(const PumpParameters& pump, const std::string& name) {
+PumpParameters rate_of(const PumpParameters& pump, const std::string& input) {
   PumpParameters rates = no_rates(pump);
-  for (const PumpInput& input : continuous_inputs(rates))
-    if (input.name == name) {
-      *input.value = 1;
+  for (const PumpInput& each : continuous_inputs(rates))
+    if (each.name == input) {
+      *each.value = 1;
       return rates;
     }
-  throw InputError("derivative with respect to " + name + ": the pump has no such number");
+  throw InputError("derivative with respect to " + input + ": the pump has no such number");
 }
 
 struct DerivativeModel::Prepared {

@@ -76,7 +76,7 @@ bool find_channels(const std::string& wanted, const std::vector<Channel>& channe
     o.columns.push_back(i);
     o.item = vector_name(c);
     o.unit = c.unit;
-    o.meaning = meaning_of(c, true);
+    o.meaning = meaning_of(c, o.columns.size() > 1);
   }
   return !o.columns.empty();
 }

@@ -173,7 +173,8 @@ class StatisticRates {
   }
 
   Derivative derivative(std::size_t d) const {
-    const Derivative low = low_.rate(d), high = high_.rate(d);
+    const Derivative low = low_.rate(d);
+    Derivative high = high_.rate(d);
     switch (output_.statistic) {
       case Statistic::mean:
         return {sum_[d] / count_};

@@ -16,8 +16,10 @@ namespace {
 using report::Cell;
 using report::Section;
 
-constexpr std::size_t kBars = 20;      // of a figure
-constexpr std::size_t kTextLines = 8;  // of an output
+constexpr std::size_t kBars = 20;       // of a figure, at most,
+constexpr double kShortestBar = 1e-3;   // of the longest
+constexpr double kNoInfluence = 1e-12;  // of the output's scale: round-off
+constexpr std::size_t kTextLines = 8;   // of an output
 
 // What one percent of a variable changes in an output.
 double effect(const Sensitivities& s, std::size_t o, std::size_t v) {
@@ -38,8 +40,9 @@ std::vector<std::size_t> by_effect(const Sensitivities& s, std::size_t o) {
 }
 
 std::string per(const std::string& unit, const std::string& by) {
-  const std::string above = unit.empty() ? "1" : unit;
-  return by.empty() ? above : above + "/(" + by + ")";
+  std::string above = unit.empty() ? "1" : unit;
+  if (by.empty()) return above;
+  return above + "/" + (by.find('/') == std::string::npos ? by : "(" + by + ")");
 }
 
 Section outputs_section(const Sensitivities& s) {
@@ -56,18 +59,24 @@ Section derivatives_section(const Sensitivities& s, std::size_t o) {
       "Derivatives of " + output.name,
       "",
       {},
-      {{"parameter", "meaning", "value", "unit", "derivative", "of unit",
-        "by +1 % (" + output.unit + ")", "elasticity (%/%)", "found by", "error of the derivative"},
+      {{"parameter", "value", "unit", "derivative", "of unit", "by +1 % (" + output.unit + ")",
+        "elasticity (%/%)", "found by", "error of the derivative"},
        {}}};
+  std::string none;
   for (const std::size_t v : by_effect(s, o)) {
     const Derivative& d = s.derivatives[o][v];
     const Variable& variable = s.variables[v];
+    const double size = s.at[v] == 0 ? 1 : std::abs(s.at[v]);
+    if (std::abs(d.value) * size <= kNoInfluence * s.scales[o]) {
+      none += (none.empty() ? "" : ", ") + variable.name();
+      continue;
+    }
     section.table.rows.push_back(
-        {variable.name(), variable.meaning(), s.at[v], variable.unit(), d.value,
-         per(output.unit, variable.unit()), effect(s, o, v), s.elasticity(o, v),
-         d.reason.empty() ? to_string(d.way) : d.reason,
+        {variable.name(), s.at[v], variable.unit(), d.value, per(output.unit, variable.unit()),
+         effect(s, o, v), s.elasticity(o, v), d.reason.empty() ? to_string(d.way) : d.reason,
          d.way == Way::exact && d.error == 0 ? Cell("round-off") : Cell(d.error)});
   }
+  if (!none.empty()) section.facts = {{"no influence", none}};
   return section;
 }
 
@@ -75,9 +84,11 @@ report::Figure tornado(const Sensitivities& s, std::size_t o) {
   const Output& output = s.outputs[o];
   report::BarsFigure bars{{"change of " + output.name + " by +1 % of the parameter", output.unit},
                           {}};
+  double longest = 0;
   for (const std::size_t v : by_effect(s, o)) {
     const double e = effect(s, o, v);
-    if (bars.bars.size() == kBars || !(std::abs(e) > 0)) break;
+    if (bars.bars.empty()) longest = std::abs(e);
+    if (bars.bars.size() == kBars || !(std::abs(e) > kShortestBar * longest)) break;
     bars.bars.push_back({s.variables[v].name(), std::min(e, 0.0), std::max(e, 0.0),
                          fmt::format("{} {}, elasticity {:.4g}", s.variables[v].text(s.at[v]),
                                      s.variables[v].unit(), s.elasticity(o, v))});
@@ -133,51 +144,55 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
 
 }  // namespace
 
-report::Document sensitivity_document(const Sensitivities& s,
+report::Document sensitivity_document(const Sensitivities& found,
                                       const std::optional<SensitivityCheck>& check,
                                       const report::Lines& program) {
   report::Document document;
-  document.title = "Sensitivities: " + s.base.name;
+  document.title = "Sensitivities: " + found.base.name;
   document.program = program;
-  study::describe_case(document, s.base);
-  document.derived = study::derived_section(s.base);
+  study::describe_case(document, found.base);
+  document.derived = study::derived_section(found.base);
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
-                                     headline(s, check)};
+                                     headline(found, check)};
   document.meaning =
       "A derivative holds for small changes of one parameter, the others staying. An exact one is "
       "right to round-off; one by differences has the error beside it. A largest or least value "
       "changes as at the sample that attains it; where several do, the derivative is the mean of "
       "those to either side, and its error what each differs by.";
-  std::vector<Section> sections = {outputs_section(s)};
+  if (found.base.pressure.kind == PressureKind::hydraulic)
+    document.meaning +=
+        " The pressure is that of a periodic state: each difference is one of two such states.";
+  std::vector<Section> sections = {outputs_section(found)};
   std::vector<report::Figure> figures;
-  for (std::size_t o = 0; o < s.outputs.size(); ++o) {
-    sections.push_back(derivatives_section(s, o));
-    figures.push_back(tornado(s, o));
+  for (std::size_t o = 0; o < found.outputs.size(); ++o) {
+    sections.push_back(derivatives_section(found, o));
+    figures.push_back(tornado(found, o));
   }
-  if (check) sections.push_back(check_section(s, *check));
+  if (check) sections.push_back(check_section(found, *check));
   document.runs = std::move(sections);
   document.figures = std::move(figures);
   return document;
 }
 
-std::string sensitivity_csv(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
+std::string sensitivity_csv(const Sensitivities& found,
+                            const std::optional<SensitivityCheck>& check) {
   std::string text =
       "output,output_unit,output_value,parameter,parameter_unit,parameter_value,derivative,"
       "elasticity,found_by,error";
   text += check ? ",derivative_of_other_model,difference\n" : "\n";
-  for (std::size_t o = 0; o < s.outputs.size(); ++o)
-    for (std::size_t v = 0; v < s.variables.size(); ++v) {
-      const Derivative& d = s.derivatives[o][v];
+  for (std::size_t o = 0; o < found.outputs.size(); ++o)
+    for (std::size_t v = 0; v < found.variables.size(); ++v) {
+      const Derivative& d = found.derivatives[o][v];
       const auto number = [&](double value) {
         text += ',';
         append_number(text, value);
       };
-      text += s.outputs[o].name + "," + s.outputs[o].unit;
-      number(s.values[o]);
-      text += "," + s.variables[v].name() + "," + s.variables[v].unit();
-      number(s.at[v]);
+      text += found.outputs[o].name + "," + found.outputs[o].unit;
+      number(found.values[o]);
+      text += "," + found.variables[v].name() + "," + found.variables[v].unit();
+      number(found.at[v]);
       number(d.value);
-      number(s.elasticity(o, v));
+      number(found.elasticity(o, v));
       text += "," + (is_computed(d.value) ? to_string(d.way) : std::string());
       number(d.error);
       if (check) {
@@ -189,21 +204,22 @@ std::string sensitivity_csv(const Sensitivities& s, const std::optional<Sensitiv
   return text;
 }
 
-std::string sensitivity_text(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
-  std::string text = s.base.name + "\n" + headline(s, check) + "\n";
-  for (std::size_t o = 0; o < s.outputs.size(); ++o) {
-    text += fmt::format("\n{} = {:.7g} {}\n{:<34}{:>12}{:>14}{:>12}  {}\n", s.outputs[o].name,
-                        s.values[o], s.outputs[o].unit, "parameter", "value", "derivative", "%/%",
-                        "found by");
-    const auto order = by_effect(s, o);
+std::string sensitivity_text(const Sensitivities& found,
+                             const std::optional<SensitivityCheck>& check) {
+  std::string text = found.base.name + "\n" + headline(found, check) + "\n";
+  for (std::size_t o = 0; o < found.outputs.size(); ++o) {
+    text += fmt::format("\n{} = {:.7g} {}\n{:<34}{:>12}{:>14}{:>12}  {}\n", found.outputs[o].name,
+                        found.values[o], found.outputs[o].unit, "parameter", "value", "derivative",
+                        "%/%", "found by");
+    const auto order = by_effect(found, o);
     for (std::size_t i = 0; i < std::min(kTextLines, order.size()); ++i) {
       const std::size_t v = order[i];
-      const Derivative& d = s.derivatives[o][v];
+      const Derivative& d = found.derivatives[o][v];
       const auto number = [](double value) {
         return is_computed(value) ? fmt::format("{:.6g}", value) : std::string("-");
       };
-      text += fmt::format("{:<34}{:>12.6g}{:>14}{:>12}  {}\n", s.variables[v].name(), s.at[v],
-                          number(d.value), number(s.elasticity(o, v)),
+      text += fmt::format("{:<34}{:>12.6g}{:>14}{:>12}  {}\n", found.variables[v].name(),
+                          found.at[v], number(d.value), number(found.elasticity(o, v)),
                           d.reason.empty() ? to_string(d.way) : d.reason);
     }
     if (order.size() > kTextLines)

@@ -9,6 +9,7 @@
 
 namespace bentaxis::designs {
 
+/// What has no influence is named in a line, not in the tables.
 report::Document sensitivity_document(const Sensitivities& found,
                                       const std::optional<SensitivityCheck>& check,
                                       const report::Lines& program);

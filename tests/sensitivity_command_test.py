@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""`bentaxis sensitivity` from outside.
+
+usage: sensitivity_command_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = REPO = None  # set in main
+DONE, BAD_INPUT = 0, 2
+SECONDS = 120
+
+
+def rows_of(path):
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+class Sensitivity(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="bentaxis_test_"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.out = self.folder / "out"
+
+    def run_program(self, *options, status=DONE):
+        done = subprocess.run([PROGRAM, "sensitivity", REPO / "cases/bap63_rated.toml", "--out", self.out,
+                               "--set", "operation.samples_per_revolution=40", *options],
+                              capture_output=True, text=True, timeout=SECONDS)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done
+
+    def test_every_pair_is_written_and_the_check_agrees(self):
+        self.run_program("--output", "mean:Td,peak:Rb1", "--parameter", "pump.tilt_deg,pressure.delivery_bar", "--check")
+        rows = rows_of(self.out / "sensitivity.csv")
+        self.assertEqual([(r["output"], r["parameter"]) for r in rows],
+                         [(o, p) for o in ("mean:Td", "peak:Rb1") for p in ("pump.tilt_deg", "pressure.delivery_bar")])
+        for row in rows:
+            self.assertEqual(row["found_by"], "exact")
+            self.assertAlmostEqual(float(row["derivative"]) * float(row["parameter_value"]) / float(row["output_value"]),
+                                   float(row["elasticity"]), 12)
+            self.assertLess(float(row["difference"]), 1e-7)
+        report = json.loads((self.out / "sensitivity.json").read_text())
+        self.assertTrue(report["verdict"]["agrees"])
+        self.assertTrue((self.out / "sensitivity.html").exists())
+
+    def test_a_derivative_predicts_a_run(self):
+        """What a small change does, by two runs of the program."""
+        def mean_torque(change):
+            out = self.folder / "run"
+            subprocess.run([PROGRAM, "run", REPO / "cases/bap63_rated.toml", "--model", "analytic", "--out", out, "--set",
+                            "operation.samples_per_revolution=40", "--set", f"pump.tilt_deg={40 + change}"],
+                           check=True, capture_output=True, timeout=SECONDS)
+            rows = rows_of(out / "analytic.csv")
+            return sum(float(r["Td_z1_Nm"]) for r in rows) / len(rows)
+        self.run_program("--output", "mean:Td", "--parameter", "pump.tilt_deg")
+        [row] = rows_of(self.out / "sensitivity.csv")
+        difference = (mean_torque(1e-3) - mean_torque(-1e-3)) / 2e-3
+        # Third derivative times 1e-6, and round-off of 1e-13 over 1e-3.
+        self.assertAlmostEqual(float(row["derivative"]), difference, delta=1e-7 * abs(difference))
+
+    def test_without_names_every_number_of_the_case(self):
+        self.run_program()
+        rows = rows_of(self.out / "sensitivity.csv")
+        parameters = {r["parameter"] for r in rows}
+        self.assertGreater(len(parameters), 40)
+        self.assertLessEqual({"pump.tilt_deg", "port_plate.inner_land_mm.2", "operation.speed_rpm"}, parameters)
+
+    def test_what_is_no_number_is_refused(self):
+        for options, words in ((("--parameter", "pump.pistons"), "pump.pistons: is no continuous number"),
+                               (("--parameter", "pump.tilt"), "pump.tilt_deg"),
+                               (("--output", "most:Td"), "most:Td: no statistic")):
+            done = self.run_program(*options, status=BAD_INPUT)
+            self.assertIn(words, done.stderr)
+            self.assertFalse((self.out / "sensitivity.csv").exists())
+
+
+if __name__ == "__main__":
+    PROGRAM, REPO = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
