@@ -14,7 +14,8 @@ namespace {
 
 // Where the name says its unit, that is enough: tilt_deg, delivery_arc_deg.1, ripple_percent.
 report::Axis axis_of(const std::string& name, const std::string& unit, bool log) {
-  const bool said = name.ends_with("_" + unit) || name.find("_" + unit + ".") != std::string::npos ||
+  const bool said = name.ends_with("_" + unit) ||
+                    name.find("_" + unit + ".") != std::string::npos ||
                     (unit.starts_with('%') && name.ends_with("_percent"));
   return {name, said ? "" : unit, log};
 }
