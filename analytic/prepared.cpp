@@ -1,7 +1,9 @@
 #include "prepared.h"
 
 #include <cmath>
+#include <string>
 
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::analytic {
@@ -13,15 +15,10 @@ PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions)
 }
 
 void prepare(const PumpParameters& pump, const Assumptions& assumptions, PreparedPump& result) {
-  closed_form::Pump<double>& p = result.numbers;
-  closed_form::prepare(pump.geometry, p.frame);
-  closed_form::prepare(pump.geometry, p.frame, p.piston);
-  closed_form::prepare(pump, assumptions.inertia, p.frame, p.piston);
-  result.friction = closed_form::prepare(pump, assumptions.piston_friction, p.friction);
-  closed_form::prepare(pump, p.piston, p.block);
-  closed_form::prepare(pump, p.film);
-  closed_form::prepare(pump, p.gear);
-  closed_form::prepare(pump, p.frame, p.shaft);
+  const PistonInertia inertia = assumptions.inertia;
+  if (const std::string why = piston_inertia_refusal(inertia, pump); !why.empty())
+    throw InputError(to_string(inertia) + " pistons: " + why);
+  result.friction = prepare_numbers(closed_form::raw(pump), pump, assumptions, result.numbers);
   result.tooth_law = closed_form::tooth_law(pump.gear);
   result.teeth.reset();
   if (pump.gear.contact == ToothContact::teeth)

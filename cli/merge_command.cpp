@@ -34,7 +34,7 @@ int merge(const Options& options) {
   designs::SweepParts parts(sources.front(), record);
   for (auto more = sources.begin() + 1; more != sources.end(); ++more) parts.add(*more);
   ReportFolders folders(options.place);
-  return write_results(sweep, parts, formats, folders);
+  return write_results(sweep, parts, formats, 0, folders);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
                 options.part.c_str(), parts.folder().c_str(), options.place.out.c_str());
     return kDone;
   }
-  const int status = write_results(sweep, parts, formats, *folders);
+  const int status = write_results(sweep, parts, formats, share.threads, *folders);
   parts.remove(sweep.blocks());
   return status;
 }

@@ -58,9 +58,9 @@ std::size_t compute_or_say(const designs::Sweep& sweep, const designs::SweepPart
 }
 
 int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,
-                  const designs::SweepFormats& formats, ReportFolders& folders) {
-  const designs::SweepResult result =
-      designs::write_sweep(sweep, parts, formats, folders.tables(), progress_of("writing"));
+                  const designs::SweepFormats& formats, int threads, ReportFolders& folders) {
+  const designs::SweepResult result = designs::write_sweep(sweep, parts, formats, folders.tables(),
+                                                           threads, progress_of("writing"));
   const auto paths = folders.write("report", designs::sweep_document(result, versions()), {}, {});
   std::printf("%s\n%s", designs::headline(result).c_str(),
               designs::disagreements_text(result).c_str());

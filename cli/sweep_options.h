@@ -28,6 +28,6 @@ std::size_t compute_or_say(const designs::Sweep& sweep, const designs::SweepPart
 
 /// Writes the results of all blocks and prints what came out. @return the exit status
 int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,
-                  const designs::SweepFormats& formats, ReportFolders& folders);
+                  const designs::SweepFormats& formats, int threads, ReportFolders& folders);
 
 }  // namespace bentaxis::cli

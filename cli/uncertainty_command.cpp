@@ -52,7 +52,8 @@ int uncertainty(const Options& options) {
   ReportFolders folders(options.place);
   const designs::UncertaintyResult result = designs::uncertainty(the_case, how, progress_of);
 
-  std::vector<TextFile> files = {{"samples.csv", designs::samples_csv(result)}};
+  std::vector<TextFile> files = {{"outputs.csv", designs::outputs_csv(result)},
+                                 {"samples.csv", designs::samples_csv(result)}};
   if (!result.bands.empty()) files.emplace_back("bands.csv", designs::bands_csv(result));
   const auto paths =
       folders.write("report", designs::uncertainty_document(result, versions()), {}, files);
@@ -68,7 +69,8 @@ Command add_uncertainty_command(CommandParser program) {
   CommandParser command = program.subcommand(
       "uncertainty", "Say how far results are known where parameters have distributions");
   add_case(command, options->the_case);
-  add_report(command, options->place, "report.html, report.json, bands.csv and samples.csv");
+  add_report(command, options->place,
+             "report.html, report.json, outputs.csv, samples.csv and bands.csv");
   command.option("--output", options->outputs, "numbers asked for")
       .list()
       .text("NAME[,NAME..] [mean:Td,peak:Rb1,peak:Rb2]");

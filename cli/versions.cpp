@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <fstream>
 
+#include "bentaxis/designs/propagation.h"
 #include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
@@ -40,6 +41,7 @@ std::vector<std::pair<std::string, std::string>> versions() {
       {"BLAS", multibody::blas_library()},
       {"HDF5", designs::hdf5_version()},
       {"MPI", mpi_library()},
+      {"OpenTURNS", designs::openturns_version()},
       {"processor", processor()}};
 }
 

@@ -52,7 +52,9 @@ Spread spread_of(std::vector<double> values, double level) {
   std::sort(values.begin(), values.end());
   Spread s;
   const auto count = static_cast<double>(samples);
-  for (const double v : values) s.mean += v / count;
+  // From a value among them, so that equal ones leave no round-off.
+  for (const double v : values) s.mean += (v - values.front()) / count;
+  s.mean += values.front();
   double second = 0, fourth = 0;  // central moments
   for (const double v : values) {
     const double square = (v - s.mean) * (v - s.mean);

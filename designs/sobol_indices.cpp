@@ -30,12 +30,9 @@ class Module {
     if (library_ == nullptr) return;
     indices_ = reinterpret_cast<decltype(&bentaxis_sobol_indices)>(
         dlsym(library_, "bentaxis_sobol_indices"));
-    version_ = reinterpret_cast<decltype(&bentaxis_openturns_version)>(
-        dlsym(library_, "bentaxis_openturns_version"));
   }
-  bool is_there() const { return indices_ != nullptr && version_ != nullptr; }
+  bool is_there() const { return indices_ != nullptr; }
   const std::string& why() const { return why_; }
-  std::string version() const { return is_there() ? version_() : ""; }
 
   void indices(std::size_t base, std::size_t numbers, const std::vector<double>& inputs,
                const std::vector<double>& outputs, std::vector<double>& found) const {
@@ -61,7 +58,6 @@ class Module {
   void* library_ = nullptr;
   std::string why_;
   decltype(&bentaxis_sobol_indices) indices_ = nullptr;
-  decltype(&bentaxis_openturns_version) version_ = nullptr;
 };
 
 const Module& module() {
@@ -99,7 +95,13 @@ class Design {
 
 }  // namespace
 
-std::string openturns_version() { return module().version(); }
+std::string openturns_version() {
+#ifdef BENTAXIS_HAS_OPENTURNS
+  return BENTAXIS_HAS_OPENTURNS;
+#else
+  return "none";
+#endif
+}
 
 SobolIndices sobol_indices(const Response& response, std::size_t outputs,
                            const UncertainVariables& numbers, std::size_t base, std::uint64_t seed,

@@ -4,9 +4,6 @@
 #include <cstring>
 #include <exception>
 #include <openturns/MartinezSensitivityAlgorithm.hxx>
-#include <openturns/PlatformInfo.hxx>
-#include <openturns/ResourceMap.hxx>
-#include <string>
 
 namespace {
 
@@ -46,9 +43,4 @@ extern "C" int bentaxis_sobol_indices(unsigned long base, unsigned long numbers,
   std::memcpy(message, error.what(), length);
   message[length] = 0;
   return 1;
-}
-
-extern "C" const char* bentaxis_openturns_version() {
-  static const std::string version = OT::PlatformInfo::GetVersion();
-  return version.c_str();
 }

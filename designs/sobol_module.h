@@ -15,6 +15,4 @@ extern "C" {
 int bentaxis_sobol_indices(unsigned long base, unsigned long numbers, const double* inputs,
                            const double* outputs, double level, double* indices, char* message,
                            unsigned long room);
-/// "1.20"
-const char* bentaxis_openturns_version();
 }

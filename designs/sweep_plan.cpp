@@ -44,10 +44,10 @@ std::vector<double> log_levels(const std::string& what, const std::string& text)
   if (levels.size() < 2 || text.find('#') == std::string::npos || !(levels.front() > 0))
     throw InputError(what + " log(" + text +
                      "): must be log(FROM:TO:#N) with 0 < FROM < TO, N > 1");
-  const double from = levels.front(), ratio = std::log(levels.back() / from);
+  const double from = levels.front(), ratio = levels.back() / from;
   const auto steps = static_cast<double>(levels.size() - 1);
   for (std::size_t i = 1; i + 1 < levels.size(); ++i)
-    levels[i] = from * std::exp(ratio * static_cast<double>(i) / steps);
+    levels[i] = from * std::pow(ratio, static_cast<double>(i) / steps);
   return levels;
 }
 

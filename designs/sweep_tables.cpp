@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/in_threads.h"
 #include "sweep_hdf5.h"
 
 namespace bentaxis::designs {
@@ -96,10 +98,11 @@ void take(SweepResult& result, SweepBlock& block) {
 }  // namespace
 
 SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const SweepFormats& formats,
-                        OutputFolder& folder, const Progress& progress, std::size_t most) {
+                        OutputFolder& folder, int threads, const Progress& progress,
+                        std::size_t most) {
   SweepResult result;
   result.plan = sweep.plan();
-  result.base = sweep.base();
+  result.base = sweep.family().base();
   result.every = (sweep.designs() + most - 1) / most;
   OutputFolder::Stream* csv = formats.csv ? &folder.open("sweep.csv") : nullptr;
   if (csv != nullptr) {
@@ -110,16 +113,24 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   if (formats.hdf5)
     hdf5 = std::make_unique<Hdf5File>(folder.reserve("sweep.h5"), sweep, parts.record());
   std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < sweep.blocks(); ++i) {
-    auto block = parts.read(i);
-    if (!block) {
-      missing.push_back(i);
-    } else if (missing.empty()) {
-      if (csv != nullptr) csv->write(csv_rows(*block, result.plan));
-      if (hdf5) hdf5->add(*block);
-      take(result, *block);
+  // Some blocks at a time: read side by side, then both files written side by side.
+  constexpr std::size_t kAtATime = 16;
+  std::vector<std::optional<SweepBlock>> blocks(kAtATime);
+  for (std::size_t first = 0; first < sweep.blocks(); first += kAtATime) {
+    const std::size_t count = std::min(kAtATime, sweep.blocks() - first);
+    study::in_threads(threads, count, [&](std::size_t i) { blocks[i] = parts.read(first + i); });
+    for (std::size_t i = 0; i < count; ++i)
+      if (!blocks[i]) missing.push_back(first + i);
+    if (missing.empty()) {
+      study::in_threads(threads, 2, [&](std::size_t file) {
+        for (std::size_t i = 0; i < count; ++i) {
+          if (file == 0 && csv != nullptr) csv->write(csv_rows(*blocks[i], result.plan));
+          if (file == 1 && hdf5) hdf5->add(*blocks[i]);
+        }
+      });
+      for (std::size_t i = 0; i < count; ++i) take(result, *blocks[i]);
     }
-    progress(static_cast<double>(i + 1) / static_cast<double>(sweep.blocks()));
+    progress(static_cast<double>(first + count) / static_cast<double>(sweep.blocks()));
   }
   if (!missing.empty())
     throw InputError(fmt::format("{}: of {} blocks (0-{}) {} are missing or damaged: {}",

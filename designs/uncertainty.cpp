@@ -27,7 +27,9 @@ class Designs {
   const std::vector<std::size_t>& channels() const { return channels_; }
   std::size_t stride() const { return stride_; }
   std::size_t rows() const { return rows_; }
-  std::size_t size() const { return options_.outputs.size() + rows_ * channels_.size(); }
+  /// Outputs, then further numbers, then curves.
+  std::size_t size() const { return before_curves() + rows_ * channels_.size(); }
+  std::size_t before_curves() const { return options_.outputs.size() + options_.further.count; }
 
   std::vector<double> of(const Case& the_case) const {
     const study::ReadyCase ready = study::prepare(the_case);
@@ -35,8 +37,11 @@ class Designs {
     for (std::size_t o = 0; o < all.size(); ++o)
       if (!is_computed(all[o]))
         throw InputError("output " + options_.outputs[o].name + ": is not computed");
-    if (rows_ == 0) return all;
+    if (rows_ == 0 && options_.further.count == 0) return all;
     const ResultTable table = study::run_turn(ready, options_.model);
+    all.resize(before_curves());
+    if (options_.further.count > 0)
+      options_.further.of(ready, table, std::span(all).subspan(options_.outputs.size()));
     for (const std::size_t channel : channels_)
       for (std::size_t row = 0; row < rows_; ++row) all.push_back(table.at(row * stride_, channel));
     return all;
@@ -82,7 +87,8 @@ CurveBand band_of(const SampledOutputs& sampled, std::size_t first, std::size_t 
     std::sort(sorted.begin(), sorted.end());
     const Estimate below = low(sorted), above = high(sorted);
     double mean = 0, squares = 0;
-    for (const double v : values) mean += v / static_cast<double>(samples);
+    for (const double v : values) mean += (v - values.front()) / static_cast<double>(samples);
+    mean += values.front();
     for (const double v : values) squares += (v - mean) * (v - mean);
     band.low.push_back(below.value);
     band.median.push_back(median(sorted).value);
@@ -130,13 +136,18 @@ std::vector<std::size_t> banded_channels(const Case& the_case) {
   return found;
 }
 
+void check_sampling(const Case& the_case, std::size_t samples, double level) {
+  if (samples < fewest_samples(level))
+    throw InputError(std::to_string(samples) + " samples: must be at least " +
+                     std::to_string(fewest_samples(level)) + " for the quantiles of a level of " +
+                     number_text(level));
+  uncertain_variables(the_case);
+}
+
 UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& options,
                               const study::PartProgress& progress_of) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.samples < fewest_samples(options.level))
-    throw InputError("--samples = " + std::to_string(options.samples) + ": must be at least " +
-                     std::to_string(fewest_samples(options.level)) + " for quantiles of --level " +
-                     number_text(options.level));
+  check_sampling(the_case, options.samples, options.level);
   UncertaintyResult result;
   result.the_case = the_case;
   result.options = options;
@@ -155,13 +166,15 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
   for (std::size_t o = 0; o < outputs; ++o)
     result.outputs.push_back(
         {options.outputs[o], nominal[o], spread_of(sampled.of(o), options.level)});
+  for (std::size_t i = outputs; i < designs.before_curves(); ++i)
+    result.further.push_back(spread_of(sampled.of(i), options.level));
   result.angles = static_cast<std::size_t>(the_case.operation.samples_per_revolution);
   for (std::size_t row = 0; row < designs.rows(); ++row)
     result.theta_deg.push_back(360.0 * static_cast<double>(row * designs.stride()) /
                                static_cast<double>(result.angles));
   const ChannelLayout layout(the_case.pump.geometry.pistons);
   for (std::size_t c = 0; c < designs.channels().size(); ++c) {
-    const std::size_t first = outputs + c * designs.rows();
+    const std::size_t first = designs.before_curves() + c * designs.rows();
     if (!is_computed(nominal[first])) continue;  // the block's speed is imposed: no tooth force
     CurveBand band = band_of(sampled, first, designs.rows(), options.level);
     band.channel = layout.channels()[designs.channels()[c]];
@@ -180,6 +193,7 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
 
   UncertaintyOptions of_outputs = options;
   of_outputs.curves = false;
+  of_outputs.further = {};
   if (options.first_order)
     result.first_order = first_order(Designs(the_case, variables, of_outputs), outputs, variables);
   if (options.sobol > 0) {
@@ -195,6 +209,29 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
   }
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+std::string outputs_csv(const UncertaintyResult& result) {
+  std::string text =
+      "output,unit,nominal,mean,mean_error,deviation,deviation_error,low,low_from,low_to,median,"
+      "median_from,median_to,high,high_from,high_to,first_order_value,first_order_deviation\n";
+  const FirstOrder& first = result.first_order;
+  for (std::size_t o = 0; o < result.outputs.size(); ++o) {
+    const auto& [output, nominal, s] = result.outputs[o];
+    std::vector<double> numbers = {nominal, s.mean, s.mean_error, s.deviation, s.deviation_error};
+    for (const Estimate& e : {s.low, s.median, s.high})
+      numbers.insert(numbers.end(), {e.value, e.low, e.high});
+    const bool is_there = !first.values.empty();
+    numbers.push_back(is_there ? first.values[o] : not_computed());
+    numbers.push_back(is_there ? first.deviations[o] : not_computed());
+    text += output.name + "," + output.unit;
+    for (const double number : numbers) {
+      text += ",";
+      append_number(text, number);
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 std::string bands_csv(const UncertaintyResult& result) {

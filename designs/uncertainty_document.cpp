@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "bentaxis/pump/number.h"
@@ -36,27 +37,41 @@ std::string headline(const UncertaintyResult& result) {
   return text;
 }
 
+// To the digits that its interval leaves: two more than the interval has.
+std::string digits(double value, double interval) {
+  if (!(interval > 0) || value == 0) return fmt::format("{:.6g}", value);
+  const double size = std::max(std::abs(value), interval);
+  const int count = static_cast<int>(std::ceil(std::log10(size / interval))) + 2;
+  return fmt::format("{:.{}g}", value, std::clamp(count, 2, 15));
+}
+std::string with_error(double value, double error) {
+  return digits(value, error) + fmt::format(" +- {:.2g}", error);
+}
+std::string with_interval(const Estimate& e) {
+  const double width = e.high - e.low;
+  return digits(e.value, width) + " (" + digits(e.low, width) + " .. " + digits(e.high, width) +
+         ")";
+}
+
 Section outputs_section(const UncertaintyResult& result) {
   const double tail = (1 - result.options.level) / 2;
   Section section{
       "Outputs",
       fmt::format(
-          "Monte Carlo: {} independent samples, random numbers of seed {}. Of every quantile the "
-          "interval that holds it with 95 % probability, by order statistics; of the mean and of "
-          "the standard deviation the standard error. Nominal: the case as it is.",
+          "Monte Carlo: {} independent samples, random numbers of seed {}. In brackets the "
+          "interval that holds the quantile with 95 % probability, by order statistics; behind +- "
+          "the standard error. Nominal: the case as it is. All digits are in outputs.csv.",
           result.options.samples, result.options.seed),
       {},
-      {{"output", "unit", "nominal", "mean", "standard error of it", "standard deviation",
-        "standard error of that", percent(tail) + " quantile", "from", "to", "median", "from", "to",
-        percent(1 - tail) + " quantile", "from", "to"},
+      {{"output", "unit", "nominal", "mean", "standard deviation", percent(tail) + " quantile",
+        "median", percent(1 - tail) + " quantile"},
        {}}};
   for (const UncertainOutput& o : result.outputs) {
     const Spread& s = o.spread;
-    std::vector<Cell> row = {o.output.name, o.output.unit, o.nominal,        s.mean,
-                             s.mean_error,  s.deviation,   s.deviation_error};
-    for (const Estimate& e : {s.low, s.median, s.high})
-      row.insert(row.end(), {e.value, e.low, e.high});
-    section.table.rows.push_back(row);
+    section.table.rows.push_back({o.output.name, o.output.unit, digits(o.nominal, s.mean_error),
+                                  with_error(s.mean, s.mean_error),
+                                  with_error(s.deviation, s.deviation_error), with_interval(s.low),
+                                  with_interval(s.median), with_interval(s.high)});
   }
   return section;
 }
@@ -155,10 +170,12 @@ report::Figure contributions_figure(const UncertaintyResult& result, std::size_t
     if (is_computed(of(i))) sizes.emplace_back(-std::abs(of(i)), i);
   std::sort(sizes.begin(), sizes.end());
   report::BarsFigure bars{{"contribution to " + output.name, output.unit}, {}};
+  constexpr double kDrawn = 1e-6;  // of the largest: the rest may be round-off
   for (const auto& [size, i] : sizes)
-    bars.bars.push_back({result.variables.variables[i].name(), size, -size,
-                         result.variables.distributions[i].text() + ": " +
-                             fmt::format("{:+.3g} {}", of(i), output.unit)});
+    if (size < kDrawn * sizes.front().first)
+      bars.bars.push_back({result.variables.variables[i].name(), size, -size,
+                           result.variables.distributions[i].text() + ": " +
+                               fmt::format("{:+.3g} {}", of(i), output.unit)});
   return {fmt::format("contributions_{}", o + 1), output.name + ": what makes it uncertain", "",
           bars, "One standard deviation of each parameter, to first order; longest first."};
 }

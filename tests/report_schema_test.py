@@ -59,6 +59,8 @@ class SchemaTest(unittest.TestCase):
                                 "operation.samples_per_revolution=36"),
             "life": cls.report("life.json", "life", REPO / "cases" / "bap63_bearing_life.toml", "--set",
                                "operation.samples_per_revolution=36"),
+            "uncertainty": cls.report("report.json", "uncertainty", rated, "--vary", "pump.tilt_deg=normal(0.1)", "--samples", "150",
+                                      "--sobol", "32"),
             "rattle": cls.report("report.json", "rattle", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                  "friction.block_viscous_Nm_per_rpm=0.0054", "--speeds", "900:1200:#2", "--delivery-bar",
                                  "350", "--turns", "2", "--check", "1"),

@@ -1,4 +1,6 @@
 // Distributions, correlated values, and what they do to outputs.
+#include "bentaxis/designs/uncertainty.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +12,7 @@
 
 #include "bentaxis/designs/distribution.h"
 #include "bentaxis/designs/propagation.h"
+#include "bentaxis/designs/validation.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/error.h"
@@ -348,7 +351,7 @@ TEST(Sample, LeavesOutWhatHasNoOutputs) {
 // T. Ishigami, T. Homma, An importance quantification technique in uncertainty analysis, 1990:
 // sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1, whose variance is known part by part.
 TEST(SobolIndices, OfIshigamisFunctionLieInTheirBands) {
-  if (openturns_version().empty()) GTEST_SKIP() << "built without OpenTURNS";
+  if (openturns_version() == "none") GTEST_SKIP() << "built without OpenTURNS";
   const UncertainVariables inputs =
       numbers(std::vector<std::string>(3, "uniform(-3.141592653589793, 3.141592653589793)"));
   const Response ishigami = response_of(
@@ -378,6 +381,108 @@ TEST(SobolIndices, OfIshigamisFunctionLieInTheirBands) {
   correlated.correlate({{0, 1, 0.5}});
   EXPECT_THAT(refusal([&] { sobol_indices(ishigami, 1, correlated, 64, 1, 1); }),
               testing::HasSubstr("independent"));
+}
+
+// ---- Of a case
+
+Case some_uncertain() {
+  Case made = uncertain({{"pump.tilt_deg", "normal(0.2)"},
+                         {"pressure.delivery_bar", "uniform(260, 290)"},
+                         {"bearings.tapered_z_mm", "normal(0.5)"}},
+                        {{"pump.tilt_deg", "bearings.tapered_z_mm", 0.3}});
+  made.operation.samples_per_revolution = 60;
+  return made;
+}
+
+const CurveBand& band_of(const UncertaintyResult& result, const std::string& channel) {
+  for (const CurveBand& band : result.bands)
+    if (band.channel.name == channel) return band;
+  throw std::runtime_error("no band of " + channel);
+}
+
+// What other samples do is what the band says: 95 % of them at an angle, fewer throughout.
+TEST(Uncertainty, HasBandsThatHoldOtherSamples) {
+  const Case the_case = some_uncertain();
+  UncertaintyOptions options;
+  options.samples = 2000;
+  options.threads = 2;
+  options.first_order = false;
+  options.outputs = {output("mean:Td", the_case)};
+  const UncertaintyResult one = uncertainty(the_case, options);
+  EXPECT_EQ(one.bands.size(), 17U);
+  EXPECT_EQ(one.theta_deg.size(), 60U);
+  // Others are drawn as numbers of a design, which the sampled bands are not made of.
+  const ChannelLayout layout(5);
+  const std::size_t column = layout.Rb2(1);
+  const CurveBand& band = band_of(one, "Rb2_y1_N");
+  options.seed = 2;
+  options.curves = false;
+  options.further = {
+      2, [&](const study::ReadyCase&, const ResultTable& table, std::span<double> values) {
+        double inside = 0;
+        for (std::size_t row = 0; row < table.rows(); ++row)
+          if (table.at(row, column) >= band.low[row] && table.at(row, column) <= band.high[row])
+            inside += 1.0 / static_cast<double>(table.rows());
+        values[0] = inside;
+        values[1] = inside > 1 - 1e-9 ? 1 : 0;
+      }};
+  const UncertaintyResult other = uncertainty(the_case, options);
+  EXPECT_NEAR(other.further[0].mean, 0.95, 0.015);  // three times what 2 x 2000 samples leave
+  EXPECT_NEAR(other.further[1].mean, band.throughout, 0.03);
+  EXPECT_LT(band.throughout, 0.96);
+  EXPECT_GT(band.edge_error, 0);
+  EXPECT_LT(band.edge_error, band.widest / 4);
+}
+
+// Curves of fewer angles where memory says so, at angles of the case.
+TEST(Uncertainty, FitsIntoMemory) {
+  const Case the_case = some_uncertain();
+  UncertaintyOptions options;
+  options.samples = 200;
+  const UncertaintyResult all = uncertainty(the_case, options);
+  options.most_bytes = 17 * 60 * 200 * sizeof(double) / 3;
+  const UncertaintyResult some = uncertainty(the_case, options);
+  ASSERT_EQ(some.theta_deg.size(), 20U);
+  EXPECT_EQ(some.theta_deg[1], 18);
+  const CurveBand &full = band_of(all, "Rs_1_z2_N"), &thin = band_of(some, "Rs_1_z2_N");
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(thin.low[i], full.low[3 * i]);
+    EXPECT_EQ(thin.nominal[i], full.nominal[3 * i]);
+  }
+}
+
+// What pressure takes of the torque is pressure x area: relative deviations add up as squares.
+TEST(Uncertainty, ToFirstOrderIsThatOfAProduct) {
+  Case the_case = uncertain(
+      {{"pressure.delivery_bar", "relative(0.01)"}, {"pump.bore_diameter_mm", "relative(0.005)"}});
+  UncertaintyOptions options;
+  options.samples = 200;
+  options.curves = false;
+  options.outputs = {output("mean:budget.Td_pressure", the_case)};
+  const UncertaintyResult found = uncertainty(the_case, options);
+  EXPECT_NEAR(found.first_order.deviations[0] / found.outputs[0].nominal,
+              std::hypot(0.01, 2 * 0.005), 1e-9);
+}
+
+TEST(Uncertainty, RefusesWhatMostlyIsNoPump) {
+  const Case the_case = uncertain({{"pump.axis_offset_mm", "uniform(80, 200)"}});
+  UncertaintyOptions options;
+  options.samples = 200;
+  try {
+    uncertainty(the_case, options);
+    FAIL() << "accepted";
+  } catch (const ComputationError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("of 200 samples are no pump"));
+  }
+}
+
+// E = S - D with its three uncertainties (ASME V&V 20): root of the sum of squares, doubled.
+TEST(ComparisonError, IsJudgedByItsUncertainty) {
+  const ComparisonError error{103, 100, 0.2, 0.9, 1.2};
+  EXPECT_EQ(error.error(), 3);
+  EXPECT_NEAR(error.validation(), std::sqrt(0.04 + 0.81 + 1.44), 1e-15);
+  EXPECT_TRUE(error.within());
+  EXPECT_FALSE((ComparisonError{103, 100, 0.2, 0.9, 1.1}).within());
 }
 
 }  // namespace

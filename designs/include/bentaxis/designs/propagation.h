@@ -97,7 +97,7 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
                            const UncertainVariables& numbers, std::size_t base, std::uint64_t seed,
                            int threads = 0, const Progress& progress = {});
 
-/// Whether this program finds its part with OpenTURNS; its version, or "".
+/// Version of the OpenTURNS that this was built with, or "none".
 std::string openturns_version();
 
 }  // namespace bentaxis::designs

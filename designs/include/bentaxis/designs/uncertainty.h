@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,8 +16,15 @@
 
 namespace bentaxis::designs {
 
+/// Further numbers of a design, from its analytic or multibody turn.
+struct Further {
+  std::size_t count = 0;
+  std::function<void(const study::ReadyCase&, const ResultTable&, std::span<double>)> of = {};
+};
+
 struct UncertaintyOptions {
   std::vector<Output> outputs;
+  Further further = {};
   std::size_t samples = 1000;  ///< of the Monte Carlo, at random
   std::uint64_t seed = 1;
   double level = 0.95;      ///< the part of all pumps that a band holds at each angle
@@ -54,7 +63,8 @@ struct UncertaintyResult {
   std::vector<double> theta_deg;  ///< of the bands: all or some of the case's
   std::size_t angles = 0;         ///< of the case
   std::vector<CurveBand> bands;
-  SampledOutputs sampled;  ///< outputs of all samples, without curves
+  std::vector<Spread> further;  ///< of the further numbers
+  SampledOutputs sampled;       ///< outputs of all samples, without curves
   double seconds = 0;
 };
 
@@ -62,11 +72,16 @@ struct UncertaintyResult {
 /// the others' bands are the same, shifted.
 std::vector<std::size_t> banded_channels(const Case& the_case);
 
+/// Refuses what uncertainty() would refuse, before anything is computed. @throws InputError
+void check_sampling(const Case& the_case, std::size_t samples, double level = 0.95);
+
 /// @throws InputError where the case has no [uncertainty], samples are too few, or an output is not
 ///         there; ComputationError where most samples have no outputs
 UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& options,
                               const study::PartProgress& progress_of = study::silent());
 
+/// Every number of every output, a line each.
+std::string outputs_csv(const UncertaintyResult& result);
 /// Bands by angle: theta_deg, then CHANNEL_nominal, _low, _median, _high; "" where there are none.
 std::string bands_csv(const UncertaintyResult& result);
 /// Values of parameters and outputs of every sample that has some.
