@@ -191,7 +191,7 @@ class Figures {
     }
   }
 
-  void slice(std::size_t v, std::size_t k, std::string note) {
+  void slice(std::size_t v, std::size_t k, const std::string& note) {
     const auto next = std::find(varied_.begin(), varied_.end(), v) + 1;
     const std::size_t family = varied_.size() == 1 ? v : next == varied_.end() ? varied_[0] : *next;
     report::XyFigure xy{view_.axis(v), view_.output_axis(k), {}};

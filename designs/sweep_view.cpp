@@ -12,9 +12,12 @@
 namespace bentaxis::designs {
 namespace {
 
-// Where the name ends with its unit, that is said.
+// Where the name says its unit, that is enough: tilt_deg, delivery_arc_deg.1, ripple_percent.
 report::Axis axis_of(const std::string& name, const std::string& unit, bool log) {
-  return {name, name.ends_with("_" + unit) ? "" : unit, log};
+  const bool said = name.ends_with("_" + unit) ||
+                    name.find("_" + unit + ".") != std::string::npos ||
+                    (unit.starts_with('%') && name.ends_with("_percent"));
+  return {name, said ? "" : unit, log};
 }
 
 bool positive(double v) { return v > 0 && std::isfinite(v); }

@@ -41,11 +41,11 @@ class SweepView {
   /// Directions of how many outputs were asked for.
   std::size_t sought() const;
 
-  /// Axes, with the unit where the name does not say it.
-  report::Axis axis(std::size_t variable) const;
-  report::Axis output_axis(std::size_t output) const;
-  report::Values values(std::size_t variable, const std::vector<std::size_t>& designs) const;
-  report::Values results(std::size_t output, const std::vector<std::size_t>& designs) const;
+  /// Axes of variable or output k, with the unit where the name does not say it.
+  report::Axis axis(std::size_t k) const;
+  report::Axis output_axis(std::size_t k) const;
+  report::Values values(std::size_t k, const std::vector<std::size_t>& chosen) const;
+  report::Values results(std::size_t k, const std::vector<std::size_t>& chosen) const;
 
   /// Whether all combinations of levels are there.
   bool whole_grid() const;

@@ -135,9 +135,11 @@ class HandOnTest(unittest.TestCase):
             "--figures", "tradeoff/figures")
         run(folder, "pressure", "hydraulic.toml", "--delivery-bar", "0:200:100", "--out", "pressure", "--figures", "pressure/figures")
         run(folder, "hardcases", "--filter", "speed", "--catalogue", REPO / "reference_data" / "hard", "--out", "hardcases")
+        run(folder, "sweep", "case.toml", "--vary", "pump.piston_length_mm=6:46:10", "--vary", "pump.joint_circle_radius_mm=20:35:5",
+            "--maximise", "mean:Td", "--minimise", "max:Rb2", "--out", "sweep", "--figures", "sweep/figures")
         cls.pages = {name: folder / name / file for name, file in
                      {"compare": "report.html", "regress": "report.html", "inertia": "inertia.html", "tradeoff": "tradeoff.html",
-                      "pressure": "pressure.html", "hardcases": "hardcases.html"}.items()}
+                      "pressure": "pressure.html", "hardcases": "hardcases.html", "sweep": "report.html"}.items()}
         cls.reports = {name: cls.embedded(page, "report") for name, page in cls.pages.items()}
         cls.measured = {(name, width, dark): cls.measure(name, width, dark) for name in cls.pages
                         for width, dark in ((1400, False), (420, True))}
