@@ -29,16 +29,21 @@ Command add_completion_command(CommandParser program);
 Command add_compare_command(CommandParser program);
 Command add_fig34_command(CommandParser program);
 Command add_hardcases_command(CommandParser program);
+Command add_identify_command(CommandParser program);
 Command add_inertia_command(CommandParser program);
 Command add_life_command(CommandParser program);
 Command add_manual_command(CommandParser program);
+Command add_merge_command(CommandParser program);
 Command add_pressure_command(CommandParser program);
 Command add_rattle_command(CommandParser program);
+Command add_uncertainty_command(CommandParser program);
 Command add_regress_command(CommandParser program);
 Command add_reference_command(CommandParser program);
 Command add_schema_command(CommandParser program);
 Command add_show_command(CommandParser program);
+Command add_sensitivity_command(CommandParser program);
 Command add_simulate_command(CommandParser program);
+Command add_sweep_command(CommandParser program);
 Command add_tradeoff_command(CommandParser program);
 
 }  // namespace bentaxis::cli

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "bentaxis/designs/validation.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/study/assumptions.h"
@@ -24,6 +25,7 @@ struct Options {
   std::string multibody_case;  // another case for the multibody model; empty = the same
   std::string with;            // a reference folder
   std::optional<double> tolerance;
+  int uncertainty = 0;  // samples
   RunChoice choice;
   std::vector<std::string> analytic, multibody;  // KEY=VALUE assumptions
 };
@@ -41,6 +43,9 @@ int compare(const Options& options) {
   for (const auto& text : options.multibody)
     study::apply_assumption(text, of_multibody.pump, of_multibody.multibody);
   if (second) study::check_same_run(first, *second);
+  const Case given = first;
+  const auto samples = static_cast<std::size_t>(options.uncertainty);
+  if (samples > 0) designs::check_sampling(given, samples);
   ReportFolders folders(options.place);
 
   study::ComparisonOptions how;
@@ -78,11 +83,18 @@ int compare(const Options& options) {
     curves.emplace_back("teeth_analytic.csv", to_csv(result.teeth->analytic));
     curves.emplace_back("teeth_multibody.csv", to_csv(result.teeth->multibody));
   }
-  const report::Document document = study::comparison_document(result, versions());
+  report::Document document = study::comparison_document(result, versions());
+  std::string known;  // how well
+  if (samples > 0) {
+    const designs::Validation validation = designs::validation(given, result, samples, progress_of);
+    designs::add_validation(document, validation);
+    curves.emplace_back("bands.csv", designs::bands_csv(validation.uncertainty));
+    known = designs::validation_text(validation) + "\n";
+  }
   const auto paths =
       folders.write("report", document, study::comparison_curves(result, document), curves);
 
-  std::printf("%s\n", study::comparison_text(result).c_str());
+  std::printf("%s%s\n", study::comparison_text(result).c_str(), known.c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   const bool held = !result.with || result.with->state == study::Outcome::State::agrees;
   return result.agrees() && held ? kDone : kOutOfTolerance;
@@ -122,6 +134,12 @@ Command add_compare_command(CommandParser program) {
               "a reference folder: its curves beside both models', held to its tolerance; exit "
               "status 1 where one differs")
       .text("FOLDER");
+  command
+      .option("--uncertainty", options->uncertainty,
+              "samples of the parameters in [uncertainty]: bands on the curves, and how well the "
+              "errors against printed numbers and --with are known; 0: none")
+      .integer_in(0, 10'000'000)
+      .text("NUMBER [0]");
   return {command, [options] { return compare(*options); }};
 }
 

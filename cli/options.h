@@ -34,12 +34,6 @@ struct CaseOption {
 void add_case(CommandParser command, CaseOption& the_case, const std::string& otherwise = {});
 void add_out(CommandParser command, std::string& folder, const std::string& what);
 /// A list of integrators; empty where not given.
-/// Values of an option: one number, FROM:TO:STEP or FROM:TO:#N for N of them, both ends among them.
-/// @param unit   of the numbers, for messages
-/// @param least  no number may be smaller; at most `most` values
-/// @throws InputError naming the option
-std::vector<double> spaced_values(const std::string& option, const std::string& text,
-                                  const std::string& unit, double least, int most);
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators);
 
 /// How the multibody model is run, and which channels are asked for.

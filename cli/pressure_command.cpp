@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
@@ -54,7 +55,7 @@ int pressure(const Options& options) {
   if (!options.published.empty()) published = compare::read_published(options.published);
   std::vector<double> pressures;
   if (!options.delivery.empty())
-    pressures = spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
+    pressures = designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
   std::optional<double> limit;
   if (!options.suction_speed.empty())
     limit = suction_limit(options.suction_speed, *read.hydraulics);

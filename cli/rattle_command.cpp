@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
@@ -40,8 +41,10 @@ std::string origin_of(const Case& the_case, const study::RattleOptions& options)
 int rattle(const Options& options) {
   study::RattleOptions rattle = options.rattle;
   constexpr double kLeastSpeed = 1;  // rpm
-  rattle.speed_rpm = spaced_values("--speeds", options.speeds, "rpm", kLeastSpeed, kMostPoints);
-  rattle.delivery_bar = spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
+  rattle.speed_rpm =
+      designs::spaced_values("--speeds", options.speeds, "rpm", kLeastSpeed, kMostPoints);
+  rattle.delivery_bar =
+      designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
   const Case the_case = options.the_case.read();
   if (rattle.check > 0 && the_case.pump.gear.contact == ToothContact::rigid)
     throw InputError(

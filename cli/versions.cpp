@@ -5,8 +5,11 @@
 #include <Eigen/Core>
 #include <fstream>
 
+#include "bentaxis/designs/propagation.h"
+#include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
+#include "ranks.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -36,6 +39,9 @@ std::vector<std::pair<std::string, std::string>> versions() {
                     "." + std::to_string(EIGEN_MINOR_VERSION)},
       {"Simbody", multibody::simbody_version()},
       {"BLAS", multibody::blas_library()},
+      {"HDF5", designs::hdf5_version()},
+      {"MPI", mpi_library()},
+      {"OpenTURNS", designs::openturns_version()},
       {"processor", processor()}};
 }
 

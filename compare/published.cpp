@@ -277,6 +277,20 @@ std::optional<PublishedValue> value_of(const PublishedNumber& n, const Published
   return std::nullopt;
 }
 
+std::optional<PublishedValue> value_of(const PublishedNumber& n, const RunOfVariant& run) {
+  auto value = value_of(n, run(n.variant));
+  if (!value || n.minus.empty()) return value;
+  const auto other = value_of(n, run(n.minus));
+  if (!other) return other;
+  return PublishedValue{value->low - other->high, value->high - other->low};
+}
+
+PublishedVariant Published::variant(const std::string& variant_name) const {
+  const auto it = std::find_if(variants.begin(), variants.end(),
+                               [&](const PublishedVariant& v) { return v.name == variant_name; });
+  return it == variants.end() ? PublishedVariant{} : *it;
+}
+
 const char* to_string(PublishedVerdict verdict) {
   switch (verdict) {
     case PublishedVerdict::inside:
@@ -307,22 +321,13 @@ PublishedSection judge_published(
   PublishedSection section;
   section.models = models;
   std::map<std::pair<std::string, std::string>, PublishedRun> runs;  // by model and variant
-  const auto variant_of = [&](const std::string& name) {
-    const auto it = std::find_if(published.variants.begin(), published.variants.end(),
-                                 [&](const PublishedVariant& v) { return v.name == name; });
-    return it == published.variants.end() ? PublishedVariant{} : *it;
-  };
   const auto run_of = [&](const std::string& model, const std::string& name) -> PublishedRun& {
     auto it = runs.find({model, name});
     if (it != runs.end()) return it->second;
-    return runs.emplace(std::pair(model, name), run(model, variant_of(name))).first->second;
+    return runs.emplace(std::pair(model, name), run(model, published.variant(name))).first->second;
   };
   const auto number_of_model = [&](const PublishedNumber& n, const std::string& model) {
-    auto value = value_of(n, run_of(model, n.variant));
-    if (!value || n.minus.empty()) return value;
-    const auto other = value_of(n, run_of(model, n.minus));
-    if (!other) return other;
-    return std::optional(PublishedValue{value->low - other->high, value->high - other->low});
+    return value_of(n, [&](const std::string& name) { return run_of(model, name); });
   };
   for (const auto& n : published.numbers) {
     if (!n.study.empty() && n.study != study) continue;
@@ -330,7 +335,7 @@ PublishedSection judge_published(
         std::find_if(published.conditions.begin(), published.conditions.end(),
                      [&](const PublishedCondition& c) { return c.name == n.condition; });
     const bool conditional = condition != published.conditions.end();
-    const PublishedVariant variant = variant_of(n.variant);
+    const PublishedVariant variant = published.variant(n.variant);
     std::string why = n.not_comparable;
     // What a variant sets is not asked of the case.
     FactRanges wanted = conditional ? condition->facts : FactRanges();
@@ -340,7 +345,7 @@ PublishedSection judge_published(
     row.printed = printed(n);
     row.at = conditional ? condition->text : "";
     if (!variant.text.empty()) row.at += (row.at.empty() ? "" : "; ") + variant.text;
-    if (!n.minus.empty()) row.at += " minus " + variant_of(n.minus).text;
+    if (!n.minus.empty()) row.at += " minus " + published.variant(n.minus).text;
     bool any = false, inside = true;
     std::string reasons;
     for (const std::string& model : models) {

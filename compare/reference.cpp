@@ -1001,6 +1001,7 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
     judgement.channels.push_back(std::move(entry));
   }
   judgement.reference = std::move(reference.middle);
+  judgement.resampling = std::move(reference.uncertainty);
   if (description.tube_deg > 0) {
     judgement.low = std::move(reference.low);
     judgement.high = std::move(reference.high);

@@ -9,11 +9,27 @@
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis {
 namespace {
+
+constexpr const char* kUncertainty = "uncertainty";  // the table whose keys are parameters
+
+// The numbers of a registry by name: what a distribution can be of.
+std::set<std::string> numbers_of(const Registry& registry) {
+  std::set<std::string> names;
+  for (const Table& table : registry.tables)
+    for (const Parameter& parameter : table.parameters) {
+      const std::string name = table.name + "." + parameter.key;
+      if (std::holds_alternative<NumberField>(parameter.field)) names.insert(name);
+      if (std::holds_alternative<PairField>(parameter.field))
+        names.insert({name + ".1", name + ".2"});
+    }
+  return names;
+}
 
 // Reads the tables of a registry in their order, which keeps the first error the one nearest to the
 // top.
@@ -27,8 +43,10 @@ class CaseReader {
   Case read() {
     for (const Table& table : registry_.tables)
       top_.expect(table.name.substr(0, table.name.find('.')));
+    top_.expect(kUncertainty);
     for (const Table& table : registry_.tables) read_table(table);
     for (const auto& [name, parent] : parents_) parent.finish();
+    if (top_.has(kUncertainty)) read_uncertainty(top_.table(kUncertainty));
     top_.finish();
     return std::move(result_);
   }
@@ -61,6 +79,26 @@ class CaseReader {
     check_rules(in, table, "");
     if (table.part != nullptr && table.part->remove != nullptr && !holds(table.part->needed))
       table.part->remove(view());
+  }
+
+  // What the distributions mean is not known here, but what they are of.
+  void read_uncertainty(TableReader in) {
+    const std::string correlation = "correlation";
+    const std::set<std::string> numbers = numbers_of(registry_);
+    for (const std::string& key : in.keys()) {
+      if (key == correlation) continue;
+      if (numbers.count(key) == 0)
+        in.fail(key, "no such number of a case" + suggestion(key, numbers));
+      result_.uncertainty.parameters.push_back({key, in.text(key)});
+    }
+    for (const TableReader::Link& link : in.links(correlation)) {
+      for (const std::string& name : {link.first, link.second})
+        if (!in.has(name)) in.fail(correlation, name + " has no distribution in this table");
+      if (!(link.number >= -1 && link.number <= 1))
+        in.fail(correlation, number_text(link.number) + " must be in [-1, 1]");
+      result_.uncertainty.correlations.push_back({link.first, link.second, link.number});
+    }
+    in.finish();
   }
 
   // A table that holds tables only; null where it is missing.

@@ -29,6 +29,18 @@ std::optional<Value> value_to_write(const Parameter& parameter, const ConstView&
   return value;
 }
 
+std::string uncertainty_text(const UncertaintyData& data) {
+  if (data.parameters.empty()) return "";
+  std::string text = "\n[uncertainty]\n";
+  for (const auto& [name, distribution] : data.parameters)
+    text += toml_text(name) + " = " + toml_text(distribution) + "\n";
+  std::string pairs;
+  for (const auto& [first, second, coefficient] : data.correlations)
+    pairs += std::string(pairs.empty() ? "" : ", ") + "[" + toml_text(first) + ", " +
+             toml_text(second) + ", " + toml_number(coefficient) + "]";
+  return pairs.empty() ? text : text + "correlation = [" + pairs + "]\n";
+}
+
 }  // namespace
 
 std::string case_text(const Case& the_case, const Registry& registry) {
@@ -43,7 +55,7 @@ std::string case_text(const Case& the_case, const Registry& registry) {
         text += parameter.key + " = " + toml_value(*value) + "\n";
     }
   }
-  return text;
+  return text + uncertainty_text(the_case.uncertainty);
 }
 
 }  // namespace bentaxis

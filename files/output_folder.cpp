@@ -96,17 +96,20 @@ void OutputFolder::Stream::expect(double bytes) const {
                    gigabytes(static_cast<double>(space.available)) + " are free");
 }
 
-OutputFolder::Stream& OutputFolder::open(const std::string& name) {
+fs::path OutputFolder::reserve(const std::string& name) {
   // Other objects of this process write to the same folder under names of their own.
   static std::atomic<unsigned> count = 0;
-  const fs::path final_path = folder_ / name;
   const std::string own = std::to_string(getpid()) + "-" + std::to_string(count++);
-  const fs::path temporary = folder_ / ("." + name + ".part-" + own);
+  pending_.push_back({folder_ / ("." + name + ".part-" + own), folder_ / name,
+                      folder_ / ("." + name + ".before-" + own)});
+  return pending_.back().temporary;
+}
+
+OutputFolder::Stream& OutputFolder::open(const std::string& name) {
   auto stream = std::make_unique<Stream>();
-  stream->shown_ = final_path;
-  stream->file_.reset(std::fopen(temporary.c_str(), "wb"));
-  if (!stream->file_) fail(final_path, std::strerror(errno));
-  pending_.push_back({temporary, final_path, folder_ / ("." + name + ".before-" + own)});
+  stream->shown_ = folder_ / name;
+  stream->file_.reset(std::fopen(reserve(name).c_str(), "wb"));
+  if (!stream->file_) fail(stream->shown_, std::strerror(errno));
   streams_.push_back(std::move(stream));
   return *streams_.back();
 }

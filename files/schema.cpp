@@ -148,6 +148,28 @@ std::string meaning_cell(const Parameter& p) {
 
 }  // namespace
 
+namespace {
+
+Json uncertainty_schema() {
+  Json schema = object("what is not known exactly: a distribution for each parameter by its name");
+  schema["additionalProperties"] = {{"type", "string"},
+                                    {"description",
+                                     "normal(mean, s), uniform(low, high), triangular(low, mode, "
+                                     "high), lognormal(median, s), normal(s), relative(s)"}};
+  Json name = {{"type", "string"}};
+  schema["properties"]["correlation"] = {
+      {"description", "pairs of parameters with their correlation, in [-1, 1]"},
+      {"type", "array"},
+      {"items",
+       {{"type", "array"},
+        {"items", {name, name, {{"type", "number"}, {"minimum", -1}, {"maximum", 1}}}},
+        {"minItems", 3},
+        {"maxItems", 3}}}};
+  return schema;
+}
+
+}  // namespace
+
 std::string case_schema(const Registry& registry) {
   Json schema;
   schema["$schema"] = "http://json-schema.org/draft-07/schema#";
@@ -178,6 +200,7 @@ std::string case_schema(const Registry& registry) {
            {"then", {{"required", {key}}}}});
     }
   }
+  schema["properties"]["uncertainty"] = uncertainty_schema();
   return schema.dump(2) + "\n";
 }
 

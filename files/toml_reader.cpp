@@ -222,6 +222,24 @@ std::vector<std::string> TableReader::texts(const std::string& key) {
   return values;
 }
 
+std::vector<TableReader::Link> TableReader::links(const std::string& key) {
+  const char* const wanted = "must be a list of lists [[\"a\", \"b\", 0.5]]";
+  const auto node = find(key, "a list of lists", true);
+  std::vector<Link> links;
+  if (!node) return links;
+  const toml::array* all = node->node->as_array();
+  if (all == nullptr) fail_at(*node, key, wanted);
+  for (const toml::node& item : *all) {
+    const toml::array* one = item.as_array();
+    if (one == nullptr || one->size() != 3 || !(*one)[0].is_string() || !(*one)[1].is_string())
+      fail_at(*node, key, wanted);
+    links.push_back({(*one)[0].as_string()->get(), (*one)[1].as_string()->get(),
+                     number_of({node->file, &(*one)[2]}, key, kAny, false)});
+  }
+  record(key, written(*node, key));
+  return links;
+}
+
 TableReader TableReader::table(const std::string& key) {
   if (!has(key))
     throw InputError(place(line_) + "table [" + (name_.empty() ? "" : name_ + ".") + key +

@@ -40,6 +40,23 @@ std::string rounded_text(double value) {
   return text.data();
 }
 
+namespace {
+
+// One unit of the third digit further where rounding went the wrong way.
+std::string rounded_to(double value, double direction) {
+  const std::string text = rounded_text(value);
+  double rounded = 0;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);
+  if (!((rounded - value) * direction < 0)) return text;
+  return rounded_text(rounded +
+                      direction * std::pow(10, std::floor(std::log10(std::abs(value))) - 2));
+}
+
+}  // namespace
+
+std::string rounded_down_text(double value) { return rounded_to(value, -1); }
+std::string rounded_up_text(double value) { return rounded_to(value, 1); }
+
 std::string number_text(double value) {
   std::string text;
   append_number(text, value);

@@ -195,6 +195,8 @@ Json json_of(const MapFigure& figure) {
   if (!figure.lines.empty())
     json["lines"] = list_of(figure.lines, [](const XySeries& s) { return json_of(s); });
   if (figure.marks) json["marks"] = json_of(*figure.marks);
+  if (figure.z.from) json["z"]["from"] = *figure.z.from;
+  if (!figure.reasons.empty()) json["reasons"] = figure.reasons;
   return json;
 }
 
@@ -256,6 +258,52 @@ Json json_of(const DrawingFigure& figure) {
       {"panels", list_of(figure.panels, panel_of)},
       {"frames", list_of(figure.frames, frame_of)},
       {"shown", figure.shown}};
+}
+
+Json json_of(const BarsFigure& figure) {
+  const auto bar_of = [](const BarsFigure::Bar& bar) {
+    Json json = {{"label", bar.label},
+                 {"low", number_or_null(bar.low)},
+                 {"high", number_or_null(bar.high)},
+                 {"note", bar.note}};
+    if (bar.interval)
+      json["interval"] = {number_or_null(bar.interval->first),
+                          number_or_null(bar.interval->second)};
+    return json;
+  };
+  return {{"kind", "bars"}, {"x", json_of(figure.x)}, {"bars", list_of(figure.bars, bar_of)}};
+}
+
+Json json_of(const BandFigure& figure) {
+  Json x = json_of(figure.x, figure.x_values);
+  x["angle"] = figure.angle;
+  const auto band_of = [](const BandFigure::Band& band) {
+    return Json{{"label", band.label},
+                {"low", rounded(band.low)},
+                {"middle", rounded(band.middle)},
+                {"high", rounded(band.high)}};
+  };
+  return {{"kind", "bands"},
+          {"x", x},
+          {"y", json_of(figure.y)},
+          {"bands", list_of(figure.bands, band_of)},
+          {"lines", list_of(figure.lines, [](const XySeries& s) { return json_of(s); })}};
+}
+
+Json json_of(const ParallelFigure& figure) {
+  const auto column_of = [](const ParallelFigure::Column& column) {
+    Json json = {{"label", column.label},
+                 {"unit", column.unit},
+                 {"log", column.log},
+                 {"values", rounded(column.values)}};
+    if (!column.words.empty()) json["words"] = column.words;
+    return json;
+  };
+  return {{"kind", "parallel"},
+          {"columns", list_of(figure.columns, column_of)},
+          {"colour_by", figure.colour_by},
+          {"marked", figure.marked},
+          {"marked_label", figure.marked_label}};
 }
 
 Json json_of(const Figure& figure) {

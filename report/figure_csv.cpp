@@ -133,6 +133,49 @@ std::string numbers(const DrawingFigure& figure, const Curves&) {
   return csv;
 }
 
+std::string numbers(const BarsFigure& figure, const Curves&) {
+  std::string csv;
+  line(csv, heading_of(figure.x), std::string("low"), std::string("high"), std::string("from"),
+       std::string("to"), std::string("note"));
+  for (const BarsFigure::Bar& bar : figure.bars) {
+    const auto [from, to] = bar.interval.value_or(std::pair{not_computed(), not_computed()});
+    line(csv, bar.label, bar.low, bar.high, from, to, bar.note);
+  }
+  return csv;
+}
+
+std::string numbers(const BandFigure& figure, const Curves&) {
+  std::string csv;
+  line(csv, std::string("series"), heading_of(figure.x), heading_of(figure.y), std::string("low"),
+       std::string("high"));
+  for (const BandFigure::Band& band : figure.bands)
+    for (std::size_t i = 0; i < figure.x_values.size(); ++i)
+      line(csv, band.label, figure.x_values[i], band.middle[i], band.low[i], band.high[i]);
+  for (const XySeries& series : figure.lines)
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      line(csv, series.label, series.x[i], series.y[i], not_computed(), not_computed());
+  return csv;
+}
+
+std::string numbers(const ParallelFigure& figure, const Curves&) {
+  if (figure.columns.empty()) return "marked\n";
+  Values marked(figure.columns.front().values.size(), 0.0);
+  for (const std::size_t design : figure.marked) marked.at(design) = 1;
+  std::string csv;
+  for (const auto& column : figure.columns)
+    csv += field(heading_of({column.label, column.unit})) + ",";
+  csv += "marked\n";
+  for (std::size_t row = 0; row < marked.size(); ++row) {
+    for (const auto& column : figure.columns) {
+      const double value = column.values[row];
+      const bool named = is_computed(value) && !column.words.empty();
+      csv += (named ? field(column.words.at(static_cast<std::size_t>(value))) : field(value)) + ",";
+    }
+    csv += field(marked[row]) + "\n";
+  }
+  return csv;
+}
+
 }  // namespace
 
 std::string csv_of(const Figure& figure, const Curves& curves) {

@@ -231,6 +231,8 @@ struct Panel {
   std::function<void(pugi::xml_node, const Scale&, const Scale&)> draw = {};
   std::string title = {};
   std::vector<Tick> x_ticks = {}, y_ticks = {};  ///< instead of numbers
+  double left = kLeft;                           ///< px, where y begins
+  bool bare = false;                             ///< draws its axes itself
 };
 
 // A piece of line, a filled box or a mark, with a text.
@@ -277,23 +279,28 @@ double draw_legend(pugi::xml_node root, const std::vector<Keys>& rows, double y)
 
 void draw_panel(pugi::xml_node root, const Panel& panel, double top) {
   const double bottom = top + panel.height;
-  Scale x = scale_of(panel.x, panel.xs, kLeft, kRight, panel.x_margin, panel.angle);
+  Scale x = scale_of(panel.x, panel.xs, panel.left, kRight, panel.x_margin, panel.angle);
   if (!panel.x_ticks.empty()) x.ticks = panel.x_ticks;
   Scale y = scale_of(panel.y, panel.ys, bottom, top, panel.y_margin);
   if (!panel.y_ticks.empty()) y.ticks = panel.y_ticks;
+  if (panel.bare) {
+    panel.draw(root, x, y);
+    return;
+  }
   const Attributes grid = {{"stroke", "#e1e6ec"}, {"class", "grid"}};
   if (panel.x_ticks.empty())
     for (const Tick& tick : x.ticks)
       add_line(root, x.place(tick.value), top, x.place(tick.value), bottom, grid);
-  for (const Tick& tick : y.ticks)
-    add_line(root, kLeft, y.place(tick.value), kRight, y.place(tick.value),
-             tick.value == 0 ? Attributes{{"stroke", "#67727e"}, {"class", "zero"}} : grid);
+  if (panel.y_ticks.empty())
+    for (const Tick& tick : y.ticks)
+      add_line(root, panel.left, y.place(tick.value), kRight, y.place(tick.value),
+               tick.value == 0 ? Attributes{{"stroke", "#67727e"}, {"class", "zero"}} : grid);
   panel.draw(root, x, y);
   for (const Tick& tick : x.ticks)
     add_text(root, x.place(tick.value), bottom + 16, tick.label, kMiddle);
   for (const Tick& tick : y.ticks)
-    add_text(root, kLeft - 7, y.place(tick.value) + 4, tick.label, {{"text-anchor", "end"}});
-  add_text(root, (kLeft + kRight) / 2, bottom + 33, x.name, kMiddle);
+    add_text(root, panel.left - 7, y.place(tick.value) + 4, tick.label, {{"text-anchor", "end"}});
+  add_text(root, (panel.left + kRight) / 2, bottom + 33, x.name, kMiddle);
   const double middle = (top + bottom) / 2;
   add_text(
       root, 13, middle, y.name,
@@ -417,7 +424,7 @@ void draw_curve(pugi::xml_node root, const Scale& x, const Scale& y, const Curve
 void draw_band(pugi::xml_node root, const Scale& x, const Scale& y, const Band& band) {
   std::vector<Point> low, high;
   for (std::size_t i = 0; i < band.x.size(); ++i)
-    if (std::isfinite(band.low[i]) && std::isfinite(band.high[i])) {
+    if (x.shows(band.x[i]) && y.shows(band.low[i]) && y.shows(band.high[i])) {
       low.push_back({x.place(band.x[i]), y.place(band.low[i])});
       high.push_back({x.place(band.x[i]), y.place(band.high[i])});
     }
@@ -485,6 +492,11 @@ void whole_turns(Panel& panel, const Values& theta) {
   if (high - panel.xs.high <= step) panel.xs.high = high;
 }
 
+bool any_drawn(const std::vector<Curve>& curves) {
+  return std::any_of(curves.begin(), curves.end(), [](const Curve& curve) {
+    return std::any_of(curve.y.begin(), curve.y.end(), is_computed);
+  });
+}
 bool any(const Values* values) {
   return values != nullptr && std::any_of(values->begin(), values->end(), is_computed);
 }
@@ -782,17 +794,29 @@ Picture picture_of(const ScatterFigure& figure, const Curves&) {
 
 // ---- Maps
 
-// Light to dark by t in [0, 1]: the order of the values survives a print without colour.
-std::string shade(double t) {
-  constexpr std::array<std::array<double, 3>, 5> kShades = {
-      {{247, 250, 252}, {190, 214, 235}, {107, 164, 207}, {33, 103, 166}, {8, 40, 88}}};
-  const double at = std::clamp(t, 0.0, 1.0) * (kShades.size() - 1);
-  const std::size_t k = std::min(static_cast<std::size_t>(at), kShades.size() - 2);
+using Shades = std::array<std::array<double, 3>, 5>;
+
+// Between the shades by t in [0, 1].
+std::string between(const Shades& shades, double t) {
+  const double at = std::clamp(t, 0.0, 1.0) * static_cast<double>(shades.size() - 1);
+  const std::size_t k = std::min(static_cast<std::size_t>(at), shades.size() - 2);
   std::array<int, 3> rgb{};
   for (std::size_t i = 0; i < 3; ++i)
-    rgb[i] = static_cast<int>(std::lround(kShades[k][i] + (at - static_cast<double>(k)) *
-                                                              (kShades[k + 1][i] - kShades[k][i])));
+    rgb[i] = static_cast<int>(std::lround(shades[k][i] + (at - static_cast<double>(k)) *
+                                                             (shades[k + 1][i] - shades[k][i])));
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
+}
+
+// Light to dark: the order of the values survives a print without colour.
+std::string shade(double t) {
+  return between({{{247, 250, 252}, {190, 214, 235}, {107, 164, 207}, {33, 103, 166}, {8, 40, 88}}},
+                 t);
+}
+
+// Dark to light, for lines: seen on white and on a dark ground.
+std::string line_shade(double t) {
+  return between({{{122, 40, 176}, {170, 35, 149}, {204, 71, 120}, {230, 108, 92}, {248, 149, 64}}},
+                 t);
 }
 
 // Pieces of the line z = level over a grid, by marching squares, in pixels. Where a corner has no
@@ -840,6 +864,18 @@ Key shade_key(const std::string& label, const std::string& colour) {
           }};
 }
 
+// Three strokes over a box.
+void hatch(pugi::xml_node root, double x, double y, double width, double height) {
+  std::string path;
+  for (const double t : {0.5, 1.0, 1.5}) {
+    const double low = std::max(0.0, t - 1), high = std::min(1.0, t);
+    path += fmt::format("M{} {}L{} {}", px(x + low * width), px(y + high * height),
+                        px(x + high * width), px(y + low * height));
+  }
+  add(root, "path",
+      {{"d", path}, {"class", "hatch"}, {"stroke", "#8a939d"}, {"pointer-events", "none"}});
+}
+
 // A line or a dot that is seen on any shade.
 void draw_line_over(pugi::xml_node root, const std::string& path, std::size_t which) {
   const Attributes common = {{"d", path}, {"fill", "none"}, {"stroke-linejoin", "round"}};
@@ -877,6 +913,17 @@ Values edges_of(const Axis& axis, const Values& values) {
   return edges;
 }
 
+// Digits enough to tell values apart that are a part of the range.
+std::string distinct_number(double value, const Range& range) {
+  const double part = (range.high - range.low) / 8, size = std::abs(value);
+  if (!(part > 0) || size < 1e-3 || size >= 1e6) return short_number(value);
+  const int decimals = -static_cast<int>(std::floor(std::log10(part)));
+  const std::string text = short_number(value);
+  const auto point = text.find('.');
+  const int shown = point == std::string::npos ? 0 : static_cast<int>(text.size() - point) - 1;
+  return decimals <= std::max(shown, 0) ? text : fmt::format("{:.{}f}", value, decimals);
+}
+
 // Shades and contours go by the logarithm of z, where it is not to be linear.
 Picture picture_of(const MapFigure& figure, const Curves&) {
   Picture picture;
@@ -889,14 +936,14 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
       range.include(v);
     }
   if (range.empty()) return picture;
-  if (linear) range.low = std::min(range.low, 0.0);
+  if (linear) range.low = figure.z.from.value_or(std::min(range.low, 0.0));
   const Values x_edges = edges_of(figure.x, figure.x_values);
   const Values y_edges = edges_of(figure.y, figure.y_values);
   xs.include(x_edges);
   ys.include(y_edges);
-  const auto text = [&figure](double v) {
+  const auto text = [&figure, linear, range](double v) {
     if (!figure.classes.empty()) return figure.classes.at(static_cast<std::size_t>(v));
-    return with_unit(short_number(v), figure.z.unit);
+    return with_unit(linear ? distinct_number(v, range) : short_number(v), figure.z.unit);
   };
   const auto colour = [&figure, range](double v) {
     if (!is_computed(v)) return std::string("#fff");
@@ -916,6 +963,13 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
     picture.legend[0][0].label = figure.z.label + ": " + picture.legend[0][0].label;
   }
   picture.legend.emplace_back();
+  if (std::any_of(figure.reasons.begin(), figure.reasons.end(), [](const auto& row) {
+        return std::any_of(row.begin(), row.end(),
+                           [](const auto& reason) { return !reason.empty(); });
+      }))
+    picture.legend[1].push_back({"infeasible", [](pugi::xml_node root, double x, double y) {
+                                   hatch(root, x, y - 6, 30, 12);
+                                 }});
   for (std::size_t i = 0; i < figure.lines.size(); ++i)
     picture.legend[1].push_back(
         {figure.lines[i].label, [i](pugi::xml_node root, double x, double y) {
@@ -942,6 +996,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
       for (std::size_t j = 0; j < z[i].size(); ++j) {
         const double x1 = in_frame(x, x_edges[j]), x2 = in_frame(x, x_edges[j + 1]);
         const double y1 = in_frame(y, y_edges[i + 1]), y2 = in_frame(y, y_edges[i]);
+        const std::string reason = figure.reasons.empty() ? "" : figure.reasons.at(i).at(j);
         pugi::xml_node cell = add(root, "rect",
                                   {{"x", px(x1)},
                                    {"y", px(y1)},
@@ -949,17 +1004,21 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
                                    {"height", px(y2 - y1 + 0.6)},
                                    {"fill", colour(z[i][j])}});
         cell.append_child("title").text() =
-            fmt::format(
-                "{} {}, {} {}: {}", figure.x.label,
-                with_unit(short_number(figure.x_values[j]), figure.x.unit), figure.y.label,
-                with_unit(short_number(figure.y_values[i]), figure.y.unit),
-                is_computed(figure.values[i][j]) ? text(figure.values[i][j]) : "not computed")
+            fmt::format("{} {}, {} {}: {}", figure.x.label,
+                        with_unit(short_number(figure.x_values[j]), figure.x.unit), figure.y.label,
+                        with_unit(short_number(figure.y_values[i]), figure.y.unit),
+                        is_computed(figure.values[i][j]) ? text(figure.values[i][j])
+                        : reason.empty()                 ? "not computed"
+                                                         : reason)
                 .c_str();
+        if (!is_computed(figure.values[i][j]) && !reason.empty())
+          hatch(root, x1, y1, x2 - x1, y2 - y1);
       }
     const Attributes label = {{"text-anchor", "middle"}, {"font-weight", "bold"},
                               {"fill", "#7a0c0c"},       {"stroke", "#fff"},
                               {"stroke-width", "4"},     {"paint-order", "stroke"},
                               {"class", "label"}};
+    std::vector<Point> labelled;
     for (const double level : figure.contours) {
       const auto pieces = contour(px_x, px_y, z, linear ? level : std::log10(level));
       if (pieces.empty()) continue;
@@ -975,6 +1034,12 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
            {"stroke-width", "1.8"},
            {"stroke-linecap", "round"}});
       const Point& at = pieces[pieces.size() / 2][0];
+      // Where lines crowd not every one has room for its value.
+      const bool room = std::none_of(labelled.begin(), labelled.end(), [&](const Point& other) {
+        return std::abs(other[0] - at[0]) < 60 && std::abs(other[1] - at[1]) < 14;
+      });
+      if (!room) continue;
+      labelled.push_back(at);
       add_text(root, std::clamp(at[0], kLeft + 24, kRight - 24), at[1] - 6, text(level), label);
     }
     for (std::size_t i = 0; i < figure.lines.size(); ++i) {
@@ -1076,6 +1141,249 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
     };
     picture.panels.push_back(std::move(panel));
   }
+  return picture;
+}
+
+// ---- Bars, bands, parallel axes
+
+std::string cut(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  std::size_t end = most - 2;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;  // of a letter
+  return text.substr(0, end) + "..";
+}
+
+Picture picture_of(const BarsFigure& figure, const Curves&) {
+  constexpr std::size_t kMostLetters = 42;
+  constexpr double kRow = 24, kBar = 15;  // px
+  Picture picture;
+  const double n = static_cast<double>(figure.bars.size());
+  if (figure.bars.empty()) return picture;
+  Axis axis = figure.x;
+  axis.log = false;
+  Panel panel{axis, {}, kRow * n, {0, 0}, {0, n}};
+  panel.y_margin = Margin::none;
+  std::size_t letters = 4;
+  for (std::size_t i = 0; i < figure.bars.size(); ++i) {
+    const BarsFigure::Bar& bar = figure.bars[i];
+    const std::string label = cut(bar.label, kMostLetters);
+    letters = std::max(letters, label.size());
+    panel.y_ticks.push_back({n - 0.5 - static_cast<double>(i), label});
+    for (const double end : {bar.low, bar.high}) panel.xs.include(end);
+    if (bar.interval)
+      for (const double end : {bar.interval->first, bar.interval->second}) panel.xs.include(end);
+  }
+  panel.left = 20 + kLetter * static_cast<double>(letters);
+  // Room for the number beside the longest bar.
+  const double more = 0.12 * (panel.xs.high - panel.xs.low);
+  if (panel.xs.low < 0) panel.xs.low -= more;
+  if (panel.xs.high > 0) panel.xs.high += more;
+  panel.draw = [bars = figure.bars, unit = figure.x.unit, ticks = panel.y_ticks](
+                   pugi::xml_node root, const Scale& x, const Scale& y) {
+    for (std::size_t i = 0; i < bars.size(); ++i) {
+      const BarsFigure::Bar& bar = bars[i];
+      const double middle = y.place(ticks[i].value);
+      const auto number = [&](double at, double value, const char* anchor) {
+        add_text(root, at, middle + 4, short_number(value),
+                 {{"text-anchor", anchor}, {"font-size", "11"}});
+      };
+      Range drawn{0, 0};
+      for (const double end : {bar.low, bar.high}) {
+        if (!std::isfinite(end) || end == 0) continue;
+        drawn.include(end);
+        const double from = x.place(std::min(end, 0.0)), to = x.place(std::max(end, 0.0));
+        pugi::xml_node box = add(root, "rect",
+                                 {{"class", "bar"},
+                                  {"x", fmt::format("{:.2f}", from)},
+                                  {"y", px(middle - kBar / 2)},
+                                  {"width", fmt::format("{:.2f}", to - from)},
+                                  {"height", px(kBar)},
+                                  {"fill", end < 0 ? kColours[1] : kColours[0]}});
+        box.append_child("title").text() =
+            fmt::format("{}: {}{}{}", bar.label, with_unit(short_number(end), unit),
+                        bar.note.empty() ? "" : "; ", bar.note)
+                .c_str();
+      }
+      const Range ends = drawn;
+      if (bar.interval && std::isfinite(bar.interval->first) &&
+          std::isfinite(bar.interval->second)) {
+        const double from = x.place(bar.interval->first), to = x.place(bar.interval->second);
+        const Attributes looks = {{"class", "interval"}, {"stroke", "#000000"}};
+        add_line(root, from, middle, to, middle, looks);
+        for (const double end : {from, to}) add_line(root, end, middle - 4, end, middle + 4, looks);
+        drawn.include(bar.interval->first);
+        drawn.include(bar.interval->second);
+      }
+      const double right = x.place(drawn.high) + 5;
+      if (ends.low < 0) number(x.place(drawn.low) - 5, ends.low, "end");
+      if (!std::isfinite(bar.low) || !std::isfinite(bar.high))
+        add_text(root, right, middle + 4, "not computed", {{"font-size", "11"}});
+      else if (ends.high > 0 || ends.low == 0)
+        number(right, ends.high, "start");
+    }
+    add_line(root, x.place(0), y.first, x.place(0), y.last,
+             {{"stroke", "#67727e"}, {"class", "zero"}});
+  };
+  picture.panels.push_back(std::move(panel));
+  return picture;
+}
+
+Picture picture_of(const BandFigure& figure, const Curves&) {
+  Picture picture;
+  std::vector<Curve> curves;
+  std::vector<Band> bands;
+  picture.legend.resize(2);
+  for (std::size_t i = 0; i < figure.bands.size(); ++i) {
+    const BandFigure::Band& band = figure.bands[i];
+    const std::string colour = pick(kColours, i);
+    bands.push_back({figure.x_values, band.low, band.high, colour});
+    curves.push_back({figure.x_values, band.middle, colour, 1.6});
+    picture.legend[0].push_back({band.label, [=](pugi::xml_node root, double x, double y) {
+                                   line_key("", colour, 12, "none", 0.18).draw(root, x, y);
+                                   line_key("", colour, 1.6).draw(root, x, y);
+                                 }});
+  }
+  for (std::size_t i = 0; i < figure.lines.size(); ++i) {
+    const XySeries& line = figure.lines[i];
+    const std::string colour = pick(kExtraColours, i);
+    curves.push_back({line.x, line.y, colour, 1.6, 1, "8 4"});
+    picture.legend[1].push_back(line_key(line.label, colour, 1.6, "8 4"));
+  }
+  if (!any_drawn(curves)) return picture;
+  picture.panels.push_back(curve_panel(figure.x, figure.y, 250, std::move(curves), bands));
+  Panel& panel = picture.panels.back();
+  if (figure.angle) whole_turns(panel, figure.x_values);
+  return picture;
+}
+
+struct PlacedName {
+  double x;         // of its middle, px
+  std::size_t row;  // the first in which it has room
+};
+
+// Of names that stand evenly between the ends of the axis.
+std::vector<PlacedName> placed(const std::vector<std::string>& names) {
+  std::vector<PlacedName> places;
+  std::vector<double> ends;  // of the rows, px
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const double half = kLetter * static_cast<double>(names[k].size()) / 2;
+    const double x =
+        kLeft + (kRight - kLeft) * static_cast<double>(k) / static_cast<double>(names.size() - 1);
+    const double at = std::clamp(x, 6 + half, std::max(6 + half, kWidth - 4 - half));
+    std::size_t row = 0;
+    while (row < ends.size() && ends[row] > at - half - 8) ++row;
+    if (row == ends.size()) ends.push_back(0);
+    ends[row] = at + half;
+    places.push_back({at, row});
+  }
+  return places;
+}
+
+Picture picture_of(const ParallelFigure& figure, const Curves&) {
+  constexpr double kHeight = 300, kNameRow = 15;  // px
+  Picture picture;
+  const std::size_t count = figure.columns.size();
+  if (count < 2) return picture;
+  std::vector<Range> ranges(count);
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& column = figure.columns[k];
+    for (const double value : column.values)
+      if (!column.log || value > 0) ranges[k].include(value);
+    if (!column.words.empty())
+      ranges[k] = {0, std::max(1.0, static_cast<double>(column.words.size()) - 1)};
+    names.push_back(cut(name_of({column.label, column.unit}), 40));
+  }
+  if (std::all_of(ranges.begin(), ranges.end(), [](const Range& r) { return r.empty(); }))
+    return picture;
+  const auto scale = [&columns = figure.columns, ranges](std::size_t k, double first, double last) {
+    const auto& column = columns[k];
+    Scale made =
+        scale_of({column.label, column.unit, column.log}, ranges[k], first, last, Margin::none);
+    if (column.words.empty()) return made;
+    made.ticks.clear();
+    for (std::size_t w = 0; w < column.words.size(); ++w)
+      made.ticks.push_back({static_cast<double>(w), column.words[w]});
+    return made;
+  };
+  // Colours by the place on the axis of one column, in five steps named in the legend.
+  const std::size_t by = std::min(figure.colour_by, count - 1);
+  const Scale colours = scale(by, 0, 1);
+  picture.legend.resize(2);
+  for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const double value = colours.log ? colours.low * std::pow(colours.high / colours.low, t)
+                                     : colours.low + t * (colours.high - colours.low);
+    picture.legend[0].push_back(
+        line_key(with_unit(short_number(value), figure.columns[by].unit), line_shade(t), 3));
+  }
+  picture.legend[0][0].label = figure.columns[by].label + ": " + picture.legend[0][0].label;
+  if (!figure.marked.empty())
+    picture.legend[1].push_back(line_key(figure.marked_label, "#000000", 2));
+  const std::vector<PlacedName> places = placed(names);
+  std::size_t rows = 0;
+  for (const PlacedName& place : places) rows = std::max(rows, place.row + 1);
+  Panel panel{{},
+              {},
+              kHeight + kNameRow * static_cast<double>(rows),
+              {0, static_cast<double>(count - 1)},
+              {0, 1}};
+  panel.bare = true;
+  panel.y_margin = Margin::none;
+  panel.draw = [=, columns = figure.columns, marked = figure.marked](
+                   pugi::xml_node root, const Scale& x, const Scale& y) {
+    const double top = y.last + 8, bottom = top + kHeight - 8;
+    std::vector<Scale> axes;
+    for (std::size_t k = 0; k < count; ++k) axes.push_back(scale(k, bottom, top));
+    const auto draw = [&](std::size_t design, const std::string& colour, double width,
+                          const char* opacity) {
+      std::string path, note;
+      bool joined = false;
+      for (std::size_t k = 0; k < count; ++k) {
+        const double value = columns[k].values[design];
+        const bool shown = axes[k].shows(value);
+        if (shown)
+          path += fmt::format("{}{} {}", joined ? "L" : "M", px(x.place(static_cast<double>(k))),
+                              px(axes[k].place(value)));
+        joined = shown;
+        const bool named = shown && !columns[k].words.empty();
+        note += fmt::format("{}{} {}", note.empty() ? "" : ", ", columns[k].label,
+                            named ? columns[k].words.at(static_cast<std::size_t>(value))
+                            : is_computed(value) ? with_unit(short_number(value), columns[k].unit)
+                                                 : "not computed");
+      }
+      if (path.empty()) return;
+      pugi::xml_node node = add(root, "path",
+                                {{"class", "design"},
+                                 {"d", path},
+                                 {"fill", "none"},
+                                 {"stroke", colour},
+                                 {"stroke-width", px(width)},
+                                 {"stroke-linejoin", "round"},
+                                 {"opacity", opacity}});
+      node.append_child("title").text() = note.c_str();
+    };
+    for (std::size_t design = 0; design < columns[by].values.size(); ++design) {
+      const double value = columns[by].values[design];
+      draw(design, colours.shows(value) ? line_shade(colours.place(value)) : "#98a4af", 1.2, "0.6");
+    }
+    for (const std::size_t design : marked) draw(design, "#000000", 2, "1");
+    for (std::size_t k = 0; k < count; ++k) {
+      const double at = x.place(static_cast<double>(k));
+      add_line(root, at, top, at, bottom, {{"stroke", "#67727e"}, {"class", "zero"}});
+      for (const Tick& tick : axes[k].ticks)
+        add_text(root, at - 5, axes[k].place(tick.value) + 4, tick.label,
+                 {{"text-anchor", "end"},
+                  {"font-size", "11"},
+                  {"class", "mark"},
+                  {"stroke", "#fff"},
+                  {"stroke-width", "3"},
+                  {"paint-order", "stroke"}});
+    }
+    for (std::size_t k = 0; k < count; ++k)
+      add_text(root, places[k].x, bottom + 20 + kNameRow * static_cast<double>(places[k].row),
+               names[k], kMiddle);
+  };
+  picture.panels.push_back(std::move(panel));
   return picture;
 }
 

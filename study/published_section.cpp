@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/error.h"
@@ -10,10 +9,9 @@
 #include "bentaxis/study/reference_set.h"
 
 namespace bentaxis::study {
-namespace {
 
-// Applies a variant's settings. @throws InputError for a fact that cannot be set.
-void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions& assumptions) {
+void apply_variant(const compare::PublishedVariant& variant, Case& the_case,
+                   Assumptions& assumptions) {
   for (const auto& [name, value] : variant.set) {
     if (name == "block_viscous_Nm_per_rpm")
       the_case.pump.friction.block_viscous = value / kRadPerSecondPerRpm;
@@ -27,8 +25,6 @@ void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions
                        "gear_imposed");
   }
 }
-
-}  // namespace
 
 compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
   const PumpParameters& pump = the_case.pump;
@@ -67,28 +63,34 @@ std::optional<PrintedNumbers> printed_numbers_of(const std::filesystem::path& fo
   return std::nullopt;
 }
 
+compare::PublishedRun VariantRuns::operator()(const compare::PublishedVariant& variant) {
+  Case the_case = *input_.the_case;
+  RunOptions options;
+  options.model = model_;
+  options.assumptions = input_.assumptions;
+  apply_variant(variant, the_case, *options.assumptions);
+  compare::PublishedRun run{input_.table, facts_of(the_case, *options.assumptions)};
+  if (variant.set.empty()) return run;
+  ResultTable& table = tables_[variant.name];
+  if (table.rows() == 0) {
+    PressureTrace pressure(the_case.pressure);
+    const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
+    table = study::run(ready, options, progress_of_).table;
+  }
+  run.table = &table;
+  return run;
+}
+
 compare::PublishedSection judge_case(const compare::Published& published,
                                      const PublishedInput& analytic,
                                      const PublishedInput& multibody,
                                      const PartProgress& progress_of) {
-  std::map<std::pair<std::string, std::string>, ResultTable> tables;
+  VariantRuns of_analytic(Model::analytic, analytic, progress_of);
+  VariantRuns of_multibody(Model::multibody, multibody, progress_of);
   return compare::judge_published(
       published, {to_string(Model::analytic), to_string(Model::multibody)},
       [&](const std::string& name, const compare::PublishedVariant& variant) {
-        const Model model = name == to_string(Model::analytic) ? Model::analytic : Model::multibody;
-        const PublishedInput& input = model == Model::analytic ? analytic : multibody;
-        Case the_case = *input.the_case;
-        Assumptions assumptions = input.assumptions;
-        apply(variant, the_case, assumptions);
-        compare::PublishedRun run{input.table, facts_of(the_case, assumptions)};
-        if (variant.set.empty()) return run;
-        PressureTrace pressure(the_case.pressure);
-        RunOptions options;
-        options.model = model;
-        options.assumptions = assumptions;
-        const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
-        run.table = &(tables[{name, variant.name}] = study::run(ready, options, progress_of).table);
-        return run;
+        return name == to_string(Model::analytic) ? of_analytic(variant) : of_multibody(variant);
       });
 }
 

@@ -120,9 +120,9 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
       outcome.lines.push_back(std::move(line));
     }
     const std::vector<double>& theta = run.table.theta_deg;
-    outcome.held[model] = {run.table, spread(stride, judgement.reference, theta),
-                           spread(stride, judgement.low, theta),
-                           spread(stride, judgement.high, theta)};
+    outcome.held[model] = {
+        run.table, spread(stride, judgement.reference, theta), spread(stride, judgement.low, theta),
+        spread(stride, judgement.high, theta), spread(stride, judgement.resampling, theta)};
   }
   if (!any) {
     outcome.state = std::max(outcome.state, Outcome::State::differs);

@@ -180,6 +180,23 @@ std::vector<Figure> odd_figures() {
       {panel},
       {{38, "one pair", {{0, 0, 2, {0, gap, 1e300}, {0, 1, 1}}}, {{0, 1, 0, 0, 0, 0}}}},
       5});
+  add(BarsFigure{});
+  add(BandFigure{});
+  add(ParallelFigure{});
+  add(ParallelFigure{{{"a", "", {gap}}, {"b", "", {gap}}}});
+  for (const auto& [low, high] :
+       {std::pair{0., 0.}, {gap, gap}, {-inf, inf}, {gap, 1.}, {1e300, -1e300}, {1e-320, 0.}})
+    add(BarsFigure{log, {{std::string(99, 'x'), low, high, "n", std::pair{high, low}}}});
+  const std::vector<double> values = {1, gap, inf, -1e300, 0};
+  for (const Axis& axis : {log, linear})
+    add(BandFigure{
+        axis, axis, true, values, {{"b", values, values, values}}, {{"l", {gap, 1}, {1, gap}}}});
+  add(ParallelFigure{{{"a", "", values, true},
+                      {"b", "", values},
+                      {"c", "", {0, 1, gap, 0, 1}, false, {"no", "yes"}}},
+                     9,
+                     {1, 4},
+                     "m"});
   return figures;
 }
 
@@ -254,6 +271,117 @@ TEST(Picture, MapOfClasses) {
   const std::string path = edges[1].node().attribute("d").value();
   EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 2);
   EXPECT_EQ(std::count(path.begin(), path.end(), 'L'), 2);  // the place alone crosses its row
+}
+
+double number(const pugi::xml_node& node, const char* attribute) {
+  return node.attribute(attribute).as_double(std::nan(""));
+}
+
+TEST(Picture, BarsStandOnZeroInTheirOrder) {
+  const Figure figure{
+      "id", "t", "",
+      BarsFigure{{"change", "%"},
+                 {{"tilt", -2, 1, "n"}, {"pitch", 0, 4, "", std::pair{3., 5.}}, {"other", 0, 0}}}};
+  const auto document = read(svg_of(figure));
+  const auto bars = document.select_nodes("//rect[@class='bar']");
+  ASSERT_EQ(bars.size(), 3U);  // an end that is 0 has none
+  const auto left = [&](int k) { return number(bars[static_cast<std::size_t>(k)].node(), "x"); };
+  const auto width = [&](int k) {
+    return number(bars[static_cast<std::size_t>(k)].node(), "width");
+  };
+  const double zero = number(document.select_node("//line[@class='zero']").node(), "x1");
+  EXPECT_NEAR(left(0) + width(0), zero, 0.06);
+  EXPECT_NEAR(left(1), zero, 0.06);
+  EXPECT_NEAR(left(2), zero, 0.06);
+  EXPECT_NEAR(width(0), 2 * width(1), 0.03);
+  EXPECT_NEAR(width(2), 4 * width(1), 0.05);
+  EXPECT_LT(number(bars[1].node(), "y"), number(bars[2].node(), "y"));
+  const auto interval = document.select_node("//line[@class='interval']").node();
+  EXPECT_NEAR(number(interval, "x1"), zero + 3 * width(1), 0.11);
+  EXPECT_NEAR(number(interval, "x2"), zero + 5 * width(1), 0.11);
+  EXPECT_EQ(csv_of(figure),
+            "change (%),low,high,from,to,note\ntilt,-2,1,,,n\npitch,0,4,3,5,\nother,0,0,,,\n");
+}
+
+TEST(Picture, BandsLieAboutTheirCurves) {
+  const Figure figure{"id", "t", "",
+                      BandFigure{{"shaft angle", "deg"},
+                                 {"R", "N"},
+                                 true,
+                                 {0, 90, 180, 270},
+                                 {{"R", {-1, 0, -1, 0}, {0, 1, 0, 1}, {3, 4, 3, 4}}},
+                                 {{"rig", {45, 300}, {2, 2}}}}};
+  const std::string svg = svg_of(figure);
+  const auto document = read(svg);
+  std::string text = document.select_node("//polygon").node().attribute("points").value();
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream in(text);
+  std::vector<std::array<double, 2>> band;
+  for (double x = 0, y = 0; in >> x >> y;) band.push_back({x, y});
+  ASSERT_EQ(band.size(), 8U);  // low there, high back
+  const auto curves = drawn(svg);
+  ASSERT_EQ(curves.size(), 2U);
+  const double newton = (band[0][1] - band[7][1]) / 4;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(curves[0][i][0], band[i][0], 0.11);
+    EXPECT_NEAR(band[i][1] - curves[0][i][1], newton, 0.03);
+    EXPECT_NEAR(curves[0][i][1] - band[7 - i][1], 3 * newton, 0.03);
+  }
+  EXPECT_NEAR(curves[1][0][0], (band[0][0] + band[1][0]) / 2, 0.11);
+  EXPECT_NEAR(band[0][1] - curves[1][0][1], 3 * newton, 0.03);
+  EXPECT_THAT(svg, HasSubstr(">360<"));  // the turn is drawn whole
+  EXPECT_EQ(csv_of(figure),
+            "series,shaft angle (deg),R (N),low,high\nR,0,0,-1,3\nR,90,1,0,4\nR,180,0,-1,3\n"
+            "R,270,1,0,4\nrig,45,2,,\nrig,300,2,,\n");
+}
+
+// A line goes through each axis at its value, by the logarithm where the axis is one, by the word
+// where it has words; marked designs are drawn again over all.
+TEST(Picture, ParallelAxesAreScaledEachByItself) {
+  const Figure figure{"id", "t", "",
+                      ParallelFigure{{{"a", "mm", {1, 2, 3}},
+                                      {"b", "h", {1, 10, 1000}, true},
+                                      {"c", "", {1, 0, 1}, false, {"no", "yes"}},
+                                      {"d", "", {5, 7, not_computed()}}},
+                                     0,
+                                     {1},
+                                     "best"}};
+  const std::string svg = svg_of(figure);
+  const auto lines = drawn(svg);
+  ASSERT_EQ(lines.size(), 4U);
+  const double bottom = lines[0][0][1], top = lines[2][0][1];
+  EXPECT_GT(bottom - top, 200);
+  EXPECT_NEAR(lines[1][0][1], (bottom + top) / 2, 0.11);
+  EXPECT_NEAR(lines[1][1][1], bottom + (top - bottom) / 3, 0.11);
+  EXPECT_NEAR(lines[0][2][1], top, 0.11);
+  EXPECT_NEAR(lines[1][2][1], bottom, 0.11);
+  EXPECT_NEAR(lines[1][3][0] - lines[1][2][0], lines[1][1][0] - lines[1][0][0], 0.21);
+  EXPECT_EQ(lines[2].size(), 3U);  // what was not computed has no place
+  EXPECT_EQ(lines[3], lines[1]);
+  const auto document = read(svg);
+  const auto designs = document.select_nodes("//path[@class='design']");
+  EXPECT_NE(designs[0].node().attribute("stroke").as_string(),
+            std::string(designs[2].node().attribute("stroke").as_string()));
+  EXPECT_STREQ(designs[3].node().child("title").text().get(), "a 2 mm, b 10 h, c no, d 7");
+  EXPECT_THAT(svg, HasSubstr(">best<"));
+  EXPECT_EQ(csv_of(figure), "a (mm),b (h),c,d,marked\n1,1,yes,5,0\n2,10,no,7,1\n3,1000,yes,,0\n");
+}
+
+// An infeasible place says why; shades can begin anywhere.
+TEST(Picture, MapHatchesWhatHasAReason) {
+  const double gap = not_computed();
+  MapFigure map{{"n", "rpm"}, {"p"}, {"e", "%"}, {1, 2, 3}, {4}, {{90, gap, gap}}, {}, {}};
+  map.linear = true;
+  map.z.from = 80;
+  map.reasons = {{"", "pistons <touch>", ""}};
+  const auto document = read(svg_of({"id", "t", "", map}));
+  EXPECT_EQ(document.select_nodes("//path[@class='hatch']").size(), 2U);  // of the cell, of its key
+  std::vector<std::string> titles;
+  for (const auto& node : document.select_nodes("//rect/title"))
+    titles.emplace_back(node.node().text().get());
+  EXPECT_THAT(titles, testing::ElementsAre("n 1 rpm, p 4: 90 %", "n 2 rpm, p 4: pistons <touch>",
+                                           "n 3 rpm, p 4: not computed"));
+  EXPECT_STREQ(document.select_node("//text[starts-with(., 'e:')]").node().text().get(), "e: 80 %");
 }
 
 TEST(Picture, PngHasTwiceTheSize) {

@@ -133,10 +133,9 @@ Bevel bevel(const PumpParameters& pump) {
 void require_mesh(const Gear& gear, const Bevel& bevel) {
   const ToothData& teeth = *gear.teeth;
   const BevelGeometry& at = bevel.at;
-  const auto millimetres = [](double metres) { return rounded_text(metres * 1e3); };
-  // The addendum whose tip has this arc from the base circle.
+  // The addendum whose tip has this arc from the base circle, mm.
   const auto addendum = [&](double arc) {
-    return millimetres(at.distance * std::tan(bevel.cone(arc) - at.pitch_cone));
+    return at.distance * std::tan(bevel.cone(arc) - at.pitch_cone) * 1e3;
   };
   const double h = teeth.addendum * 1e3;
   if (!(teeth.dedendum > teeth.addendum))
@@ -150,25 +149,25 @@ void require_mesh(const Gear& gear, const Bevel& bevel) {
     refuse("addendum_mm", h,
            "tip interference: the tips reach beyond where the path of contact leaves the other's "
            "base cone: must be <= " +
-               addendum(std::min(2 * bevel.roll, kPi)));
+               rounded_down_text(addendum(std::min(2 * bevel.roll, kPi))));
   const double depth = cutting_depth(gear.pressure_angle, at.pitch_cone);
   if (at.tip_cone - at.pitch_cone > depth)
     refuse("addendum_mm", h,
            "undercut: a crown gear's flank that cuts as deep as the tips reach takes away working "
            "flanks: must be <= " +
-               millimetres(at.distance * std::tan(depth)));
+               rounded_down_text(at.distance * std::tan(depth) * 1e3));
   if (!(bevel.pitch / 4 + involute(bevel, bevel.roll) > involute(bevel, bevel.tip_roll)))
     refuse("addendum_mm", h, "pointed tips: both flanks of a tooth meet below its tip");
   const auto ratio = [&](double least) { return addendum(bevel.roll + least * at.base_pitch / 2); };
   if (!(at.contact_ratio >= 1))
     refuse("addendum_mm", h,
            "contact ratio " + rounded_text(at.contact_ratio) + ": must be >= 1, which needs " +
-               ratio(1));
+               rounded_up_text(ratio(1)));
   if (!(at.contact_ratio <= kLargestContactRatio))
     refuse("addendum_mm", h,
            "contact ratio " + rounded_text(at.contact_ratio) +
                ": must be <= " + rounded_text(kLargestContactRatio) + ", which needs at most " +
-               ratio(kLargestContactRatio));
+               rounded_down_text(ratio(kLargestContactRatio)));
 }
 
 }  // namespace bentaxis::analytic::closed_form

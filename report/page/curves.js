@@ -170,6 +170,28 @@ function curvesFigure(figure, page) {
   return [readings.node, ...plots.flatMap(p => [p.title ? el("p.subplot", {}, p.title) : null, p.node]), ...footer()];
 }
 
+// Curves with bands about them. Other lines may stand at places of their own: all are drawn over the places of all.
+function bandsFigure(figure, page) {
+  const places = [...new Set([figure.x, ...figure.lines.map(l => ({ values: l.x }))].flatMap(x => x.values))]
+    .filter(v => v != null).sort((a, b) => a - b);
+  const at = (x, values) => {
+    const known = new Map(x.map((v, i) => [v, values[i]]));
+    return places.map(v => known.get(v) ?? null);
+  };
+  const own = withOwnAxis({ x: { ...figure.x, label: axisName(figure.x) } }, page), all = orderOf(places, false);
+  const data = { ...own, ...all, low: Math.min(own.low, all.low), high: Math.max(own.high, all.high) };
+  const bands = figure.bands.map((b, k) => ({ label: b.label, colour: onGround(COLOURS[k % COLOURS.length]), width: 1.6, dash: null,
+    sparse: true, values: at(figure.x.values, b.middle), low: at(figure.x.values, b.low), high: at(figure.x.values, b.high) }));
+  const lines = figure.lines.map((l, k) => ({ label: l.label, colour: onGround(EXTRA_COLOURS[k % EXTRA_COLOURS.length]), width: 1.6,
+    dash: [8, 4], sparse: true, values: at(l.x, l.y) }));
+  if (data.order.length < 2) return [el("p.empty", {}, "There is nothing to draw.")];
+  const readings = readOutTable({ unit: figure.y.unit }, [], [...bands, ...lines], [], null, data);
+  const node = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves and bands over ${data.axis.label}` });
+  data.mounts.push(() => synchronise([plot(node, data, [...edgesOf(bands), ...bands, ...lines], bands, axisName(figure.y))],
+    data.low < data.theta[data.order[0]] ? 1 : 0, readings.show));
+  return [readings.node, node];
+}
+
 // Legend and hover values in one table above the plots, so that it never covers a curve. While nothing is
 // pointed at it shows the angle of the largest difference: from the reference where there is one.
 function readOutTable(figure, drawn, extras, tables, reference, data) {
@@ -207,7 +229,8 @@ function readOutTable(figure, drawn, extras, tables, reference, data) {
       r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
       if (r.gap) r.gap.textContent = unit(small(gapAt(r, i)), figure.unit);
     }
-    for (const e of more) e.cell.textContent = value(e.values[i]);
+    for (const e of more)
+      e.cell.textContent = value(e.values[i]) + (e.low && e.low[i] != null ? ` (${number(e.low[i], 6)} to ${value(e.high[i])})` : "");
   }
   show(null);
   return { node, show };

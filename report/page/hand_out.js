@@ -28,6 +28,13 @@ const POINTS = {
     ...frame.lines.map(l => [l, l.x.map((x, i) => [x, l.y[i]])]),
     ...frame.arrows.map(a => [a, [[a.x, a.y], [a.x + a.dx, a.y + a.dy]]])].flatMap(([shape, points], k) =>
     points.map(([x, y]) => [frame.theta_deg, shape.panel + 1, f.looks[shape.look].label, k + 1, x, y])))],
+  bars: f => [[axisName(f.x), "low", "high", "from", "to", "note"],
+    ...f.bars.map(b => [b.label, b.low, b.high, ...(b.interval || [null, null]), b.note])],
+  bands: f => [["series", axisName(f.x), axisName(f.y), "low", "high"],
+    ...f.bands.flatMap(b => f.x.values.map((x, i) => [b.label, x, b.middle[i], b.low[i], b.high[i]])),
+    ...f.lines.flatMap(s => s.x.map((x, i) => [s.label, x, s.y[i], null, null]))],
+  parallel: f => [[...f.columns.map(axisName), "marked"], ...f.columns[0].values.map((_, i) =>
+    [...f.columns.map(c => (c.words && c.values[i] != null ? c.words[c.values[i]] : c.values[i])), f.marked.includes(i) ? 1 : 0])],
   map: f => [[axisName(f.x), axisName(f.y), axisName(f.z)],
     ...f.values.flatMap((row, i) => row.map((v, j) => [f.x.values[j], f.y.values[i], v]))],
 };

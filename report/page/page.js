@@ -1,15 +1,15 @@
 // The page: which figures and sections there are, in their order.
 
 // Drawn by the program; every other kind is drawn here too, to be zoomed and read out.
-const STILL = ["xy", "map", "scatter"];
-const DRAWN = { piston_bars: barsFigure, drawing: drawingFigure };
+const STILL = ["xy", "map", "scatter", "bars", "parallel"];
+const DRAWN = { piston_bars: barsFigure, drawing: drawingFigure, bands: bandsFigure };
 
 // A figure may bring curves of its own, at angles of its own.
 const dataOf = (figure, report, data) => !figure.curves ? data
   : { ...prepare(report, figure.curves), mounts: data.mounts };
 
 function figures(report, data) {
-  const figures = list(report.figures).filter(f => f.curves || f.kind === "drawing" || STILL.includes(f.kind) || data.order.length);
+  const figures = list(report.figures).filter(f => f.curves || ["drawing", "bands"].includes(f.kind) || STILL.includes(f.kind) || data.order.length);
   if (!figures.length) return null;
   return el("div", {},
     figures.some(f => !STILL.includes(f.kind)) ? el("p.hint", {}, "Drag along a plot to zoom the angle, up or down to zoom the value; "

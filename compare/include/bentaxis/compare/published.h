@@ -81,6 +81,8 @@ struct Published {
 
   /// Whether a case is one of this pump: by its facts, never by its name.
   bool describes(const Facts& facts) const { return mismatch(facts).empty(); }
+  /// The variant of this name; one that sets nothing where there is none.
+  PublishedVariant variant(const std::string& variant_name) const;
   /// What a case differs in from this pump, in words; "" where it is one.
   std::string mismatch(const Facts& facts) const;
 };
@@ -107,6 +109,11 @@ std::string text_of(const PublishedValue& value);
 
 /// The number that one run gives for a row; nothing where the run did not compute it.
 std::optional<PublishedValue> value_of(const PublishedNumber& number, const PublishedRun& run);
+
+/// A model's run under the variant of this name; "" is the case as it is.
+using RunOfVariant = std::function<PublishedRun(const std::string& variant)>;
+/// The number under the row's variant, less that of the variant which the row takes off.
+std::optional<PublishedValue> value_of(const PublishedNumber& number, const RunOfVariant& run);
 
 enum class PublishedVerdict { inside, outside, not_comparable };
 const char* to_string(PublishedVerdict verdict);

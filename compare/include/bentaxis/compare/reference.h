@@ -198,6 +198,7 @@ struct Judgement {
   double resampling_error = 0;             ///< estimate where it is largest, over peak
   ResultTable reference;                   ///< at the angles of the result
   ResultTable low, high;                   ///< with a tube: what it spans there; else empty
+  ResultTable resampling;                  ///< the error of resampling there, estimated
 
   bool agrees() const;  ///< something was compared and nothing failed
 };

@@ -47,6 +47,8 @@ class OutputFolder {
   };
   /// Opens such a file; it is complete at commit(). @throws InputError
   Stream& open(const std::string& name);
+  /// The temporary name of a file that others write: it must be complete at commit().
+  std::filesystem::path reserve(const std::string& name);
 
   /// Names of the files so far, in the order in which they were added.
   std::vector<std::string> names() const;

@@ -46,6 +46,12 @@ class TableReader {
   std::vector<double> numbers(const std::string& key);
   /// ["a", "b", ...]; empty where the key is missing.
   std::vector<std::string> texts(const std::string& key);
+  /// [["a", "b", 0.5], ...]: two texts and a number each; empty where the key is missing.
+  struct Link {
+    std::string first, second;
+    double number = 0;
+  };
+  std::vector<Link> links(const std::string& key);
 
   /// A table below this one; an error where it is missing or no table.
   TableReader table(const std::string& key);

@@ -29,6 +29,20 @@ struct InputEntry {
   bool changed = false;  ///< by --set
 };
 
+/// What is not known exactly, [uncertainty], as text: designs/distribution.h says what it means.
+struct UncertaintyData {
+  struct Parameter {
+    std::string name;          ///< "pump.tilt_deg"
+    std::string distribution;  ///< "normal(40, 0.1)"
+  };
+  struct Correlation {
+    std::string first, second;  ///< names of parameters
+    double coefficient = 0;     ///< in [-1, 1]
+  };
+  std::vector<Parameter> parameters;
+  std::vector<Correlation> correlations;
+};
+
 struct Case {
   std::filesystem::path file;
   std::string name;
@@ -40,6 +54,7 @@ struct Case {
   std::optional<DriveSpec> drive;           ///< what turns the shaft in time, of a simulation
   Assumptions analytic;                     ///< what the analytic model assumes in this case
   Assumptions multibody;                    ///< what the multibody model assumes
+  UncertaintyData uncertainty;              ///< empty where nothing is said
   std::string meant;                ///< reasons for doubtful values: "CODE: reason; CODE: reason"
   std::vector<InputEntry> entries;  ///< as read from a file; empty for a case made in memory
 };

@@ -21,6 +21,9 @@ std::string number_text(double value);
 
 /// To three digits, for people.
 std::string rounded_text(double value);
+/// The same on the allowed side of a limit: not above `value`, not below it.
+std::string rounded_down_text(double value);
+std::string rounded_up_text(double value);
 
 /// Allowed values of a number, with the text an engineer sees when it is left. What is not finite
 /// lies in no range.

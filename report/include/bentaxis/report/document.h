@@ -135,11 +135,13 @@ struct MapFigure {
   std::vector<double> contours;
   std::vector<Point> points;
   /// What the values 0, 1, .. stand for, drawn light to dark. None: shades go by the quantity's
-  /// logarithm, or from 0 by itself where `linear`.
+  /// logarithm, or from 0 (from z.from, where that is set) by itself where `linear`.
   std::vector<std::string> classes = {};
   bool linear = false;
   std::vector<XySeries> lines = {};              ///< drawn over it; a place alone, across its row
   std::optional<XySeries> marks = std::nullopt;  ///< places of the map, each a dot
+  /// Why values are not there, as `values`: such a place is hatched, where there is a reason.
+  std::vector<std::vector<std::string>> reasons = {};
 };
 
 struct ScatterPoint {
@@ -194,11 +196,51 @@ struct DrawingFigure {
   std::size_t shown = 0;  ///< the frame that a still picture shows, and a page at first
 };
 
+/// Bars lying one below the other, in the order given: each from 0 to `low` and from 0 to `high`.
+struct BarsFigure {
+  struct Bar {
+    std::string label;
+    double low = 0, high = 0;
+    std::string note = {};  ///< shown when pointed at
+    std::optional<std::pair<double, double>> interval =
+        std::nullopt;  ///< within which the end lies
+  };
+  Axis x;  ///< linear
+  std::vector<Bar> bars;
+};
+
+/// Curves with bands about them over one axis, and others over values of their own.
+struct BandFigure {
+  struct Band {
+    std::string label;
+    Values low, middle, high;  ///< at `x_values`
+  };
+  Axis x, y;
+  bool angle = false;  ///< x is a shaft angle, deg
+  Values x_values;
+  std::vector<Band> bands;
+  std::vector<XySeries> lines = {};
+};
+
+/// Many designs, each a line over parallel axes, one for each number of a design.
+struct ParallelFigure {
+  struct Column {
+    std::string label, unit;
+    Values values;  ///< one per design
+    bool log = false;
+    std::vector<std::string> words = {};  ///< what the values 0, 1, .. stand for
+  };
+  std::vector<Column> columns;
+  std::size_t colour_by = 0;             ///< the column that gives lines their colours
+  std::vector<std::size_t> marked = {};  ///< designs drawn over the others
+  std::string marked_label = {};         ///< what these are: "Pareto front"
+};
+
 struct Figure {
   std::string id, title;
   std::string paper;  ///< figures of the paper that it answers, or ""
   std::variant<ChannelFigure, PistonBars, OwnFigure, XyFigure, MapFigure, ScatterFigure,
-               DrawingFigure>
+               DrawingFigure, BarsFigure, BandFigure, ParallelFigure>
       content;
   std::string note = {};
 };

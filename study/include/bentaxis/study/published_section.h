@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bentaxis/compare/published.h"
@@ -11,11 +13,17 @@
 #include "bentaxis/report/document.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/study/progress.h"
+#include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
 
 /// Facts of a case under a model's assumptions, by the names that files of printed numbers use.
 compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions);
+
+/// Makes of a case and its assumptions what a publication compares it with.
+/// @throws InputError for a fact that cannot be set
+void apply_variant(const compare::PublishedVariant& variant, Case& the_case,
+                   Assumptions& assumptions);
 
 /// A publication about a pump: its numbers, and where they are from.
 struct PrintedNumbers {
@@ -32,6 +40,21 @@ struct PublishedInput {
   const Case* the_case;
   Assumptions assumptions;
   const ResultTable* table;
+};
+
+/// One model under the variants of a publication, driven, each run once.
+class VariantRuns {
+ public:
+  /// `input` must live as long as this does.
+  VariantRuns(Model model, const PublishedInput& input, PartProgress progress_of = silent())
+      : model_(model), input_(input), progress_of_(std::move(progress_of)) {}
+  compare::PublishedRun operator()(const compare::PublishedVariant& variant);
+
+ private:
+  Model model_;
+  const PublishedInput& input_;
+  PartProgress progress_of_;
+  std::map<std::string, ResultTable> tables_;
 };
 
 /// Holds both models to printed numbers. Recomputes the variants that the publication compares,

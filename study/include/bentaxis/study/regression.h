@@ -44,6 +44,7 @@ struct Outcome {
   struct Held {
     ResultTable result;
     ResultTable reference, low, high;  ///< at its angles; with a tube what the reference spans
+    ResultTable resampling;            ///< the reference's error by resampling, estimated
   };
   std::map<std::string, Held> held;  ///< by model
 

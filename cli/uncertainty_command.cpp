@@ -1,0 +1,108 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bentaxis/designs/uncertainty_document.h"
+#include "bentaxis/pump/error.h"
+#include "commands.h"
+#include "console.h"
+#include "options.h"
+#include "report_files.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+constexpr int kMostSamples = 10'000'000;
+
+struct Options {
+  CaseOption the_case;
+  ReportPlace place;
+  std::vector<std::string> outputs, varied;  // NAME=DISTRIBUTION
+  int samples = 1000, sobol = 0, seed = 1;
+  bool no_curves = false;
+  designs::UncertaintyOptions uncertainty;
+};
+
+// NAME=DISTRIBUTION in the place of what the case says of NAME.
+void vary(Case& the_case, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError("--vary " + text +
+                     ": must be NAME=DISTRIBUTION, as in "
+                     "pump.tilt_deg=normal(40, 0.1)");
+  const std::string name = text.substr(0, equals);
+  auto& all = the_case.uncertainty.parameters;
+  std::erase_if(all, [&](const UncertaintyData::Parameter& p) { return p.name == name; });
+  all.push_back({name, text.substr(equals + 1)});
+}
+
+int uncertainty(const Options& options) {
+  Case the_case = options.the_case.read();
+  for (const std::string& text : options.varied) vary(the_case, text);
+  designs::UncertaintyOptions how = options.uncertainty;
+  how.samples = static_cast<std::size_t>(options.samples);
+  how.sobol = static_cast<std::size_t>(options.sobol);
+  how.seed = static_cast<std::uint64_t>(options.seed);
+  how.curves = !options.no_curves;
+  const std::vector<std::string> usual = {"mean:Td", "peak:Rb1", "peak:Rb2"};
+  for (const std::string& name : options.outputs.empty() ? usual : options.outputs)
+    how.outputs.push_back(designs::output(name, the_case));
+  ReportFolders folders(options.place);
+  const designs::UncertaintyResult result = designs::uncertainty(the_case, how, progress_of);
+
+  std::vector<TextFile> files = {{"outputs.csv", designs::outputs_csv(result)},
+                                 {"samples.csv", designs::samples_csv(result)}};
+  if (!result.bands.empty()) files.emplace_back("bands.csv", designs::bands_csv(result));
+  const auto paths =
+      folders.write("report", designs::uncertainty_document(result, versions()), {}, files);
+  std::printf("%s\n", designs::uncertainty_text(result).c_str());
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  return kDone;
+}
+
+}  // namespace
+
+Command add_uncertainty_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command = program.subcommand(
+      "uncertainty", "Say how far results are known where parameters have distributions");
+  add_case(command, options->the_case);
+  add_report(command, options->place,
+             "report.html, report.json, outputs.csv, samples.csv and bands.csv");
+  command.option("--output", options->outputs, "numbers asked for")
+      .list()
+      .text("NAME[,NAME..] [mean:Td,peak:Rb1,peak:Rb2]");
+  command
+      .option("--vary", options->varied,
+              "distribution of a parameter, instead of what [uncertainty] says of it: "
+              "\"pump.tilt_deg=normal(40, 0.1)\"")
+      .repeatable()
+      .text("NAME=DISTRIBUTION");
+  designs::UncertaintyOptions& how = options->uncertainty;
+  command.option("--samples", options->samples, "samples of the Monte Carlo")
+      .integer_in(10, kMostSamples)
+      .text("NUMBER [1000]");
+  command.option("--seed", options->seed, "of its random numbers")
+      .integer_in(0, 2'000'000'000)
+      .text("NUMBER [1]");
+  command.option("--level", how.level, "part of all pumps that a band holds")
+      .number_in(0.01, 0.9999)
+      .text("NUMBER [0.95]");
+  command
+      .option("--sobol", options->sobol,
+              "base points of Sobol indices, each of which takes parameters + 2 evaluations; 0: "
+              "none")
+      .integer_in(0, kMostSamples)
+      .text("NUMBER [0]");
+  command.flag("--no-curves", options->no_curves, "numbers only, no bands on reactions");
+  command.choice("--model", how.model, {"analytic", "multibody"}, "the model that computes them");
+  command
+      .option("--threads", how.threads, "samples computed at a time, at most; 0: one per processor")
+      .integer_in(0, 1024)
+      .text("NUMBER [0]");
+  return {command, [options] { return uncertainty(*options); }};
+}
+
+}  // namespace bentaxis::cli

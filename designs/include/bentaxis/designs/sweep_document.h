@@ -1,0 +1,20 @@
+// A sweep as the document of report.json and of its page.
+#pragma once
+
+#include <string>
+
+#include "bentaxis/designs/sweep.h"
+#include "bentaxis/report/document.h"
+
+namespace bentaxis::designs {
+
+/// What came out, in one line.
+std::string headline(const SweepResult& result);
+
+/// Maps, slices, designs over parallel axes, outputs against each other with the Pareto front;
+/// tables of ranges, best designs, reasons of infeasible ones and what the other model says. Where
+/// there are more designs than a picture shows, evenly chosen ones are drawn, and a note says so.
+/// @param program  what computed it: names and versions
+report::Document sweep_document(const SweepResult& result, const report::Lines& program);
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,78 @@
+// Finished blocks of a sweep, in a folder until all are there.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bentaxis/designs/sweep.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::designs {
+
+/// What a sweep is, in a form that moves between machines: the case with its curves, the plan.
+struct SweepRecord {
+  std::string case_text;                                    ///< names curves as `curves` does
+  std::vector<std::pair<std::string, std::string>> curves;  ///< file name and content
+  std::string plan;                                         ///< a study file
+  std::string identity;  ///< SHA-256 of all that blocks depend on, 64 hexadecimal digits
+};
+/// @param program  name and version of what computes the blocks
+/// @throws InputError where a curve's file cannot be read any more
+SweepRecord record_of(const Sweep& sweep, const std::string& program);
+
+/// A folder of blocks, each a file that is there whole or not at all: a block is written under
+/// another name and renamed, and carries the sweep's identity and a SHA-256 of its own. Many
+/// threads, processes and machines may write to one folder.
+class SweepParts {
+ public:
+  /// @param folder  need not be there
+  SweepParts(std::filesystem::path folder, SweepRecord record);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  const SweepRecord& record() const { return record_; }
+  /// Makes the folder and says in it what sweep it is of.
+  /// @throws InputError where it is that of another sweep, or cannot be written
+  void begin() const;
+  /// A folder from elsewhere to look for blocks in.
+  /// @throws InputError where it is of another sweep, or of none
+  void add(const std::filesystem::path& folder);
+
+  /// @throws InputError where it cannot be written
+  void keep(std::size_t block, const SweepBlock& content) const;
+  /// Nothing where the block is not there or is damaged.
+  std::optional<SweepBlock> read(std::size_t block) const;
+  /// Number of blocks in the folder, whole or not.
+  std::size_t count() const;
+  /// Removes blocks and record, and the folder if nothing else is in it.
+  void remove(std::size_t blocks) const;
+
+ private:
+  std::vector<std::filesystem::path> folders_;  // to look in
+  std::filesystem::path folder_;                // to write to
+  SweepRecord record_;
+};
+
+/// The sweep that the blocks in a folder are of, and its record as it stands there.
+/// @throws InputError where there is none
+std::pair<Sweep, SweepRecord> sweep_in(const std::filesystem::path& folder);
+
+/// Which blocks are computed here.
+struct SweepShare {
+  std::size_t part = 0, parts = 1;  ///< those whose number leaves `part` over `parts` ..
+  std::size_t rank = 0, ranks = 1;  ///< .. and of these every `ranks`-th
+  bool resume = false;              ///< those that are there are not computed again
+  int threads = 0;                  ///< 0: one per processor
+};
+/// Computes blocks into a folder. What is finished stays where the work is ended early.
+/// @return how many of its blocks were there already
+std::size_t compute_blocks(const Sweep& sweep, const SweepParts& parts, const SweepShare& share,
+                           const Progress& progress);
+
+/// Numbers as "3, 5-9, 12"; of many the first ones.
+std::string list_of(const std::vector<std::size_t>& numbers);
+
+}  // namespace bentaxis::designs

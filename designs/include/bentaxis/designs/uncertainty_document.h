@@ -1,0 +1,24 @@
+// What is not known exactly, as the document of report.json and of its page.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bentaxis/designs/uncertainty.h"
+#include "bentaxis/report/document.h"
+
+namespace bentaxis::designs {
+
+/// @param program  what computed it: names and versions
+report::Document uncertainty_document(const UncertaintyResult& result,
+                                      const report::Lines& program);
+
+/// In words, for a terminal.
+std::string uncertainty_text(const UncertaintyResult& result);
+
+/// Parts of it for other reports: what is not known, and the bands with a table of them.
+report::Section parameters_section(const UncertaintyResult& result);
+report::Section bands_section(const UncertaintyResult& result);
+std::vector<report::Figure> band_figures(const UncertaintyResult& result);
+
+}  // namespace bentaxis::designs

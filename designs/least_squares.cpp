@@ -1,0 +1,302 @@
+#include "bentaxis/designs/least_squares.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/study/in_threads.h"
+
+#ifdef BENTAXIS_HAS_CERES
+#include <ceres/ceres.h>
+#include <ceres/version.h>
+#endif
+
+namespace bentaxis::designs {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+double scale_of(const LeastSquaresProblem& problem, std::size_t i) {
+  if (!problem.scales.empty()) return problem.scales[i];
+  if (!problem.low.empty() && std::isfinite(problem.high[i] - problem.low[i]))
+    return problem.high[i] - problem.low[i];
+  return 1;
+}
+
+// One column of the derivatives, by differences of second order.
+class Differences {
+ public:
+  Differences(const LeastSquaresProblem& problem, std::span<const double> x)
+      : problem_(problem), x_(x.begin(), x.end()), centre_(problem.residuals) {}
+
+  bool column(std::size_t i, std::span<double> jacobian) {
+    // Where the errors of rounding and of the cut-off series meet.
+    const double share = std::cbrt(std::numeric_limits<double>::epsilon());
+    const double size = x_[i] != 0 ? std::abs(x_[i]) : scale_of(problem_, i);
+    const double step = share * size;
+    const auto ahead = at(i, step), behind = at(i, -step);
+    const std::size_t n = problem_.parameters;
+    if (ahead && behind) {
+      for (std::size_t r = 0; r < problem_.residuals; ++r)
+        jacobian[r * n + i] = ((*ahead)[r] - (*behind)[r]) / (2 * step);
+      return true;
+    }
+    if (!ahead && !behind) return false;
+    const double side = ahead ? step : -step;
+    const auto further = at(i, 2 * side);
+    if (!further || !centre()) return false;
+    const std::vector<double>& near = ahead ? *ahead : *behind;
+    for (std::size_t r = 0; r < problem_.residuals; ++r)
+      jacobian[r * n + i] = (4 * near[r] - 3 * centre_[r] - (*further)[r]) / (2 * side);
+    return true;
+  }
+
+ private:
+  std::optional<std::vector<double>> at(std::size_t i, double step) {
+    const double middle = x_[i], moved = middle + step;
+    if (!problem_.low.empty() && (moved < problem_.low[i] || moved > problem_.high[i]))
+      return std::nullopt;
+    std::vector<double> residuals(problem_.residuals);
+    x_[i] = moved;
+    const bool there = problem_.evaluate(x_, residuals);
+    x_[i] = middle;
+    if (!there) return std::nullopt;
+    return residuals;
+  }
+  bool centre() {
+    if (!have_centre_) have_centre_ = problem_.evaluate(x_, centre_);
+    return have_centre_;
+  }
+
+  const LeastSquaresProblem& problem_;
+  std::vector<double> x_, centre_;
+  bool have_centre_ = false;
+};
+
+}  // namespace
+
+double LeastSquaresFit::residual_deviation() const {
+  const double freedom = static_cast<double>(residuals.size()) - static_cast<double>(x.size());
+  return std::sqrt(sum_of_squares / freedom);
+}
+
+std::vector<double> LeastSquaresFit::covariance() const {
+  const auto n = static_cast<Eigen::Index>(x.size());
+  RowMajor j =
+      Eigen::Map<const RowMajor>(jacobian.data(), static_cast<Eigen::Index>(residuals.size()), n);
+  Eigen::VectorXd lengths = j.colwise().norm();  // so that units of parameters do not count
+  for (double& length : lengths) length = length > 0 ? length : 1;
+  j = j * lengths.cwiseInverse().asDiagonal();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(j);
+  if (qr.rank() < n)
+    throw ComputationError("least squares: the data do not determine all parameters");
+  const Eigen::MatrixXd r =
+      qr.matrixR().topLeftCorner(n, n).template triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd half =
+      lengths.cwiseInverse().asDiagonal() * (qr.colsPermutation() * r.inverse());
+  std::vector<double> result(x.size() * x.size());
+  Eigen::Map<RowMajor>(result.data(), n, n) = half * half.transpose();
+  return result;
+}
+
+bool derivatives_of(const LeastSquaresProblem& problem, std::span<const double> x,
+                    std::span<double> jacobian) {
+  if (problem.differentiate) return problem.differentiate(x, jacobian);
+  Differences differences(problem, x);
+  for (std::size_t i = 0; i < problem.parameters; ++i)
+    if (!differences.column(i, jacobian)) return false;
+  return true;
+}
+
+#ifdef BENTAXIS_HAS_CERES
+namespace {
+
+// All residuals as one block, of parameters over their scale: so that a step that is small is small
+// for every one of them.
+class AllResiduals final : public ceres::CostFunction {
+ public:
+  AllResiduals(const LeastSquaresProblem& problem, std::vector<double> units)
+      : problem_(problem), units_(std::move(units)) {
+    set_num_residuals(static_cast<int>(problem.residuals));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters));
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const std::size_t n = problem_.parameters, m = problem_.residuals;
+    std::vector<double> x(n);
+    for (std::size_t i = 0; i < n; ++i) x[i] = parameters[0][i] * units_[i];
+    if (!problem_.evaluate(x, {residuals, m})) return false;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    if (!derivatives_of(problem_, x, {jacobians[0], m * n})) return false;
+    for (std::size_t r = 0; r < m; ++r)
+      for (std::size_t i = 0; i < n; ++i) jacobians[0][r * n + i] *= units_[i];
+    return true;
+  }
+
+ private:
+  const LeastSquaresProblem& problem_;
+  std::vector<double> units_;
+};
+
+// Ends the search once steps change the sum of squares by no more than is asked for.
+class EnoughIsEnough final : public ceres::IterationCallback {
+ public:
+  explicit EnoughIsEnough(double enough) : enough_(enough) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (summary.iteration == 0 || !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
+    constexpr int kTimes = 2;
+    times_ = 2 * summary.cost_change <= enough_ ? times_ + 1 : 0;  // the cost is half the sum
+    return times_ >= kTimes ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double enough_;
+  int times_ = 0;
+};
+
+double sum_of_squares(const std::vector<double>& residuals) {
+  double sum = 0;
+  for (const double r : residuals) sum += r * r;
+  return sum;
+}
+
+// Gauss-Newton steps, shortest where the data leave a choice, of the parameters that no bound
+// holds. Where Ceres stops, the sum of squares is right to round-off, the parameters to half as
+// many digits; and along a bound it may have stopped early, because its steps are cut off there.
+void finish(const LeastSquaresProblem& problem, const std::vector<double>& units,
+            const LeastSquaresOptions& options, LeastSquaresFit& fit) {
+  constexpr double kRank = 1e-9;  // of the longest column: shorter ones are left alone
+  constexpr double kRounding = 1e-13;
+  const std::size_t n = problem.parameters, m = problem.residuals;
+  double last = HUGE_VAL;
+  for (int iteration = 0; iteration < options.most_iterations; ++iteration) {
+    const Eigen::Map<const RowMajor> jacobian(fit.jacobian.data(), static_cast<Eigen::Index>(m),
+                                              static_cast<Eigen::Index>(n));
+    const Eigen::Map<const Eigen::VectorXd> residuals(fit.residuals.data(),
+                                                      static_cast<Eigen::Index>(m));
+    Eigen::MatrixXd free = jacobian;
+    const Eigen::VectorXd slope = jacobian.transpose() * residuals;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      const bool held =
+          !problem.low.empty() && ((fit.x[i] <= problem.low[i] && slope[column] >= 0) ||
+                                   (fit.x[i] >= problem.high[i] && slope[column] <= 0));
+      free.col(column) *= held ? 0 : units[i];
+    }
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr;
+    qr.setThreshold(kRank);
+    qr.compute(free);
+    const Eigen::VectorXd step = qr.solve(-residuals);
+    LeastSquaresFit next = fit;
+    for (std::size_t i = 0; i < n; ++i) {
+      next.x[i] += step[static_cast<Eigen::Index>(i)] * units[i];
+      if (!problem.low.empty()) next.x[i] = std::clamp(next.x[i], problem.low[i], problem.high[i]);
+    }
+    if (!problem.evaluate(next.x, next.residuals)) return;
+    next.sum_of_squares = sum_of_squares(next.residuals);
+    // At the end of it only rounding is left in the sum, while steps still become shorter.
+    const double length = step.norm();
+    const bool better = next.sum_of_squares < fit.sum_of_squares * (1 - kRounding) - options.enough;
+    const bool nearer =
+        next.sum_of_squares <= fit.sum_of_squares * (1 + kRounding) && length < last / 2;
+    if (!(better || (options.enough == 0 && nearer)) ||
+        !derivatives_of(problem, next.x, next.jacobian))
+      return;
+    last = length;
+    fit = std::move(next);
+    ++fit.iterations;
+  }
+}
+
+}  // namespace
+
+std::string least_squares_library() { return "Ceres " CERES_VERSION_STRING; }
+
+LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<const double> start,
+                              const LeastSquaresOptions& options) {
+  const std::size_t n = problem.parameters;
+  LeastSquaresFit fit;
+  fit.x.assign(start.begin(), start.end());
+  fit.residuals.resize(problem.residuals);
+  if (!problem.evaluate(fit.x, fit.residuals))
+    throw ComputationError("least squares: nothing can be computed at the start");
+  std::vector<double> units(n), u(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    units[i] = fit.x[i] != 0 ? std::abs(fit.x[i]) : scale_of(problem, i);
+    u[i] = fit.x[i] / units[i];
+  }
+  ceres::Problem ceres_problem;
+  ceres_problem.AddResidualBlock(new AllResiduals(problem, units), nullptr, u.data());
+  for (std::size_t i = 0; i < n && !problem.low.empty(); ++i) {
+    ceres_problem.SetParameterLowerBound(u.data(), static_cast<int>(i), problem.low[i] / units[i]);
+    ceres_problem.SetParameterUpperBound(u.data(), static_cast<int>(i), problem.high[i] / units[i]);
+  }
+  ceres::Solver::Options ceres_options;
+  ceres_options.linear_solver_type = ceres::DENSE_QR;
+  ceres_options.max_num_iterations = options.most_iterations;
+  ceres_options.function_tolerance = options.tolerance;
+  ceres_options.parameter_tolerance = options.tolerance;
+  ceres_options.gradient_tolerance = 0;  // of no scale that all problems share
+  ceres_options.min_trust_region_radius = 1e-40;
+  ceres_options.max_num_consecutive_invalid_steps = 30;
+  ceres_options.logging_type = ceres::SILENT;
+  EnoughIsEnough enough(options.enough);
+  if (options.enough > 0) ceres_options.callbacks.push_back(&enough);
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options, &ceres_problem, &summary);
+  // Times its unit a bound may come out a rounding beyond itself.
+  for (std::size_t i = 0; i < n; ++i) {
+    fit.x[i] = u[i] * units[i];
+    if (!problem.low.empty()) fit.x[i] = std::clamp(fit.x[i], problem.low[i], problem.high[i]);
+  }
+  fit.converged = summary.termination_type == ceres::CONVERGENCE ||
+                  summary.termination_type == ceres::USER_SUCCESS;
+  fit.message = summary.message;
+  fit.iterations = static_cast<int>(summary.iterations.size());
+  fit.jacobian.resize(problem.residuals * n);
+  if (!problem.evaluate(fit.x, fit.residuals) || !derivatives_of(problem, fit.x, fit.jacobian))
+    throw ComputationError("least squares: nothing can be computed at the solution");
+  fit.sum_of_squares = sum_of_squares(fit.residuals);
+  finish(problem, units, options, fit);
+  return fit;
+}
+#else
+std::string least_squares_library() { return ""; }
+
+LeastSquaresFit least_squares(const LeastSquaresProblem&, std::span<const double>,
+                              const LeastSquaresOptions&) {
+  throw InputError(
+      "identify: this program was built without Ceres; install libceres-dev (scripts/setup full) "
+      "and build again");
+}
+#endif
+
+std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
+                                           const std::vector<std::vector<double>>& starts,
+                                           const LeastSquaresOptions& options, int threads,
+                                           const Progress& progress) {
+  std::vector<std::optional<LeastSquaresFit>> found(starts.size());
+  study::Reporting reporting(starts.size(), progress);
+  study::in_threads(threads, starts.size(), [&](std::size_t i) {
+    try {
+      found[i] = least_squares(problem, starts[i], options);
+    } catch (const ComputationError&) {
+      found[i].reset();  // no residuals there: a start like this leads nowhere
+    }
+    reporting.done();
+  });
+  std::vector<LeastSquaresFit> fits;
+  for (auto& fit : found)
+    if (fit) fits.push_back(std::move(*fit));
+  std::stable_sort(fits.begin(), fits.end(),
+                   [](const LeastSquaresFit& a, const LeastSquaresFit& b) {
+                     return a.sum_of_squares < b.sum_of_squares;
+                   });
+  return fits;
+}
+
+}  // namespace bentaxis::designs

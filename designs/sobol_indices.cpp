@@ -1,0 +1,164 @@
+#include <dlfcn.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "bentaxis/designs/points.h"
+#include "bentaxis/designs/propagation.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/in_threads.h"
+#include "sobol_module.h"
+
+namespace bentaxis::designs {
+namespace {
+
+constexpr double kConfidence = 0.95;
+
+// OpenTURNS brings eighty libraries, a BLAS of its own among them, and a tenth of a second: what is
+// linked with it is a file of its own, which is loaded when the first index is wanted.
+class Module {
+ public:
+  Module() {
+    for (const std::filesystem::path& file : places())
+      if (library_ == nullptr && std::filesystem::exists(file)) {
+        library_ = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+        if (library_ == nullptr) why_ = dlerror();
+      }
+    if (library_ == nullptr) return;
+    indices_ = reinterpret_cast<decltype(&bentaxis_sobol_indices)>(
+        dlsym(library_, "bentaxis_sobol_indices"));
+  }
+  bool is_there() const { return indices_ != nullptr; }
+  const std::string& why() const { return why_; }
+
+  void indices(std::size_t base, std::size_t numbers, const std::vector<double>& inputs,
+               const std::vector<double>& outputs, std::vector<double>& found) const {
+    std::array<char, 500> message{};
+    if (indices_(base, numbers, inputs.data(), outputs.data(), kConfidence, found.data(),
+                 message.data(), message.size()) != 0)
+      throw ComputationError(std::string("Sobol indices: OpenTURNS: ") + message.data());
+  }
+
+ private:
+  // Beside the program, where that is installed; where the library was installed or built.
+  static std::vector<std::filesystem::path> places() {
+#ifdef BENTAXIS_HAS_OPENTURNS
+    std::error_code none;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", none);
+    return {program.parent_path() / BENTAXIS_MODULE_FROM_BINARY, BENTAXIS_MODULE_INSTALLED,
+            BENTAXIS_MODULE_BUILT};
+#else
+    return {};
+#endif
+  }
+
+  void* library_ = nullptr;
+  std::string why_;
+  decltype(&bentaxis_sobol_indices) indices_ = nullptr;
+};
+
+const Module& module() {
+  static const Module loaded;
+  return loaded;
+}
+
+// Points A, B, and A with column i of B, of base points one after the other: what estimators take,
+// but base point by base point, so that each is computed as a whole.
+class Design {
+ public:
+  Design(const UncertainVariables& numbers, std::size_t base, std::uint64_t seed)
+      : numbers_(numbers), points_(sobol(2 * numbers.size(), base, seed)) {}
+
+  std::size_t of_one() const { return numbers_.size() + 2; }
+  // Points of one base point, of_one() x numbers.
+  void points(std::size_t index, std::span<double> values) const {
+    const std::size_t n = numbers_.size();
+    std::vector<double> shares(2 * n);
+    points_->point(index, shares);
+    const auto a = values.subspan(0, n), b = values.subspan(n, n);
+    numbers_.values(std::span(shares).subspan(0, n), a);
+    numbers_.values(std::span(shares).subspan(n, n), b);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto mixed = values.subspan((2 + i) * n, n);
+      std::copy(a.begin(), a.end(), mixed.begin());
+      mixed[i] = b[i];
+    }
+  }
+
+ private:
+  const UncertainVariables& numbers_;
+  std::unique_ptr<Points> points_;
+};
+
+}  // namespace
+
+std::string openturns_version() {
+#ifdef BENTAXIS_HAS_OPENTURNS
+  return BENTAXIS_HAS_OPENTURNS;
+#else
+  return "none";
+#endif
+}
+
+SobolIndices sobol_indices(const Response& response, std::size_t outputs,
+                           const UncertainVariables& numbers, std::size_t base, std::uint64_t seed,
+                           int threads, const Progress& progress) {
+  if (!numbers.independent())
+    throw InputError("Sobol indices: need independent parameters: [uncertainty] correlates some");
+  if (!module().is_there())
+    throw InputError(
+        "Sobol indices: this program was built without OpenTURNS; install "
+        "libopenturns-dev (scripts/setup full) and build again" +
+        (module().why().empty() ? "" : ": " + module().why()));
+  const std::size_t n = numbers.size();
+  const Design design(numbers, base, seed);
+  const std::size_t rows = design.of_one();
+  std::vector<double> inputs(base * rows * n), results(base * rows * outputs);
+  std::vector<std::string> reasons(base * rows);
+  study::Reporting reporting(base, progress);
+  study::in_threads(threads, base, [&](std::size_t i) {
+    const auto values = std::span(inputs).subspan(i * rows * n, rows * n);
+    design.points(i, values);
+    response(rows, values, std::span(results).subspan(i * rows * outputs, rows * outputs),
+             std::span(reasons).subspan(i * rows, rows));
+    reporting.done();
+  });
+
+  std::vector<std::size_t> kept;  // base points all of whose points have outputs
+  for (std::size_t i = 0; i < base; ++i)
+    if (std::all_of(reasons.begin() + i * rows, reasons.begin() + (i + 1) * rows,
+                    [](const std::string& reason) { return reason.empty(); }))
+      kept.push_back(i);
+  SobolIndices all;
+  all.evaluations = base * rows;
+  all.left_out = base - kept.size();
+  constexpr std::size_t kFewest = 16;
+  if (kept.size() < kFewest)
+    throw ComputationError("Sobol indices: only " + std::to_string(kept.size()) + " of " +
+                           std::to_string(base) + " base points have outputs at all their points");
+  std::vector<double> ordered(kept.size() * rows * n), column(kept.size() * rows);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (std::size_t k = 0; k < kept.size(); ++k)
+      std::copy_n(inputs.begin() + (kept[k] * rows + r) * n, n,
+                  ordered.begin() + (r * kept.size() + k) * n);
+  for (std::size_t o = 0; o < outputs; ++o) {
+    for (std::size_t r = 0; r < rows; ++r)
+      for (std::size_t k = 0; k < kept.size(); ++k)
+        column[r * kept.size() + k] = results[(kept[k] * rows + r) * outputs + o];
+    const auto [low, high] = std::minmax_element(column.begin(), column.end());
+    std::vector<double> found(6 * n, not_computed());
+    if (is_computed(column.front()) && *low < *high)
+      module().indices(kept.size(), n, ordered, column, found);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double* const row = found.data() + 6 * i;
+      all.first.push_back({row[0], row[1], row[2]});
+      all.total.push_back({row[3], row[4], row[5]});
+    }
+  }
+  return all;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,53 @@
+#include "bentaxis/designs/spaced_values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::designs {
+
+std::vector<double> spaced_values(const std::string& what, const std::string& text,
+                                  const std::string& unit, double least, int most) {
+  const auto fail = [&](const std::string& why) {
+    throw InputError(what + " " + text + ": must " + why);
+  };
+  const std::string forms = "be FROM:TO:STEP, FROM:TO:#N or one number" +
+                            (unit.empty() ? "" : ", in " + unit) +
+                            (std::isfinite(least) ? ", >= " + number_text(least) : "");
+  std::vector<double> numbers;
+  bool counted = false;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(':', at), text.size());
+    if (numbers.size() == 2 && at < end && text[at] == '#') {
+      counted = true;
+      ++at;
+    }
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data() + at, text.data() + end, value);
+    if (error != std::errc() || stop != text.data() + end || !std::isfinite(value)) fail(forms);
+    if (numbers.size() < 2 && value < least) fail(forms);
+    numbers.push_back(value);
+    at = end + 1;
+  }
+  if (numbers.size() == 1) return numbers;
+  if (numbers.size() != 3) fail(forms);
+  const double from = numbers[0], to = numbers[1];
+  double count = numbers[2];
+  if (counted) {
+    if (!(count >= 1 && count == std::floor(count))) fail("have N an integer >= 1");
+    if (count == 1 ? to != from : !(to > from)) fail("have FROM < TO, or FROM = TO with #1");
+  } else {
+    if (!(numbers[2] > 0) || to < from) fail("have STEP > 0 and FROM <= TO");
+    count = std::floor((to - from) / numbers[2] + 1e-9) + 1;
+  }
+  if (count > most) fail("not be more than " + std::to_string(most) + " points");
+  const double step = !counted ? numbers[2] : count > 1 ? (to - from) / (count - 1) : 0;
+  std::vector<double> values;
+  for (int i = 0; i < static_cast<int>(count); ++i) values.push_back(from + i * step);
+  return values;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,310 @@
+#include "bentaxis/designs/sweep_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
+#include "sweep_view.h"
+
+namespace bentaxis::designs {
+namespace {
+
+using report::Cell;
+using report::Section;
+
+constexpr std::size_t kAllRows = 60;  // designs of a sweep that is printed whole
+constexpr std::size_t kBestRows = 20;
+constexpr std::size_t kMostReasons = 30, kMostDiffering = 40;
+
+std::string percent(std::size_t part, std::size_t whole) {
+  return whole == 0 ? "0 %"
+                    : fmt::format("{:.3g} %",
+                                  100 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+std::size_t agreeing(const SweepResult& result) {
+  return static_cast<std::size_t>(
+      std::count_if(result.checks.begin(), result.checks.end(),
+                    [&](const SweepCheck& check) { return check.agrees(result.tolerance); }));
+}
+
+std::string other_model(const SweepResult& result) {
+  return result.plan.model == study::Model::analytic ? "Simbody" : "the closed form";
+}
+
+std::string values_text(const Varied& varied) {
+  const Variable& variable = varied.variable;
+  const auto& levels = varied.levels;
+  if (levels.empty()) return varied.distribution.text();
+  if (levels.size() > 8)
+    return fmt::format("{} .. {}, {} values", value_text(variable, levels.front()),
+                       value_text(variable, levels.back()), levels.size());
+  std::string text;
+  for (const double level : levels)
+    text += (text.empty() ? "" : ", ") + value_text(variable, level);
+  return text;
+}
+
+Section plan_section(const SweepResult& result, const SweepView& view) {
+  const SweepPlan& plan = result.plan;
+  Section section{
+      "What was varied", "", {}, {{"parameter", "meaning", "values", "in the case"}, {}}};
+  section.facts = {{"designs", fmt::format("{}", plan.size())},
+                   {"sampling", to_string(plan.sampling)}};
+  if (plan.sampling != Sampling::grid)
+    section.facts.emplace_back("seed", fmt::format("{}", plan.seed));
+  section.facts.emplace_back("model", study::to_string(plan.model));
+  if (result.every > 1)
+    section.text = fmt::format(
+        "Figures and tables below are of every {}th design, {} of {}; the result files have all.",
+        result.every, view.designs(), plan.size());
+  for (const Varied& varied : plan.varied) {
+    const Variable& variable = varied.variable;
+    const std::string unit = variable.unit().empty() ? "" : " (" + variable.unit() + ")";
+    section.table.rows.push_back({variable.name(), variable.meaning() + unit, values_text(varied),
+                                  value_text(variable, variable.value(result.base))});
+  }
+  return section;
+}
+
+Section outputs_section(const SweepView& view) {
+  Section section{
+      "Outputs",
+      "",
+      {},
+      {{"output", "unit", "meaning", "sought", "lowest", "of design", "highest", "of design"}, {}}};
+  for (std::size_t k = 0; k < view.outputs(); ++k) {
+    std::size_t lowest = view.designs(), highest = view.designs();
+    for (std::size_t i = 0; i < view.designs(); ++i) {
+      const double v = view.result(i, k);
+      if (!is_computed(v)) continue;
+      if (lowest == view.designs() || v < view.result(lowest, k)) lowest = i;
+      if (highest == view.designs() || v > view.result(highest, k)) highest = i;
+    }
+    const Output& output = view.output(k);
+    const int direction = view.direction(k);
+    std::vector<Cell> row = {output.name, output.unit, output.meaning,
+                             direction < 0   ? "smallest"
+                             : direction > 0 ? "largest"
+                                             : ""};
+    for (const std::size_t design : {lowest, highest}) {
+      const bool found = design < view.designs();
+      row.emplace_back(found ? view.result(design, k) : not_computed());
+      row.emplace_back(found ? fmt::format("{}: {}", view.number(design), view.text(design)) : "");
+    }
+    section.table.rows.push_back(std::move(row));
+  }
+  return section;
+}
+
+// Reasons that differ in their numbers only are one.
+std::string kind_of(const std::string& reason) {
+  std::string kind;
+  for (const char c : reason) {
+    const bool of_number = (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '+';
+    if (!of_number)
+      kind += c;
+    else if (kind.empty() || kind.back() != '#')
+      kind += '#';
+  }
+  return kind;
+}
+
+Section infeasible_section(const SweepResult& result, const SweepView& view) {
+  struct Group {
+    std::size_t designs = 0, first = 0;
+    std::string example;
+  };
+  std::map<std::string, Group> groups;
+  for (const auto& [design, reason] : result.infeasible) {
+    Group& group = groups[kind_of(reason)];
+    if (group.designs++ > 0) continue;
+    group.first = design;
+    group.example = reason;
+  }
+  std::vector<Group> sorted;
+  for (const auto& [kind, group] : groups) sorted.push_back(group);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Group& a, const Group& b) { return a.designs > b.designs; });
+  Section section{
+      "Infeasible designs",
+      "What a case file with these values would be refused for, or what could not be "
+      "computed. Reasons that differ in numbers only are counted together; the first "
+      "is shown.",
+      {{"infeasible", fmt::format("{} of {} designs, {}", result.all_infeasible, result.plan.size(),
+                                  percent(result.all_infeasible, result.plan.size()))}},
+      {{"reason", "designs", "first design"}, {}}};
+  if (sorted.size() > kMostReasons) {
+    section.text +=
+        fmt::format(" The {} most frequent of {} are shown.", kMostReasons, sorted.size());
+    sorted.resize(kMostReasons);
+  }
+  for (const Group& group : sorted)
+    section.table.rows.push_back(
+        {group.example, static_cast<long>(group.designs),
+         fmt::format("{}: {}", view.number(group.first), view.text(group.first))});
+  return section;
+}
+
+// Rows of designs: their values and results.
+void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
+                 report::Table& table) {
+  table.columns = {"design"};
+  for (std::size_t k = 0; k < view.variables(); ++k)
+    table.columns.push_back(view.variable(k).name());
+  for (std::size_t k = 0; k < view.outputs(); ++k) table.columns.push_back(view.output(k).name);
+  for (const std::size_t design : designs) {
+    std::vector<Cell> row = {static_cast<long>(view.number(design))};
+    for (std::size_t k = 0; k < view.variables(); ++k) {
+      const double value = view.value(design, k);
+      if (view.variable(k).words().empty())
+        row.emplace_back(value);
+      else
+        row.emplace_back(view.variable(k).text(value));
+    }
+    for (std::size_t k = 0; k < view.outputs(); ++k) row.emplace_back(view.result(design, k));
+    table.rows.push_back(std::move(row));
+  }
+}
+
+std::vector<std::size_t> by_output(const SweepView& view, std::vector<std::size_t> designs,
+                                   std::size_t output) {
+  const double sign = view.direction(output);
+  std::erase_if(designs, [&](std::size_t d) { return !is_computed(view.result(d, output)); });
+  std::stable_sort(designs.begin(), designs.end(), [&](std::size_t a, std::size_t b) {
+    return sign * view.result(a, output) > sign * view.result(b, output);
+  });
+  return designs;
+}
+
+// The front, or where one output alone is sought the best by it.
+Section best_section(const SweepView& view) {
+  std::size_t output = 0;
+  while (view.direction(output) == 0) ++output;
+  Section section;
+  std::vector<std::size_t> designs;
+  if (view.sought() == 1) {
+    designs = by_output(view, thinned(view.designs(), view.designs() + 1), output);
+    section.title = "Best designs";
+    section.text = "By " + view.output(output).name + ".";
+    designs.resize(std::min(designs.size(), kBestRows));
+  } else {
+    const auto& front = view.front();
+    section.title = "Pareto front";
+    section.text = "Designs of which no other is as good in all outputs sought and better in one.";
+    section.facts = {{"on the front", fmt::format("{} designs", front.size())}};
+    for (const std::size_t i : thinned(front.size(), kBestRows)) designs.push_back(front[i]);
+    if (designs.size() < front.size())
+      section.text += fmt::format(" {} of them, evenly chosen, are shown.", designs.size());
+    designs = by_output(view, std::move(designs), output);
+  }
+  put_designs(view, designs, section.table);
+  return section;
+}
+
+Section checks_section(const SweepResult& result) {
+  Section section{
+      "Recomputed by " + other_model(result),
+      "Designs chosen by their numbers alone. A difference is over the scale of its output, the "
+      "peak of the curve over the turn. An infeasible design agrees where both models refuse it.",
+      {{"agree", fmt::format("{} of {}", agreeing(result), result.checks.size())},
+       {"tolerance", fmt::format("{:g} of the scale", result.tolerance)}},
+      {{"output", "designs compared", "largest difference over its scale", "of design"}, {}}};
+  for (std::size_t k = 0; k < result.plan.outputs.size(); ++k) {
+    long compared = 0;
+    double largest = not_computed();
+    std::size_t where = 0;
+    for (const SweepCheck& check : result.checks) {
+      if (k >= check.scales.size() || !(check.scales[k] > 0)) continue;
+      ++compared;
+      const double error = check.error(k);
+      if (is_computed(largest) && !(error > largest)) continue;
+      largest = error;
+      where = check.design;
+    }
+    section.table.rows.push_back({result.plan.outputs[k].name, compared, largest,
+                                  compared > 0 ? Cell(static_cast<long>(where)) : Cell()});
+  }
+  return section;
+}
+
+Section differing_section(const SweepResult& result) {
+  Section section{"Designs in which the models differ",
+                  "",
+                  {},
+                  {{"design", "output", study::to_string(result.plan.model), other_model(result),
+                    "difference over its scale"},
+                   {}}};
+  std::size_t all = 0;
+  const auto add = [&](std::vector<Cell> row) {
+    if (++all <= kMostDiffering) section.table.rows.push_back(std::move(row));
+  };
+  for (const SweepCheck& check : result.checks) {
+    if (check.agrees(result.tolerance)) continue;
+    const long design = static_cast<long>(check.design);
+    if (check.own_reason.empty() != check.reason.empty()) {
+      add({design, "", check.own_reason.empty() ? "feasible" : check.own_reason,
+           check.reason.empty() ? "feasible" : check.reason, Cell()});
+      continue;
+    }
+    for (std::size_t k = 0; k < check.scales.size(); ++k)
+      if (!(check.error(k) <= result.tolerance))
+        add({design, result.plan.outputs[k].name, check.own[k], check.values[k], check.error(k)});
+  }
+  if (all > kMostDiffering) section.text = fmt::format("The first {} of {}.", kMostDiffering, all);
+  return section;
+}
+
+}  // namespace
+
+std::string headline(const SweepResult& result) {
+  std::string text =
+      fmt::format("{} designs in {} parameter{}", result.plan.size(), result.plan.varied.size(),
+                  result.plan.varied.size() == 1 ? "" : "s");
+  text += result.all_infeasible == 0 ? ", all feasible"
+                                     : fmt::format(", {} infeasible", result.all_infeasible);
+  if (!result.checks.empty())
+    text += fmt::format("; {} agrees at {} of {} designs", other_model(result), agreeing(result),
+                        result.checks.size());
+  return text;
+}
+
+report::Document sweep_document(const SweepResult& result, const report::Lines& program) {
+  const SweepView view(result);
+  report::Document document;
+  document.title = result.base.name + ": a sweep";
+  document.program = program;
+  study::describe_case(document, result.base);
+  document.derived = study::derived_section(result.base);
+  document.verdict = report::Verdict{result.agrees(), headline(result)};
+  if (result.checks.empty()) {
+    document.verdict->agrees.reset();
+    document.verdict->word = "Sweep";
+  }
+  document.meaning =
+      result.checks.empty()
+          ? "Outputs of every design by one model. Nothing was compared: --check SHARE has designs "
+            "recomputed by the other."
+          : "Outputs of every design by one model; that the other agrees where it was asked says "
+            "that the equations are solved correctly, not that a pump would do so.";
+  document.runs.emplace();
+  document.runs->push_back(plan_section(result, view));
+  document.runs->push_back(outputs_section(view));
+  if (view.sought() > 0) document.runs->push_back(best_section(view));
+  if (!result.infeasible.empty()) document.runs->push_back(infeasible_section(result, view));
+  if (!result.checks.empty()) document.runs->push_back(checks_section(result));
+  if (!result.agrees()) document.runs->push_back(differing_section(result));
+  if (view.designs() <= kAllRows) {
+    document.runs->push_back({"All designs", "", {}, {}});
+    put_designs(view, thinned(view.designs(), kAllRows), document.runs->back().table);
+  }
+  document.figures = sweep_figures(view);
+  return document;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,220 @@
+#include "sweep_hdf5.h"
+
+#include "bentaxis/designs/sweep_tables.h"
+#include "bentaxis/pump/error.h"
+
+#ifdef BENTAXIS_HAS_HDF5
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace bentaxis::designs {
+
+bool has_hdf5() { return true; }
+
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+}
+
+namespace {
+
+constexpr hsize_t kChunk = 16384;     // rows
+constexpr unsigned kCompression = 1;  // lightly: of random numbers little can be saved
+
+// An identifier of the library, given back at the end.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
+    if (id_ < 0) throw InputError("the library HDF5 refuses to write");
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&&) = delete;
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  hid_t operator*() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void must(herr_t status) {
+  if (status < 0) throw InputError("the library HDF5 cannot write: is the disk full?");
+}
+
+Handle text_type() {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  must(H5Tset_size(*type, H5T_VARIABLE));
+  must(H5Tset_cset(*type, H5T_CSET_UTF8));
+  return type;
+}
+
+void attribute(hid_t object, const char* name, const std::string& value) {
+  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle made(H5Acreate2(object, name, *type, *space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const char* const text = value.c_str();
+  must(H5Awrite(*made, *type, &text));
+}
+
+void attribute(hid_t object, const char* name, double value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle made(H5Acreate2(object, name, H5T_IEEE_F64LE, *space, H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
+  must(H5Awrite(*made, H5T_NATIVE_DOUBLE, &value));
+}
+
+// Without times, so that equal results are equal files; members in the order they were made in.
+Handle group(hid_t parent, const char* name) {
+  const Handle how(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  must(H5Pset_obj_track_times(*how, false));
+  must(H5Pset_link_creation_order(*how, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  return {H5Gcreate2(parent, name, H5P_DEFAULT, *how, H5P_DEFAULT), H5Gclose};
+}
+
+Handle data_set(hid_t parent, const std::string& name, hid_t type,
+                const std::vector<hsize_t>& extent) {
+  const auto rank = static_cast<int>(extent.size());
+  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
+  const Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  must(H5Pset_obj_track_times(*how, false));
+  if (extent[0] > 0) {
+    std::vector<hsize_t> chunk = extent;
+    chunk[0] = std::min(chunk[0], kChunk);
+    must(H5Pset_chunk(*how, rank, chunk.data()));
+    if (H5Tis_variable_str(type) <= 0) must(H5Pset_shuffle(*how));
+    must(H5Pset_deflate(*how, kCompression));
+  }
+  return {H5Dcreate2(parent, name.c_str(), type, *space, H5P_DEFAULT, *how, H5P_DEFAULT), H5Dclose};
+}
+
+// Rows [first, first + count) of a data set with one column.
+void write_rows(const Handle& set, hid_t type, hsize_t first, hsize_t count, const void* rows) {
+  const Handle file(H5Dget_space(*set), H5Sclose);
+  const Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  must(H5Sselect_hyperslab(*file, H5S_SELECT_SET, &first, nullptr, &count, nullptr));
+  must(H5Dwrite(*set, type, *memory, *file, H5P_DEFAULT, rows));
+}
+
+}  // namespace
+
+struct Hdf5File::Implementation {
+  std::size_t variables, outputs;
+  Handle file, reason_type;
+  std::vector<Handle> columns;  // variables, then outputs
+  std::vector<Handle> reasons;  // one
+
+  Implementation(const std::filesystem::path& path, const Sweep& sweep, const SweepRecord& record)
+      : variables(sweep.plan().varied.size()),
+        outputs(sweep.plan().outputs.size()),
+        file(open(path)),
+        reason_type(text_type()) {
+    const Handle root(H5Gopen2(*file, "/", H5P_DEFAULT), H5Gclose);
+    attribute(*root, "title", "designs of a pump and what was computed of them");
+    attribute(*root, "case", record.case_text);
+    attribute(*root, "plan", record.plan);
+    for (const auto& [name, content] : record.curves) attribute(*root, name.c_str(), content);
+    const std::vector<hsize_t> extent = {sweep.designs()};
+    const Handle designs = group(*file, "designs"), results = group(*file, "outputs");
+    for (const Varied& v : sweep.plan().varied) {
+      columns.push_back(data_set(*designs, v.variable.name(), H5T_IEEE_F64LE, extent));
+      attribute(*columns.back(), "unit", v.variable.unit());
+      attribute(*columns.back(), "meaning", v.variable.meaning());
+      attribute(*columns.back(), "symbol", v.variable.symbol());
+      std::string words;
+      for (const std::string& word : v.variable.words()) words += (words.empty() ? "" : ",") + word;
+      if (!words.empty()) attribute(*columns.back(), "words", words);
+    }
+    for (const Output& o : sweep.plan().outputs) {
+      columns.push_back(data_set(*results, o.name, H5T_IEEE_F64LE, extent));
+      attribute(*columns.back(), "unit", o.unit);
+      attribute(*columns.back(), "meaning", o.meaning);
+    }
+    reasons.push_back(data_set(*file, "reason", *reason_type, extent));
+    attribute(*reasons.back(), "meaning", "why a design is infeasible; empty where it is not");
+  }
+
+  static Handle open(const std::filesystem::path& path) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are said by this program
+    const Handle how(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    must(H5Pset_obj_track_times(*how, false));
+    return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, *how, H5P_DEFAULT), H5Fclose};
+  }
+
+  void check_columns(const char* name, const std::vector<SweepCheck>& checks, std::size_t outputs_,
+                     std::vector<double> SweepCheck::*which, const Handle& parent) const {
+    std::vector<double> all;
+    for (const SweepCheck& c : checks) all.insert(all.end(), (c.*which).begin(), (c.*which).end());
+    const Handle set = data_set(*parent, name, H5T_IEEE_F64LE, {checks.size(), outputs_});
+    must(H5Dwrite(*set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()));
+    attribute(*set, "columns", "as /outputs, in the order of the plan");
+  }
+};
+
+Hdf5File::Hdf5File(const std::filesystem::path& file, const Sweep& sweep, const SweepRecord& record)
+    : implementation_(std::make_unique<Implementation>(file, sweep, record)) {}
+Hdf5File::~Hdf5File() = default;
+
+void Hdf5File::add(const SweepBlock& block) {
+  Implementation& it = *implementation_;
+  std::vector<double> column(block.designs);
+  const auto write = [&](const Handle& set, const std::vector<double>& rows, std::size_t which,
+                         std::size_t width) {
+    for (std::size_t i = 0; i < block.designs; ++i) column[i] = rows[i * width + which];
+    write_rows(set, H5T_NATIVE_DOUBLE, block.first, block.designs, column.data());
+  };
+  for (std::size_t i = 0; i < it.variables; ++i)
+    write(it.columns[i], block.values, i, it.variables);
+  for (std::size_t i = 0; i < it.outputs; ++i)
+    write(it.columns[it.variables + i], block.results, i, it.outputs);
+  std::vector<const char*> texts;
+  for (const std::string& reason : block.reasons) texts.push_back(reason.c_str());
+  write_rows(it.reasons.front(), *it.reason_type, block.first, block.designs, texts.data());
+}
+
+void Hdf5File::finish(const std::vector<SweepCheck>& checks) {
+  Implementation& it = *implementation_;
+  if (!checks.empty()) {
+    const Handle parent = group(*it.file, "checks");
+    attribute(*parent, "meaning", "designs that the other model computed too");
+    attribute(*parent, "tolerance", kCheckTolerance);
+    std::vector<double> designs;
+    for (const SweepCheck& c : checks) designs.push_back(static_cast<double>(c.design));
+    const Handle set = data_set(*parent, "design", H5T_STD_U64LE, {checks.size()});
+    must(H5Dwrite(*set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, designs.data()));
+    it.check_columns("own", checks, it.outputs, &SweepCheck::own, parent);
+    it.check_columns("other", checks, it.outputs, &SweepCheck::values, parent);
+    it.check_columns("scale", checks, it.outputs, &SweepCheck::scales, parent);
+  }
+  must(H5Fflush(*it.file, H5F_SCOPE_GLOBAL));
+  implementation_.reset();
+}
+
+}  // namespace bentaxis::designs
+
+#else
+
+namespace bentaxis::designs {
+
+bool has_hdf5() { return false; }
+std::string hdf5_version() { return "none"; }
+
+struct Hdf5File::Implementation {};
+
+Hdf5File::Hdf5File(const std::filesystem::path& file, const Sweep&, const SweepRecord&) {
+  throw InputError(file.string() +
+                   ": this program was built without HDF5; install libhdf5-dev (scripts/setup "
+                   "full) and build again, or take --format csv");
+}
+Hdf5File::~Hdf5File() = default;
+void Hdf5File::add(const SweepBlock&) {}
+void Hdf5File::finish(const std::vector<SweepCheck>&) {}
+
+}  // namespace bentaxis::designs
+
+#endif

@@ -1,0 +1,344 @@
+#include "bentaxis/designs/sweep_parts.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <utility>
+#include <variant>
+
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/input_log.h"
+#include "bentaxis/files/toml_reader.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/registry.h"
+#include "bentaxis/study/in_threads.h"
+
+namespace bentaxis::designs {
+namespace fs = std::filesystem;
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "blocks are kept in little-endian order");
+
+constexpr const char* kTitle = "bentaxis sweep block 1\n";
+constexpr const char* kCaseFile = "case.toml";
+constexpr const char* kPlanFile = "plan.toml";
+constexpr std::size_t kHash = 64;  // hexadecimal digits of a SHA-256
+
+std::optional<std::string> content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// Under another name first, which no other process or thread has; then renamed.
+void put(const fs::path& file, const std::string& content) {
+  static std::atomic<unsigned> count = 0;
+  char host[64] = "";
+  gethostname(host, sizeof host - 1);
+  const fs::path temporary = file.string() + "." + host + "-" + std::to_string(getpid()) + "-" +
+                             std::to_string(count++) + ".part";
+  std::ofstream out(temporary, std::ios::binary);
+  out << content << std::flush;
+  const bool written = out.good();
+  out.close();
+  std::error_code error;
+  if (written) fs::rename(temporary, file, error);
+  if (!written || error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw InputError(file.string() + ": cannot be written" +
+                     (error ? ": " + error.message() : std::string(": is the disk full?")));
+  }
+}
+
+fs::path file_of(const fs::path& folder, std::size_t block) {
+  std::string number = std::to_string(block);
+  number.insert(0, number.size() < 6 ? 6 - number.size() : 0, '0');
+  return folder / ("block-" + number + ".bin");
+}
+
+// Numbers and texts one behind the other.
+class Writer {
+ public:
+  void number(std::uint64_t value) { bytes(&value, sizeof value); }
+  void numbers(const std::vector<double>& values) {
+    bytes(values.data(), values.size() * sizeof(double));
+  }
+  void text(const std::string& text) {
+    number(text.size());
+    content_ += text;
+  }
+  std::string& content() { return content_; }
+
+ private:
+  void bytes(const void* from, std::size_t count) {
+    content_.append(static_cast<const char*>(from), count);
+  }
+  std::string content_;
+};
+
+// The reverse: after the first thing that is not there, everything is empty and `bad` set.
+class Reader {
+ public:
+  explicit Reader(std::string_view content) : rest_(content) {}
+  std::uint64_t number() {
+    std::uint64_t value = 0;
+    bytes(&value, sizeof value);
+    return value;
+  }
+  std::vector<double> numbers(std::uint64_t count) {
+    if (count > rest_.size() / sizeof(double)) bad_ = true;
+    std::vector<double> values(bad_ ? 0 : count);
+    bytes(values.data(), values.size() * sizeof(double));
+    return values;
+  }
+  std::string text() {
+    const std::uint64_t size = number();
+    if (size > rest_.size()) bad_ = true;
+    std::string text(bad_ ? 0 : size, '\0');
+    bytes(text.data(), text.size());
+    return text;
+  }
+  bool whole() const { return !bad_ && rest_.empty(); }
+  bool bad() const { return bad_; }
+
+ private:
+  void bytes(void* to, std::size_t count) {
+    if (count > rest_.size()) bad_ = true;
+    if (bad_ || count == 0) return;
+    std::memcpy(to, rest_.data(), count);
+    rest_.remove_prefix(count);
+  }
+  std::string_view rest_;
+  bool bad_ = false;
+};
+
+std::string bytes_of(const SweepBlock& block, const std::string& identity) {
+  Writer out;
+  out.content() = kTitle + identity;
+  out.number(block.first);
+  out.number(block.designs);
+  out.number(block.values.size());
+  out.number(block.results.size());
+  out.numbers(block.values);
+  out.numbers(block.results);
+  for (const std::string& reason : block.reasons) out.text(reason);
+  out.number(block.checks.size());
+  for (const SweepCheck& check : block.checks) {
+    out.number(check.design);
+    out.number(check.own.size());
+    out.numbers(check.own);
+    out.numbers(check.values);
+    out.numbers(check.scales);
+    out.text(check.own_reason);
+    out.text(check.reason);
+  }
+  return out.content() + sha256_of(out.content());
+}
+
+std::optional<SweepBlock> block_of(const std::string& bytes, const std::string& identity) {
+  const std::string head = kTitle + identity;
+  if (bytes.size() < head.size() + kHash || bytes.compare(0, head.size(), head) != 0)
+    return std::nullopt;
+  const std::string content = bytes.substr(0, bytes.size() - kHash);
+  if (sha256_of(content) != bytes.substr(content.size())) return std::nullopt;
+  Reader in(std::string_view(content).substr(head.size()));
+  SweepBlock block;
+  block.first = in.number();
+  block.designs = in.number();
+  const std::uint64_t values = in.number(), results = in.number();
+  block.values = in.numbers(values);
+  block.results = in.numbers(results);
+  for (std::size_t i = 0; i < block.designs && !in.bad(); ++i) block.reasons.push_back(in.text());
+  const std::uint64_t checks = in.number();
+  for (std::uint64_t i = 0; i < checks && !in.bad(); ++i) {
+    SweepCheck check;
+    check.design = in.number();
+    const std::uint64_t outputs = in.number();
+    check.own = in.numbers(outputs);
+    check.values = in.numbers(outputs);
+    check.scales = in.numbers(outputs);
+    check.own_reason = in.text();
+    check.reason = in.text();
+    block.checks.push_back(std::move(check));
+  }
+  if (!in.whole()) return std::nullopt;
+  return block;
+}
+
+// A case as a file that leaves out what follows from other parameters: read back, it still does.
+std::string text_of(const Family& family) {
+  std::istringstream lines(case_text(family.base()));
+  std::string text, table;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('[')) table = line.substr(1, line.size() - 2);
+    const auto& followers = family.followers();
+    if (std::none_of(followers.begin(), followers.end(), [&](const Family::Follower& f) {
+          return f.table->name == table && line.starts_with(f.parameter->key + " = ");
+        }))
+      text += line + "\n";
+  }
+  return text;
+}
+
+// What a folder says it is of.
+struct Found {
+  std::string identity, program;
+};
+std::optional<Found> found_in(const fs::path& folder) {
+  if (!fs::exists(folder / kPlanFile)) return std::nullopt;
+  TableReader top = TomlFile::read(folder / kPlanFile, "plan of a sweep").root();
+  TableReader record = top.table("record");
+  return Found{record.text("identity"), record.text("program")};
+}
+
+std::string program_in(const SweepRecord& record) {
+  TableReader top = TomlFile(record.plan, kPlanFile).root();
+  return top.table("record").text("program");
+}
+
+}  // namespace
+
+SweepRecord record_of(const Sweep& sweep, const std::string& program) {
+  SweepRecord record;
+  const Case& base = sweep.family().base();
+  record.case_text = text_of(sweep.family());
+  const ConstView view = view_of(base);
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& p : table.parameters) {
+      if (!std::holds_alternative<CurveField>(p.field)) continue;
+      const auto value = value_of(p, view);
+      const std::string path = value ? std::get<std::string>(*value) : "";
+      if (path.empty()) continue;
+      const auto content = content_of(path);
+      if (!content) throw InputError(path + ": cannot be read");
+      const std::string name = (table.name.empty() ? "" : table.name + ".") + p.key + ".csv";
+      record.curves.emplace_back(name, *content);
+      const std::string old = toml_text(path);
+      for (std::size_t at = record.case_text.find(old); at != std::string::npos;
+           at = record.case_text.find(old, at + 1))
+        record.case_text.replace(at, old.size(), toml_text(name));
+    }
+  // What is better changes no block.
+  SweepPlan blocks = sweep.plan();
+  blocks.direction.assign(blocks.outputs.size(), 0);
+  std::string all = program + "\n" + std::to_string(sweep.block_size()) + "\n" + record.case_text +
+                    "\n" + plan_text(blocks);
+  for (const auto& [name, content] : record.curves) all += name + "\n" + sha256_of(content) + "\n";
+  record.identity = sha256_of(all);
+  record.plan = plan_text(sweep.plan()) + "\n[record]\nidentity = " + toml_text(record.identity) +
+                "\nprogram = " + toml_text(program) + "\n";
+  return record;
+}
+
+SweepParts::SweepParts(fs::path folder, SweepRecord record)
+    : folders_{folder}, folder_(std::move(folder)), record_(std::move(record)) {}
+
+void SweepParts::begin() const {
+  if (const auto found = found_in(folder_); found && found->identity != record_.identity)
+    throw InputError(
+        folder_.string() + ": holds blocks of another " +
+        (found->program == program_in(record_) ? "case or plan" : "version, " + found->program) +
+        "; remove it or name another --out");
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error) throw InputError(folder_.string() + ": cannot be written: " + error.message());
+  for (const auto& [name, content] : record_.curves) put(folder_ / name, content);
+  put(folder_ / kCaseFile, record_.case_text);
+  put(folder_ / kPlanFile, record_.plan);
+}
+
+void SweepParts::add(const fs::path& folder) {
+  const auto found = found_in(folder);
+  if (!found) throw InputError(folder.string() + ": holds no blocks of a sweep");
+  if (found->identity != record_.identity)
+    throw InputError(folder.string() + ": holds blocks of another case, plan or version than " +
+                     folder_.string());
+  folders_.push_back(folder);
+}
+
+void SweepParts::keep(std::size_t block, const SweepBlock& content) const {
+  put(file_of(folder_, block), bytes_of(content, record_.identity));
+}
+
+std::optional<SweepBlock> SweepParts::read(std::size_t block) const {
+  for (const fs::path& folder : folders_)
+    if (const auto bytes = content_of(file_of(folder, block)))
+      if (auto found = block_of(*bytes, record_.identity)) return found;
+  return std::nullopt;
+}
+
+std::size_t SweepParts::count() const {
+  std::size_t blocks = 0;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored))
+    if (entry.path().extension() == ".bin") ++blocks;
+  return blocks;
+}
+
+void SweepParts::remove(std::size_t blocks) const {
+  std::error_code ignored;
+  for (std::size_t i = 0; i < blocks; ++i) fs::remove(file_of(folder_, i), ignored);
+  for (const auto& [name, content] : record_.curves) fs::remove(folder_ / name, ignored);
+  fs::remove(folder_ / kCaseFile, ignored);
+  fs::remove(folder_ / kPlanFile, ignored);
+  fs::remove(folder_, ignored);
+}
+
+std::pair<Sweep, SweepRecord> sweep_in(const fs::path& folder) {
+  const auto found = found_in(folder);
+  if (!found) throw InputError(folder.string() + ": holds no blocks of a sweep");
+  const Case base = read_case(folder / kCaseFile);
+  Sweep sweep(base, sweep_plan(read_sweep_request(folder / kPlanFile), base));
+  SweepRecord record = record_of(sweep, found->program);
+  if (record.identity != found->identity)
+    throw InputError(folder.string() + ": " + kCaseFile + " or " + kPlanFile +
+                     " is not what its blocks were computed from");
+  return {std::move(sweep), std::move(record)};
+}
+
+std::size_t compute_blocks(const Sweep& sweep, const SweepParts& parts, const SweepShare& share,
+                           const Progress& progress) {
+  std::vector<std::size_t> missing;
+  std::size_t mine = 0, there = 0;
+  for (std::size_t block = share.part; block < sweep.blocks(); block += share.parts) {
+    if (mine++ % share.ranks != share.rank) continue;
+    if (share.resume && parts.read(block))
+      ++there;
+    else
+      missing.push_back(block);
+  }
+  study::Reporting reporting(missing.size(), progress);
+  study::in_threads(share.threads, missing.size(), [&](std::size_t i) {
+    parts.keep(missing[i], sweep.compute(missing[i], [&] { reporting.tick(); }));
+    reporting.done();
+  });
+  return there;
+}
+
+std::string list_of(const std::vector<std::size_t>& numbers) {
+  constexpr std::size_t kMostRuns = 20;
+  std::string text;
+  std::size_t runs = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++runs) {
+    if (runs == kMostRuns) return text + ", ..";
+    std::size_t last = i;
+    while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
+    text += (text.empty() ? "" : ", ") + std::to_string(numbers[i]);
+    if (last > i) text += "-" + std::to_string(numbers[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+}  // namespace bentaxis::designs

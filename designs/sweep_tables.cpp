@@ -1,0 +1,166 @@
+#include "bentaxis/designs/sweep_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/in_threads.h"
+#include "sweep_hdf5.h"
+
+namespace bentaxis::designs {
+namespace {
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  return quoted + "\"";
+}
+
+// "max:Rb1_z1_N" says its unit; "peak:Rb1" does not.
+std::string heading_of(const Output& o) {
+  if (o.unit.empty() || o.name.ends_with("_" + o.unit)) return csv_text(o.name);
+  return csv_text(o.name + " [" + o.unit + "]");
+}
+
+std::string csv_head(const SweepPlan& plan) {
+  std::string head = "design";
+  for (const Varied& v : plan.varied) head += "," + csv_text(v.variable.name());
+  for (const Output& o : plan.outputs) head += "," + heading_of(o);
+  return head + ",reason\n";
+}
+
+std::string csv_rows(const SweepBlock& block, const SweepPlan& plan) {
+  const std::size_t n = plan.varied.size(), m = plan.outputs.size();
+  std::string text;
+  for (std::size_t i = 0; i < block.designs; ++i) {
+    text += std::to_string(block.first + i);
+    for (std::size_t k = 0; k < n; ++k)
+      text += "," + plan.varied[k].variable.text(block.values[i * n + k]);
+    for (std::size_t k = 0; k < m; ++k) {
+      text += ',';
+      append_number(text, block.results[i * m + k]);
+    }
+    text += "," + csv_text(block.reasons[i]) + "\n";
+  }
+  return text;
+}
+
+std::string checks_csv(const std::vector<SweepCheck>& checks, const SweepPlan& plan) {
+  std::string text = "design,output,own,other,scale,error,agrees,own_reason,other_reason\n";
+  for (const SweepCheck& c : checks)
+    for (std::size_t k = 0; k < plan.outputs.size(); ++k) {
+      text += std::to_string(c.design) + "," + csv_text(plan.outputs[k].name);
+      const bool compared = c.scales[k] > 0;
+      for (const double value : {c.own[k], c.values[k], compared ? c.scales[k] : not_computed(),
+                                 compared ? c.error(k) : not_computed()}) {
+        text += ',';
+        append_number(text, value);
+      }
+      const bool agrees = c.own_reason.empty() == c.reason.empty() && c.error(k) <= kCheckTolerance;
+      text +=
+          fmt::format(",{},{},{}\n", agrees ? 1 : 0, csv_text(c.own_reason), csv_text(c.reason));
+    }
+  return text;
+}
+
+double bytes_expected(const Sweep& sweep) {
+  constexpr double kBytesOfNumber = 18;
+  const auto columns =
+      static_cast<double>(sweep.plan().varied.size() + sweep.plan().outputs.size());
+  return kBytesOfNumber * columns * static_cast<double>(sweep.designs());
+}
+
+// Appends what is shown of a block.
+void take(SweepResult& result, SweepBlock& block) {
+  const std::size_t n = result.plan.varied.size(), m = result.plan.outputs.size();
+  for (std::size_t i = 0; i < block.designs; ++i) {
+    if (!block.reasons[i].empty()) ++result.all_infeasible;
+    if ((block.first + i) % result.every != 0) continue;
+    if (!block.reasons[i].empty()) result.infeasible.emplace_back(result.designs, block.reasons[i]);
+    const auto append = [i](std::vector<double>& to, const std::vector<double>& from,
+                            std::size_t width) {
+      const auto row = from.begin() + static_cast<std::ptrdiff_t>(i * width);
+      to.insert(to.end(), row, row + static_cast<std::ptrdiff_t>(width));
+    };
+    append(result.values, block.values, n);
+    append(result.results, block.results, m);
+    ++result.designs;
+  }
+  std::move(block.checks.begin(), block.checks.end(), std::back_inserter(result.checks));
+}
+
+}  // namespace
+
+SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const SweepFormats& formats,
+                        OutputFolder& folder, int threads, const Progress& progress,
+                        std::size_t most) {
+  SweepResult result;
+  result.plan = sweep.plan();
+  result.base = sweep.family().base();
+  result.every = (sweep.designs() + most - 1) / most;
+  OutputFolder::Stream* csv = formats.csv ? &folder.open("sweep.csv") : nullptr;
+  if (csv != nullptr) {
+    csv->expect(bytes_expected(sweep));
+    csv->write(csv_head(result.plan));
+  }
+  std::unique_ptr<Hdf5File> hdf5;
+  if (formats.hdf5)
+    hdf5 = std::make_unique<Hdf5File>(folder.reserve("sweep.h5"), sweep, parts.record());
+  std::vector<std::size_t> missing;
+  // Some blocks at a time: read side by side, then both files written side by side.
+  constexpr std::size_t kAtATime = 16;
+  std::vector<std::optional<SweepBlock>> blocks(kAtATime);
+  for (std::size_t first = 0; first < sweep.blocks(); first += kAtATime) {
+    const std::size_t count = std::min(kAtATime, sweep.blocks() - first);
+    study::in_threads(threads, count, [&](std::size_t i) { blocks[i] = parts.read(first + i); });
+    for (std::size_t i = 0; i < count; ++i)
+      if (!blocks[i]) missing.push_back(first + i);
+    if (missing.empty()) {
+      study::in_threads(threads, 2, [&](std::size_t file) {
+        for (std::size_t i = 0; i < count; ++i) {
+          if (file == 0 && csv != nullptr) csv->write(csv_rows(*blocks[i], result.plan));
+          if (file == 1 && hdf5) hdf5->add(*blocks[i]);
+        }
+      });
+      for (std::size_t i = 0; i < count; ++i) take(result, *blocks[i]);
+    }
+    progress(static_cast<double>(first + count) / static_cast<double>(sweep.blocks()));
+  }
+  if (!missing.empty())
+    throw InputError(fmt::format("{}: of {} blocks (0-{}) {} are missing or damaged: {}",
+                                 parts.folder().string(), sweep.blocks(), sweep.blocks() - 1,
+                                 missing.size(), list_of(missing)));
+  if (hdf5) hdf5->finish(result.checks);
+  if (!result.checks.empty())
+    folder.add("sweep_checks.csv", checks_csv(result.checks, result.plan));
+  return result;
+}
+
+std::string disagreements_text(const SweepResult& result) {
+  std::string text;
+  constexpr int kMost = 20;
+  int lines = 0;
+  const auto add = [&](const std::string& line) {
+    if (lines++ < kMost) text += line + "\n";
+  };
+  for (const SweepCheck& c : result.checks) {
+    if (c.own_reason.empty() != c.reason.empty())
+      add(fmt::format("design {}: refused by one model alone: {}", c.design,
+                      c.own_reason + c.reason));
+    for (std::size_t k = 0; k < c.values.size(); ++k)
+      if (!(c.error(k) <= result.tolerance))
+        add(fmt::format("design {}, {}: {} against {}, {} of the peak", c.design,
+                        result.plan.outputs[k].name, number_text(c.own[k]),
+                        number_text(c.values[k]), rounded_text(c.error(k))));
+  }
+  if (lines > kMost) text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMost);
+  return text;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,112 @@
+#include "sweep_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "bentaxis/designs/pareto.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::designs {
+namespace {
+
+// Where the name ends with its unit, that is said.
+report::Axis axis_of(const std::string& name, const std::string& unit, bool log) {
+  return {name, name.ends_with("_" + unit) ? "" : unit, log};
+}
+
+bool positive(double v) { return v > 0 && std::isfinite(v); }
+
+// Steps are ratios rather than differences.
+bool geometric(const std::vector<double>& levels) {
+  if (levels.size() < 3 || !std::all_of(levels.begin(), levels.end(), positive)) return false;
+  const double ratio = levels[1] / levels[0];
+  for (std::size_t i = 1; i + 1 < levels.size(); ++i)
+    if (std::abs(levels[i + 1] / levels[i] / ratio - 1) > 1e-6) return false;
+  return std::abs(ratio - 1) > 1e-3;
+}
+
+}  // namespace
+
+SweepView::SweepView(const SweepResult& result) : result_(result), reasons_(result.designs) {
+  for (const auto& [design, reason] : result.infeasible) reasons_.at(design) = reason;
+  if (!plan().direction.empty()) front_ = pareto_front(result.results, plan().direction);
+  for (const Varied& varied : plan().varied) {
+    const double own = varied.variable.value(result.base);
+    const auto nearest =
+        std::min_element(varied.levels.begin(), varied.levels.end(),
+                         [&](double a, double b) { return std::abs(a - own) < std::abs(b - own); });
+    home_.push_back(static_cast<std::size_t>(nearest - varied.levels.begin()));
+  }
+}
+
+const std::string& SweepView::reason(std::size_t design) const { return reasons_[design]; }
+
+std::string SweepView::text(std::size_t design) const {
+  std::string text;
+  for (std::size_t k = 0; k < variables(); ++k)
+    text +=
+        (k == 0 ? "" : ", ") + variable(k).name() + " " + value_text(variable(k), value(design, k));
+  return text;
+}
+
+std::size_t SweepView::sought() const {
+  return static_cast<std::size_t>(std::count_if(plan().direction.begin(), plan().direction.end(),
+                                                [](int direction) { return direction != 0; }));
+}
+
+report::Axis SweepView::axis(std::size_t k) const {
+  return axis_of(variable(k).name(), variable(k).unit(), geometric(levels(k)));
+}
+
+report::Axis SweepView::output_axis(std::size_t k) const {
+  constexpr double kManyTimes = 300;  // what spans more is seen by its logarithm
+  double low = INFINITY, high = 0;
+  for (std::size_t i = 0; i < designs(); ++i) {
+    const double v = result(i, k);
+    if (!is_computed(v)) continue;
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+  const bool log = positive(low) && std::isfinite(high) && high > kManyTimes * low;
+  return axis_of(output(k).name, output(k).unit, log);
+}
+
+report::Values SweepView::values(std::size_t k, const std::vector<std::size_t>& chosen) const {
+  report::Values list;
+  for (const std::size_t design : chosen) list.push_back(value(design, k));
+  return list;
+}
+
+report::Values SweepView::results(std::size_t k, const std::vector<std::size_t>& chosen) const {
+  report::Values list;
+  for (const std::size_t design : chosen) list.push_back(result(design, k));
+  return list;
+}
+
+bool SweepView::whole_grid() const {
+  return plan().sampling == Sampling::grid && result_.every == 1 && designs() == plan().size();
+}
+
+std::size_t SweepView::at(const std::vector<std::size_t>& level) const {
+  std::size_t design = 0;
+  for (std::size_t k = 0; k < variables(); ++k) design = design * levels(k).size() + level[k];
+  return design;
+}
+
+std::string value_text(const Variable& variable, double value) {
+  return variable.words().empty() ? fmt::format("{:.6g}", value) : variable.text(value);
+}
+
+std::vector<std::size_t> thinned(std::size_t count, std::size_t most,
+                                 const std::vector<std::size_t>& also) {
+  std::vector<std::size_t> even, chosen;
+  const std::size_t every = std::max<std::size_t>(1, (count + most - 1) / most);
+  for (std::size_t i = 0; i < count; i += every) even.push_back(i);
+  std::set_union(even.begin(), even.end(), also.begin(), also.end(), std::back_inserter(chosen));
+  return chosen;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,340 @@
+#include "bentaxis/designs/uncertainty_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::designs {
+namespace {
+
+using report::Cell;
+using report::Section;
+
+std::string percent(double share) { return fmt::format("{:g} %", 100 * share); }
+
+// "292.51 Nm, 95 % in 290.1 .. 294.9"
+std::string in_words(const UncertainOutput& o, double level) {
+  const Spread& s = o.spread;
+  return fmt::format(
+      "{} = {:.6g} {}: {} of the pumps in {:.6g} .. {:.6g}, standard uncertainty {:.3g}",
+      o.output.name, o.nominal, o.output.unit, percent(level), s.low.value, s.high.value,
+      s.deviation);
+}
+
+std::string headline(const UncertaintyResult& result) {
+  std::string text = result.outputs.empty()
+                         ? std::string("bands on reactions")
+                         : in_words(result.outputs.front(), result.options.level);
+  if (const std::size_t without = result.sampled.infeasible.size(); without > 0)
+    text += fmt::format("; {} of {} samples are no pump that can be computed", without,
+                        result.options.samples);
+  return text;
+}
+
+// To the digits that its interval leaves: two more than the interval has.
+std::string digits(double value, double interval) {
+  if (!(interval > 0) || value == 0) return fmt::format("{:.6g}", value);
+  const double size = std::max(std::abs(value), interval);
+  const int count = static_cast<int>(std::ceil(std::log10(size / interval))) + 2;
+  return fmt::format("{:.{}g}", value, std::clamp(count, 2, 15));
+}
+std::string with_error(double value, double error) {
+  return digits(value, error) + fmt::format(" +- {:.2g}", error);
+}
+std::string with_interval(const Estimate& e) {
+  const double width = e.high - e.low;
+  return digits(e.value, width) + " (" + digits(e.low, width) + " .. " + digits(e.high, width) +
+         ")";
+}
+
+Section outputs_section(const UncertaintyResult& result) {
+  const double tail = (1 - result.options.level) / 2;
+  Section section{
+      "Outputs",
+      fmt::format(
+          "Monte Carlo: {} independent samples, random numbers of seed {}. In brackets the "
+          "interval that holds the quantile with 95 % probability, by order statistics; behind +- "
+          "the standard error. Nominal: the case as it is. All digits are in outputs.csv.",
+          result.options.samples, result.options.seed),
+      {},
+      {{"output", "unit", "nominal", "mean", "standard deviation", percent(tail) + " quantile",
+        "median", percent(1 - tail) + " quantile"},
+       {}}};
+  for (const UncertainOutput& o : result.outputs) {
+    const Spread& s = o.spread;
+    section.table.rows.push_back({o.output.name, o.output.unit, digits(o.nominal, s.mean_error),
+                                  with_error(s.mean, s.mean_error),
+                                  with_error(s.deviation, s.deviation_error), with_interval(s.low),
+                                  with_interval(s.median), with_interval(s.high)});
+  }
+  return section;
+}
+
+Section first_order_section(const UncertaintyResult& result) {
+  Section section{
+      "First order beside it",
+      "Law of propagation of uncertainty (JCGM 100, 5.1 and 5.2): value at the parameters' means, "
+      "combined standard uncertainty from derivatives there and covariances. Where it differs from "
+      "Monte Carlo by more than the latter's standard error, the output is not linear over the "
+      "width of what is not known; Monte Carlo then counts.",
+      {},
+      {{"output", "unit", "value at the means", "combined standard uncertainty", "of Monte Carlo",
+        "standard error of that"},
+       {}}};
+  for (std::size_t o = 0; o < result.outputs.size(); ++o) {
+    const UncertainOutput& output = result.outputs[o];
+    section.table.rows.push_back({output.output.name, output.output.unit,
+                                  result.first_order.values[o], result.first_order.deviations[o],
+                                  output.spread.deviation, output.spread.deviation_error});
+  }
+  for (const std::string& reason : result.first_order.reasons)
+    section.facts.emplace_back("no derivative", reason);
+  return section;
+}
+
+Section contributions_section(const UncertaintyResult& result) {
+  Section section{
+      "Where it comes from, to first order",
+      "Derivative by differences over half and a quarter of the standard deviation, "
+      "extrapolated; its error is what the extrapolation changed. Contribution: "
+      "derivative x standard deviation of the parameter.",
+      {},
+      {{"output", "parameter", "derivative", "error of it", "unit of it", "contribution", "unit"},
+       {}}};
+  const std::size_t n = result.variables.size();
+  for (std::size_t o = 0; o < result.outputs.size(); ++o)
+    for (std::size_t i = 0; i < n; ++i) {
+      const Variable& v = result.variables.variables[i];
+      const Output& output = result.outputs[o].output;
+      const double derivative = result.first_order.derivatives[o * n + i];
+      const std::string of = output.unit.empty() ? "1" : output.unit;
+      section.table.rows.push_back(
+          {output.name, v.name(), derivative, result.first_order.derivative_errors[o * n + i],
+           v.unit().empty() ? of : of + "/" + v.unit(),
+           derivative * result.variables.distributions[i].standard_deviation(), output.unit});
+    }
+  return section;
+}
+
+Section sobol_section(const UncertaintyResult& result) {
+  Section section{
+      "Sobol indices",
+      "Shares of the output's variance: first, by the parameter alone; total, by it together with "
+      "others. Martinez' estimator (OpenTURNS), with the interval of 95 % that it has at "
+      "independent points; the points are a Sobol sequence, so that it errs on the safe side.",
+      {{"evaluations", std::to_string(result.sobol.evaluations)},
+       {"base points left out", std::to_string(result.sobol.left_out)}},
+      {{"output", "parameter", "first", "from", "to", "total", "from", "to"}, {}}};
+  const std::size_t n = result.variables.size();
+  for (std::size_t o = 0; o < result.outputs.size(); ++o)
+    for (std::size_t i = 0; i < n; ++i) {
+      const Estimate &first = result.sobol.first[o * n + i], &total = result.sobol.total[o * n + i];
+      section.table.rows.push_back({result.outputs[o].output.name,
+                                    result.variables.variables[i].name(), first.value, first.low,
+                                    first.high, total.value, total.low, total.high});
+    }
+  return section;
+}
+
+Section infeasible_section(const UncertaintyResult& result) {
+  std::map<std::string, long> counts;
+  for (const auto& [index, reason] : result.sampled.infeasible) ++counts[reason];
+  Section section{"Samples that are no pump",
+                  "Left out of everything above: it holds for the pumps that there can be.",
+                  {{"samples", fmt::format("{} of {}", result.sampled.infeasible.size(),
+                                           result.options.samples)}},
+                  {{"reason", "samples"}, {}}};
+  constexpr std::size_t kMost = 20;
+  for (const auto& [reason, count] : counts)
+    if (section.table.rows.size() < kMost) section.table.rows.push_back({reason, count});
+  if (counts.size() > kMost)
+    section.facts.emplace_back("reasons not listed", std::to_string(counts.size() - kMost));
+  return section;
+}
+
+report::Figure contributions_figure(const UncertaintyResult& result, std::size_t o) {
+  const std::size_t n = result.variables.size();
+  const Output& output = result.outputs[o].output;
+  std::vector<std::pair<double, std::size_t>> sizes;
+  const auto of = [&](std::size_t i) {
+    return result.first_order.derivatives[o * n + i] *
+           result.variables.distributions[i].standard_deviation();
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    if (is_computed(of(i))) sizes.emplace_back(-std::abs(of(i)), i);
+  std::sort(sizes.begin(), sizes.end());
+  report::BarsFigure bars{{"contribution to " + output.name, output.unit}, {}};
+  constexpr double kDrawn = 1e-6;  // of the largest: the rest may be round-off
+  for (const auto& [size, i] : sizes)
+    if (size < kDrawn * sizes.front().first)
+      bars.bars.push_back({result.variables.variables[i].name(), size, -size,
+                           result.variables.distributions[i].text() + ": " +
+                               fmt::format("{:+.3g} {}", of(i), output.unit)});
+  return {fmt::format("contributions_{}", o + 1), output.name + ": what makes it uncertain", "",
+          bars, "One standard deviation of each parameter, to first order; longest first."};
+}
+
+report::Figure sobol_figure(const UncertaintyResult& result, std::size_t o) {
+  const std::size_t n = result.variables.size();
+  report::BarsFigure bars{{"share of the variance of " + result.outputs[o].output.name, ""}, {}};
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::string name = result.variables.variables[i].name();
+    const auto add = [&](const char* what, const Estimate& e) {
+      if (is_computed(e.value))
+        bars.bars.push_back({name + ", " + what, 0, e.value, "", std::pair(e.low, e.high)});
+    };
+    add("first", result.sobol.first[o * n + i]);
+    add("total", result.sobol.total[o * n + i]);
+  }
+  return {fmt::format("sobol_{}", o + 1), result.outputs[o].output.name + ": Sobol indices", "",
+          bars, "With intervals of 95 %."};
+}
+
+}  // namespace
+
+Section parameters_section(const UncertaintyResult& result) {
+  Section section{"What is not known",
+                  "",
+                  {},
+                  {{"parameter", "unit", "in the case", "distribution", "mean",
+                    "standard deviation", "over the mean, %"},
+                   {}}};
+  const UncertainVariables& all = result.variables;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Distribution& d = all.distributions[i];
+    const double mean = d.mean(), deviation = d.standard_deviation();
+    section.table.rows.push_back(
+        {all.variables[i].name(), all.variables[i].unit(), all.variables[i].value(result.the_case),
+         d.text(), mean, deviation, mean != 0 ? Cell(100 * deviation / std::abs(mean)) : Cell()});
+  }
+  for (const UncertaintyData::Correlation& c : result.the_case.uncertainty.correlations)
+    section.facts.emplace_back("correlation of " + c.first + " and " + c.second,
+                               number_text(c.coefficient));
+  return section;
+}
+
+Section bands_section(const UncertaintyResult& result) {
+  const double level = result.options.level;
+  Section section{
+      "Bands on reactions",
+      fmt::format("Quantiles of {} samples at each angle by itself: {} of the pumps lie within "
+                  "there. Fewer stay within it all through the turn: that share stands in the "
+                  "table. An edge is known within its interval of 95 %, by order statistics.",
+                  result.options.samples - result.sampled.infeasible.size(), percent(level)),
+      {},
+      {{"channel", "unit", "peak of the vector", "largest half width", "of peak, %",
+        "largest half interval of an edge", "of peak, %", "within throughout, %"},
+       {}}};
+  for (const CurveBand& b : result.bands) {
+    const auto of_peak = [&](double value) {
+      return b.peak > 0 ? Cell(100 * value / b.peak) : Cell();
+    };
+    section.table.rows.push_back({b.channel.name, b.channel.unit, b.peak, b.widest,
+                                  of_peak(b.widest), b.edge_error, of_peak(b.edge_error),
+                                  100 * b.throughout});
+  }
+  if (result.theta_deg.size() < result.angles)
+    section.facts.emplace_back("angles", fmt::format("{} of the case's {}, to fit into memory",
+                                                     result.theta_deg.size(), result.angles));
+  return section;
+}
+
+std::vector<report::Figure> band_figures(const UncertaintyResult& result) {
+  std::vector<report::Figure> figures;
+  std::string last;
+  for (const CurveBand& band : result.bands) {
+    const Channel& c = band.channel;
+    if (c.group != last) {
+      const std::string of = c.piston > 0 ? " of piston 1" : "";
+      figures.push_back({"band_" + c.group, c.group + of + ": " + c.meaning, "",
+                         report::BandFigure{
+                             {"shaft angle", "deg"}, {c.group, c.unit}, true, result.theta_deg, {}},
+                         fmt::format("Median and band of {}; dashed: the case as it is.",
+                                     percent(result.options.level))});
+      last = c.group;
+    }
+    auto& figure = std::get<report::BandFigure>(figures.back().content);
+    figure.bands.push_back({c.name, band.low, band.median, band.high});
+    figure.lines.push_back({c.name + ", nominal", result.theta_deg, band.nominal});
+  }
+  return figures;
+}
+
+report::Document uncertainty_document(const UncertaintyResult& result,
+                                      const report::Lines& program) {
+  report::Document document;
+  document.title = result.the_case.name + ": what is not known exactly";
+  document.program = program;
+  study::describe_case(document, result.the_case);
+  document.derived = study::derived_section(result.the_case);
+  document.verdict = report::Verdict{std::nullopt, headline(result), "Uncertainty"};
+  document.meaning =
+      "What the stated distributions of parameters do to the results of the " +
+      study::to_string(result.options.model) +
+      " model. Nothing is said of what the model leaves out, nor of parameters without a "
+      "distribution.";
+  document.runs.emplace();
+  document.runs->push_back(parameters_section(result));
+  document.figures.emplace();
+  if (!result.outputs.empty()) {
+    document.runs->push_back(outputs_section(result));
+    if (result.options.first_order) {
+      document.runs->push_back(first_order_section(result));
+      document.runs->push_back(contributions_section(result));
+      for (std::size_t o = 0; o < result.outputs.size(); ++o)
+        document.figures->push_back(contributions_figure(result, o));
+    }
+    if (result.options.sobol > 0) {
+      document.runs->push_back(sobol_section(result));
+      for (std::size_t o = 0; o < result.outputs.size(); ++o)
+        document.figures->push_back(sobol_figure(result, o));
+    }
+  }
+  if (!result.bands.empty()) {
+    document.runs->push_back(bands_section(result));
+    for (report::Figure& figure : band_figures(result))
+      document.figures->push_back(std::move(figure));
+  }
+  if (!result.sampled.infeasible.empty()) document.runs->push_back(infeasible_section(result));
+  return document;
+}
+
+std::string uncertainty_text(const UncertaintyResult& result) {
+  std::string text = result.the_case.name + "\n";
+  for (std::size_t o = 0; o < result.outputs.size(); ++o) {
+    text += in_words(result.outputs[o], result.options.level);
+    if (result.options.first_order)
+      text += fmt::format(", to first order {:.3g}", result.first_order.deviations[o]);
+    text += "\n";
+  }
+  const std::size_t n = result.variables.size();
+  if (result.options.sobol > 0)
+    for (std::size_t o = 0; o < result.outputs.size(); ++o)
+      for (std::size_t i = 0; i < n; ++i) {
+        const Estimate &first = result.sobol.first[o * n + i],
+                       &total = result.sobol.total[o * n + i];
+        text += fmt::format(
+            "{}: {}: first {:.3f} ({:.3f} .. {:.3f}), total {:.3f} ({:.3f} .. {:.3f})\n",
+            result.outputs[o].output.name, result.variables.variables[i].name(), first.value,
+            first.low, first.high, total.value, total.low, total.high);
+      }
+  const CurveBand* widest = nullptr;
+  for (const CurveBand& b : result.bands)
+    if (b.peak > 0 && (widest == nullptr || b.widest / b.peak > widest->widest / widest->peak))
+      widest = &b;
+  if (widest != nullptr)
+    text += fmt::format("widest band: {}, +-{:.3g} {}, {:.2g} % of peak\n", widest->channel.name,
+                        widest->widest, widest->channel.unit, 100 * widest->widest / widest->peak);
+  if (const std::size_t without = result.sampled.infeasible.size(); without > 0)
+    text += fmt::format("{} of {} samples are no pump that can be computed, as: {}\n", without,
+                        result.options.samples, result.sampled.infeasible.front().second);
+  return text;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,246 @@
+#include "bentaxis/designs/validation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/designs/uncertainty_document.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/published_section.h"
+
+namespace bentaxis::designs {
+namespace {
+
+using report::Cell;
+using report::Section;
+
+constexpr double kCoverage = 2;  // u_val's, for about 95 %
+
+// Standard uncertainty of what lies within -+ half, anywhere alike (JCGM 100, 4.3.7).
+double of_half_width(double half) { return half / std::sqrt(3.0); }
+
+// A row that gives E: one number of the model against a printed one, or a window's middle.
+bool gives_error(const compare::PublishedRow& row) {
+  const compare::Measure measure = row.number.measure;
+  if (measure == compare::Measure::sign_changes || measure == compare::Measure::main_order)
+    return false;  // whole numbers
+  if (row.values.empty() || !row.values.front()) return false;
+  const auto& value = *row.values.front();
+  return value.low == value.high && std::isfinite(row.number.low) && std::isfinite(row.number.high);
+}
+
+bool comparable(const compare::PublishedRow& row) {
+  return row.verdict != compare::PublishedVerdict::not_comparable;
+}
+
+// The model's numbers of rows, for a sample.
+Further numbers_of(const std::vector<ValidationRow>& rows, const compare::Published& published) {
+  return {rows.size(), [&rows, &published](const study::ReadyCase& ready, const ResultTable& table,
+                                           std::span<double> values) {
+            const study::PublishedInput input{&ready.the_case, ready.the_case.analytic, &table};
+            study::VariantRuns runs(study::Model::analytic, input);
+            for (std::size_t i = 0; i < rows.size(); ++i) {
+              const compare::PublishedNumber& number = rows[i].row.number;
+              const auto value = compare::value_of(number, [&](const std::string& variant) {
+                return runs(published.variant(variant));
+              });
+              if (!value) throw InputError(number.quantity + ": is not computed");
+              values[i] = value->low;
+            }
+          }};
+}
+
+// Where both models assume the same, they differ by their numerical errors.
+bool same_assumptions(const study::ComparisonResult& result) { return result.changes.empty(); }
+
+std::vector<ValidationCurve> curves_of(const study::ComparisonResult& result,
+                                       const UncertaintyResult& uncertainty) {
+  std::vector<ValidationCurve> curves;
+  const auto held = result.with ? result.with->held.find("analytic")
+                                : std::map<std::string, study::Outcome::Held>::const_iterator();
+  if (!result.with || held == result.with->held.end() || uncertainty.theta_deg.empty())
+    return curves;
+  const study::Outcome::Held& reference = held->second;
+  const ResultTable& data = reference.reference;
+  const auto absolute = study::reference_in(result.options.with).absolute;
+  const std::size_t stride = uncertainty.angles / uncertainty.theta_deg.size();
+  for (const CurveBand& band : uncertainty.bands) {
+    const compare::ReferenceChannel* found = result.with->find("analytic", band.channel.name);
+    const std::size_t column = data.find(band.channel.name);
+    if (found == nullptr || !found->comparison.compared() || column == data.columns() ||
+        data.rows() != uncertainty.angles)
+      continue;
+    ValidationCurve curve;
+    curve.channel = band.channel;
+    const std::size_t of_models = result.analytic.find(band.channel.name);
+    const auto of_unit = absolute.find(band.channel.unit);
+    const double tolerance = found->comparison.tolerance * found->comparison.peak +
+                             (of_unit == absolute.end() ? 0 : of_unit->second);
+    // Half the width within which the reference may lie.
+    const auto half_width = [&](std::size_t row) {
+      double half = tolerance + reference.resampling.at(row, column);
+      if (reference.low.rows() > 0)
+        half += (reference.high.at(row, column) - reference.low.at(row, column)) / 2;
+      return half;
+    };
+    double worst = -1;
+    std::size_t within = 0;
+    for (std::size_t i = 0; i < uncertainty.theta_deg.size(); ++i) {
+      const std::size_t row = i * stride;
+      if (!is_computed(data.at(row, column))) continue;
+      const double simulation = result.analytic.at(row, of_models);
+      const double other = result.multibody.at(row, of_models);
+      const bool both = same_assumptions(result) && is_computed(other);
+      const ComparisonError error{simulation, data.at(row, column),
+                                  both ? std::abs(simulation - other) : 0, band.deviation[i],
+                                  of_half_width(half_width(row))};
+      curve.theta_deg.push_back(uncertainty.theta_deg[i]);
+      curve.data.push_back(error.data);
+      within += error.within() ? 1 : 0;
+      const double ratio =
+          error.validation() > 0 ? std::abs(error.error()) / error.validation() : 0;
+      if (ratio > worst) {
+        worst = ratio;
+        curve.worst = error;
+        curve.worst_deg = uncertainty.theta_deg[i];
+      }
+    }
+    if (curve.data.empty()) continue;
+    curve.within_share = static_cast<double>(within) / static_cast<double>(curve.data.size());
+    curves.push_back(std::move(curve));
+  }
+  return curves;
+}
+
+std::vector<Cell> cells(const ComparisonError& e) {
+  return {e.simulation,   e.data,
+          e.error(),      e.numerical,
+          e.input,        e.data_uncertainty,
+          e.validation(), e.within() ? "could be 0" : "is not 0"};
+}
+
+std::vector<std::string> columns(std::vector<std::string> first) {
+  first.insert(first.end(), {"simulation S", "data D", "E = S - D", "u_num", "u_input", "u_D",
+                             "u_val", "error of the model"});
+  return first;
+}
+
+constexpr const char* kMeaning =
+    "After ASME V&V 20: the error of the model lies in E -+ 2 u_val with about 95 %, where u_val^2 "
+    "= u_num^2 + u_input^2 + u_D^2. u_num: what both models, which solve the same equations, "
+    "differ by; u_input: by the parameters of [uncertainty]; u_D: ";
+
+Section numbers_section(const Validation& v) {
+  Section section{
+      "Comparison errors of printed numbers",
+      std::string(kMeaning) +
+          "a printed number lies anywhere within half of its last digit or its tolerance, and a "
+          "window's middle within the window: half width over the root of 3. Only predicted rows "
+          "are validation.",
+      {{"comparable rows that give no E (ranges of curves, one-sided statements, counts)",
+        std::to_string(v.without_error)}},
+      {columns({"quantity", "at", "status", "unit"}), {}}};
+  for (const ValidationRow& row : v.rows) {
+    std::vector<Cell> line = {row.row.number.quantity, row.row.at, row.row.number.status,
+                              row.row.number.unit};
+    for (Cell& cell : cells(row.error)) line.push_back(std::move(cell));
+    section.table.rows.push_back(std::move(line));
+  }
+  return section;
+}
+
+Section curves_section(const Validation& v) {
+  Section section{
+      "Comparison errors of the curves of " + v.reference,
+      std::string(kMeaning) +
+          "the reference's tolerance, tube and error of resampling as half width, over the root "
+          "of 3. At the angle "
+          "where |E| / u_val is largest; of channels that have a band.",
+      {},
+      {columns({"channel", "unit", "angle, deg"}), {}}};
+  section.table.columns.emplace_back("could be 0, % of the turn");
+  for (const ValidationCurve& curve : v.curves) {
+    std::vector<Cell> line = {curve.channel.name, curve.channel.unit, curve.worst_deg};
+    for (Cell& cell : cells(curve.worst)) line.push_back(std::move(cell));
+    line.emplace_back(100 * curve.within_share);
+    section.table.rows.push_back(std::move(line));
+  }
+  return section;
+}
+
+}  // namespace
+
+double ComparisonError::validation() const {
+  return std::hypot(numerical, input, data_uncertainty);
+}
+bool ComparisonError::within() const { return std::abs(error()) <= kCoverage * validation(); }
+
+Validation validation(const Case& the_case, const study::ComparisonResult& result,
+                      std::size_t samples, const study::PartProgress& progress_of) {
+  Validation v;
+  const auto printed = study::printed_numbers_of(result.options.published,
+                                                 {study::facts_of(the_case, the_case.analytic)});
+  if (printed && result.published)
+    for (const compare::PublishedRow& row : result.published->section.rows) {
+      if (!comparable(row)) continue;
+      if (!gives_error(row)) {
+        ++v.without_error;
+        continue;
+      }
+      ValidationRow one{row, {}};
+      one.error.simulation = row.values.front()->low;
+      one.error.data = row.number.value.value_or((row.number.low + row.number.high) / 2);
+      one.error.data_uncertainty = of_half_width((row.number.high - row.number.low) / 2);
+      if (const auto& other = row.values.back(); same_assumptions(result) && other)
+        one.error.numerical = std::abs(other->low - one.error.simulation);
+      v.rows.push_back(std::move(one));
+    }
+  UncertaintyOptions options;
+  options.samples = samples;
+  options.first_order = false;
+  if (printed) options.further = numbers_of(v.rows, printed->numbers);
+  v.uncertainty = uncertainty(the_case, options, progress_of);
+  for (std::size_t i = 0; i < v.rows.size(); ++i)
+    v.rows[i].error.input = v.uncertainty.further[i].deviation;
+  if (result.with) v.reference = result.with->name;
+  v.curves = curves_of(result, v.uncertainty);
+  return v;
+}
+
+void add_validation(report::Document& document, const Validation& v) {
+  if (!document.runs) document.runs.emplace();
+  if (!document.figures) document.figures.emplace();
+  document.runs->push_back(parameters_section(v.uncertainty));
+  document.runs->push_back(bands_section(v.uncertainty));
+  if (!v.rows.empty()) document.runs->push_back(numbers_section(v));
+  if (!v.curves.empty()) document.runs->push_back(curves_section(v));
+  for (report::Figure& figure : band_figures(v.uncertainty)) {
+    auto& bands = std::get<report::BandFigure>(figure.content);
+    for (const ValidationCurve& curve : v.curves)
+      if (figure.id == "band_" + curve.channel.group)
+        bands.lines.push_back(
+            {curve.channel.name + ", " + v.reference, curve.theta_deg, curve.data});
+    document.figures->push_back(std::move(figure));
+  }
+}
+
+std::string validation_text(const Validation& v) {
+  const auto of = [](const auto& all, const auto& error_of) {
+    const auto count = std::count_if(all.begin(), all.end(),
+                                     [&](const auto& one) { return error_of(one).within(); });
+    return fmt::format("{} of {}", count, all.size());
+  };
+  std::string text = fmt::format(
+      "uncertainty: {} samples; the error of the model could be 0 (|E| <= 2 u_val) for "
+      "{} printed numbers",
+      v.uncertainty.options.samples,
+      of(v.rows, [](const ValidationRow& row) { return row.error; }));
+  if (!v.curves.empty())
+    text += fmt::format(", and all through the turn for {} curves",
+                        of(v.curves, [](const ValidationCurve& curve) { return curve.worst; }));
+  return text;
+}
+
+}  // namespace bentaxis::designs

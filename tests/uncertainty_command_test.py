@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""Tests of `bentaxis uncertainty` and of `compare --uncertainty` from outside.
+
+usage: uncertainty_command_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import math
+import pathlib
+import statistics
+import sys
+import unittest
+
+import command_line_test as program
+from command_line_test import ProgramTest
+
+FILES = {"report.html", "report.json", "outputs.csv", "samples.csv", "bands.csv"}
+TABLE = """
+[uncertainty]
+"pump.tilt_deg" = "normal(0.1)"
+"bearings.tapered_z_mm" = "normal(-26, 0.5)"
+"pressure.delivery_bar" = "uniform(270, 280)"
+correlation = [["pump.tilt_deg", "bearings.tapered_z_mm", 0.5]]
+"""
+
+
+class UncertaintyTest(ProgramTest):
+    def uncertain(self, table=TABLE, case="bap63_rated"):
+        text = (program.REPO / "cases" / f"{case}.toml").read_text()
+        lines = ["samples_per_revolution = 90" if line.startswith("samples_per_revolution") else line
+                 for line in text.splitlines()]
+        path = self.folder / "my.toml"
+        path.write_text("\n".join(lines) + "\n" + table)
+        return path
+
+    def files(self, out="out"):
+        return {path.name for path in (self.folder / out).iterdir()}
+
+    def table(self, name, out="out"):
+        with open(self.folder / out / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def report(self, out="out"):
+        return json.loads((self.folder / out / "report.json").read_text())
+
+    def test_files_and_numbers(self):
+        case = self.uncertain()
+        self.run_program("uncertainty", case, "--output", "mean:Td,peak:Rb1", "--samples", 400, "--out", "out")
+        self.assertEqual(self.files(), FILES)
+        samples = self.table("samples.csv")
+        self.assertEqual(len(samples), 400)
+        outputs = {row["output"]: row for row in self.table("outputs.csv")}
+        for name, row in outputs.items():
+            values = [float(sample[name]) for sample in samples]
+            self.assertAlmostEqual(float(row["mean"]), statistics.fmean(values), delta=1e-9 * abs(values[0]))
+            self.assertAlmostEqual(float(row["deviation"]), statistics.stdev(values), delta=1e-9 * abs(values[0]))
+            # Nearly linear over this width: both ways agree within what 400 samples show.
+            self.assertAlmostEqual(float(row["first_order_deviation"]), float(row["deviation"]),
+                                   delta=4 * float(row["deviation_error"]))
+            edges = [float(row[key]) for key in ("low_from", "low", "low_to", "median", "high_from", "high", "high_to")]
+            self.assertEqual(edges, sorted(edges))
+        # Parameters are correlated as asked: r of 400 samples has a standard error of 0.04.
+        tilt, place = ([float(s[key]) for s in samples] for key in ("pump.tilt_deg", "bearings.tapered_z_mm"))
+        self.assertAlmostEqual(statistics.correlation(tilt, place), 0.5, delta=0.15)
+        # A sample is the pump that --set makes.
+        sample = samples[17]
+        changes = [word for key in ("pump.tilt_deg", "bearings.tapered_z_mm", "pressure.delivery_bar")
+                   for word in ("--set", f"{key}={sample[key]}")]
+        self.run_program("run", case, "--model", "analytic", *changes, "--out", "one")
+        torque = statistics.fmean(float(row["Td_z1_Nm"]) for row in self.table("analytic.csv", "one"))
+        self.assertAlmostEqual(float(sample["mean:Td"]), torque, delta=1e-11 * torque)
+        # Bands.
+        for row in self.table("bands.csv"):
+            self.assertLessEqual(float(row["Rb1_y1_N_low"]), float(row["Rb1_y1_N_median"]))
+            self.assertLessEqual(float(row["Rb1_y1_N_median"]), float(row["Rb1_y1_N_high"]))
+        figures = {figure["id"]: figure for figure in self.report()["figures"]}
+        self.assertEqual(len(figures["band_Rb1"]["bands"]), 3)
+        self.assertEqual(len(figures["contributions_1"]["bars"]), 2)  # the bearing's place moves no torque
+
+    def test_the_same_whatever_the_threads(self):
+        case = self.uncertain()
+        for threads in (1, 2):
+            self.run_program("uncertainty", case, "--samples", 150, "--threads", threads, "--out", f"out{threads}")
+        for name in ("samples.csv", "outputs.csv", "bands.csv"):
+            self.assertEqual(*((self.folder / f"out{n}" / name).read_bytes() for n in (1, 2)), name)
+        self.run_program("uncertainty", case, "--samples", 150, "--seed", 2, "--no-curves", "--out", "out")
+        self.assertEqual(self.files(), FILES - {"bands.csv"})
+        self.assertNotEqual(*((self.folder / out / "outputs.csv").read_bytes() for out in ("out", "out1")))
+
+    def test_samples_that_are_no_pump(self):
+        case = self.uncertain("")
+        result = self.run_program("uncertainty", case, "--vary", "port_plate.delivery_arc_deg.2=normal(189.5, 0.5)",
+                                  "--vary", "pump.tilt_deg=normal(0.1)", "--samples", 300, "--no-curves", "--out", "out")
+        rows = len(self.table("samples.csv"))
+        self.assertLess(rows, 300)
+        self.assertIn(f"{300 - rows} of 300 samples are no pump", result.out)
+        section = {s["title"]: s for s in self.report()["runs"]}["Samples that are no pump"]
+        self.assertIn("port_plate", section["table"]["rows"][0][0])
+
+    def test_sobol_indices(self):
+        self.run_program("uncertainty", self.uncertain(), "--samples", 150, "--no-curves", "--out", "plain")
+        version = dict(self.report("plain")["program"])
+        case = self.uncertain(TABLE.split("correlation")[0])
+        command = ("uncertainty", case, "--output", "peak:Rb1", "--no-curves", "--samples", 150, "--sobol", 256)
+        if version["OpenTURNS"] == "none":
+            self.assert_mentions(self.refused(*command), "libopenturns-dev")
+            return
+        self.run_program(*command, "--out", "out")
+        section = {s["title"]: s for s in self.report()["runs"]}["Sobol indices"]
+        firsts = [row[2] for row in section["table"]["rows"]]
+        self.assertAlmostEqual(sum(firsts), 1, delta=0.1)  # nearly linear
+        for _, _, first, low, high, total, _, _ in section["table"]["rows"]:
+            self.assertLess(low, first)
+            self.assertLess(first, high)
+            self.assertAlmostEqual(total, first, delta=0.1)
+
+    def test_refusals(self):
+        plain = self.uncertain("").rename(self.folder / "plain.toml")
+        case = self.uncertain()
+        for arguments, words in (
+            ((plain,), ["needs [uncertainty]"]),
+            ((case, "--samples", 100), ["100 samples", "at least 146"]),
+            ((case, "--output", "most:Td"), ["most:Td"]),
+            ((case, "--vary", "pump.tilt_deg"), ["--vary pump.tilt_deg", "NAME=DISTRIBUTION"]),
+            ((case, "--vary", "pump.tilt=normal(1)"), ["pump.tilt", "pump.tilt_deg"]),
+            ((case, "--vary", "pump.tilt_deg=normal(1, -1)"), ["normal(1, -1)", "> 0"]),
+            ((case, "--sobol", 64), ["independent"]),
+            ((case, "--level", 2), ["--level"]),
+        ):
+            with self.subTest(words):
+                self.assert_mentions(self.refused("uncertainty", *arguments, "--out", "out"), *words)
+        self.assert_mentions(self.refused("compare", plain, "--uncertainty", 200, "--out", "out"), "needs [uncertainty]")
+        self.assert_mentions(self.refused("compare", case, "--uncertainty", 20, "--out", "out"), "at least 146")
+
+    def test_comparison_errors(self):
+        case = self.uncertain()
+        golden = self.folder / "golden"
+        self.run_program("reference", "golden", case, "--out", golden)
+        self.run_program("compare", case, "--uncertainty", 200, "--with", golden, "--out", "out")
+        self.assertIn("bands.csv", self.files())
+        sections = {s["title"]: s for s in self.report()["runs"]}
+        rows = {(row[0], row[1]): row for row in sections["Comparison errors of printed numbers"]["table"]["rows"]}
+        (torque,) = [row for (name, at), row in rows.items() if name == "mean torque, measured"]
+        simulation, data, error, numerical, by_input, of_data, validation, verdict = torque[4:]
+        self.assertEqual(data, 295.5)
+        self.assertAlmostEqual(error, simulation - data, 12)
+        self.assertAlmostEqual(of_data, 3 / math.sqrt(3), 12)  # printed as measured, +- 3 Nm
+        self.assertAlmostEqual(validation, math.hypot(numerical, by_input, of_data), 12)
+        self.assertGreater(by_input, 2)  # 10 bar wide: 2.9 bar of 275, and the tilt
+        self.assertLess(by_input, 4)
+        self.assertLess(numerical, 1e-9)
+        self.assertEqual(verdict, "could be 0" if abs(error) <= 2 * validation else "is not 0")
+        (tooth,) = [row for (name, at), row in rows.items() if name.startswith("Rcs at 0 deg")]
+        self.assertEqual(tooth[-1], "is not 0")  # 284 against 329.7 N
+        (curves,) = [s for title, s in sections.items() if title.startswith("Comparison errors of the curves")]
+        for row in curves["table"]["rows"]:  # they are its own
+            self.assertEqual((row[-2], row[-1]), ("could be 0", 100), row)
+        figure = {figure["id"]: figure for figure in self.report()["figures"]}["band_Rb2"]
+        self.assertEqual(len(figure["lines"]), 4)  # nominal and stored
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program.PROGRAM, program.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
