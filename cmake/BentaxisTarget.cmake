@@ -1,5 +1,6 @@
 # What every target of the project has in common: standard, warnings as errors, include path.
 option(BENTAXIS_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
+set(BENTAXIS_SANITIZE_LESS "" CACHE STRING "Checks of the undefined-behaviour sanitizer that are left out")
 option(BENTAXIS_SANITIZE_THREAD "Build with the thread sanitizer" OFF)
 option(BENTAXIS_BUILD_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
 
@@ -12,6 +13,9 @@ function(bentaxis_target name standard)
   if(BENTAXIS_SANITIZE)
     target_compile_options(${name} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
       -fno-omit-frame-pointer)
+    if(BENTAXIS_SANITIZE_LESS)
+      target_compile_options(${name} PRIVATE -fno-sanitize=${BENTAXIS_SANITIZE_LESS})
+    endif()
     target_link_options(${name} PUBLIC -fsanitize=address,undefined)
   endif()
   if(BENTAXIS_SANITIZE OR BENTAXIS_SANITIZE_THREAD)

@@ -73,7 +73,7 @@ double over_peak(const ResultTable& table, const std::string& column, const std:
 
 TEST(Budget, ClosesOnAllStoredCasesInBothModels) {
   const auto files = stored_cases();
-  ASSERT_EQ(files.size(), 24);
+  ASSERT_EQ(files.size(), 25);
   for (const auto& file : files) {
     SCOPED_TRACE(file);
     const study::ReadyCase ready = study::prepare(read_case(file));
