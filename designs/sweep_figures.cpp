@@ -14,10 +14,10 @@ using report::Values;
 
 // What a page can hold and a reader can look through.
 constexpr std::size_t kMostMaps = 12, kMostSlices = 12, kMostPairs = 6, kMostLines = 6;
-constexpr std::size_t kMostDrawnLevels = 60;   // of either axis of a map
-constexpr std::size_t kMostPoints = 300;  // of a figure of designs
-constexpr std::size_t kMostMarked = 60;   // designs of the front drawn among them
-constexpr std::size_t kMostColumns = 10;  // parallel axes
+constexpr std::size_t kMostDrawnLevels = 60;  // of either axis of a map
+constexpr std::size_t kMostPoints = 300;      // of a figure of designs
+constexpr std::size_t kMostMarked = 60;       // designs of the front drawn among them
+constexpr std::size_t kMostColumns = 10;      // parallel axes
 
 bool is_number(const Variable& variable) { return variable.words().empty(); }
 

@@ -105,7 +105,7 @@ class SchemaTest(unittest.TestCase):
         used = set().union(*self.reports.values())
         self.assertEqual(set(self.schema["properties"]) - used, {"long_run"})  # of the whole catalogue only
         kinds = {figure["kind"] for report in self.reports.values() for figure in report.get("figures", [])}
-        self.assertEqual(kinds, {"curves", "piston_bars", "own_axis", "xy", "map", "scatter", "drawing"})
+        self.assertEqual(kinds, {"curves", "piston_bars", "own_axis", "xy", "map", "scatter", "drawing", "bars", "bands"})
         self.assertTrue(any("curves" in figure for figure in self.reports["regress"]["figures"]))
         self.assertIsNotNone(self.reports["unequal"]["assumptions"])
         self.assertIsNotNone(self.reports["compare"]["published"])
