@@ -11,8 +11,8 @@ Eigen::Vector3d to_eigen(const closed_form::Vec3<double>& v) { return {v.x, v.y,
 }  // namespace
 
 Kinematics::Kinematics(const Geometry& geometry) : frame_{}, piston_{} {
-  closed_form::prepare(geometry, frame_);
-  closed_form::prepare(geometry, frame_, piston_);
+  closed_form::prepare(closed_form::raw(geometry), frame_);
+  closed_form::prepare(closed_form::raw(geometry), frame_, piston_);
 }
 
 PistonKinematics Kinematics::piston(double s, double c) const {

@@ -1,31 +1,37 @@
 #include "prepared.h"
 
 #include <cmath>
+#include <string>
 
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::analytic {
 
 PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions) {
   PreparedPump result;
-  closed_form::Pump<double>& p = result.numbers;
-  closed_form::prepare(pump.geometry, p.frame);
-  closed_form::prepare(pump.geometry, p.frame, p.piston);
-  closed_form::prepare(pump, assumptions.inertia, p.frame, p.piston);
-  result.friction = closed_form::prepare(pump, assumptions.piston_friction, p.friction);
-  closed_form::prepare(pump, p.piston, p.block);
-  closed_form::prepare(pump, p.film);
-  closed_form::prepare(pump, p.gear);
-  closed_form::prepare(pump, p.frame, p.shaft);
+  prepare(pump, assumptions, result);
+  return result;
+}
+
+void prepare(const PumpParameters& pump, const Assumptions& assumptions, PreparedPump& result) {
+  const PistonInertia inertia = assumptions.inertia;
+  if (const std::string why = piston_inertia_refusal(inertia, pump); !why.empty())
+    throw InputError(to_string(inertia) + " pistons: " + why);
+  result.friction = prepare_numbers(closed_form::raw(pump), pump, assumptions, result.numbers);
   result.tooth_law = closed_form::tooth_law(pump.gear);
+  result.teeth.reset();
   if (pump.gear.contact == ToothContact::teeth)
     result.teeth = BevelTeeth(pump, BevelTeeth::Unchecked{});
   result.imposed = assumptions.gear == BlockDrive::imposed;
+  const auto pistons = static_cast<std::size_t>(pump.geometry.pistons);
+  if (result.phase_sin.size() == pistons) return;
+  result.phase_sin.clear();
+  result.phase_cos.clear();
   for (int k = 0; k < pump.geometry.pistons; ++k) {
     result.phase_sin.push_back(std::sin(2 * kPi * k / pump.geometry.pistons));
     result.phase_cos.push_back(std::cos(2 * kPi * k / pump.geometry.pistons));
   }
-  return result;
 }
 
 }  // namespace bentaxis::analytic

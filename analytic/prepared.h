@@ -10,6 +10,22 @@
 
 namespace bentaxis::analytic {
 
+/// All numbers of a pump from the raw ones. @return the friction law it has
+template <class T>
+closed_form::FrictionLaw prepare_numbers(const closed_form::RawPump<T>& raw,
+                                         const PumpParameters& pump, const Assumptions& assumptions,
+                                         closed_form::Pump<T>& p) {
+  closed_form::prepare(raw.geometry, p.frame);
+  closed_form::prepare(raw.geometry, p.frame, p.piston);
+  closed_form::prepare(raw, assumptions.inertia, p.frame, p.piston);
+  const auto law = closed_form::prepare(raw, assumptions.piston_friction, p.friction);
+  closed_form::prepare(raw, p.piston, p.block);
+  closed_form::prepare(raw, pump.port_plate.has_value(), p.film);
+  closed_form::prepare(raw, pump.gear.flanks, p.gear);
+  closed_form::prepare(raw, p.frame, p.shaft);
+  return law;
+}
+
 /// Numbers of a pump under its assumptions, and what the algebra needs beside them.
 struct PreparedPump {
   closed_form::Pump<double> numbers;
@@ -27,5 +43,7 @@ struct PreparedPump {
 
 /// @throws InputError if real pistons are asked for and the pump has no data of them.
 PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions);
+/// The same in place: allocates nothing where `result` has been a pump with as many pistons.
+void prepare(const PumpParameters& pump, const Assumptions& assumptions, PreparedPump& result);
 
 }  // namespace bentaxis::analytic

@@ -9,6 +9,7 @@
 
 #include "bentaxis/analytic/batch.h"
 #include "bentaxis/analytic/model.h"
+#include "bentaxis/designs/evaluator.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/units.h"
@@ -106,6 +107,51 @@ void pumps(benchmark::State& state, InstructionSet set, std::size_t count) {
   count_angles(state, count);
 }
 
+// The same pump at many angles, statistics of all reactions instead of the reactions.
+void statistics(benchmark::State& state, InstructionSet set) {
+  const BatchModel model(rated().pump, rated().analytic);
+  const Angles angles(360);
+  std::vector<Measured> measured;
+  for (std::size_t c = 0; c < model.layout().reactions(); ++c) measured.push_back({c});
+  std::vector<Statistics> results(measured.size());
+  for (auto _ : state) {
+    model.statistics(angles.instants, measured, results, {set, 1});
+    benchmark::DoNotOptimize(results.data());
+    benchmark::ClobberMemory();
+  }
+  count_angles(state, 360);
+}
+
+// Designs one after the other: the case of three varied parameters, checked and prepared, then
+// statistics of all reactions at 360 angles, ideal pressure.
+void designs(benchmark::State& state) {
+  Case base = rated();
+  base.operation.samples_per_revolution = 360;
+  const designs::Family family(
+      base, {designs::Variable("pump.tilt_deg", base), designs::Variable("piston.mass_kg", base),
+             designs::Variable("pressure.delivery_bar", base)});
+  std::vector<designs::Output> outputs;
+  const ChannelLayout layout(5);
+  for (std::size_t c = 0; c < layout.reactions(); ++c)
+    for (const char* statistic : {"mean:", "max:", "min:", "rms:"})
+      outputs.push_back(designs::output(statistic + layout.channels()[c].name, base));
+  const designs::Evaluator evaluator(family, outputs);
+  constexpr std::size_t kDesigns = 256;
+  std::vector<double> values, results(kDesigns * outputs.size());
+  for (std::size_t i = 0; i < kDesigns; ++i) {
+    const double share = static_cast<double>(i) / kDesigns;
+    values.insert(values.end(), {20 + 20 * share, 0.1 + 0.1 * share, 50 + 300 * share});
+  }
+  std::vector<std::string> reasons(kDesigns);
+  for (auto _ : state) {
+    evaluator.evaluate(kDesigns, values, results, reasons);
+    benchmark::ClobberMemory();
+  }
+  if (!evaluator.fast() || !reasons.back().empty()) state.SkipWithError("not by the kernel");
+  count_angles(state, kDesigns * 360);
+}
+BENCHMARK(designs);
+
 // What writing the results costs: the same columns filled with a constant, by memset one after the
 // other, or by ordinary stores in the order in which the kernel writes them.
 void write_columns(benchmark::State& state, bool kernel_order) {
@@ -140,6 +186,7 @@ void register_batches() {
     const std::string name = to_string(set);
     RegisterBenchmark(("batch/" + name).c_str(), batch, set, ChannelGroup::all, 720, 1);
     RegisterBenchmark(("pumps/" + name).c_str(), pumps, set, 720);
+    RegisterBenchmark(("statistics/" + name).c_str(), statistics, set);
     // Results that go to memory, past the caches: on every set, not only on the widest.
     RegisterBenchmark(("past_caches/" + name).c_str(), batch, set, ChannelGroup::all, 1 << 22, 1);
   }

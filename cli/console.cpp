@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
@@ -19,6 +20,16 @@ void on_signal(int signal) {
   std::signal(signal, SIG_DFL);  // a second one ends the program at once
 }
 
+// As if the rest went as fast as what is done; nothing where too little is done to say.
+std::string time_left(double passed, double fraction) {
+  if (passed < 2 || fraction < 0.01) return "";
+  const auto seconds = static_cast<long>(std::ceil(passed / fraction - passed));
+  if (seconds < 60) return ", " + std::to_string(seconds) + " s left";
+  if (seconds < 3600) return ", " + std::to_string(seconds / 60 + 1) + " min left";
+  return ", " + std::to_string(seconds / 3600) + " h " + std::to_string(seconds % 3600 / 60) +
+         " min left";
+}
+
 }  // namespace
 
 void watch_for_interruption() {
@@ -30,7 +41,8 @@ void watch_for_interruption() {
 Progress progress_of(const std::string& job) {
   using Clock = std::chrono::steady_clock;
   const bool terminal = isatty(STDERR_FILENO) == 1;
-  auto shown = std::make_shared<Clock::time_point>(Clock::now());
+  const auto begun = Clock::now();
+  auto shown = std::make_shared<Clock::time_point>(begun);
   return [=](double fraction) {
     if (interrupted != 0) {
       if (terminal) std::fputs("\r\033[K", stderr);
@@ -42,7 +54,9 @@ Progress progress_of(const std::string& job) {
       std::fputs("\r\033[K", stderr);
     } else if (now - *shown > std::chrono::milliseconds(100)) {
       *shown = now;
-      std::fprintf(stderr, "\r%s %3.0f %%", job.c_str(), 100 * fraction);
+      const double passed = std::chrono::duration<double>(now - begun).count();
+      std::fprintf(stderr, "\r\033[K%s %3.0f %%%s", job.c_str(), 100 * fraction,
+                   time_left(passed, fraction).c_str());
       std::fflush(stderr);
     }
   };

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string out;
+  ReportPlace place;
   std::vector<std::string> folders, formats;
 };
 
@@ -27,14 +27,14 @@ int merge(const Options& options) {
   const designs::SweepFormats formats = formats_of(options.formats);
   std::vector<fs::path> sources(options.folders.begin(), options.folders.end());
   std::transform(sources.begin(), sources.end(), sources.begin(), blocks_in);
-  const fs::path own = parts_in(options.out);
+  const fs::path own = parts_in(options.place.out);
   if (fs::is_directory(own)) sources.insert(sources.begin(), own);
   if (sources.empty()) throw InputError(own.string() + ": no such folder; name one with blocks");
   const auto [sweep, record] = designs::sweep_in(sources.front());
   designs::SweepParts parts(sources.front(), record);
   for (auto more = sources.begin() + 1; more != sources.end(); ++more) parts.add(*more);
-  OutputFolder folder(options.out);
-  return write_results(sweep, parts, formats, folder);
+  ReportFolders folders(options.place);
+  return write_results(sweep, parts, formats, 0, folders);
 }
 
 }  // namespace
@@ -43,8 +43,9 @@ Command add_merge_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command =
       program.subcommand("merge", "Results of a sweep that was computed in parts (sweep --part)");
-  command.option("OUT", options->out, "folder of the parts and of the results").required();
+  command.option("OUT", options->place.out, "folder of the parts and of the results").required();
   command.option("FOLDER", options->folders, "further folders with parts, from elsewhere");
+  add_figures(command, options->place.figures);
   add_formats(command, options->formats);
   return {command, [options] { return merge(*options); }};
 }

@@ -1,6 +1,7 @@
 #include "ranks.h"
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
@@ -30,7 +31,8 @@ bool is_one_of_several() {
 namespace {
 
 [[noreturn]] void end_all(int rank, const char* why, int status) {
-  // What is wrong with all ranks is said once: by the first, before the others come to it.
+  // What is wrong with all ranks is said once: by the first, which ends the others before they do.
+  std::signal(SIGTERM, SIG_DFL);
   if (rank > 0) std::this_thread::sleep_for(std::chrono::seconds(1));
   std::fprintf(stderr, "bentaxis: rank %d: %s\n", rank, why);
   std::fflush(stderr);

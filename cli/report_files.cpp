@@ -47,7 +47,8 @@ std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
                                                         const report::Curves& curves,
                                                         const std::vector<TextFile>& further) {
   add_provenance(document);
-  document.files = {name + ".html"};
+  document.files = report_.names();
+  document.files.insert(document.files.begin(), name + ".html");
   for (const auto& [file, content] : further) document.files.push_back(file);
   document.files.push_back(name + ".json");
   report_.add(name + ".html", report::render_page(document, curves));

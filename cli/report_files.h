@@ -32,6 +32,9 @@ class ReportFolders {
   /// @throws InputError
   explicit ReportFolders(const ReportPlace& place);
 
+  /// For tables too long to be kept as text: added before write(), they belong to its set.
+  OutputFolder& tables() { return report_; }
+
   /// Puts NAME.html, NAME.json and further files in place together, then the figures. What an
   /// earlier run of the command left there and this one has not is removed: it belongs to a report
   /// that is no longer there.

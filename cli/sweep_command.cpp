@@ -13,6 +13,7 @@
 #include "console.h"
 #include "options.h"
 #include "ranks.h"
+#include "report_files.h"
 #include "sweep_options.h"
 
 namespace bentaxis::cli {
@@ -20,7 +21,8 @@ namespace {
 
 struct Options {
   CaseOption the_case;
-  std::string out = "out", study, part, check;
+  ReportPlace place;
+  std::string study, part, check;
   std::vector<std::string> vary, formats;
   designs::SweepRequest request;
   int samples = 0, seed = 1;
@@ -92,12 +94,12 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
   const Case base =
       first ? options.the_case.read() : read_case(options.the_case.file, options.the_case.changes);
   const designs::Sweep sweep(base, designs::sweep_plan(request, base));
-  const designs::SweepParts parts(parts_in(options.out),
+  const designs::SweepParts parts(parts_in(options.place.out),
                                   designs::record_of(sweep, "bentaxis " BENTAXIS_VERSION));
   ranks.must_be_same(parts.record().identity, "case, plan or version");
-  std::optional<OutputFolder> folder;
+  std::optional<ReportFolders> folders;
   if (first) {
-    folder.emplace(options.out);
+    folders.emplace(options.place);
     parts.begin();
   }
   ranks.wait();
@@ -107,10 +109,10 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
   if (share.resume) std::fprintf(stderr, "bentaxis: %zu blocks were there already\n", before);
   if (share.parts > 1) {
     std::printf("part %s is in %s; bentaxis merge %s makes results of all parts\n",
-                options.part.c_str(), parts.folder().c_str(), options.out.c_str());
+                options.part.c_str(), parts.folder().c_str(), options.place.out.c_str());
     return kDone;
   }
-  const int status = write_results(sweep, parts, formats, *folder);
+  const int status = write_results(sweep, parts, formats, share.threads, *folders);
   parts.remove(sweep.blocks());
   return status;
 }
@@ -123,7 +125,7 @@ Command add_sweep_command(CommandParser program) {
       "sweep",
       "Outputs of many designs: grids and samples of any parameters, on any number of cores");
   add_case(command, options->the_case);
-  add_out(command, options->out, "sweep.csv and sweep.h5");
+  add_report(command, options->place, "report.html, report.json, sweep.csv and sweep.h5");
   command.option("--vary", options->vary, "a parameter and its values (docs/sweeps.md)")
       .repeatable()
       .text("NAME=VALUES");

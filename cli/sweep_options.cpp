@@ -2,9 +2,11 @@
 
 #include <cstdio>
 
+#include "bentaxis/designs/sweep_document.h"
 #include "bentaxis/pump/error.h"
 #include "commands.h"
 #include "console.h"
+#include "versions.h"
 
 namespace bentaxis::cli {
 
@@ -56,11 +58,12 @@ std::size_t compute_or_say(const designs::Sweep& sweep, const designs::SweepPart
 }
 
 int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,
-                  const designs::SweepFormats& formats, OutputFolder& folder) {
-  const designs::SweepResult result =
-      designs::write_sweep(sweep, parts, formats, folder, progress_of("writing"));
-  const auto paths = folder.commit();
-  std::printf("%s\n", designs::sweep_text(result).c_str());
+                  const designs::SweepFormats& formats, int threads, ReportFolders& folders) {
+  const designs::SweepResult result = designs::write_sweep(sweep, parts, formats, folders.tables(),
+                                                           threads, progress_of("writing"));
+  const auto paths = folders.write("report", designs::sweep_document(result, versions()), {}, {});
+  std::printf("%s\n%s", designs::headline(result).c_str(),
+              designs::disagreements_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return result.agrees() ? kDone : kOutOfTolerance;
 }

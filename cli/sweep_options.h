@@ -7,6 +7,7 @@
 
 #include "bentaxis/designs/sweep_tables.h"
 #include "command_parser.h"
+#include "report_files.h"
 
 namespace bentaxis::cli {
 
@@ -27,6 +28,6 @@ std::size_t compute_or_say(const designs::Sweep& sweep, const designs::SweepPart
 
 /// Writes the results of all blocks and prints what came out. @return the exit status
 int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,
-                  const designs::SweepFormats& formats, OutputFolder& folder);
+                  const designs::SweepFormats& formats, int threads, ReportFolders& folders);
 
 }  // namespace bentaxis::cli

@@ -1,34 +1,91 @@
 #include "bentaxis/designs/evaluator.h"
 
 #include <algorithm>
+#include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "turn_statistics.h"
 
 namespace bentaxis::designs {
 
 struct Evaluator::Implementation {
+  Implementation(Family the_family, std::vector<Output> the_outputs, study::Model the_model);
+
   Family family;
   std::vector<Output> outputs;
   study::Model model;
+  std::optional<TurnOutputs> kernel;  // where the kernel gives all outputs
+
+  // What one thread works in.
+  struct Scratch {
+    Case the_case;
+    std::optional<TurnStatistics> turn;
+  };
+  mutable std::mutex mutex;
+  mutable std::vector<std::unique_ptr<Scratch>> idle;
+
+  std::unique_ptr<Scratch> take() const {
+    {
+      const std::lock_guard lock(mutex);
+      if (!idle.empty()) {
+        auto scratch = std::move(idle.back());
+        idle.pop_back();
+        return scratch;
+      }
+    }
+    auto scratch = std::make_unique<Scratch>(Scratch{family.base(), {}});
+    if (kernel) scratch->turn.emplace(*kernel);
+    return scratch;
+  }
+  void give_back(std::unique_ptr<Scratch> scratch) const {
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(scratch));
+  }
 
   // Of a case that is valid.
-  std::vector<double> general(const Case& the_case) const {
-    return outputs_of(outputs, study::prepare(the_case), model);
+  void find(Scratch& scratch, std::span<double> results) const {
+    if (scratch.turn && scratch.turn->find(scratch.the_case, results)) return;
+    const std::vector<double> found = outputs_of(outputs, study::prepare(scratch.the_case), model);
+    std::copy(found.begin(), found.end(), results.begin());
   }
 };
 
+namespace {
+
+// What the kernel cannot follow from design to design: channels that come and go, teeth, another
+// kind of pressure.
+bool stays_in_reach(const Family& family) {
+  const Case& base = family.base();
+  const auto leaves = [](const Variable& v) {
+    return v.name() == "pump.pistons" || v.name() == "gear.contact" || v.name() == "pressure.kind";
+  };
+  return base.pressure.kind != PressureKind::hydraulic &&
+         base.pump.gear.contact != ToothContact::teeth &&
+         std::none_of(family.variables().begin(), family.variables().end(), leaves);
+}
+
+}  // namespace
+
+Evaluator::Implementation::Implementation(Family the_family, std::vector<Output> the_outputs,
+                                          study::Model the_model)
+    : family(std::move(the_family)), outputs(std::move(the_outputs)), model(the_model) {
+  if (model == study::Model::analytic && stays_in_reach(family))
+    kernel = turn_outputs(outputs, family.base());
+}
+
 Evaluator::Evaluator(Family family, std::vector<Output> outputs, study::Model model)
-    : implementation_(std::make_unique<Implementation>(
-          Implementation{std::move(family), std::move(outputs), model})) {}
+    : implementation_(
+          std::make_unique<Implementation>(std::move(family), std::move(outputs), model)) {}
 Evaluator::~Evaluator() = default;
 Evaluator::Evaluator(Evaluator&&) noexcept = default;
 
 const Family& Evaluator::family() const { return implementation_->family; }
 const std::vector<Output>& Evaluator::outputs() const { return implementation_->outputs; }
 study::Model Evaluator::model() const { return implementation_->model; }
-bool Evaluator::fast() const { return false; }
+bool Evaluator::fast() const { return implementation_->kernel.has_value(); }
 
 Evaluation Evaluator::evaluate(std::span<const double> values) const {
   Evaluation result;
@@ -40,14 +97,13 @@ Evaluation Evaluator::evaluate(std::span<const double> values) const {
 void Evaluator::evaluate(std::size_t count, std::span<const double> values,
                          std::span<double> results, std::span<std::string> reasons) const {
   const std::size_t n = family().variables().size(), m = outputs().size();
-  Case scratch = family().base();
+  auto scratch = implementation_->take();
   for (std::size_t i = 0; i < count; ++i) {
     const auto to = results.subspan(i * m, m);
+    reasons[i].clear();
     try {
-      family().make(values.subspan(i * n, n), scratch);
-      const std::vector<double> found = implementation_->general(scratch);
-      std::copy(found.begin(), found.end(), to.begin());
-      reasons[i].clear();
+      family().make(values.subspan(i * n, n), scratch->the_case);
+      implementation_->find(*scratch, to);
     } catch (const InputError& error) {
       reasons[i] = error.what();
     } catch (const ComputationError& error) {
@@ -55,6 +111,7 @@ void Evaluator::evaluate(std::size_t count, std::span<const double> values,
     }
     if (!reasons[i].empty()) std::fill(to.begin(), to.end(), not_computed());
   }
+  implementation_->give_back(std::move(scratch));
 }
 
 }  // namespace bentaxis::designs

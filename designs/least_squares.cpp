@@ -142,6 +142,22 @@ class AllResiduals final : public ceres::CostFunction {
   std::vector<double> units_;
 };
 
+// Ends the search once steps change the sum of squares by no more than is asked for.
+class EnoughIsEnough final : public ceres::IterationCallback {
+ public:
+  explicit EnoughIsEnough(double enough) : enough_(enough) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (summary.iteration == 0 || !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
+    constexpr int kTimes = 2;
+    times_ = 2 * summary.cost_change <= enough_ ? times_ + 1 : 0;  // the cost is half the sum
+    return times_ >= kTimes ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double enough_;
+  int times_ = 0;
+};
+
 double sum_of_squares(const std::vector<double>& residuals) {
   double sum = 0;
   for (const double r : residuals) sum += r * r;
@@ -152,12 +168,12 @@ double sum_of_squares(const std::vector<double>& residuals) {
 // holds. Where Ceres stops, the sum of squares is right to round-off, the parameters to half as
 // many digits; and along a bound it may have stopped early, because its steps are cut off there.
 void finish(const LeastSquaresProblem& problem, const std::vector<double>& units,
-            int most_iterations, LeastSquaresFit& fit) {
+            const LeastSquaresOptions& options, LeastSquaresFit& fit) {
   constexpr double kRank = 1e-9;  // of the longest column: shorter ones are left alone
   constexpr double kRounding = 1e-13;
   const std::size_t n = problem.parameters, m = problem.residuals;
   double last = HUGE_VAL;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < options.most_iterations; ++iteration) {
     const Eigen::Map<const RowMajor> jacobian(fit.jacobian.data(), static_cast<Eigen::Index>(m),
                                               static_cast<Eigen::Index>(n));
     const Eigen::Map<const Eigen::VectorXd> residuals(fit.residuals.data(),
@@ -184,10 +200,12 @@ void finish(const LeastSquaresProblem& problem, const std::vector<double>& units
     next.sum_of_squares = sum_of_squares(next.residuals);
     // At the end of it only rounding is left in the sum, while steps still become shorter.
     const double length = step.norm();
-    const bool better = next.sum_of_squares < fit.sum_of_squares * (1 - kRounding);
+    const bool better = next.sum_of_squares < fit.sum_of_squares * (1 - kRounding) - options.enough;
     const bool nearer =
         next.sum_of_squares <= fit.sum_of_squares * (1 + kRounding) && length < last / 2;
-    if (!(better || nearer) || !derivatives_of(problem, next.x, next.jacobian)) return;
+    if (!(better || (options.enough == 0 && nearer)) ||
+        !derivatives_of(problem, next.x, next.jacobian))
+      return;
     last = length;
     fit = std::move(next);
     ++fit.iterations;
@@ -226,6 +244,8 @@ LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<cons
   ceres_options.min_trust_region_radius = 1e-40;
   ceres_options.max_num_consecutive_invalid_steps = 30;
   ceres_options.logging_type = ceres::SILENT;
+  EnoughIsEnough enough(options.enough);
+  if (options.enough > 0) ceres_options.callbacks.push_back(&enough);
   ceres::Solver::Summary summary;
   ceres::Solve(ceres_options, &ceres_problem, &summary);
   // Times its unit a bound may come out a rounding beyond itself.
@@ -233,14 +253,15 @@ LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<cons
     fit.x[i] = u[i] * units[i];
     if (!problem.low.empty()) fit.x[i] = std::clamp(fit.x[i], problem.low[i], problem.high[i]);
   }
-  fit.converged = summary.termination_type == ceres::CONVERGENCE;
+  fit.converged = summary.termination_type == ceres::CONVERGENCE ||
+                  summary.termination_type == ceres::USER_SUCCESS;
   fit.message = summary.message;
   fit.iterations = static_cast<int>(summary.iterations.size());
   fit.jacobian.resize(problem.residuals * n);
   if (!problem.evaluate(fit.x, fit.residuals) || !derivatives_of(problem, fit.x, fit.jacobian))
     throw ComputationError("least squares: nothing can be computed at the solution");
   fit.sum_of_squares = sum_of_squares(fit.residuals);
-  finish(problem, units, options.most_iterations, fit);
+  finish(problem, units, options, fit);
   return fit;
 }
 #else
@@ -256,14 +277,17 @@ LeastSquaresFit least_squares(const LeastSquaresProblem&, std::span<const double
 
 std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
                                            const std::vector<std::vector<double>>& starts,
-                                           const LeastSquaresOptions& options, int threads) {
+                                           const LeastSquaresOptions& options, int threads,
+                                           const Progress& progress) {
   std::vector<std::optional<LeastSquaresFit>> found(starts.size());
+  study::Reporting reporting(starts.size(), progress);
   study::in_threads(threads, starts.size(), [&](std::size_t i) {
     try {
       found[i] = least_squares(problem, starts[i], options);
     } catch (const ComputationError&) {
       found[i].reset();  // no residuals there: a start like this leads nowhere
     }
+    reporting.done();
   });
   std::vector<LeastSquaresFit> fits;
   for (auto& fit : found)

@@ -49,6 +49,11 @@ std::string meaning_of(const Channel& c, bool vector) {
   return text;
 }
 
+// The vector a channel is a component of: "Rs_3".
+std::string vector_name(const Channel& c) {
+  return c.quantity + (c.piston > 0 ? "_" + std::to_string(c.piston) : "");
+}
+
 bool can_be_asked_for(const Channel& c) { return c.kind != ChannelKind::check; }
 
 // Fills in what a statistic is of; false where there is no such channel.
@@ -67,10 +72,9 @@ bool find_channels(const std::string& wanted, const std::vector<Channel>& channe
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const Channel& c = channels[i];
     if (!can_be_asked_for(c) || c.frame == "S3") continue;
-    const std::string piston = c.piston > 0 ? "_" + std::to_string(c.piston) : "";
-    if (wanted != c.quantity + piston && !(c.piston == 1 && wanted == c.quantity)) continue;
+    if (wanted != vector_name(c) && !(c.piston == 1 && wanted == c.quantity)) continue;
     o.columns.push_back(i);
-    o.item = c.quantity + piston;
+    o.item = vector_name(c);
     o.unit = c.unit;
     o.meaning = meaning_of(c, true);
   }
@@ -246,7 +250,7 @@ std::vector<std::string> output_names(const Case& base) {
     if (can_be_asked_for(c) && c.piston <= 1) names.push_back("max:" + c.name);
   for (const Channel& c : layout.channels()) {  // vectors
     Output o;
-    const std::string name = c.quantity + (c.piston > 0 ? "_1" : "");
+    const std::string name = vector_name(c);
     if (c.piston <= 1 && find_channels(name, layout.channels(), o) && o.columns.size() > 1 &&
         std::find(names.begin(), names.end(), "peak:" + name) == names.end())
       names.push_back("peak:" + name);
@@ -301,7 +305,16 @@ double statistic_of(Statistic statistic, const std::vector<double>& values) {
 
 namespace {
 
-double statistic_in(const Output& o, const ResultTable& table) {
+double statistic_in(Output o, const ResultTable& table) {
+  // The number of pistons moves columns, and may take some away.
+  const auto stands = [&](std::size_t column) {
+    return column < table.columns() &&
+           (table.channels[column].name == o.item || vector_name(table.channels[column]) == o.item);
+  };
+  if (!std::all_of(o.columns.begin(), o.columns.end(), stands)) {
+    o.columns.clear();
+    if (!find_channels(o.item, table.channels, o)) return not_computed();
+  }
   std::vector<double> values(table.rows());
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (o.columns.size() == 1) {
@@ -385,6 +398,12 @@ class Turn {
 
 }  // namespace
 
+double derived_value(const Output& output, const Geometry& geometry) {
+  for (const DerivedEntry& d : kDerived)
+    if (output.item == d.name) return d.value(analytic::derived_quantities(geometry));
+  return not_computed();
+}
+
 std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::ReadyCase& ready,
                                study::Model model) {
   std::optional<Turn> turn;
@@ -395,9 +414,7 @@ std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::
   const bool budget = std::any_of(outputs.begin(), outputs.end(), is(Source::budget));
   for (const Output& o : outputs) {
     if (o.source == Source::derived) {
-      const auto derived = analytic::derived_quantities(ready.the_case.pump.geometry);
-      for (const DerivedEntry& d : kDerived)
-        if (o.item == d.name) values.push_back(d.value(derived));
+      values.push_back(derived_value(o, ready.the_case.pump.geometry));
     } else if (o.source == Source::hydraulics) {
       values.push_back(not_computed());
       for (const hydraulics::Line& line : hydraulics::lines(*ready.hydraulics))

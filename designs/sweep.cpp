@@ -205,7 +205,7 @@ Sweep::Sweep(Case base, SweepPlan plan)
 Sweep::~Sweep() = default;
 Sweep::Sweep(Sweep&&) noexcept = default;
 
-const Case& Sweep::base() const { return implementation_->base; }
+const Family& Sweep::family() const { return implementation_->evaluator.family(); }
 const SweepPlan& Sweep::plan() const { return implementation_->plan; }
 std::size_t Sweep::designs() const { return implementation_->points->size(); }
 std::size_t Sweep::block_size() const { return implementation_->block_size; }

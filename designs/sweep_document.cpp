@@ -42,10 +42,11 @@ std::string values_text(const Varied& varied) {
   const auto& levels = varied.levels;
   if (levels.empty()) return varied.distribution.text();
   if (levels.size() > 8)
-    return fmt::format("{} .. {}, {} values", variable.text(levels.front()),
-                       variable.text(levels.back()), levels.size());
+    return fmt::format("{} .. {}, {} values", value_text(variable, levels.front()),
+                       value_text(variable, levels.back()), levels.size());
   std::string text;
-  for (const double level : levels) text += (text.empty() ? "" : ", ") + variable.text(level);
+  for (const double level : levels)
+    text += (text.empty() ? "" : ", ") + value_text(variable, level);
   return text;
 }
 
@@ -66,7 +67,7 @@ Section plan_section(const SweepResult& result, const SweepView& view) {
     const Variable& variable = varied.variable;
     const std::string unit = variable.unit().empty() ? "" : " (" + variable.unit() + ")";
     section.table.rows.push_back({variable.name(), variable.meaning() + unit, values_text(varied),
-                                  variable.text(variable.value(result.base))});
+                                  value_text(variable, variable.value(result.base))});
   }
   return section;
 }

@@ -85,7 +85,7 @@ class Figures {
     for (const std::size_t k : varied_) {
       if (std::find(shown.begin(), shown.end(), k) != shown.end()) continue;
       text += (text.empty() ? "At " : ", ") + view_.variable(k).name() + " " +
-              view_.variable(k).text(view_.levels(k)[view_.home()[k]]);
+              value_text(view_.variable(k), view_.levels(k)[view_.home()[k]]);
     }
     return text.empty() ? "" : text + ", next to the case's own. ";
   }
@@ -218,7 +218,7 @@ class Figures {
       for (const std::size_t i : spread(count, kMostLines, view_.home()[family])) {
         level[family] = i;
         const Variable& variable = view_.variable(family);
-        line(variable.name() + " " + variable.text(view_.levels(family)[i]));
+        line(variable.name() + " " + value_text(variable, view_.levels(family)[i]));
       }
     }
     add(fmt::format("slice_{}_{}", v + 1, k + 1),

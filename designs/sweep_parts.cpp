@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cstring>
@@ -175,6 +176,21 @@ std::optional<SweepBlock> block_of(const std::string& bytes, const std::string& 
   return block;
 }
 
+// A case as a file that leaves out what follows from other parameters: read back, it still does.
+std::string text_of(const Family& family) {
+  std::istringstream lines(case_text(family.base()));
+  std::string text, table;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('[')) table = line.substr(1, line.size() - 2);
+    const auto& followers = family.followers();
+    if (std::none_of(followers.begin(), followers.end(), [&](const Family::Follower& f) {
+          return f.table->name == table && line.starts_with(f.parameter->key + " = ");
+        }))
+      text += line + "\n";
+  }
+  return text;
+}
+
 // What a folder says it is of.
 struct Found {
   std::string identity, program;
@@ -195,8 +211,8 @@ std::string program_in(const SweepRecord& record) {
 
 SweepRecord record_of(const Sweep& sweep, const std::string& program) {
   SweepRecord record;
-  const Case& base = sweep.base();
-  record.case_text = case_text(base);
+  const Case& base = sweep.family().base();
+  record.case_text = text_of(sweep.family());
   const ConstView view = view_of(base);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& p : table.parameters) {

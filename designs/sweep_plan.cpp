@@ -14,7 +14,7 @@
 namespace bentaxis::designs {
 namespace {
 
-constexpr int kMostLevels = 1000000;
+constexpr int kMostValues = 1000000;
 constexpr std::size_t kMostDesigns = 1000000000;
 
 // Parts between commas that stand in no brackets.
@@ -40,14 +40,14 @@ std::optional<std::string> in_log(const std::string& text) {
 
 // FROM:TO:#N in equal ratios.
 std::vector<double> log_levels(const std::string& what, const std::string& text) {
-  std::vector<double> levels = spaced_values(what, text, "", kMostLevels);
+  std::vector<double> levels = spaced_values(what, text, "", kMostValues);
   if (levels.size() < 2 || text.find('#') == std::string::npos || !(levels.front() > 0))
     throw InputError(what + " log(" + text +
                      "): must be log(FROM:TO:#N) with 0 < FROM < TO, N > 1");
-  const double from = levels.front(), ratio = std::log(levels.back() / from);
+  const double from = levels.front(), ratio = levels.back() / from;
   const auto steps = static_cast<double>(levels.size() - 1);
   for (std::size_t i = 1; i + 1 < levels.size(); ++i)
-    levels[i] = from * std::exp(ratio * static_cast<double>(i) / steps);
+    levels[i] = from * std::pow(ratio, static_cast<double>(i) / steps);
   return levels;
 }
 
@@ -120,7 +120,7 @@ std::vector<double> levels_of(const std::string& text, const Variable& variable)
     if (const auto inner = in_log(part))
       some = log_levels(variable.name(), *inner);
     else if (part.find(':') != std::string::npos && variable.words().empty())
-      some = spaced_values(variable.name(), part, variable.unit(), kMostLevels);
+      some = spaced_values(variable.name(), part, variable.unit(), kMostValues);
     else
       some = {variable.value_of(part)};
     levels.insert(levels.end(), some.begin(), some.end());

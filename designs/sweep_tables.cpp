@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/in_threads.h"
 #include "sweep_hdf5.h"
 
 namespace bentaxis::designs {
@@ -97,10 +98,11 @@ void take(SweepResult& result, SweepBlock& block) {
 }  // namespace
 
 SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const SweepFormats& formats,
-                        OutputFolder& folder, const Progress& progress, std::size_t most) {
+                        OutputFolder& folder, int threads, const Progress& progress,
+                        std::size_t most) {
   SweepResult result;
   result.plan = sweep.plan();
-  result.base = sweep.base();
+  result.base = sweep.family().base();
   result.every = (sweep.designs() + most - 1) / most;
   OutputFolder::Stream* csv = formats.csv ? &folder.open("sweep.csv") : nullptr;
   if (csv != nullptr) {
@@ -111,16 +113,24 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   if (formats.hdf5)
     hdf5 = std::make_unique<Hdf5File>(folder.reserve("sweep.h5"), sweep, parts.record());
   std::vector<std::size_t> missing;
-  for (std::size_t i = 0; i < sweep.blocks(); ++i) {
-    auto block = parts.read(i);
-    if (!block) {
-      missing.push_back(i);
-    } else if (missing.empty()) {
-      if (csv != nullptr) csv->write(csv_rows(*block, result.plan));
-      if (hdf5) hdf5->add(*block);
-      take(result, *block);
+  // Some blocks at a time: read side by side, then both files written side by side.
+  constexpr std::size_t kAtATime = 16;
+  std::vector<std::optional<SweepBlock>> blocks(kAtATime);
+  for (std::size_t first = 0; first < sweep.blocks(); first += kAtATime) {
+    const std::size_t count = std::min(kAtATime, sweep.blocks() - first);
+    study::in_threads(threads, count, [&](std::size_t i) { blocks[i] = parts.read(first + i); });
+    for (std::size_t i = 0; i < count; ++i)
+      if (!blocks[i]) missing.push_back(first + i);
+    if (missing.empty()) {
+      study::in_threads(threads, 2, [&](std::size_t file) {
+        for (std::size_t i = 0; i < count; ++i) {
+          if (file == 0 && csv != nullptr) csv->write(csv_rows(*blocks[i], result.plan));
+          if (file == 1 && hdf5) hdf5->add(*blocks[i]);
+        }
+      });
+      for (std::size_t i = 0; i < count; ++i) take(result, *blocks[i]);
     }
-    progress(static_cast<double>(i + 1) / static_cast<double>(sweep.blocks()));
+    progress(static_cast<double>(first + count) / static_cast<double>(sweep.blocks()));
   }
   if (!missing.empty())
     throw InputError(fmt::format("{}: of {} blocks (0-{}) {} are missing or damaged: {}",
@@ -132,44 +142,25 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   return result;
 }
 
-std::string sweep_text(const SweepResult& result) {
-  const std::size_t all = result.plan.size();
-  std::string text =
-      fmt::format("{} design{}, {} infeasible", all, all == 1 ? "" : "s", result.all_infeasible);
-  std::map<std::string, std::size_t> reasons;  // without their numbers' places: as they are said
-  for (const auto& [design, reason] : result.infeasible) ++reasons[reason];
-  const auto most =
-      std::max_element(reasons.begin(), reasons.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most != reasons.end()) text += fmt::format("; such as: {}", most->first);
-  if (result.checks.empty()) return text;
-  const std::string other =
-      study::to_string(result.plan.model == study::Model::analytic ? study::Model::multibody
-                                                                   : study::Model::analytic);
-  double worst = 0;
-  std::size_t differ = 0;
-  std::string lines;
-  constexpr std::size_t kMostLines = 20;
+std::string disagreements_text(const SweepResult& result) {
+  std::string text;
+  constexpr int kMost = 20;
+  int lines = 0;
+  const auto add = [&](const std::string& line) {
+    if (lines++ < kMost) text += line + "\n";
+  };
   for (const SweepCheck& c : result.checks) {
-    const bool agrees = c.agrees(result.tolerance);
-    if (!agrees) ++differ;
-    if (c.own_reason.empty() != c.reason.empty() && differ <= kMostLines)
-      lines += fmt::format("\n  design {}: refused by one model alone: {}", c.design,
-                           c.own_reason + c.reason);
-    for (std::size_t k = 0; k < c.values.size(); ++k) {
-      worst = std::max(worst, c.error(k));
-      if (!(c.error(k) <= result.tolerance) && differ <= kMostLines)
-        lines += fmt::format("\n  design {}, {}: {} against {}, {} of the peak", c.design,
-                             result.plan.outputs[k].name, number_text(c.own[k]),
-                             number_text(c.values[k]), rounded_text(c.error(k)));
-    }
+    if (c.own_reason.empty() != c.reason.empty())
+      add(fmt::format("design {}: refused by one model alone: {}", c.design,
+                      c.own_reason + c.reason));
+    for (std::size_t k = 0; k < c.values.size(); ++k)
+      if (!(c.error(k) <= result.tolerance))
+        add(fmt::format("design {}, {}: {} against {}, {} of the peak", c.design,
+                        result.plan.outputs[k].name, number_text(c.own[k]),
+                        number_text(c.values[k]), rounded_text(c.error(k))));
   }
-  return text + fmt::format(
-                    "\n{} of them by the {} model too: {}, at most {} of the peak apart "
-                    "(tolerance {}){}",
-                    result.checks.size(), other,
-                    differ == 0 ? "all agree" : fmt::format("{} differ", differ),
-                    rounded_text(worst), number_text(result.tolerance), lines);
+  if (lines > kMost) text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMost);
+  return text;
 }
 
 }  // namespace bentaxis::designs

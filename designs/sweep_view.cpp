@@ -1,5 +1,7 @@
 #include "sweep_view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -45,7 +47,8 @@ const std::string& SweepView::reason(std::size_t design) const { return reasons_
 std::string SweepView::text(std::size_t design) const {
   std::string text;
   for (std::size_t k = 0; k < variables(); ++k)
-    text += (k == 0 ? "" : ", ") + variable(k).name() + " " + variable(k).text(value(design, k));
+    text +=
+        (k == 0 ? "" : ", ") + variable(k).name() + " " + value_text(variable(k), value(design, k));
   return text;
 }
 
@@ -91,6 +94,10 @@ std::size_t SweepView::at(const std::vector<std::size_t>& level) const {
   std::size_t design = 0;
   for (std::size_t k = 0; k < variables(); ++k) design = design * levels(k).size() + level[k];
   return design;
+}
+
+std::string value_text(const Variable& variable, double value) {
+  return variable.words().empty() ? fmt::format("{:.6g}", value) : variable.text(value);
 }
 
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most,

@@ -63,6 +63,9 @@ class SweepView {
   std::vector<std::size_t> front_, home_;
 };
 
+/// A value of a variable for people: to six digits, or its word.
+std::string value_text(const Variable& variable, double value);
+
 /// Evenly chosen numbers below `count`, at most `most`, with all of `also` (rising).
 std::vector<std::size_t> thinned(std::size_t count, std::size_t most,
                                  const std::vector<std::size_t>& also = {});

@@ -160,7 +160,7 @@ Family::Family(Case base, std::vector<Variable> variables)
                                        [&](const InputEntry& e) { return e.table == table.name; });
       if (std::none_of(variables_.begin(), variables_.end(), varies) && !base_.entries.empty() &&
           (silent || std::any_of(base_.entries.begin(), base_.entries.end(), defaulted)))
-        followers_.push_back({&p});
+        followers_.push_back({&table, &p});
     }
 }
 

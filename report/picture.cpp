@@ -1018,6 +1018,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
                               {"fill", "#7a0c0c"},       {"stroke", "#fff"},
                               {"stroke-width", "4"},     {"paint-order", "stroke"},
                               {"class", "label"}};
+    std::vector<Point> labelled;
     for (const double level : figure.contours) {
       const auto pieces = contour(px_x, px_y, z, linear ? level : std::log10(level));
       if (pieces.empty()) continue;
@@ -1033,6 +1034,12 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
            {"stroke-width", "1.8"},
            {"stroke-linecap", "round"}});
       const Point& at = pieces[pieces.size() / 2][0];
+      // Where lines crowd not every one has room for its value.
+      const bool room = std::none_of(labelled.begin(), labelled.end(), [&](const Point& other) {
+        return std::abs(other[0] - at[0]) < 60 && std::abs(other[1] - at[1]) < 14;
+      });
+      if (!room) continue;
+      labelled.push_back(at);
       add_text(root, std::clamp(at[0], kLeft + 24, kRight - 24), at[1] - 6, text(level), label);
     }
     for (std::size_t i = 0; i < figure.lines.size(); ++i) {

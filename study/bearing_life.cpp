@@ -198,6 +198,8 @@ std::string to_string(Bearing bearing) {
   return bearing == Bearing::tapered ? "tapered" : "cylindrical";
 }
 
+void require_ratings(const Case& the_case) { rated(the_case); }
+
 LifePoint life_point(const Case& the_case, const ResultTable& table, double share) {
   const BearingRatings& b = rated(the_case);
   LifePoint point;

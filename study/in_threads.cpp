@@ -1,13 +1,13 @@
 #include "bentaxis/study/in_threads.h"
 
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/partitioner.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
-#include <thread>
 
 namespace bentaxis::study {
 namespace {
@@ -20,7 +20,8 @@ std::atomic<long> handed_over{0};
 
 void in_threads(int threads, std::size_t count, const std::function<void(std::size_t)>& job) {
   if (count == 0) return;
-  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  // Those that this process may use: mpirun and batch systems hand them out.
+  const int processors = std::max(1, oneapi::tbb::info::default_concurrency());
   handed_over.fetch_add(1);
   oneapi::tbb::task_arena(threads > 0 ? std::min(threads, processors) : processors).execute([&] {
     oneapi::tbb::parallel_for(

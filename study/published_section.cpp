@@ -9,10 +9,9 @@
 #include "bentaxis/study/reference_set.h"
 
 namespace bentaxis::study {
-namespace {
 
-// Applies a variant's settings. @throws InputError for a fact that cannot be set.
-void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions& assumptions) {
+void apply_variant(const compare::PublishedVariant& variant, Case& the_case,
+                   Assumptions& assumptions) {
   for (const auto& [name, value] : variant.set) {
     if (name == "block_viscous_Nm_per_rpm")
       the_case.pump.friction.block_viscous = value / kRadPerSecondPerRpm;
@@ -26,8 +25,6 @@ void apply(const compare::PublishedVariant& variant, Case& the_case, Assumptions
                        "gear_imposed");
   }
 }
-
-}  // namespace
 
 compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions) {
   const PumpParameters& pump = the_case.pump;
@@ -71,7 +68,7 @@ compare::PublishedRun VariantRuns::operator()(const compare::PublishedVariant& v
   RunOptions options;
   options.model = model_;
   options.assumptions = input_.assumptions;
-  apply(variant, the_case, *options.assumptions);
+  apply_variant(variant, the_case, *options.assumptions);
   compare::PublishedRun run{input_.table, facts_of(the_case, *options.assumptions)};
   if (variant.set.empty()) return run;
   ResultTable& table = tables_[variant.name];

@@ -247,9 +247,10 @@ TEST(Properties, ForcesOnTheWholePumpAreInEquilibrium) {
     add(o2, s2(0, 0, v[at.Fh()]));
     moment += s2(v[at.Th(0)], v[at.Th(1)], 0);
     if (p.port_plate) {
-      for (const auto& [arc, pressure] : {std::pair{p.port_plate->delivery, i.ports.delivery},
-                                          std::pair{p.port_plate->suction, i.ports.suction}}) {
-        const auto land = analytic::closed_form::land_force(*p.port_plate, arc);
+      const auto plate = analytic::closed_form::raw(*p.port_plate);
+      for (const auto& [arc, pressure] : {std::pair{plate.delivery, i.ports.delivery},
+                                          std::pair{plate.suction, i.ports.suction}}) {
+        const auto land = analytic::closed_form::land_force(plate, arc);
         add(o2, s2(0, 0, land.force_z * pressure));
         moment += s2(land.moment_x * pressure, land.moment_y * pressure, 0);
       }
@@ -449,7 +450,8 @@ TEST(RingFriction, OpposesMotionAndRestsAtRest) {
   pump.friction.piston_viscous = 10;
   const auto force = [&](double velocity, double omega) {
     analytic::closed_form::FrictionNumbers<double> numbers;
-    const auto law = analytic::closed_form::prepare(pump, true, numbers);
+    const auto law =
+        analytic::closed_form::prepare(analytic::closed_form::raw(pump), true, numbers);
     return analytic::closed_form::friction_force(law, numbers, velocity, omega);
   };
   pump.friction.regularization = 0.01;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <type_traits>
 #include <utility>
 
@@ -373,6 +374,148 @@ TEST(Batch, ThreadsAndWritingPastTheCachesChangeNothing) {
   }
 }
 
+// ---- statistics
+// -------------------------------------------------------------------------------------
+
+// Every reaction, and every vector of one quantity.
+std::vector<Measured> all_measured(const ChannelLayout& layout) {
+  std::vector<Measured> measured;
+  for (std::size_t c = 0; c < layout.reactions(); ++c) measured.push_back({c});
+  for (int k = 0; k < layout.pistons(); ++k) {
+    measured.push_back({layout.Rs(k, 0), 3});
+    measured.push_back({layout.Rc(k, 0), 2});
+  }
+  measured.insert(measured.end(), {{layout.Th(0), 2}, {layout.Rb1(0), 3}, {layout.Rb2(0), 2}});
+  return measured;
+}
+
+// Sums of up to thousands of numbers that are reactions to kRecompiledTolerance.
+constexpr double kSumTolerance = 1e-13;
+
+// By columns, as whoever has no statistics of the kernel would.
+void expect_statistics_of_columns(const BatchModel& model, const BatchInstants& instants,
+                                  InstructionSet set, const std::string& what) {
+  BatchColumns columns(model.layout().reactions(), instants.count);
+  model.reactions(instants, outputs_of(model.layout(), ChannelGroup::all, columns), {set, 1});
+  const std::vector<Measured> measured = all_measured(model.layout());
+  std::vector<Statistics> found(measured.size());
+  model.statistics(instants, measured, found, {set, 1});
+  double scale = 0;  // largest reaction
+  for (std::size_t c = 0; c < model.layout().reactions(); ++c)
+    for (std::size_t i = 0; i < instants.count; ++i)
+      if (is_computed(columns.column(c)[i]))
+        scale = std::max(scale, std::abs(columns.column(c)[i]));
+  const double tolerance = scaled(kSumTolerance) * scale;
+  for (std::size_t m = 0; m < measured.size(); ++m) {
+    Statistics expected{0, HUGE_VAL, -HUGE_VAL, 0};
+    for (std::size_t i = 0; i < instants.count; ++i) {
+      double value = columns.column(measured[m].reaction)[i];
+      if (measured[m].components > 1) {
+        double squares = 0;
+        for (std::size_t c = 0; c < measured[m].components; ++c)
+          squares += std::pow(columns.column(measured[m].reaction + c)[i], 2);
+        value = std::sqrt(squares);
+      }
+      expected.mean += value / static_cast<double>(instants.count);
+      expected.mean_square += value * value / static_cast<double>(instants.count);
+      expected.min = std::min(expected.min, value);
+      expected.max = std::max(expected.max, value);
+    }
+    const std::string at = what + ", " + to_string(set) + ", measured " + std::to_string(m);
+    ASSERT_EQ(is_computed(expected.mean), is_computed(found[m].max)) << at;
+    if (!is_computed(expected.mean)) continue;
+    ASSERT_NEAR(expected.mean, found[m].mean, tolerance) << at;
+    ASSERT_NEAR(expected.min, found[m].min, tolerance) << at;
+    ASSERT_NEAR(expected.max, found[m].max, tolerance) << at;
+    ASSERT_NEAR(expected.mean_square, found[m].mean_square, tolerance * scale) << at;
+  }
+}
+
+TEST(Statistics, AreThoseOfTheColumns) {
+  RandomPump random(2024);
+  for (const std::size_t count : {1, 3, 8, 63, 64, 65, 360, 1023, 2500}) {
+    const PumpParameters pump = random.pump();
+    std::vector<Instant> instants;
+    for (std::size_t i = 0; i < count; ++i) instants.push_back(random.instant(pump, true));
+    const Arrays arrays(instants);
+    for (const BlockDrive gear : {BlockDrive::mesh, BlockDrive::imposed}) {
+      const BatchModel model(pump, {.inertia = pump.piston.inertia, .gear = gear});
+      for (const InstructionSet set : available_instruction_sets())
+        expect_statistics_of_columns(model, arrays.instants, set,
+                                     std::to_string(count) + " instants");
+    }
+  }
+}
+
+TEST(Statistics, DoNotDependOnThreads) {
+  const Case the_case = reference_case("bap63_rated");
+  const std::vector<Instant> once = turn(the_case);
+  std::vector<Instant> instants;
+  for (std::size_t i = 0; i < 9001; ++i) instants.push_back(once[i % once.size()]);
+  const Arrays arrays(instants);
+  const BatchModel model(the_case.pump, the_case.analytic);
+  const std::vector<Measured> measured = all_measured(model.layout());
+  std::vector<Statistics> one(measured.size()), more(measured.size());
+  for (const InstructionSet set : available_instruction_sets()) {
+    model.statistics(arrays.instants, measured, one, {set, 1});
+    for (const int threads : {2, 3, 64}) {
+      model.statistics(arrays.instants, measured, more, {set, threads});
+      EXPECT_EQ(0, std::memcmp(one.data(), more.data(), one.size() * sizeof(Statistics)))
+          << to_string(set) << ", " << threads << " threads";
+    }
+  }
+}
+
+TEST(Statistics, OfPistonsAloneAreThoseOfAll) {
+  const Case the_case = reference_case("bap63_rated");
+  const Arrays arrays(turn(the_case));
+  const BatchModel model(the_case.pump, the_case.analytic);
+  const std::vector<Measured> all = all_measured(model.layout());
+  std::vector<Statistics> of_all(all.size()), of_one(1);
+  model.statistics(arrays.instants, all, of_all);
+  const Measured rs = {model.layout().Rs(2, 1)};
+  model.statistics(arrays.instants, {&rs, 1}, of_one);
+  EXPECT_NEAR(of_one[0].max, of_all[rs.reaction].max, kRecompiledTolerance * of_all[2].max);
+}
+
+TEST(Statistics, RefuseWhatDoesNotFit) {
+  const Case the_case = reference_case("bap63_rated");
+  Arrays arrays(turn(the_case));
+  const BatchModel model(the_case.pump, the_case.analytic);
+  const auto measure = [&](Measured m, std::size_t room) {
+    std::vector<Statistics> results(room);
+    model.statistics(arrays.instants, {&m, 1}, results);
+  };
+  measure({34, 3}, 1);
+  EXPECT_THROW(measure({35, 3}, 1), InputError);
+  EXPECT_THROW(measure({0, 0}, 1), InputError);
+  EXPECT_THROW(measure({0, 1}, 2), InputError);
+  arrays.instants.count = 0;
+  EXPECT_THROW(measure({0, 1}, 1), InputError);
+}
+
+// A model that has become another pump is that pump's.
+TEST(Batch, BecomesAnotherPump) {
+  RandomPump random(7);
+  BatchModel model(random.pump(), {});
+  for (int i = 0; i < 20; ++i) {
+    const PumpParameters pump = random.pump();
+    const Assumptions assumptions = {.inertia = pump.piston.inertia};
+    const Arrays arrays({random.instant(pump, true)});
+    model.set_pump(pump, assumptions);
+    const BatchModel fresh(pump, assumptions);
+    ASSERT_EQ(model.layout().pistons(), pump.geometry.pistons);
+    BatchColumns found(fresh.layout().reactions(), 1), expected(fresh.layout().reactions(), 1);
+    model.reactions(arrays.instants, outputs_of(fresh.layout(), ChannelGroup::all, found));
+    fresh.reactions(arrays.instants, outputs_of(fresh.layout(), ChannelGroup::all, expected));
+    for (std::size_t c = 0; c < fresh.layout().reactions(); ++c)
+      ASSERT_EQ(found.column(c)[0], expected.column(c)[0]);
+    PumpParameters refused = pump;
+    refused.geometry.piston_length = 0;
+    EXPECT_THROW(model.set_pump(refused, assumptions), InputError);
+  }
+}
+
 // ---- counts
 // ----------------------------------------------------------------------------------------
 
@@ -394,6 +537,10 @@ TEST(Allocations, NoEvaluationAllocates) {
   const PumpBatch pumps(std::vector<PumpParameters>(instants.size(), the_case.pump),
                         the_case.analytic);
   const auto sets = available_instruction_sets();
+  const std::vector<Measured> measured = all_measured(model.layout());
+  std::vector<Statistics> statistics(measured.size());
+  model.statistics(arrays.instants, measured, statistics);
+  BatchModel changing(the_case.pump, the_case.analytic);
 
   const AllocationCounter counter;
   for (const Instant& instant : instants) scalar.reactions(instant, values);
@@ -401,6 +548,8 @@ TEST(Allocations, NoEvaluationAllocates) {
   for (const InstructionSet set : sets) {
     model.reactions(arrays.instants, outputs, {set, 1});
     pumps.reactions(arrays.instants, outputs, {set, 1});
+    changing.set_pump(the_case.pump, the_case.analytic);
+    changing.statistics(arrays.instants, measured, statistics, {set, 1});
   }
   EXPECT_EQ(counter.count(), 0);
 }

@@ -104,5 +104,95 @@ TEST(Evaluator, GivesNumbersOfTheTurn) {
   EXPECT_FALSE(is_computed(refused.values[0]));
 }
 
+// Statistics by the kernel against those of tables, for designs that differ in everything the
+// kernel keeps from one to the next. Of the largest reaction: sums of some hundred numbers that are
+// right to 1e-14.
+constexpr double kKernelTolerance = 1e-12;
+
+void expect_kernel_equals_tables(const Case& base, const std::vector<std::string>& names,
+                                 const std::vector<std::vector<double>>& designs) {
+  std::vector<Output> outputs;
+  const ChannelLayout layout(base.pump.geometry.pistons);
+  for (std::size_t c = 0; c < layout.reactions(); ++c)
+    for (int s = 0; s < kStatistics; ++s)
+      outputs.push_back(
+          output(to_string(static_cast<Statistic>(s)) + ":" + layout.channels()[c].name, base));
+  for (const char* vector : {"peak:Rs_2", "mean:Rb1", "min:Rb2", "rms:Th", "peak:Rc"})
+    outputs.push_back(output(vector, base));
+  outputs.push_back(output("stroke_mm", base));
+  std::vector<Variable> variables;
+  for (const std::string& name : names) variables.emplace_back(name, base);
+  const Evaluator kernel(Family(base, variables), outputs);
+  ASSERT_TRUE(kernel.fast());
+  outputs.push_back(output("efficiency.mechanical", base));  // the kernel cannot
+  const Evaluator tables(Family(base, variables), outputs);
+  ASSERT_FALSE(tables.fast());
+  std::vector<double> all;
+  for (const auto& design : designs) all.insert(all.end(), design.begin(), design.end());
+  std::vector<double> together(designs.size() * (outputs.size() - 1));
+  std::vector<std::string> reasons(designs.size());
+  kernel.evaluate(designs.size(), all, together, reasons);
+  for (std::size_t i = 0; i < designs.size(); ++i) {
+    const Evaluation expected = tables.evaluate(designs[i]);
+    ASSERT_EQ(reasons[i], expected.reason);
+    double scale = 0;
+    for (const double v : expected.values)
+      if (is_computed(v)) scale = std::max(scale, std::abs(v));
+    const Evaluation alone = kernel.evaluate(designs[i]);
+    for (std::size_t o = 0; o + 1 < outputs.size(); ++o) {
+      const double found = together[i * (outputs.size() - 1) + o];
+      ASSERT_EQ(is_computed(found), is_computed(expected.values[o])) << outputs[o].name;
+      if (!is_computed(found)) continue;
+      ASSERT_NEAR(found, expected.values[o], kKernelTolerance * scale)
+          << outputs[o].name << " of design " << i;
+      ASSERT_EQ(found, alone.values[o]) << outputs[o].name;
+    }
+  }
+}
+
+TEST(Evaluator, GivesTheSameByTheKernel) {
+  Case base = read_case(kRated);
+  base.operation.samples_per_revolution = 60;
+  expect_kernel_equals_tables(base,
+                              {"pump.tilt_deg", "pressure.delivery_bar", "operation.speed_rpm",
+                               "operation.samples_per_revolution", "pressure.transition_deg",
+                               "assumptions.analytic.gear", "pressure.suction_bar"},
+                              {{40, 275, 1500, 60, 20, 0, 0},
+                               {35, 275, 1500, 60, 20, 0, 0},
+                               {35, 100, 1500, 60, 20, 0, 0},  // the ports' pressure alone
+                               {95, 100, 1500, 60, 20, 0, 0},  // refused
+                               {35, 100, -900, 60, 20, 0, 3},
+                               {35, 100, -900, 61, 20, 0, 3},  // chambers at places of their own
+                               {35, 100, -900, 61, 0, 0, 3},
+                               {35, 100, -900, 60, 0, 0, 3},
+                               {0, 100, 900, 1, 10, 1, 3},  // no tooth force
+                               {40, 275, 1500, 720, 20, 0, 0}});
+}
+
+TEST(Evaluator, GivesTheSameByTheKernelUnderACurve) {
+  Case base = read_case(kRated);
+  base.pressure.kind = PressureKind::curve;
+  base.pressure.curve = {{0, 90, 170, 200, 260, 350}, {1e5, 3e5, 9e6, 2.7e7, 2.5e7, 4e6}};
+  expect_kernel_equals_tables(base, {"pump.axis_offset_mm", "operation.samples_per_revolution"},
+                              {{0.1, 100}, {-0.5, 100}, {-0.5, 7}, {0.1, 100}});
+}
+
+// Columns of a table move with the number of pistons.
+TEST(Evaluator, FindsChannelsOfAnotherNumberOfPistons) {
+  const Case base = read_case(kRated);
+  const std::vector<Output> outputs = {output("mean:Td", base), output("max:Rs_5_z2", base),
+                                       output("peak:Rb1", base)};
+  const Evaluator evaluator(Family(base, {Variable("pump.pistons", base)}), outputs);
+  const double three[] = {3};
+  const Evaluation found = evaluator.evaluate(three);
+  ASSERT_TRUE(found.feasible()) << found.reason;
+  const Case other = read_case(kRated, {"pump.pistons=3"});
+  const std::vector<Output> of_other = {output("mean:Td", other), output("peak:Rb1", other)};
+  const auto expected = outputs_of(of_other, study::prepare(other), study::Model::analytic);
+  EXPECT_EQ(found.values[0], expected[0]);
+  EXPECT_EQ(found.values[2], expected[1]);
+  EXPECT_FALSE(is_computed(found.values[1]));
+}
+
 }  // namespace
 }  // namespace bentaxis::designs

@@ -352,8 +352,9 @@ TEST(FreeMotion, DerivativesAreThoseOfThePositions) {
     const PumpParameters pump = random.pump();
     closed_form::FrameNumbers<double> frame_in_double;
     closed_form::PistonNumbers<double> piston_in_double{};
-    closed_form::prepare(pump.geometry, frame_in_double);
-    closed_form::prepare(pump.geometry, frame_in_double, piston_in_double);
+    const auto geometry = closed_form::raw(pump.geometry);
+    closed_form::prepare(geometry, frame_in_double);
+    closed_form::prepare(geometry, frame_in_double, piston_in_double);
     const closed_form::FrameNumbers<Real> frame = {
         frame_in_double.sin_tilt, frame_in_double.cos_tilt, frame_in_double.offset_y,
         frame_in_double.offset_z};

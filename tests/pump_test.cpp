@@ -255,7 +255,8 @@ TEST(PortPlateForce, ClosedFormEqualsQuadrature) {
     const double from = random.in(-400, 400);
     const PortArc arc{from, from + random.in(1, 360)};
     const PortPlate plate{r1, r2, r3, r4, arc, arc};
-    const auto closed = analytic::closed_form::land_force(plate, arc);
+    const auto raw = analytic::closed_form::raw(plate);
+    const auto closed = analytic::closed_form::land_force(raw, raw.delivery);
     const multibody::FilmLoad sum = multibody::film_load(plate, {0, 1e6});
     EXPECT_NEAR(closed.force_z * 1e6 / sum.force_z, 1, 1e-13);
     EXPECT_NEAR(closed.moment_x * 1e6, sum.moment_x, 1e-13 * std::abs(sum.force_z) * r4 + 1e-13);
@@ -265,7 +266,8 @@ TEST(PortPlateForce, ClosedFormEqualsQuadrature) {
 
 TEST(PortPlateForce, FullRingHasNoMoment) {
   const PortPlate plate{0.01, 0.012, 0.02, 0.022, {0, 360}, {0, 360}};
-  const auto f = analytic::closed_form::land_force(plate, plate.delivery);
+  const auto raw = analytic::closed_form::raw(plate);
+  const auto f = analytic::closed_form::land_force(raw, raw.delivery);
   // Cones of linear pressure: volume of a frustum difference.
   const auto cone = [](double r) { return kPi * r * r * r / 3; };
   const double expected = (cone(0.022) - cone(0.02)) / 0.002 - (cone(0.012) - cone(0.01)) / 0.002;

@@ -57,11 +57,15 @@ class SchemaTest(unittest.TestCase):
                                    "drive.duration_s=0.001", "--set", "drive.samples=10", "--error", "1e-4"),
             "teeth": cls.report("report.json", "compare", REPO / "cases" / "bap63_teeth.toml", "--set",
                                 "operation.samples_per_revolution=36"),
+            "life": cls.report("life.json", "life", REPO / "cases" / "bap63_bearing_life.toml", "--set",
+                               "operation.samples_per_revolution=36"),
             "uncertainty": cls.report("report.json", "uncertainty", rated, "--vary", "pump.tilt_deg=normal(0.1)", "--samples", "150",
                                       "--sobol", "32"),
             "rattle": cls.report("report.json", "rattle", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                  "friction.block_viscous_Nm_per_rpm=0.0054", "--speeds", "900:1200:#2", "--delivery-bar",
                                  "350", "--turns", "2", "--check", "1"),
+            "sweep": cls.report("report.json", "sweep", rated, "--vary", "pump.piston_length_mm=6:46:10", "--vary",
+                                "pump.joint_circle_radius_mm=20:35:5", "--maximise", "mean:Td", "--minimise", "max:Rb2", "--check", "10%"),
         }
         cls.reports["regress"] = cls.page_of_a_regression()
 
@@ -105,8 +109,10 @@ class SchemaTest(unittest.TestCase):
         used = set().union(*self.reports.values())
         self.assertEqual(set(self.schema["properties"]) - used, {"long_run"})  # of the whole catalogue only
         kinds = {figure["kind"] for report in self.reports.values() for figure in report.get("figures", [])}
-        self.assertEqual(kinds, {"curves", "piston_bars", "own_axis", "xy", "map", "scatter", "drawing", "bars", "bands"})
+        self.assertEqual(kinds, {"curves", "piston_bars", "own_axis", "xy", "map", "scatter", "drawing", "parallel", "bars", "bands"})
         self.assertTrue(any("curves" in figure for figure in self.reports["regress"]["figures"]))
+        maps = [figure for figure in self.reports["sweep"]["figures"] if figure["kind"] == "map"]
+        self.assertTrue(any("reasons" in figure for figure in maps))  # of designs that do not assemble
         self.assertIsNotNone(self.reports["unequal"]["assumptions"])
         self.assertIsNotNone(self.reports["compare"]["published"])
 

@@ -5,6 +5,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -45,15 +46,20 @@ bool streams(const BatchInstants& instants, const BatchOutputs& outputs) {
   return aligned && bytes > kCacheBytes;
 }
 
-BatchKernel* kernel(InstructionSet set) {
+struct Kernel {
+  BatchKernel* run;
+  TallyKernel* tally;
+};
+
+Kernel kernel(InstructionSet set) {
   switch (set) {
 #ifdef BENTAXIS_X86_KERNELS
     case InstructionSet::avx512:
-      return run_batch_avx512;
+      return {run_batch_avx512, tally_batch_avx512};
     case InstructionSet::avx2:
-      return run_batch_avx2;
+      return {run_batch_avx2, tally_batch_avx2};
     case InstructionSet::sse2:
-      return run_batch_sse2;
+      return {run_batch_sse2, tally_batch_sse2};
 #else
     case InstructionSet::avx512:
     case InstructionSet::avx2:
@@ -62,7 +68,7 @@ BatchKernel* kernel(InstructionSet set) {
     case InstructionSet::scalar:
       break;
   }
-  return run_batch_scalar;
+  return {run_batch_scalar, tally_batch_scalar};
 }
 
 // oneTBB orders what its caller did before a loop, the pieces, and what the caller does after it;
@@ -87,63 +93,111 @@ struct LoopOrder {
 
 BatchJob::Column column(const Varying& v) { return {v.each, v.all}; }
 
+// What the kernel is given; points to `pressures`, which is filled in, and to what it is made of.
+using Pressures = std::array<BatchJob::Column, kMostPistons>;
+BatchJob job_of(const PreparedPump& pump, const double* pumps, const ChannelLayout& layout,
+                const BatchInstants& instants, Pressures& pressures) {
+  if (instants.chamber_pressure.size() != static_cast<std::size_t>(layout.pistons()))
+    throw InputError("batch: " + std::to_string(instants.chamber_pressure.size()) +
+                     " chamber pressures for " + std::to_string(layout.pistons()) + " pistons");
+  for (std::size_t k = 0; k < instants.chamber_pressure.size(); ++k)
+    pressures[k] = column(instants.chamber_pressure[k]);
+  const BlockMotion block = instants.block.value_or(BlockMotion{});
+  return {.common = pump.common(),
+          .stream = false,
+          .bodies = true,
+          .pump = &pump.numbers,
+          .pumps = pumps,
+          .pumps_stride = instants.count,
+          .theta = column(instants.theta),
+          .omega = column(instants.omega),
+          .omega_dot = column(instants.omega_dot),
+          .suction = column(instants.suction),
+          .delivery = column(instants.delivery),
+          .free = instants.block.has_value(),
+          .psi = column(block.psi),
+          .block_omega = column(block.omega),
+          .block_omega_dot = column(block.omega_dot),
+          .chamber_pressure = pressures.data(),
+          .outputs = nullptr};
+}
+
+// Calls piece(begin, end) for all instants, in pieces of whole grains, in as many threads as may
+// be; as one piece in the calling thread where there is one.
+template <class Piece>
+void in_pieces(std::size_t count, int threads, const Piece& piece) {
+  if (threads <= 1 || count <= kGrain) {
+    piece(std::size_t{0}, count);
+    return;
+  }
+  // Each thread keeps to one piece of every array, so that its part stays in its own cache.
+  LoopOrder order;
+  const auto all = [&] {
+    order.started();
+    const std::size_t blocks = (count + kGrain - 1) / kGrain;
+    oneapi::tbb::parallel_for(
+        oneapi::tbb::blocked_range<std::size_t>(0, blocks),
+        [&](const auto& range) {
+          order.piece_starts();
+          piece(range.begin() * kGrain, std::min(count, range.end() * kGrain));
+          order.piece_ends();
+        },
+        oneapi::tbb::static_partitioner());
+    order.ended();
+  };
+  if (threads >= oneapi::tbb::this_task_arena::max_concurrency())
+    all();
+  else
+    oneapi::tbb::task_arena(threads).execute(all);
+}
+
 void run_job(const PreparedPump& pump, const double* pumps, const ChannelLayout& layout,
              const BatchInstants& instants, const BatchOutputs& outputs,
              const BatchOptions& options) {
   if (outputs.size() < layout.reactions())
     throw InputError("batch: " + std::to_string(outputs.size()) + " outputs, needed are " +
                      std::to_string(layout.reactions()) + " (null where not asked for)");
-  if (instants.chamber_pressure.size() != static_cast<std::size_t>(layout.pistons()))
-    throw InputError("batch: " + std::to_string(instants.chamber_pressure.size()) +
-                     " chamber pressures for " + std::to_string(layout.pistons()) + " pistons");
-  BatchJob::Column pressures[kMostPistons];
-  for (int k = 0; k < layout.pistons(); ++k) pressures[k] = column(instants.chamber_pressure[k]);
+  Pressures pressures;
+  BatchJob job = job_of(pump, pumps, layout, instants, pressures);
   const auto bodies = outputs.begin() + static_cast<std::ptrdiff_t>(layout.Fh());
-  const BlockMotion block = instants.block.value_or(BlockMotion{});
-  BatchJob job = {pump.common(),
-                  streams(instants, outputs),
-                  std::any_of(bodies, outputs.end(), [](const double* p) { return p != nullptr; }),
-                  &pump.numbers,
-                  pumps,
-                  instants.count,
-                  column(instants.theta),
-                  column(instants.omega),
-                  column(instants.omega_dot),
-                  column(instants.suction),
-                  column(instants.delivery),
-                  instants.block.has_value(),
-                  column(block.psi),
-                  column(block.omega),
-                  column(block.omega_dot),
-                  pressures,
-                  outputs.data()};
+  job.stream = streams(instants, outputs);
+  job.bodies = std::any_of(bodies, outputs.end(), [](const double* p) { return p != nullptr; });
+  job.outputs = outputs.data();
   if (pump.imposed && outputs[layout.Rcs()] != nullptr)
     std::fill_n(outputs[layout.Rcs()], instants.count, not_computed());
+  BatchKernel* const run = kernel(options.instruction_set).run;
+  in_pieces(instants.count, options.threads,
+            [&](std::size_t begin, std::size_t end) { run(job, begin, end); });
+}
 
-  BatchKernel* const run = kernel(options.instruction_set);
-  if (options.threads <= 1 || instants.count <= kGrain) {
-    run(job, 0, instants.count);
-    return;
-  }
-  // Each thread keeps to one piece of every array, so that its part stays in its own cache.
-  LoopOrder order;
-  const auto in_pieces = [&] {
-    order.started();
-    const std::size_t blocks = (instants.count + kGrain - 1) / kGrain;
-    oneapi::tbb::parallel_for(
-        oneapi::tbb::blocked_range<std::size_t>(0, blocks),
-        [&](const auto& range) {
-          order.piece_starts();
-          run(job, range.begin() * kGrain, std::min(instants.count, range.end() * kGrain));
-          order.piece_ends();
-        },
-        oneapi::tbb::static_partitioner());
-    order.ended();
+// Room of a thread for what it adds up.
+struct TallyRoom {
+  struct Lines {
+    alignas(kCacheLine) double values[kBlock];
   };
-  if (options.threads >= oneapi::tbb::this_task_arena::max_concurrency())
-    in_pieces();
-  else
-    oneapi::tbb::task_arena(options.threads).execute(in_pieces);
+  struct Lanes {
+    alignas(kCacheLine) double values[kTallied * kMostLanes];
+  };
+  std::vector<Lines> block;
+  std::vector<Lanes> lanes;
+  std::vector<Statistics> sums;
+
+  BatchTally tally(const ChannelLayout& layout, std::span<const Measured> measured) {
+    static_assert(sizeof(Lines) == kBlock * sizeof(double));
+    static_assert(sizeof(Lanes) == kTallied * kMostLanes * sizeof(double));
+    if (block.size() < layout.reactions()) block.resize(layout.reactions());
+    if (lanes.size() < measured.size()) lanes.resize(measured.size());
+    if (sums.size() < measured.size()) sums.resize(measured.size());
+    return {measured, &block.front().values, lanes.front().values};
+  }
+};
+
+// Adds the sums of a piece to those of pieces before it.
+void add(Statistics& all, const Statistics& piece) {
+  all.mean += piece.mean;
+  all.mean_square += piece.mean_square;
+  all.min = std::min(all.min, piece.min);
+  all.max = std::max(all.max, piece.max);
 }
 
 }  // namespace
@@ -221,6 +275,66 @@ BatchModel& BatchModel::operator=(BatchModel&&) noexcept = default;
 void BatchModel::reactions(const BatchInstants& instants, const BatchOutputs& outputs,
                            const BatchOptions& options) const {
   run_job(*pump_, nullptr, layout_, instants, outputs, options);
+}
+
+void BatchModel::statistics(const BatchInstants& instants, std::span<const Measured> measured,
+                            std::span<Statistics> results, const BatchOptions& options) const {
+  if (results.size() != measured.size())
+    throw InputError("statistics of a batch: room for " + std::to_string(results.size()) +
+                     " results, needed are " + std::to_string(measured.size()));
+  if (instants.count == 0) throw InputError("statistics of a batch: of no instant");
+  bool bodies = false;
+  for (const Measured& m : measured) {
+    const std::size_t end = m.reaction + m.components;
+    if (m.components == 0 || end > layout_.reactions())
+      throw InputError("statistics of a batch: " + std::to_string(m.components) +
+                       " reactions from number " + std::to_string(m.reaction) + " on of " +
+                       std::to_string(layout_.reactions()));
+    bodies |= end > layout_.Fh();
+  }
+  if (measured.empty()) return;
+  Pressures pressures;
+  BatchJob job = job_of(*pump_, nullptr, layout_, instants, pressures);
+  job.bodies = bodies;
+  TallyKernel* const tally = kernel(options.instruction_set).tally;
+
+  // One grain after the other whatever the threads, so that sums do not depend on them.
+  const std::size_t grains = (instants.count + kGrain - 1) / kGrain;
+  const auto add_up = [&](std::size_t grain, Statistics* sums, TallyRoom& room) {
+    tally(job, room.tally(layout_, measured), grain * kGrain,
+          std::min(instants.count, (grain + 1) * kGrain), sums);
+  };
+  if (options.threads <= 1 || grains == 1) {
+    thread_local TallyRoom own;
+    add_up(0, results.data(), own);
+    for (std::size_t grain = 1; grain < grains; ++grain) {
+      add_up(grain, own.sums.data(), own);
+      for (std::size_t i = 0; i < results.size(); ++i) add(results[i], own.sums[i]);
+    }
+  } else {
+    std::vector<Statistics> sums(grains * measured.size());
+    in_pieces(instants.count, options.threads, [&](std::size_t begin, std::size_t end) {
+      thread_local TallyRoom room;
+      for (; begin < end; begin += kGrain)
+        add_up(begin / kGrain, &sums[begin / kGrain * measured.size()], room);
+    });
+    std::copy_n(sums.begin(), results.size(), results.begin());
+    for (std::size_t i = results.size(); i < sums.size(); ++i)
+      add(results[i % results.size()], sums[i]);
+  }
+  const auto count = static_cast<double>(instants.count);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i].mean /= count;
+    results[i].mean_square /= count;
+    const std::size_t first = measured[i].reaction;
+    if (pump_->imposed && first <= layout_.Rcs() && layout_.Rcs() < first + measured[i].components)
+      results[i] = {not_computed(), not_computed(), not_computed(), not_computed()};
+  }
+}
+
+void BatchModel::set_pump(const PumpParameters& pump, const Assumptions& assumptions) {
+  prepare(without_teeth(pump), assumptions, *pump_);
+  if (pump.geometry.pistons != layout_.pistons()) layout_ = ChannelLayout(pump.geometry.pistons);
 }
 
 PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions)

@@ -124,10 +124,11 @@ struct Stream {
   }
 };
 
-// Collects the parts of a line, which must be written past the caches one right after the other.
-template <class Real>
+// Collects results of some instants in one line per reaction: what must be written past the caches
+// one right after the other, or is added up.
+template <class Real, std::size_t kLength>
 struct Collect {
-  double (*lines)[kDoublesPerLine];
+  double (*lines)[kLength];
   std::size_t part;
   BENTAXIS_INLINE void operator()(int index, const Real& value) const {
     Register<Real>::store(value, lines[index] + part);
@@ -156,7 +157,7 @@ BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, st
     alignas(64) double lines[kMostReactions][kDoublesPerLine];
     for (; at + kDoublesPerLine <= end; at += kDoublesPerLine) {
       for (std::size_t part = 0; part < kDoublesPerLine; part += kLanes) {
-        const Collect<Real> collect = {lines, part};
+        const Collect<Real, kDoublesPerLine> collect = {lines, part};
         if (job.pumps == nullptr)
           evaluate_lanes<Real, Turning>(job, one, at + part, kLanes, collect);
         else
@@ -191,6 +192,113 @@ void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
     run_turning<Real, closed_form::FreeState>(job, begin, end);
   else
     run_turning<Real, closed_form::State>(job, begin, end);
+}
+
+// Sums and extremes, lane by lane.
+template <class Real>
+struct Tally {
+  using R = Register<Real>;
+  static constexpr std::size_t kLanes = R::kLanes;
+  Real sum, squares, low, high;
+
+  BENTAXIS_INLINE static Tally load(const double* from) {
+    return {R::load(from), R::load(from + kLanes), R::load(from + 2 * kLanes),
+            R::load(from + 3 * kLanes)};
+  }
+  BENTAXIS_INLINE void store(double* to) const {
+    R::store(sum, to);
+    R::store(squares, to + kLanes);
+    R::store(low, to + 2 * kLanes);
+    R::store(high, to + 3 * kLanes);
+  }
+  BENTAXIS_INLINE void add(const Real& value) { add(value, value); }
+  // `summed`: the value, 0 in lanes that are not used.
+  BENTAXIS_INLINE void add(const Real& value, const Real& summed) {
+    sum = sum + summed;
+    squares = squares + summed * summed;
+    low = R::least(low, value);
+    high = R::largest(high, value);
+  }
+};
+
+// What is measured, of the instants of a block from `part` on.
+template <class Real>
+BENTAXIS_INLINE Real measured_value(const Measured& m, const double (*block)[kBlock],
+                                    std::size_t part) {
+  const Real first = Register<Real>::load(block[m.reaction] + part);
+  if (m.components == 1) return first;
+  Real squares = first * first;
+  for (std::size_t c = 1; c < m.components; ++c) {
+    const Real next = Register<Real>::load(block[m.reaction + c] + part);
+    squares = squares + next * next;
+  }
+  return closed_form::Math<Real>::root(squares);
+}
+
+// Adds the first `used` instants of a block to the lanes.
+template <class Real>
+BENTAXIS_INLINE void tally_block(const BatchTally& tally, std::size_t used) {
+  constexpr std::size_t kLanes = Register<Real>::kLanes;
+  for (std::size_t i = 0; i < tally.measured.size(); ++i) {
+    double* const lanes = tally.lanes + i * kTallied * kMostLanes;
+    const Measured m = tally.measured[i];
+    auto all = Tally<Real>::load(lanes);
+    std::size_t part = 0;
+    for (; part + kLanes <= used; part += kLanes)
+      all.add(measured_value<Real>(m, tally.block, part));
+    if (part < used) {  // lanes beyond are copies of the first
+      const Real value = measured_value<Real>(m, tally.block, part);
+      double summed[kLanes];
+      Register<Real>::store(value, summed);
+      for (std::size_t lane = used - part; lane < kLanes; ++lane) summed[lane] = 0;
+      all.add(value, Register<Real>::load(summed));
+    }
+    all.store(lanes);
+  }
+}
+
+template <class Real, template <class> class Turning>
+[[gnu::noinline]] void tally_turning(const BatchJob& job, const BatchTally& tally,
+                                     std::size_t begin, std::size_t end) {
+  constexpr std::size_t kLanes = Register<Real>::kLanes;
+  static_assert(kBlock % kLanes == 0 && kLanes <= kMostLanes);
+  const closed_form::Pump<double> pump = *job.pump;  // a copy: results cannot overlap it
+  for (std::size_t at = begin; at < end; at += kBlock) {
+    const std::size_t used = end - at < kBlock ? end - at : kBlock;
+    std::size_t part = 0;
+    for (; part + kLanes <= used; part += kLanes)
+      evaluate_lanes<Real, Turning>(job, pump, at + part, kLanes,
+                                    Collect<Real, kBlock>{tally.block, part});
+    if (part < used)
+      evaluate_lanes<Real, Turning>(job, pump, at + part, used - part,
+                                    Collect<Real, kBlock>{tally.block, part});
+    tally_block<Real>(tally, used);
+  }
+}
+
+template <class Real>
+void tally_batch(const BatchJob& job, const BatchTally& tally, std::size_t begin, std::size_t end,
+                 Statistics* sums) {
+  constexpr std::size_t kLanes = Register<Real>::kLanes;
+  constexpr double kNothing = __builtin_huge_val();
+  const Tally<Real> none = {Real(0.0), Real(0.0), Real(kNothing), Real(-kNothing)};
+  for (std::size_t i = 0; i < tally.measured.size(); ++i)
+    none.store(tally.lanes + i * kTallied * kMostLanes);
+  if (job.free)
+    tally_turning<Real, closed_form::FreeState>(job, tally, begin, end);
+  else
+    tally_turning<Real, closed_form::State>(job, tally, begin, end);
+  for (std::size_t i = 0; i < tally.measured.size(); ++i) {
+    const double* const lanes = tally.lanes + i * kTallied * kMostLanes;
+    double sum = 0, squares = 0, low = kNothing, high = -kNothing;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      sum += lanes[lane];
+      squares += lanes[kLanes + lane];
+      low = Register<double>::least(low, lanes[2 * kLanes + lane]);
+      high = Register<double>::largest(high, lanes[3 * kLanes + lane]);
+    }
+    sums[i] = {sum, low, high, squares};
+  }
 }
 
 }  // namespace bentaxis::analytic

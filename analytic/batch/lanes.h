@@ -29,6 +29,8 @@ struct Register<double> {
     sine = std::sin(angle);
     cosine = std::cos(angle);
   }
+  BENTAXIS_INLINE static double least(double a, double b) { return b < a ? b : a; }
+  BENTAXIS_INLINE static double largest(double a, double b) { return a < b ? b : a; }
 };
 
 #ifdef BENTAXIS_SIMD_UNIT
@@ -45,6 +47,8 @@ struct Register<xsimd::batch<double, A>> {
     sine = both.first;
     cosine = both.second;
   }
+  BENTAXIS_INLINE static Real least(const Real& a, const Real& b) { return xsimd::min(a, b); }
+  BENTAXIS_INLINE static Real largest(const Real& a, const Real& b) { return xsimd::max(a, b); }
   /// Past the caches; `to` is aligned to the register.
   BENTAXIS_INLINE static void stream(const Real& value, double* to) {
     if constexpr (kLanes == 2) _mm_stream_pd(to, value);

@@ -1,7 +1,6 @@
 // The cylinder block: what the pistons do to it, and its equilibrium (56), (57).
 #pragma once
 
-#include "bentaxis/pump/parameters.h"
 #include "closed_form/piston.h"
 #include "closed_form/vector.h"
 
@@ -15,8 +14,8 @@ struct BlockNumbers {
   T contact;  // s_C / b1
 };
 
-void prepare(const PumpParameters& pump, const PistonNumbers<double>& piston,
-             BlockNumbers<double>& p);
+template <class T>
+void prepare(const RawPump<T>& pump, const PistonNumbers<T>& piston, BlockNumbers<T>& p);
 
 /// C, the point of a piston's axis where the bore force acts (32), from O2.
 template <class Par, class Real>

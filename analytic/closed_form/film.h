@@ -2,7 +2,6 @@
 // that acts follow from the block's equilibrium (51)-(53).
 #pragma once
 
-#include "bentaxis/pump/parameters.h"
 #include "closed_form/block.h"
 #include "closed_form/vector.h"
 
@@ -22,10 +21,12 @@ struct FilmNumbers {
 };
 
 /// Exact integral over one port: full pressure between r2 and r3, linear to 0 at r1 and r4.
-LandForce<double> land_force(const PortPlate& plate, const PortArc& arc);
+template <class T>
+LandForce<T> land_force(const RawPlate<T>& plate, const RawArc<T>& arc);
 
-/// No land force where the pump has no port plate.
-void prepare(const PumpParameters& pump, FilmNumbers<double>& film);
+/// @param plate  whether the pump has one: no land force without
+template <class T>
+void prepare(const RawPump<T>& pump, bool plate, FilmNumbers<T>& film);
 
 template <class Par, class Real>
 BENTAXIS_INLINE void add_lands(const FilmNumbers<Par>& p, const Real& delivery, const Real& suction,

@@ -1,7 +1,7 @@
 // The frames S1 of the shaft and S2 of the block, bent by alpha (5)-(8).
 #pragma once
 
-#include "bentaxis/pump/parameters.h"
+#include "closed_form/raw.h"
 #include "closed_form/vector.h"
 
 namespace bentaxis::analytic::closed_form {
@@ -12,7 +12,8 @@ struct FrameNumbers {
   T offset_y, offset_z;  // O1 from O2, in S2
 };
 
-void prepare(const Geometry& geometry, FrameNumbers<double>& frame);
+template <class T>
+void prepare(const RawGeometry<T>& geometry, FrameNumbers<T>& frame);
 
 /// R12 of (7): components in S1 of a vector given in S2.
 template <class Par, class Real>

@@ -1,7 +1,7 @@
 // Friction between a piston's ring and its bore (25).
 #pragma once
 
-#include "bentaxis/pump/parameters.h"
+#include "closed_form/raw.h"
 #include "closed_form/vector.h"
 
 namespace bentaxis::analytic::closed_form {
@@ -24,7 +24,8 @@ struct FrictionLaw {
 };
 
 /// @param any  false: pistons without friction
-FrictionLaw prepare(const PumpParameters& pump, bool any, FrictionNumbers<double>& p);
+template <class T>
+FrictionLaw prepare(const RawPump<T>& pump, bool any, FrictionNumbers<T>& p);
 
 /// Friction force Fpf along z2 on a piston whose ring moves with `velocity` along z2 (25).
 template <class Par, class Real>

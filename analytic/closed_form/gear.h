@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bentaxis/pump/parameters.h"
+#include "closed_form/raw.h"
 #include "closed_form/vector.h"
 
 namespace bentaxis::analytic::closed_form {
@@ -16,7 +17,8 @@ struct GearNumbers {
   T two_flanks;  // 1, or 0: one line of action for either sign of the force
 };
 
-void prepare(const PumpParameters& pump, GearNumbers<double>& p);
+template <class T>
+void prepare(const RawPump<T>& pump, Flanks flanks, GearNumbers<T>& p);
 
 /// Force and its moment: on the block in S2 about O2, on the shaft in S1 about O1.
 template <class Real>

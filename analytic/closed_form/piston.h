@@ -8,12 +8,6 @@
 
 namespace bentaxis::analytic::closed_form {
 
-/// s_C: from A to the point C of a piston's axis where Rc acts; C = B unless the pump says
-/// otherwise.
-inline double ring_contact(const PumpParameters& pump) {
-  return pump.piston.contact.value_or(pump.geometry.piston_length);
-}
-
 /// In S2.
 template <class T>
 struct PistonNumbers {
@@ -29,11 +23,13 @@ struct PistonNumbers {
 };
 
 /// Fills in what the motion needs.
-void prepare(const Geometry& geometry, const FrameNumbers<double>& frame,
-             PistonNumbers<double>& piston);
-/// Fills in mass and gravity. @throws InputError if the pump has no data of such pistons.
-void prepare(const PumpParameters& pump, PistonInertia inertia, const FrameNumbers<double>& frame,
-             PistonNumbers<double>& piston);
+template <class T>
+void prepare(const RawGeometry<T>& geometry, const FrameNumbers<T>& frame,
+             PistonNumbers<T>& piston);
+/// Fills in mass and gravity. The pump has the data of such pistons.
+template <class T>
+void prepare(const RawPump<T>& pump, PistonInertia inertia, const FrameNumbers<T>& frame,
+             PistonNumbers<T>& piston);
 
 /// Joint A from O2 and axis AB, in S2, with derivatives with respect to the parameter of the
 /// motion: theta, or time where the block moves on its own (state.h).

@@ -2,7 +2,6 @@
 // (38), (41), (43).
 #pragma once
 
-#include "bentaxis/pump/parameters.h"
 #include "closed_form/frame.h"
 #include "closed_form/gear.h"
 #include "closed_form/vector.h"
@@ -17,8 +16,8 @@ struct ShaftNumbers {
   T tapered_z, inverse_bearing_distance;
 };
 
-void prepare(const PumpParameters& pump, const FrameNumbers<double>& frame,
-             ShaftNumbers<double>& p);
+template <class T>
+void prepare(const RawPump<T>& pump, const FrameNumbers<T>& frame, ShaftNumbers<T>& p);
 
 /// Sums of Rs over the pistons.
 template <class Real>

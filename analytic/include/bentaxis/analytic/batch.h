@@ -63,6 +63,17 @@ struct BatchOptions {
   int threads = 1;  ///< 1: in the calling thread; more: as many threads of oneTBB at most
 };
 
+/// What statistics are of: a reaction, or the magnitude of a vector.
+struct Measured {
+  std::size_t reaction = 0;    ///< column of ChannelLayout; of a vector that of its first component
+  std::size_t components = 1;  ///< of the vector, in columns one after the other; 1: the reaction
+};
+
+/// Over the instants of a batch.
+struct Statistics {
+  double mean = 0, min = 0, max = 0, mean_square = 0;
+};
+
 /// Columns of doubles that start on cache lines: results of a batch. Allocated once, used often;
 /// moved, never copied: outputs point into it.
 class BatchColumns {
@@ -111,6 +122,20 @@ class BatchModel {
   /// @throws InputError unless there is a pressure for each piston and an output for each reaction
   void reactions(const BatchInstants& instants, const BatchOutputs& outputs,
                  const BatchOptions& options = {}) const;
+
+  /// Statistics of reactions() over the instants, without its columns: equal to round-off, and bit
+  /// for bit for any number of threads. Once a thread has measured as much it allocates nothing
+  /// (with more than one thread it does).
+  /// @param results  one per entry of `measured`; not_computed() of Rcs where the block speed is
+  ///                 imposed
+  /// @throws InputError unless there are an instant, a pressure for each piston and a result for
+  ///         each of `measured`, and all of these are reactions
+  void statistics(const BatchInstants& instants, std::span<const Measured> measured,
+                  std::span<Statistics> results, const BatchOptions& options = {}) const;
+
+  /// Becomes another pump. Allocates nothing where that has as many pistons.
+  /// @throws InputError as the constructor; the object may then only be given another pump
+  void set_pump(const PumpParameters& pump, const Assumptions& assumptions);
 
  private:
   ChannelLayout layout_;

@@ -75,7 +75,8 @@ class BevelTeeth {
   struct Numbers;
   struct Contact;
   // The rounding estimate moves inputs by little, over their bounds too where they stand on them.
-  friend PreparedPump prepare(const PumpParameters& pump, const Assumptions& assumptions);
+  friend void prepare(const PumpParameters& pump, const Assumptions& assumptions,
+                      PreparedPump& result);
   struct Unchecked {};
   BevelTeeth(const PumpParameters& pump, Unchecked);
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/results/result_table.h"
+
 namespace bentaxis::designs {
 
 /// Residuals as a function of parameters, each over its standard uncertainty.
@@ -42,6 +44,7 @@ struct LeastSquaresFit {
 struct LeastSquaresOptions {
   int most_iterations = 500;
   double tolerance = 1e-15;  ///< of the sum of squares, and of a step over the parameters
+  double enough = 0;         ///< change of the sum of squares that does not matter; 0: all do
 };
 
 /// Whether this program was built with Ceres, and its version.
@@ -62,6 +65,7 @@ bool derivatives_of(const LeastSquaresProblem& problem, std::span<const double> 
 /// Starts that have no residuals, or end without, are left out.
 std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
                                            const std::vector<std::vector<double>>& starts,
-                                           const LeastSquaresOptions& options, int threads);
+                                           const LeastSquaresOptions& options, int threads,
+                                           const Progress& progress = {});
 
 }  // namespace bentaxis::designs

@@ -105,7 +105,7 @@ class Sweep {
   ~Sweep();
   Sweep(Sweep&&) noexcept;
 
-  const Case& base() const;
+  const Family& family() const;
   const SweepPlan& plan() const;
   std::size_t designs() const;
   std::size_t blocks() const;

@@ -23,9 +23,10 @@ std::string hdf5_version();  ///< "none" where it cannot
 /// @return the results, of more than `most` designs only some: every second, third, ..
 /// @throws InputError where blocks are missing or damaged, naming them
 SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const SweepFormats& formats,
-                        OutputFolder& folder, const Progress& progress, std::size_t most = 200000);
+                        OutputFolder& folder, int threads, const Progress& progress,
+                        std::size_t most = 200000);
 
-/// What came out, for people: how many designs, infeasible ones by reason, checks, disagreements.
-std::string sweep_text(const SweepResult& result);
+/// Designs and outputs at which the other model disagrees, a line each; of many the first ones.
+std::string disagreements_text(const SweepResult& result);
 
 }  // namespace bentaxis::designs

@@ -59,6 +59,12 @@ class Family {
 
   const Case& base() const { return base_; }
   const std::vector<Variable>& variables() const { return variables_; }
+  /// A parameter that the case does not give: its default follows from others.
+  struct Follower {
+    const Table* table;
+    const Parameter* parameter;
+  };
+  const std::vector<Follower>& followers() const { return followers_; }
 
   /// Makes `scratch`, a copy of base() or what an earlier call made of one, the case of these
   /// values, one per variable, as `--set` would: what takes its default from another parameter
@@ -68,12 +74,9 @@ class Family {
   void make(std::span<const double> values, Case& scratch) const;
 
  private:
-  struct Follower {
-    const Parameter* parameter;
-  };
   Case base_;
   std::vector<Variable> variables_;
-  std::vector<Follower> followers_;  // defaults computed from others
+  std::vector<Follower> followers_;
 };
 
 }  // namespace bentaxis::designs

@@ -58,6 +58,9 @@ struct LifePoint {
   std::array<BearingLoads, 2> loads{};  ///< by Bearing
 };
 
+/// @throws InputError where the case does not give both ratings
+void require_ratings(const Case& the_case);
+
 /// @param table  of a turn at constant speed, by either model
 /// @throws InputError where the case does not give both ratings
 LifePoint life_point(const Case& the_case, const ResultTable& table, double share = 1);

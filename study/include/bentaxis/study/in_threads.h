@@ -12,7 +12,8 @@ namespace bentaxis::study {
 
 /// Calls job(0) .. job(count - 1), one by one as threads are free: a job may take many times as
 /// long as another. What jobs leave behind is seen by the caller.
-/// @param threads  at most as many, and no more than there are processors; 0: all of them
+/// @param threads  at most as many, and no more than this process may use processors; 0: all of
+/// them
 void in_threads(int threads, std::size_t count, const std::function<void(std::size_t)>& job);
 
 /// Whoever listens is called by one thread at a time, and may throw to end the work.

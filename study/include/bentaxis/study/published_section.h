@@ -20,6 +20,11 @@ namespace bentaxis::study {
 /// Facts of a case under a model's assumptions, by the names that files of printed numbers use.
 compare::Facts facts_of(const Case& the_case, const Assumptions& assumptions);
 
+/// Makes of a case and its assumptions what a publication compares it with.
+/// @throws InputError for a fact that cannot be set
+void apply_variant(const compare::PublishedVariant& variant, Case& the_case,
+                   Assumptions& assumptions);
+
 /// A publication about a pump: its numbers, and where they are from.
 struct PrintedNumbers {
   compare::Published numbers;

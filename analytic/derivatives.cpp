@@ -1,0 +1,142 @@
+#include "bentaxis/analytic/derivatives.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/inputs.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/validate.h"
+#include "closed_form/dual.h"
+#include "closed_form/reactions.h"
+#include "prepared.h"
+
+namespace bentaxis::analytic {
+namespace {
+
+using closed_form::Dual;
+using closed_form::kDirections;
+using Raw = closed_form::RawPump<double>;
+constexpr std::size_t kNumbers = sizeof(Raw) / sizeof(double);
+
+std::array<double, kNumbers> numbers_of(const PumpParameters& pump) {
+  const Raw raw = closed_form::raw(pump);
+  std::array<double, kNumbers> numbers;
+  static_assert(sizeof numbers == sizeof raw);
+  std::memcpy(numbers.data(), &raw, sizeof raw);
+  return numbers;
+}
+
+// A pump's numbers with up to kDirections derivatives.
+closed_form::RawPump<Dual> with_rates(const PumpParameters& pump,
+                                      std::span<const PumpParameters> directions) {
+  const auto numbers = numbers_of(pump);
+  std::array<Dual, kNumbers> all;
+  for (std::size_t i = 0; i < kNumbers; ++i) all[i] = numbers[i];
+  for (std::size_t d = 0; d < directions.size(); ++d) {
+    const auto rates = numbers_of(directions[d]);
+    for (std::size_t i = 0; i < kNumbers; ++i) all[i].rate[d] = rates[i];
+  }
+  closed_form::RawPump<Dual> result;
+  static_assert(sizeof result == sizeof all);
+  std::memcpy(&result, all.data(), sizeof result);
+  return result;
+}
+
+}  // namespace
+
+PumpParameters no_rates(const PumpParameters& pump) {
+  PumpParameters rates = pump;
+  for (const PumpInput& input : continuous_inputs(rates)) *input.value = 0;
+  return rates;
+}
+
+PumpParameters rate_of(const PumpParameters& pump, const std::string& name) {
+  PumpParameters rates = no_rates(pump);
+  for (const PumpInput& input : continuous_inputs(rates))
+    if (input.name == name) {
+      *input.value = 1;
+      return rates;
+    }
+  throw InputError("derivative with respect to " + name + ": the pump has no such number");
+}
+
+struct DerivativeModel::Prepared {
+  PreparedPump pump;
+  std::vector<closed_form::Pump<Dual>> numbers;  // for kDirections each
+};
+
+DerivativeModel::DerivativeModel(const PumpParameters& pump, const Assumptions& assumptions,
+                                 std::span<const PumpParameters> directions)
+    : layout_(validate(pump).geometry.pistons), directions_(directions.size()) {
+  if (pump.gear.contact == ToothContact::teeth)
+    throw InputError("derivatives: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\"");
+  Prepared prepared{prepare(pump, assumptions), {}};
+  std::size_t first = 0;
+  do {
+    const std::size_t count = std::min<std::size_t>(kDirections, directions.size() - first);
+    prepare_numbers(with_rates(pump, directions.subspan(first, count)), pump, assumptions,
+                    prepared.numbers.emplace_back());
+    first += kDirections;
+  } while (first < directions.size());
+  prepared_ = std::make_unique<const Prepared>(std::move(prepared));
+}
+DerivativeModel::~DerivativeModel() = default;
+DerivativeModel::DerivativeModel(DerivativeModel&&) noexcept = default;
+
+void DerivativeModel::reactions(const Instant& instant, std::span<const Instant> rates,
+                                std::span<double> values, std::span<double> derivatives) const {
+  require_locked(instant, "derivatives");
+  const auto n = static_cast<std::size_t>(layout_.pistons());
+  const std::size_t reactions = layout_.reactions();
+  const auto fits = [&](const Instant& rate) {
+    return rate.chamber_pressure.empty() || rate.chamber_pressure.size() == n;
+  };
+  if (instant.chamber_pressure.size() != n || rates.size() != directions_ ||
+      !std::all_of(rates.begin(), rates.end(), fits))
+    throw InputError("derivatives: " + std::to_string(rates.size()) + " rates for " +
+                     std::to_string(directions_) + " directions, or not one pressure for each of " +
+                     std::to_string(n) + " pistons");
+  if (values.size() < reactions || derivatives.size() < reactions * directions_)
+    throw InputError("derivatives: room for " + std::to_string(derivatives.size()) +
+                     " of them, needed are " + std::to_string(reactions * directions_));
+  const closed_form::Common common = prepared_->pump.common();
+  if (common.imposed) {
+    values[layout_.Rcs()] = not_computed();
+    for (std::size_t d = 0; d < directions_; ++d)
+      derivatives[d * reactions + layout_.Rcs()] = not_computed();
+  }
+  for (std::size_t chunk = 0; chunk < prepared_->numbers.size(); ++chunk) {
+    const std::size_t first = chunk * kDirections;
+    const std::size_t count = std::min<std::size_t>(kDirections, directions_ - first);
+    const auto number = [&](const auto& get) {
+      Dual x = get(instant);
+      for (std::size_t d = 0; d < count; ++d) x.rate[d] = get(rates[first + d]);
+      return x;
+    };
+    const Dual theta = number([](const Instant& i) { return i.shaft.angle; });
+    closed_form::State<Dual> state;
+    state.sine = sin(theta);
+    state.cosine = cos(theta);
+    state.omega = number([](const Instant& i) { return i.shaft.speed; });
+    state.omega_dot = number([](const Instant& i) { return i.shaft.acceleration; });
+    state.suction = number([](const Instant& i) { return i.ports.suction; });
+    state.delivery = number([](const Instant& i) { return i.ports.delivery; });
+    const auto pressure = [&](int k) {
+      return number([k](const Instant& i) {
+        return i.chamber_pressure.empty() ? 0 : i.chamber_pressure[static_cast<std::size_t>(k)];
+      });
+    };
+    closed_form::reactions<Dual>(common, prepared_->numbers[chunk], state, true, pressure,
+                                 [&](int index, const Dual& value) {
+                                   const auto c = static_cast<std::size_t>(index);
+                                   values[c] = value.value;
+                                   for (std::size_t d = 0; d < count; ++d)
+                                     derivatives[(first + d) * reactions + c] = value.rate[d];
+                                 });
+  }
+}
+
+}  // namespace bentaxis::analytic

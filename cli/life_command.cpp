@@ -1,0 +1,52 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bentaxis/designs/life_document.h"
+#include "commands.h"
+#include "console.h"
+#include "options.h"
+#include "report_files.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+struct Options {
+  CaseOption the_case;
+  ReportPlace place;
+  std::string duty;
+};
+
+int life(const Options& options) {
+  const Case the_case = options.the_case.read();
+  const designs::DutyCycle duty = options.duty.empty()
+                                      ? designs::DutyCycle()
+                                      : designs::read_duty_cycle(options.duty, the_case);
+  study::require_ratings(the_case);
+  ReportFolders folders(options.place);
+  const designs::LifeStudy result = designs::life_study(the_case, duty, progress_of);
+  const auto paths = folders.write("life", designs::life_document(result, versions()), {},
+                                   {{"life.csv", designs::life_csv(result)},
+                                    {"life_loads.csv", designs::life_loads_csv(result)}});
+  std::printf("%s\n", designs::life_text(result).c_str());
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  return result.agrees() ? kDone : kOutOfTolerance;
+}
+
+}  // namespace
+
+Command add_life_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command =
+      program.subcommand("life", "Rating life of the bearings after ISO 281, by both models");
+  add_case(command, options->the_case);
+  add_report(command, options->place, "life.html, life.json, life.csv and life_loads.csv");
+  command
+      .option("--duty", options->duty,
+              "CSV: share of the time, and parameters such as speed_rpm,delivery_bar")
+      .text("FILE");
+  return {command, [options] { return life(*options); }};
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,69 @@
+#include <cstdio>
+#include <memory>
+
+#include "bentaxis/designs/sensitivity_document.h"
+#include "commands.h"
+#include "console.h"
+#include "options.h"
+#include "report_files.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+namespace {
+
+struct Options {
+  CaseOption the_case;
+  ReportPlace place;
+  std::vector<std::string> outputs, parameters;
+  study::Model model = study::Model::analytic;
+  bool check = false;
+};
+
+const std::vector<std::string> kOutputs = {"mean:Td", "peak:Rb1", "peak:Rb2", "peak:Rs",
+                                           "peak:Rc", "peak:Rcn", "min:Fh"};
+
+int sensitivity(const Options& options) {
+  const Case base = options.the_case.read();
+  std::vector<designs::Output> outputs;
+  for (const std::string& name : options.outputs.empty() ? kOutputs : options.outputs)
+    outputs.push_back(designs::output(name, base));
+  std::vector<designs::Variable> variables;
+  for (const std::string& name : options.parameters) variables.emplace_back(name, base);
+  if (variables.empty()) variables = designs::continuous_variables(base);
+  ReportFolders folders(options.place);
+
+  const designs::Sensitivities found =
+      designs::sensitivities(base, variables, outputs, options.model, progress_of);
+  std::optional<designs::SensitivityCheck> check;
+  if (options.check) check = designs::check(found, progress_of);
+  const auto paths =
+      folders.write("sensitivity", designs::sensitivity_document(found, check, versions()), {},
+                    {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
+  std::printf("%s\n", designs::sensitivity_text(found, check).c_str());
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  return !check || check->agrees() ? kDone : kOutOfTolerance;
+}
+
+}  // namespace
+
+Command add_sensitivity_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command = program.subcommand(
+      "sensitivity", "Derivatives of any output with respect to any parameter of a case");
+  add_case(command, options->the_case);
+  add_report(command, options->place, "sensitivity.html, sensitivity.json and sensitivity.csv");
+  command.option("--output", options->outputs, "what to differentiate (docs/sweeps.md)")
+      .list()
+      .text("NAME[,NAME..] [Td, bearings, Rs, Rc, pin, film]");
+  command
+      .option("--parameter", options->parameters,
+              "with respect to what: names as of --set; without, every number of the case")
+      .list()
+      .text("NAME[,NAME..]");
+  command.choice("--model", options->model, {"analytic", "multibody"}, "which model");
+  command.flag("--check", options->check,
+               "also by differences of the other model; a difference: exit status 1");
+  return {command, [options] { return sensitivity(*options); }};
+}
+
+}  // namespace bentaxis::cli

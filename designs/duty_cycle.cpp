@@ -1,0 +1,130 @@
+#include "bentaxis/designs/duty_cycle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bentaxis/files/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/registry.h"
+#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/run.h"
+
+namespace bentaxis::designs {
+namespace {
+
+// TABLE.KEY of a key that only one table has; other names as they are.
+std::string full_name(const std::string& name) {
+  if (name.find('.') != std::string::npos) return name;
+  std::string found;
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& p : table.parameters)
+      if (p.key == name && !table.name.empty()) {
+        if (!found.empty())
+          throw InputError(name + ": is a key of several tables: " + found + ", " + table.name +
+                           "." + name);
+        found = table.name + "." + name;
+      }
+  return found.empty() ? name : found;
+}
+
+constexpr const char* kShare = "share";
+
+}  // namespace
+
+std::string DutyCycle::name_of(std::size_t row) const {
+  std::string text = "row " + std::to_string(row + 1);
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    const std::string& name = variables[i].name();
+    text += (i == 0 ? ": " : ", ") + name.substr(name.rfind('.') + 1) + " " +
+            variables[i].text(rows[row].values[i]);
+  }
+  return text;
+}
+
+DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
+  const NumericTable table = read_numeric_csv(file);
+  DutyCycle duty;
+  duty.file = file;
+  duty.rows.clear();
+  std::size_t share = table.header.size();
+  std::vector<std::size_t> columns;
+  for (std::size_t c = 0; c < table.header.size(); ++c) {
+    if (table.header[c] == kShare) {
+      if (share != table.header.size()) throw InputError(file.string() + ": two columns share");
+      share = c;
+      continue;
+    }
+    try {
+      duty.variables.emplace_back(full_name(table.header[c]), base);
+    } catch (const InputError& error) {
+      throw InputError(file.string() + ": " + error.what());
+    }
+    columns.push_back(c);
+  }
+  if (share == table.header.size())
+    throw InputError(file.string() + ": has no column share, the part of the time");
+  if (table.rows.empty()) throw InputError(file.string() + ": has no row");
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    DutyCycle::Row row;
+    row.line = table.lines[r];
+    row.share = table.rows[r][share];
+    if (!(row.share > 0))
+      throw InputError(file.string() + ":" + std::to_string(row.line) +
+                       ": share = " + number_text(row.share) + ": must be > 0");
+    for (const std::size_t c : columns) row.values.push_back(table.rows[r][c]);
+    duty.rows.push_back(std::move(row));
+  }
+  return duty;
+}
+
+double LifeStudy::models_apart() const {
+  double apart = 0;
+  for (const study::Bearing bearing : study::kBearings) {
+    // Row by row: what one of them lacks must not hide in the sum.
+    const auto i = static_cast<std::size_t>(bearing);
+    for (std::size_t row = 0; row < analytic.points.size(); ++row) {
+      const auto& first = analytic.points[row].loads[i].equivalent;
+      const auto& second = multibody.points[row].loads[i].equivalent;
+      const double scale = *std::max_element(first.begin(), first.end());
+      for (std::size_t k = 0; k < first.size(); ++k)
+        if (scale > 0) apart = std::max(apart, std::abs(first[k] - second[k]) / scale);
+    }
+  }
+  return apart;
+}
+
+LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
+                     const study::PartProgress& progress_of) {
+  LifeStudy result;
+  result.the_case = the_case;
+  result.duty = duty;
+  const Family family(the_case, duty.variables);
+  const std::size_t rows = duty.rows.size();
+  result.analytic.points.resize(rows);
+  result.multibody.points.resize(rows);
+  study::Reporting reporting(rows, progress_of("duty cycle"));
+  study::in_threads(0, rows, [&](std::size_t row) {
+    try {
+      Case scratch = the_case;
+      family.make(duty.rows[row].values, scratch);
+      const study::ReadyCase ready = study::prepare(std::move(scratch));
+      const double share = duty.rows[row].share;
+      for (const study::Model model : study::kModels) {
+        auto& of = model == study::Model::analytic ? result.analytic : result.multibody;
+        of.points[row] = study::life_point(ready.the_case, study::run_turn(ready, model), share);
+      }
+    } catch (const InputError& error) {
+      if (duty.file.empty()) throw;
+      throw InputError(duty.file.string() + ":" + std::to_string(duty.rows[row].line) + ": " +
+                       error.what());
+    }
+    reporting.done();
+  });
+  for (LifeStudy::OfModel* of : {&result.analytic, &result.multibody})
+    of->life = study::pump_life(the_case, of->points);
+  return result;
+}
+
+}  // namespace bentaxis::designs

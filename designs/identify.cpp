@@ -1,0 +1,338 @@
+#include "bentaxis/designs/identify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "bentaxis/designs/points.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/results/channels.h"
+#include "bentaxis/study/published_section.h"
+#include "bentaxis/study/run.h"
+
+namespace bentaxis::designs {
+namespace {
+
+constexpr auto kModel = study::Model::analytic;
+
+// Value of a column between samples of a turn, on the straight line.
+double at_angle(const ResultTable& table, std::size_t column, double theta_deg) {
+  const double angle = theta_deg - 360 * std::floor(theta_deg / 360);
+  const auto& theta = table.theta_deg;
+  const auto next =
+      static_cast<std::size_t>(std::upper_bound(theta.begin(), theta.end(), angle) - theta.begin());
+  const std::size_t before = next == 0 ? theta.size() - 1 : next - 1;
+  const std::size_t after = next == theta.size() ? 0 : next;
+  const double from = theta[before] - (next == 0 ? 360 : 0);
+  const double to = theta[after] + (next == theta.size() ? 360 : 0);
+  const double low = table.at(before, column), high = table.at(after, column);
+  return low + (high - low) * (angle - from) / (to - from);
+}
+
+double outside(double value, double low, double high) {
+  if (value < low) return value - low;
+  return value > high ? value - high : 0;
+}
+
+double prior_residual(const Distribution& prior, double x) {
+  return prior.shape == Shape::normal ? (x - prior.numbers[0]) / prior.numbers[1]
+                                      : std::log(x / prior.numbers[0]) / prior.numbers[1];
+}
+
+}  // namespace
+
+struct DataModel::Implementation {
+  // One run of the model: a condition of the data under a variant of the publication.
+  struct State {
+    std::size_t condition = 0;
+    compare::PublishedVariant variant;
+    std::vector<std::size_t> data;  // that are read off it
+    std::vector<Output> outputs;    // of them, in their order
+    bool table = false;             // whether one of them needs the curves
+  };
+  // The cases of a condition, and which unknowns act in it.
+  struct Branch {
+    Family family;
+    std::vector<std::size_t> unknowns;
+    std::vector<double> settings;
+  };
+
+  Case base;
+  IdentificationData data;
+  std::vector<Branch> branches;  // one per condition
+  std::vector<State> states;
+  std::vector<std::size_t> places;
+  std::size_t numbers = 0;
+
+  Branch branch_of(const Condition& condition) const {
+    std::vector<Variable> variables;
+    std::vector<std::size_t> acting;
+    for (std::size_t i = 0; i < data.unknowns.size(); ++i) {
+      const Unknown& u = data.unknowns[i];
+      if (!u.condition.empty() && u.condition != condition.name) continue;
+      const bool set = std::any_of(
+          condition.settings.begin(), condition.settings.end(),
+          [&](const auto& setting) { return setting.first.name() == u.variable.name(); });
+      if (set && u.condition.empty()) continue;  // the condition says what it is there
+      variables.push_back(u.variable);
+      acting.push_back(i);
+    }
+    std::vector<double> settings;
+    for (const auto& [variable, value] : condition.settings) {
+      variables.push_back(variable);
+      settings.push_back(value);
+    }
+    return {Family(base, std::move(variables)), std::move(acting), std::move(settings)};
+  }
+
+  void make(const Branch& branch, std::span<const double> x, Case& scratch) const {
+    std::vector<double> values;
+    for (const std::size_t i : branch.unknowns) values.push_back(x[i]);
+    values.insert(values.end(), branch.settings.begin(), branch.settings.end());
+    branch.family.make(values, scratch);
+  }
+
+  void read_off(const State& state, const Case& the_case, std::span<double> results) const {
+    study::ReadyCase ready = study::prepare(the_case);
+    if (!state.outputs.empty()) {
+      const std::vector<double> values = outputs_of(state.outputs, ready, kModel);
+      std::size_t next = 0;
+      for (const std::size_t i : state.data)
+        if (data.data[i].output) results[places[i]] = values[next++];
+    }
+    if (!state.table) return;
+    compare::PublishedRun run;
+    Assumptions assumptions = the_case.analytic;
+    study::apply_variant(state.variant, ready.the_case, assumptions);
+    run.facts = study::facts_of(ready.the_case, assumptions);
+    study::RunOptions options;
+    options.assumptions = assumptions;
+    const ResultTable table = study::run(ready, options).table;
+    run.table = &table;
+    for (const std::size_t i : state.data) {
+      const Datum& datum = data.data[i];
+      const std::size_t place = places[i];
+      if (datum.printed) {
+        const auto value = compare::value_of(*datum.printed, run);
+        if (!value) throw ComputationError(datum.what + ": is not computed");
+        results[place] = value->low;
+        if (datum.size() == 2) results[place + 1] = value->high;
+      } else if (datum.curve) {
+        for (std::size_t k = 0; k < datum.size(); ++k)
+          results[place + k] = at_angle(table, datum.curve->column, datum.curve->theta_deg[k]);
+      }
+    }
+  }
+};
+
+DataModel::DataModel(Case base, IdentificationData data) {
+  auto made = std::make_unique<Implementation>();
+  made->base = std::move(base);
+  made->data = std::move(data);
+  IdentificationData& all = made->data;
+  if (all.unknowns.empty())
+    throw InputError("identify: nothing is unknown: [[unknown]] in the data, or --unknown");
+  std::set<std::string> names;
+  for (const Unknown& u : all.unknowns)
+    if (!names.insert(u.name()).second) throw InputError(u.name() + ": is unknown twice");
+  for (const Condition& condition : all.conditions)
+    made->branches.push_back(made->branch_of(condition));
+  std::map<std::pair<std::size_t, std::string>, std::size_t> index;
+  for (std::size_t i = 0; i < all.data.size(); ++i) {
+    const Datum& datum = all.data[i];
+    made->places.push_back(made->numbers);
+    made->numbers += datum.size();
+    if (datum.use == Use::left_out) continue;
+    const auto [at, fresh] =
+        index.try_emplace({datum.condition, datum.variant}, made->states.size());
+    if (fresh) {
+      Implementation::State state;
+      state.condition = datum.condition;
+      for (const auto& variant : all.variants)
+        if (variant.name == datum.variant) state.variant = variant;
+      made->states.push_back(std::move(state));
+    }
+    Implementation::State& state = made->states[at->second];
+    state.data.push_back(i);
+    if (datum.output)
+      state.outputs.push_back(*datum.output);
+    else
+      state.table = true;
+  }
+  if (std::none_of(all.data.begin(), all.data.end(),
+                   [](const Datum& d) { return d.use == Use::fitted; }))
+    throw InputError("identify: the data have nothing that unknowns could be fitted to");
+  implementation_ = std::move(made);
+}
+
+DataModel::~DataModel() = default;
+DataModel::DataModel(DataModel&&) noexcept = default;
+
+const Case& DataModel::base() const { return implementation_->base; }
+const IdentificationData& DataModel::data() const { return implementation_->data; }
+std::size_t DataModel::place_of(std::size_t datum) const { return implementation_->places[datum]; }
+std::size_t DataModel::numbers() const { return implementation_->numbers; }
+
+std::vector<double> DataModel::start() const {
+  std::vector<double> x;
+  for (const Unknown& u : data().unknowns) {
+    double value = u.variable.value(base());
+    for (const Condition& condition : data().conditions)
+      if (condition.name == u.condition)
+        for (const auto& [variable, set] : condition.settings)
+          if (variable.name() == u.variable.name()) value = set;
+    x.push_back(std::clamp(value, u.low, u.high));
+  }
+  return x;
+}
+
+bool DataModel::predict(std::span<const double> x, std::span<double> numbers) const {
+  const Implementation& self = *implementation_;
+  std::fill(numbers.begin(), numbers.end(), not_computed());
+  try {
+    Case scratch = self.base;
+    for (const Implementation::State& state : self.states) {
+      scratch = self.base;
+      self.make(self.branches[state.condition], x, scratch);
+      self.read_off(state, scratch, numbers);
+    }
+  } catch (const InputError&) {
+    return false;
+  } catch (const ComputationError&) {
+    return false;
+  }
+  return true;
+}
+
+double DataModel::residual(const Datum& datum, std::size_t number, double model) const {
+  if (datum.curve)
+    return (model - datum.curve->values[number]) / datum.curve->uncertainties[number];
+  if (datum.value) return (model - *datum.value) / datum.uncertainty;
+  return outside(model, datum.low, datum.high) / datum.uncertainty;
+}
+
+LeastSquaresProblem DataModel::problem(std::optional<std::size_t> without,
+                                       bool bounds_as_prior) const {
+  LeastSquaresProblem problem;
+  problem.parameters = size();
+  for (const Datum& datum : data().data)
+    if (datum.use == Use::fitted) problem.residuals += datum.size();
+  for (const Unknown& u : data().unknowns) {
+    problem.low.push_back(u.low);
+    problem.high.push_back(u.high);
+    problem.residuals += u.prior || bounds_as_prior;
+  }
+  problem.evaluate = [this, without, bounds_as_prior](std::span<const double> x,
+                                                      std::span<double> residuals) {
+    std::vector<double> numbers(this->numbers());
+    if (!predict(x, numbers)) return false;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < data().data.size(); ++i) {
+      const Datum& datum = data().data[i];
+      if (datum.use != Use::fitted) continue;
+      for (std::size_t k = 0; k < datum.size(); ++k)
+        residuals[next++] = i == without ? 0 : residual(datum, k, numbers[place_of(i) + k]);
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Unknown& u = data().unknowns[i];
+      if (u.prior)
+        residuals[next++] = prior_residual(*u.prior, x[i]);
+      else if (bounds_as_prior)
+        residuals[next++] = (x[i] - (u.low + u.high) / 2) / ((u.high - u.low) / std::sqrt(12.0));
+    }
+    return std::all_of(residuals.begin(), residuals.end(),
+                       [](double r) { return std::isfinite(r); });
+  };
+  return problem;
+}
+
+Case DataModel::pump(std::span<const double> x) const {
+  Case made = base();
+  implementation_->make(implementation_->branches.front(), x, made);
+  return made;
+}
+
+ResultTable DataModel::turn(std::span<const double> x) const {
+  return study::run_turn(study::prepare(pump(x)), kModel);
+}
+
+namespace {
+
+// Of fits that are one minimum to the eye, the one that changes the case least: what the data leave
+// open stays as it was.
+std::size_t nearest_of_best(const DataModel& model, const std::vector<LeastSquaresFit>& fits) {
+  constexpr double kSame = 0.01;  // of the sum of squares: nothing against the 3.84 that matter
+  const std::vector<double> start = model.start();
+  std::size_t best = 0;
+  double nearest = HUGE_VAL;
+  for (std::size_t f = 0; f < fits.size(); ++f) {
+    if (fits[f].sum_of_squares > fits[0].sum_of_squares + kSame) break;
+    double distance = 0;
+    for (std::size_t i = 0; i < model.size(); ++i) {
+      const Unknown& u = model.data().unknowns[i];
+      distance += std::pow((fits[f].x[i] - start[i]) / (u.high - u.low), 2);
+    }
+    if (distance < nearest) {
+      nearest = distance;
+      best = f;
+    }
+  }
+  return best;
+}
+
+std::vector<Minimum> minima_of(const std::vector<LeastSquaresFit>& fits) {
+  constexpr double kApart = 0.01;
+  std::vector<Minimum> minima;
+  for (const LeastSquaresFit& fit : fits) {
+    if (minima.empty() || fit.sum_of_squares > minima.back().sum_of_squares + kApart)
+      minima.push_back({fit.x, fit.sum_of_squares, 0});
+    ++minima.back().starts;
+  }
+  return minima;
+}
+
+}  // namespace
+
+Identification identify(const DataModel& model, const IdentifyOptions& options,
+                        const study::PartProgress& progress_of) {
+  Identification result;
+  std::vector<std::vector<double>> starts = {model.start()};
+  std::vector<double> numbers(model.numbers());
+  const auto further = latin_hypercube(
+      model.size(), static_cast<std::size_t>(std::max(options.starts - 1, 1)), options.seed);
+  for (int s = 0; s + 1 < options.starts; ++s) {
+    std::vector<double> x(model.size());
+    further->point(static_cast<std::size_t>(s), x);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Unknown& u = model.data().unknowns[i];
+      x[i] = u.low + x[i] * (u.high - u.low);
+    }
+    starts.push_back(std::move(x));
+  }
+  LeastSquaresOptions fitting;
+  fitting.most_iterations = 60;
+  fitting.enough = 1e-3;
+  const std::vector<LeastSquaresFit> fits =
+      least_squares(model.problem(), starts, fitting, options.threads, progress_of("fit"));
+  if (fits.empty())
+    throw ComputationError("identify: no start between the bounds makes a pump that can be run");
+  result.fit = fits[nearest_of_best(model, fits)];
+  result.minima = minima_of(fits);
+  result.numbers = numbers;
+  model.predict(result.fit.x, result.numbers);
+  result.information = information_of(model, result.fit.x, result.fit.jacobian);
+  if (options.profiles)
+    result.profiles = profiles_of(model, result.fit, options.threads, progress_of("profiles"));
+  if (options.leave_one_out)
+    result.left_out =
+        leave_one_out(model, result.fit, options.threads, progress_of("leave one out"));
+  if (options.posterior) {
+    result.posterior = posterior_of(model, result.fit, options, progress_of("posterior"));
+    bands_of(model, options, result, progress_of("bands"));
+  }
+  return result;
+}
+
+}  // namespace bentaxis::designs

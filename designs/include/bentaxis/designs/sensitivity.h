@@ -1,0 +1,78 @@
+// How outputs of one design change with its parameters: derivatives, each with how it was found.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bentaxis/designs/output.h"
+#include "bentaxis/designs/variable.h"
+#include "bentaxis/study/progress.h"
+
+namespace bentaxis::designs {
+
+/// Where a derivative comes from.
+enum class Way {
+  exact,        ///< numbers that carry derivatives through the closed form: right to round-off
+  differences,  ///< central differences, extrapolated to no step (Ridders 1982)
+};
+std::string to_string(Way way);
+
+struct Derivative {
+  double value;  ///< in the files' units; not_computed() where there is none
+  /// Of differences: estimate. Of an exact one 0, but at a kink, where several samples attain an
+  /// extreme: derivatives to either side are value - error and value + error.
+  double error = 0;
+  Way way = Way::exact;
+  std::string reason = {};  ///< why there is none
+};
+
+/// Derivatives of outputs with respect to parameters, at a case.
+struct Sensitivities {
+  Case base;
+  study::Model model = study::Model::analytic;
+  std::vector<Variable> variables;
+  std::vector<Output> outputs;
+  std::vector<double> at;      ///< of the variables
+  std::vector<double> values;  ///< of the outputs
+  /// What differences of outputs are judged by: the peak over the turn of what a statistic is of;
+  /// of others the magnitude.
+  std::vector<double> scales;
+  std::vector<std::vector<Derivative>> derivatives;  ///< by output, then variable
+
+  /// Percent of the output per percent of the variable; not_computed() where one of them is 0.
+  double elasticity(std::size_t output, std::size_t variable) const;
+};
+
+/// Every number of a case that has something to do in it, but how finely a turn is cut.
+std::vector<Variable> continuous_variables(const Case& base);
+
+/// Derivatives at the case itself. Exact are those by the analytic model of statistics of
+/// reactions, under ideal pressure or a curve and without teeth, with respect to what pump, speed
+/// and pressure are made of; a largest or least value changes as at the sample that attains it.
+/// @throws InputError where a variable is no continuous number, or as the case; ComputationError
+Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
+                            const std::vector<Output>& outputs,
+                            study::Model model = study::Model::analytic,
+                            const study::PartProgress& progress_of = study::silent());
+
+/// Two ways to find derivatives, set against each other.
+struct SensitivityCheck {
+  /// Largest difference that is allowed: of an output over its scale, per relative change of the
+  /// parameter. What differences of a model lose to its round-off.
+  static constexpr double kTolerance = 1e-7;
+
+  Sensitivities other;
+  std::vector<std::vector<double>> differences;  ///< over that scale; by output, then variable
+  double worst = 0;
+  std::size_t output = 0, variable = 0;  ///< of the worst
+  /// Not compared: one of the models has none, or differences that are not as sharp.
+  std::size_t missing = 0;
+  bool agrees() const { return worst <= kTolerance; }
+};
+/// The same derivatives by differences of the other model.
+SensitivityCheck check(const Sensitivities& found,
+                       const study::PartProgress& progress_of = study::silent());
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,468 @@
+#include "bentaxis/designs/sensitivity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "bentaxis/analytic/derivatives.h"
+#include "bentaxis/designs/evaluator.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+
+namespace bentaxis::designs {
+namespace {
+
+// ---- Exact derivatives
+
+// Rates of what the closed form takes from a case, along one of its parameters.
+struct Rates {
+  PumpParameters pump;
+  double speed = 0;  // rad/s
+  PortPressures ports;
+  double transition_deg = 0, delivery_start_deg = 0;
+};
+
+// Every number of a case as 0: conversions of units are linear, so what a variable that is put to 1
+// makes of it are rates.
+Case no_rates(const Case& base) {
+  Case rates = base;
+  rates.pump = analytic::no_rates(base.pump);
+  rates.operation.speed_rpm = 0;
+  rates.pressure.ports = {};
+  rates.pressure.transition_deg = rates.pressure.delivery_start_deg = 0;
+  return rates;
+}
+
+// Tables whose numbers the closed form is made from.
+bool is_of_closed_form(const Variable& variable) {
+  const std::string table = variable.name().substr(0, variable.name().find('.'));
+  for (const char* known :
+       {"pump", "gear", "bearings", "piston", "shaft", "block", "friction", "port_plate"})
+    if (table == known) return true;
+  for (const char* known :
+       {"operation.speed_rpm", "operation.gravity_m_per_s2", "pressure.suction_bar",
+        "pressure.delivery_bar", "pressure.transition_deg", "pressure.delivery_start_deg"})
+    if (variable.name() == known) return true;
+  return false;
+}
+
+bool is_exact(const Variable& variable, const Case& base) {
+  if (base.pressure.kind == PressureKind::hydraulic ||
+      base.pump.gear.contact == ToothContact::teeth || !is_of_closed_form(variable))
+    return false;
+  // A step passes samples or does not.
+  const bool moves_edges = variable.name() == "pressure.transition_deg" ||
+                           variable.name() == "pressure.delivery_start_deg";
+  return !moves_edges || base.pressure.kind != PressureKind::ideal ||
+         base.pressure.transition_deg > 0;
+}
+
+bool is_exact(const Output& output, const ChannelLayout& layout) {
+  return output.source == Source::curve && output.columns.back() < layout.reactions();
+}
+
+Rates rates_of(const Variable& variable, const Case& base) {
+  Case rates = no_rates(base);
+  variable.put(rates, 1);
+  return {rates.pump, rad_per_second(rates.operation.speed_rpm), rates.pressure.ports,
+          rates.pressure.transition_deg, rates.pressure.delivery_start_deg};
+}
+
+// Ideal pressure of a chamber and its rates: the share of the way from suction to delivery is
+// t^2 (3 - 2 t) of the share t of a transition.
+class IdealPressure {
+ public:
+  explicit IdealPressure(const PressureSpec& spec) : spec_(spec), share_(shares(spec)) {}
+
+  double rate(double theta_k_deg, const Rates& along) const {
+    const double share = share_(theta_k_deg);
+    const double width = spec_.transition_deg;
+    double slope = 0;
+    if (width > 0) {
+      for (const double edge : {0.0, 180.0}) {
+        const double past = wrap_degrees(theta_k_deg - spec_.delivery_start_deg - edge + 180) - 180;
+        if (std::abs(past) > width / 2) continue;
+        const double t = past / width + 0.5;
+        const double t_rate =
+            (-along.delivery_start_deg - past / width * along.transition_deg) / width;
+        slope += (edge == 0 ? 6 : -6) * t * (1 - t) * t_rate;
+      }
+    }
+    return along.ports.suction + (along.ports.delivery - along.ports.suction) * share +
+           (spec_.ports.delivery - spec_.ports.suction) * slope;
+  }
+
+ private:
+  static PressureTrace shares(PressureSpec spec) {
+    spec.kind = PressureKind::ideal;
+    spec.ports = {0, 1};
+    return PressureTrace(spec);
+  }
+  const PressureSpec& spec_;
+  PressureTrace share_;
+};
+
+// Samples this near to the largest, of the output's scale, attain it as well.
+constexpr double kTie = 1e-12;
+
+// The largest of some values, with its derivative: on either side that of whichever of those that
+// attain it then grows most.
+class LargestRate {
+ public:
+  explicit LargestRate(std::size_t directions) : least_(directions), most_(directions) {}
+
+  template <class Rate>
+  void add(double value, double tie, const Rate& rate) {
+    if (value < largest_ - tie) return;
+    const bool alone = value > largest_ + tie;
+    for (std::size_t d = 0; d < least_.size(); ++d) {
+      least_[d] = alone ? rate(d) : std::min(least_[d], rate(d));
+      most_[d] = alone ? rate(d) : std::max(most_[d], rate(d));
+    }
+    largest_ = std::max(largest_, value);
+  }
+  // The mean of both sides, and by how much each differs from it.
+  Derivative rate(std::size_t d) const {
+    return {(least_[d] + most_[d]) / 2, (most_[d] - least_[d]) / 2};
+  }
+
+ private:
+  double largest_ = -std::numeric_limits<double>::infinity();
+  std::vector<double> least_, most_;  // one per direction
+};
+
+// Statistics of one output with their derivatives, sample by sample.
+class StatisticRates {
+ public:
+  StatisticRates(const Output& output, double scale, std::size_t directions)
+      : output_(output),
+        tie_(kTie * scale),
+        sum_(directions),
+        squares_(directions),
+        low_(directions),
+        high_(directions),
+        peak_(directions) {}
+
+  // `derivatives` as of DerivativeModel, of `reactions` each.
+  void add(const std::vector<double>& values, const std::vector<double>& derivatives,
+           std::size_t reactions) {
+    double squares = 0;
+    for (const std::size_t c : output_.columns) squares += values[c] * values[c];
+    const bool vector = output_.columns.size() > 1;
+    const double value = vector ? std::sqrt(squares) : values[output_.columns.front()];
+    const auto rate = [&](std::size_t d) {
+      const double* const row = &derivatives[d * reactions];
+      if (!vector) return row[output_.columns.front()];
+      double product = 0;
+      for (const std::size_t c : output_.columns) product += values[c] * row[c];
+      return value > 0 ? product / value : 0;
+    };
+    const double sign = value < 0 ? -1 : 1;
+    low_.add(-value, tie_, [&](std::size_t d) { return -rate(d); });
+    high_.add(value, tie_, rate);
+    peak_.add(sign * value, tie_, [&](std::size_t d) { return sign * rate(d); });
+    mean_square_ += value * value;
+    ++count_;
+    for (std::size_t d = 0; d < sum_.size(); ++d) {
+      const double r = rate(d);
+      sum_[d] += r;
+      squares_[d] += value * r;
+    }
+  }
+
+  Derivative derivative(std::size_t d) const {
+    const Derivative low = low_.rate(d), high = high_.rate(d);
+    switch (output_.statistic) {
+      case Statistic::mean:
+        return {sum_[d] / count_};
+      case Statistic::min:
+        return {-low.value, low.error};
+      case Statistic::max:
+        return high;
+      case Statistic::peak:
+        return peak_.rate(d);
+      case Statistic::rms:
+        return {mean_square_ > 0 ? squares_[d] / std::sqrt(mean_square_ * count_) : 0};
+      case Statistic::range:
+        break;
+    }
+    return {high.value + low.value, high.error + low.error};
+  }
+
+ private:
+  const Output& output_;
+  double tie_, count_ = 0, mean_square_ = 0;
+  std::vector<double> sum_, squares_;  // one per direction
+  LargestRate low_, high_, peak_;      // of what is lowest the negative
+};
+
+void find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
+                const std::vector<std::size_t>& variables) {
+  const Case& base = s.base;
+  std::vector<Rates> rates;
+  std::vector<PumpParameters> pumps;
+  for (const std::size_t v : variables) {
+    rates.push_back(rates_of(s.variables[v], base));
+    pumps.push_back(rates.back().pump);
+  }
+  std::vector<StatisticRates> statistics;
+  for (const std::size_t o : outputs)
+    statistics.emplace_back(s.outputs[o], s.scales[o], variables.size());
+  const analytic::DerivativeModel model(base.pump, base.analytic, pumps);
+  const std::size_t reactions = model.layout().reactions();
+  const int n = model.layout().pistons();
+  const Samples samples = sample_case(base, PressureTrace(base.pressure));
+  const IdealPressure ideal(base.pressure);
+  Instant instant;
+  std::vector<Instant> along(variables.size());
+  for (std::size_t d = 0; d < along.size(); ++d) {
+    along[d].turn(0, rates[d].speed);
+    along[d].ports = rates[d].ports;
+    if (base.pressure.kind == PressureKind::ideal)
+      along[d].chamber_pressure.resize(static_cast<std::size_t>(n));
+  }
+  std::vector<double> values(reactions), derivatives(reactions * variables.size());
+  for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
+    samples.instant(row, instant);
+    for (std::size_t d = 0; d < along.size(); ++d)
+      for (std::size_t k = 0; k < along[d].chamber_pressure.size(); ++k)
+        along[d].chamber_pressure[k] = ideal.rate(
+            piston_angle_deg(samples.theta_deg[row], static_cast<int>(k) + 1, n), rates[d]);
+    model.reactions(instant, along, values, derivatives);
+    for (StatisticRates& statistic : statistics) statistic.add(values, derivatives, reactions);
+  }
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    for (std::size_t d = 0; d < variables.size(); ++d)
+      s.derivatives[outputs[i]][variables[d]] = statistics[i].derivative(d);
+}
+
+// ---- Differences
+
+// Of the parameter: short, so that another sample seldom becomes the largest and friction at a dead
+// centre is followed through its change of sign; longer where the
+// pressure is found by a search that ends at 1e-9 or so.
+constexpr double kFirstStep = 1e-4, kFirstStepOfSearch = 0.02;
+constexpr double kStepOfZero = 0.01;  // in the file's unit
+constexpr int kMostShorter = 8;       // times a first step that leads nowhere is halved
+// Halvings: where an evaluation is quick, and where it is a search or takes Simbody.
+constexpr int kLevels = 8, kSlowLevels = 5;
+
+// The first step from which all of both sides is inside of the range; 0 where there is none.
+double first_step(const Variable& variable, const Case& base, double at) {
+  const NumberRange range = variable.range(base);
+  const bool search = base.pressure.kind == PressureKind::hydraulic;
+  double step = at == 0 ? kStepOfZero : (search ? kFirstStepOfSearch : kFirstStep) * std::abs(at);
+  const double room = std::min(at - range.low, range.high - at);
+  if (step >= room) step = room / 2;
+  return step > 1e-9 * std::abs(at) && step > 0 ? step : 0;
+}
+
+// C. J. F. Ridders, Advances in Engineering Software 4 (1982) 75: central differences of falling
+// steps in Neville's scheme; the entry that its neighbours confirm best.
+class Ridders {
+ public:
+  // The difference of one step more, half as long as the last. @return false: no use to go on
+  bool add(double difference) {
+    std::vector<double> row = {difference};
+    double factor = 1;
+    for (std::size_t j = 0; j < last_.size(); ++j) {
+      factor *= 4;
+      row.push_back((row[j] * factor - last_[j]) / (factor - 1));
+      const double error = std::max(std::abs(row[j + 1] - row[j]), std::abs(row[j + 1] - last_[j]));
+      if (error <= error_) {
+        error_ = error;
+        value_ = row[j + 1];
+      }
+    }
+    const bool worse = last_.size() > 1 && std::abs(row.back() - last_.back()) > 2 * error_;
+    last_ = std::move(row);
+    return !worse;
+  }
+  double value() const { return value_; }
+  double error() const { return error_; }
+
+ private:
+  std::vector<double> last_;
+  double value_ = 0, error_ = std::numeric_limits<double>::infinity();
+};
+
+void find_by_differences(Sensitivities& s, const Evaluator& evaluator, std::size_t v,
+                         const std::vector<std::size_t>& outputs) {
+  std::string reason;
+  std::vector<double> at = s.at;
+  const auto values = [&](double x) {
+    at[v] = x;
+    Evaluation found = evaluator.evaluate(at);
+    if (!found.feasible()) reason = found.reason;
+    return found.values;
+  };
+  double step = first_step(s.variables[v], s.base, s.at[v]);
+  if (step == 0) reason = "stands on a bound of its range";
+  for (int i = 0; step > 0; ++i, step /= 2) {
+    reason.clear();
+    values(s.at[v] + step);
+    if (reason.empty()) values(s.at[v] - step);
+    if (reason.empty() || i == kMostShorter) break;
+  }
+  if (!reason.empty()) {
+    for (const std::size_t o : outputs)
+      s.derivatives[o][v] = {not_computed(), 0, Way::differences, reason};
+    return;
+  }
+  const double first = step;
+  std::vector<Ridders> tables(outputs.size());
+  std::vector<bool> going(outputs.size(), true);
+  const int levels = evaluator.fast() ? kLevels : kSlowLevels;
+  for (int level = 0; level < levels; ++level, step /= 2) {
+    const double above = s.at[v] + step, below = s.at[v] - step;
+    const auto high = values(above), low = values(below);
+    if (!reason.empty()) break;
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+      if (going[i])
+        going[i] = tables[i].add((high[outputs[i]] - low[outputs[i]]) / (above - below));
+  }
+  // Round-off of the output, over the longest step.
+  constexpr double kRoundOff = 4 * std::numeric_limits<double>::epsilon();
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const double noise = kRoundOff * s.scales[outputs[i]] / first;
+    Derivative found = {tables[i].value(), tables[i].error() + noise, Way::differences};
+    if (!std::isfinite(found.error))
+      found = {not_computed(), 0, Way::differences, "no differences could be formed"};
+    s.derivatives[outputs[i]][v] = found;
+  }
+}
+
+Sensitivities begin(const Case& base, const std::vector<Variable>& variables,
+                    const std::vector<Output>& outputs, study::Model model) {
+  Sensitivities s;
+  s.base = base;
+  s.model = model;
+  s.variables = variables;
+  s.outputs = outputs;
+  for (const Variable& variable : variables) {
+    if (variable.discrete())
+      throw InputError(variable.name() + ": is no continuous number: it has no derivative");
+    s.at.push_back(variable.value(base));
+  }
+  std::vector<Output> all = outputs;
+  for (Output output : outputs) {
+    if (output.source == Source::curve || output.source == Source::budget)
+      output.statistic = Statistic::peak;
+    all.push_back(output);
+  }
+  const Evaluation found = Evaluator(Family(base, {}), all, model).evaluate({});
+  if (!found.feasible()) throw InputError(found.reason);
+  const auto half = found.values.begin() + static_cast<std::ptrdiff_t>(outputs.size());
+  s.values.assign(found.values.begin(), half);
+  s.scales.assign(half, found.values.end());
+  for (double& scale : s.scales) scale = std::abs(scale);
+  for (std::size_t o = 0; o < outputs.size(); ++o)
+    s.derivatives.emplace_back(variables.size(), Derivative{not_computed()});
+  return s;
+}
+
+// Of one variable or of several, those for which `wanted`.
+template <class Wanted>
+std::vector<std::size_t> numbers(std::size_t count, const Wanted& wanted) {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < count; ++i)
+    if (wanted(i)) list.push_back(i);
+  return list;
+}
+
+}  // namespace
+
+std::string to_string(Way way) { return way == Way::exact ? "exact" : "differences"; }
+
+double Sensitivities::elasticity(std::size_t output, std::size_t variable) const {
+  if (at[variable] == 0 || values[output] == 0) return not_computed();
+  return derivatives[output][variable].value * at[variable] / values[output];
+}
+
+std::vector<Variable> continuous_variables(const Case& base) {
+  std::vector<Variable> variables;
+  for (const Table& table : standard_registry().tables) {
+    // What an integration in time starts and is driven by changes no driven turn.
+    if (table.name == "drive" || table.name.starts_with("assumptions")) continue;
+    for (const Parameter& p : table.parameters) {
+      std::vector<std::string> ends = {""};
+      if (std::holds_alternative<PairField>(p.field))
+        ends = {".1", ".2"};
+      else if (!std::holds_alternative<NumberField>(p.field))
+        continue;
+      for (const std::string& end : ends) try {
+          variables.emplace_back((table.name.empty() ? "" : table.name + ".") + p.key + end, base);
+        } catch (const InputError&) {
+          continue;  // it does nothing in this case
+        }
+    }
+  }
+  return variables;
+}
+
+Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
+                            const std::vector<Output>& outputs, study::Model model,
+                            const study::PartProgress& progress_of) {
+  Sensitivities s = begin(base, variables, outputs, model);
+  const ChannelLayout layout(base.pump.geometry.pistons);
+  const bool analytic = model == study::Model::analytic;
+  const auto exact_output = [&](std::size_t o) {
+    return analytic && is_exact(s.outputs[o], layout) && is_computed(s.values[o]);
+  };
+  const auto exact_variable = [&](std::size_t v) { return is_exact(s.variables[v], base); };
+  const auto outputs_found = numbers(outputs.size(), exact_output);
+  const auto variables_found = numbers(variables.size(), exact_variable);
+  if (!outputs_found.empty() && !variables_found.empty())
+    find_exact(s, outputs_found, variables_found);
+
+  // Of the outputs that differences are needed of alone, so that these can be quick.
+  const Progress progress = progress_of("derivatives");
+  std::vector<std::size_t> wanted;
+  std::optional<Evaluator> evaluator;
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    const auto rest = numbers(outputs.size(), [&](std::size_t o) {
+      return is_computed(s.values[o]) && !(exact_output(o) && exact_variable(v));
+    });
+    if (!rest.empty()) {
+      if (!evaluator) evaluator.emplace(Family(base, variables), outputs, model);
+      find_by_differences(s, *evaluator, v, rest);
+    }
+    if (progress) progress(static_cast<double>(v + 1) / static_cast<double>(variables.size()));
+  }
+  return s;
+}
+
+SensitivityCheck check(const Sensitivities& found, const study::PartProgress& progress_of) {
+  const study::Model model =
+      found.model == study::Model::analytic ? study::Model::multibody : study::Model::analytic;
+  SensitivityCheck result{begin(found.base, found.variables, found.outputs, model), {}};
+  const Progress progress = progress_of("derivatives of " + study::to_string(model));
+  const auto all = numbers(found.outputs.size(), [](std::size_t) { return true; });
+  const Evaluator evaluator(Family(found.base, found.variables), found.outputs, model);
+  result.differences.assign(all.size(), std::vector<double>(found.variables.size()));
+  for (std::size_t v = 0; v < found.variables.size(); ++v) {
+    find_by_differences(result.other, evaluator, v, all);
+    const double size = found.at[v] == 0 ? 1 : std::abs(found.at[v]);
+    for (const std::size_t o : all) {
+      double& difference = result.differences[o][v];
+      const double over_scale = size / (found.scales[o] > 0 ? found.scales[o] : 1);
+      const Derivative &one = found.derivatives[o][v], &other = result.other.derivatives[o][v];
+      difference = std::abs(other.value - one.value) * over_scale;
+      if (!is_computed(difference) ||
+          (one.error + other.error) * over_scale > SensitivityCheck::kTolerance) {
+        ++result.missing;
+      } else if (difference > result.worst) {
+        result.worst = difference;
+        result.output = o;
+        result.variable = v;
+      }
+    }
+    if (progress)
+      progress(static_cast<double>(v + 1) / static_cast<double>(found.variables.size()));
+  }
+  return result;
+}
+
+}  // namespace bentaxis::designs

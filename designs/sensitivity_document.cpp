@@ -1,0 +1,215 @@
+#include "bentaxis/designs/sensitivity_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::designs {
+namespace {
+
+using report::Cell;
+using report::Section;
+
+constexpr std::size_t kBars = 20;      // of a figure
+constexpr std::size_t kTextLines = 8;  // of an output
+
+// What one percent of a variable changes in an output.
+double effect(const Sensitivities& s, std::size_t o, std::size_t v) {
+  return s.derivatives[o][v].value * s.at[v] / 100;
+}
+
+// Variables by what one percent of them changes, most first; what has no derivative last.
+std::vector<std::size_t> by_effect(const Sensitivities& s, std::size_t o) {
+  std::vector<std::size_t> order(s.variables.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto size = [&](std::size_t v) {
+    const double e = effect(s, o, v);
+    return is_computed(e) ? std::abs(e) : -1;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
+  return order;
+}
+
+std::string per(const std::string& unit, const std::string& by) {
+  const std::string above = unit.empty() ? "1" : unit;
+  return by.empty() ? above : above + "/(" + by + ")";
+}
+
+Section outputs_section(const Sensitivities& s) {
+  Section section{"Outputs", "", {}, {{"output", "value", "unit", "meaning"}, {}}};
+  for (std::size_t o = 0; o < s.outputs.size(); ++o)
+    section.table.rows.push_back(
+        {s.outputs[o].name, s.values[o], s.outputs[o].unit, s.outputs[o].meaning});
+  return section;
+}
+
+Section derivatives_section(const Sensitivities& s, std::size_t o) {
+  const Output& output = s.outputs[o];
+  Section section{
+      "Derivatives of " + output.name,
+      "",
+      {},
+      {{"parameter", "meaning", "value", "unit", "derivative", "of unit",
+        "by +1 % (" + output.unit + ")", "elasticity (%/%)", "found by", "error of the derivative"},
+       {}}};
+  for (const std::size_t v : by_effect(s, o)) {
+    const Derivative& d = s.derivatives[o][v];
+    const Variable& variable = s.variables[v];
+    section.table.rows.push_back(
+        {variable.name(), variable.meaning(), s.at[v], variable.unit(), d.value,
+         per(output.unit, variable.unit()), effect(s, o, v), s.elasticity(o, v),
+         d.reason.empty() ? to_string(d.way) : d.reason,
+         d.way == Way::exact && d.error == 0 ? Cell("round-off") : Cell(d.error)});
+  }
+  return section;
+}
+
+report::Figure tornado(const Sensitivities& s, std::size_t o) {
+  const Output& output = s.outputs[o];
+  report::BarsFigure bars{{"change of " + output.name + " by +1 % of the parameter", output.unit},
+                          {}};
+  for (const std::size_t v : by_effect(s, o)) {
+    const double e = effect(s, o, v);
+    if (bars.bars.size() == kBars || !(std::abs(e) > 0)) break;
+    bars.bars.push_back({s.variables[v].name(), std::min(e, 0.0), std::max(e, 0.0),
+                         fmt::format("{} {}, elasticity {:.4g}", s.variables[v].text(s.at[v]),
+                                     s.variables[v].unit(), s.elasticity(o, v))});
+  }
+  return {fmt::format("tornado_{}", o + 1), "What moves " + output.name, "", std::move(bars)};
+}
+
+std::size_t count_of(const Sensitivities& s, Way way) {
+  std::size_t count = 0;
+  for (const auto& row : s.derivatives)
+    for (const Derivative& d : row) count += d.way == way && is_computed(d.value) ? 1 : 0;
+  return count;
+}
+
+std::string other_model(const SensitivityCheck& check) {
+  return check.other.model == study::Model::multibody ? "Simbody" : "the closed form";
+}
+
+std::string headline(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
+  if (!check)
+    return fmt::format("{} derivatives exact, {} by differences", count_of(s, Way::exact),
+                       count_of(s, Way::differences));
+  const std::string worst = check->worst > 0
+                                ? fmt::format(" ({} by {})", s.outputs[check->output].name,
+                                              s.variables[check->variable].name())
+                                : "";
+  return fmt::format(
+      "derivatives {} differences of {}: largest difference {:.2g} of the output's scale per "
+      "relative change{}, allowed {:g}",
+      check->agrees() ? "agree with" : "differ from", other_model(*check), check->worst, worst,
+      SensitivityCheck::kTolerance);
+}
+
+Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
+  Section section{
+      "Against " + other_model(check),
+      "Central differences of the other model, extrapolated to no step. The difference of both "
+      "derivatives is taken times the parameter's value and over the output's scale, the peak of "
+      "its curve over the turn.",
+      {},
+      {{"output", "parameter", "derivative", "by the other model", "its error", "difference"}, {}}};
+  if (check.missing > 0)
+    section.facts = {
+        {"not compared", fmt::format("{}: one model has none, or differences that are not as sharp",
+                                     check.missing)}};
+  for (std::size_t o = 0; o < s.outputs.size(); ++o)
+    for (std::size_t v = 0; v < s.variables.size(); ++v)
+      section.table.rows.push_back({s.outputs[o].name, s.variables[v].name(),
+                                    s.derivatives[o][v].value, check.other.derivatives[o][v].value,
+                                    check.other.derivatives[o][v].error, check.differences[o][v]});
+  return section;
+}
+
+}  // namespace
+
+report::Document sensitivity_document(const Sensitivities& s,
+                                      const std::optional<SensitivityCheck>& check,
+                                      const report::Lines& program) {
+  report::Document document;
+  document.title = "Sensitivities: " + s.base.name;
+  document.program = program;
+  study::describe_case(document, s.base);
+  document.derived = study::derived_section(s.base);
+  document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
+                                     headline(s, check)};
+  document.meaning =
+      "A derivative holds for small changes of one parameter, the others staying. An exact one is "
+      "right to round-off; one by differences has the error beside it. A largest or least value "
+      "changes as at the sample that attains it; where several do, the derivative is the mean of "
+      "those to either side, and its error what each differs by.";
+  std::vector<Section> sections = {outputs_section(s)};
+  std::vector<report::Figure> figures;
+  for (std::size_t o = 0; o < s.outputs.size(); ++o) {
+    sections.push_back(derivatives_section(s, o));
+    figures.push_back(tornado(s, o));
+  }
+  if (check) sections.push_back(check_section(s, *check));
+  document.runs = std::move(sections);
+  document.figures = std::move(figures);
+  return document;
+}
+
+std::string sensitivity_csv(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
+  std::string text =
+      "output,output_unit,output_value,parameter,parameter_unit,parameter_value,derivative,"
+      "elasticity,found_by,error";
+  text += check ? ",derivative_of_other_model,difference\n" : "\n";
+  for (std::size_t o = 0; o < s.outputs.size(); ++o)
+    for (std::size_t v = 0; v < s.variables.size(); ++v) {
+      const Derivative& d = s.derivatives[o][v];
+      const auto number = [&](double value) {
+        text += ',';
+        append_number(text, value);
+      };
+      text += s.outputs[o].name + "," + s.outputs[o].unit;
+      number(s.values[o]);
+      text += "," + s.variables[v].name() + "," + s.variables[v].unit();
+      number(s.at[v]);
+      number(d.value);
+      number(s.elasticity(o, v));
+      text += "," + (is_computed(d.value) ? to_string(d.way) : std::string());
+      number(d.error);
+      if (check) {
+        number(check->other.derivatives[o][v].value);
+        number(check->differences[o][v]);
+      }
+      text += '\n';
+    }
+  return text;
+}
+
+std::string sensitivity_text(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
+  std::string text = s.base.name + "\n" + headline(s, check) + "\n";
+  for (std::size_t o = 0; o < s.outputs.size(); ++o) {
+    text += fmt::format("\n{} = {:.7g} {}\n{:<34}{:>12}{:>14}{:>12}  {}\n", s.outputs[o].name,
+                        s.values[o], s.outputs[o].unit, "parameter", "value", "derivative", "%/%",
+                        "found by");
+    const auto order = by_effect(s, o);
+    for (std::size_t i = 0; i < std::min(kTextLines, order.size()); ++i) {
+      const std::size_t v = order[i];
+      const Derivative& d = s.derivatives[o][v];
+      const auto number = [](double value) {
+        return is_computed(value) ? fmt::format("{:.6g}", value) : std::string("-");
+      };
+      text += fmt::format("{:<34}{:>12.6g}{:>14}{:>12}  {}\n", s.variables[v].name(), s.at[v],
+                          number(d.value), number(s.elasticity(o, v)),
+                          d.reason.empty() ? to_string(d.way) : d.reason);
+    }
+    if (order.size() > kTextLines)
+      text += fmt::format("and {} more in sensitivity.csv\n", order.size() - kTextLines);
+  }
+  return text;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,60 @@
+// Outputs of many designs by the kernel of the closed form: statistics of reactions over a turn,
+// made while the reactions are, without tables. Internal.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bentaxis/analytic/batch.h"
+#include "bentaxis/designs/output.h"
+#include "bentaxis/pump/case.h"
+
+namespace bentaxis::designs {
+
+/// Outputs as the kernel gives them.
+struct TurnOutputs {
+  struct Place {
+    Statistic statistic = Statistic::mean;
+    std::size_t measured = 0;  ///< in `measured`; of geometry: its number in `geometry`
+    double unit_in_si = 1;
+    bool of_geometry = false;
+  };
+  std::vector<Place> places;  ///< one per output
+  std::vector<analytic::Measured> measured;
+  std::vector<Output> geometry;  ///< what follows from the geometry alone
+};
+
+/// Nothing where one of them is neither a statistic of a reaction nor one of the geometry.
+std::optional<TurnOutputs> turn_outputs(const std::vector<Output>& outputs, const Case& base);
+
+/// Evaluates one design after the other: for one thread. Angles and pressures are kept from one to
+/// the next while what they depend on stays.
+class TurnStatistics {
+ public:
+  /// @param outputs  must outlive this object
+  explicit TurnStatistics(const TurnOutputs& outputs);
+
+  /// @param the_case  valid; as many pistons as the base, no teeth, pressure ideal or a curve
+  /// @param results   one per output
+  /// @return false where the general way has to say what is wrong: a value is not finite
+  /// @throws InputError
+  bool find(const Case& the_case, std::span<double> results);
+
+ private:
+  void set_samples(std::size_t samples, int pistons);
+  void set_pressure(const PressureSpec& pressure, int pistons);
+
+  const TurnOutputs& outputs_;
+  std::optional<analytic::BatchModel> model_;
+  std::vector<analytic::Statistics> statistics_;
+  std::vector<double> theta_;  // rad
+  // Chamber by chamber where chambers pass the samples at places of their own; else of the first
+  // chamber twice, each other one beginning somewhere in its first turn. Shares are of the way from
+  // suction to delivery, on which ideal pressures have no influence.
+  std::vector<double> shares_, pressures_;
+  std::vector<analytic::Varying> chambers_;
+  std::optional<PressureSpec> made_for_;  // without a curve
+};
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,225 @@
+// Identification: what data determine where the answer is known beforehand.
+#include "bentaxis/designs/identify.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis::designs {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+std::string refusal_of(const std::function<void()>& job) {
+  try {
+    job();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+Case base_case() {
+  return read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml",
+                   {"operation.samples_per_revolution=60", "friction.piston_coulomb_N=0"});
+}
+
+double value_of(const Case& base, const std::string& name) {
+  return outputs_of({output(name, base)}, study::prepare(base), study::Model::analytic)[0];
+}
+
+// Of the mean torque, which is a straight line over the delivery pressure.
+double torque_at(double bar) {
+  Case base = base_case();
+  base.pressure.ports.delivery = bar * 1e5;
+  return value_of(base, "mean:Td");
+}
+double torque_per_bar() { return (torque_at(275) - torque_at(265)) / 10; }
+
+Datum number(const Case& base, const std::string& name, double value, double uncertainty) {
+  Datum datum;
+  datum.output = output(name, base);
+  datum.what = datum.output->name;
+  datum.value = value;
+  datum.uncertainty = uncertainty;
+  return datum;
+}
+
+IdentificationData data_of(const Case& base, const std::vector<std::string>& unknowns,
+                           std::vector<Datum> data) {
+  IdentificationData all;
+  for (const std::string& text : unknowns)
+    all.unknowns.push_back(unknown_of("--unknown", text, base));
+  all.data = std::move(data);
+  return all;
+}
+
+class Identify : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (least_squares_library().empty()) GTEST_SKIP() << "without Ceres";
+  }
+  static Identification fit(const DataModel& model, bool profiles = false) {
+    IdentifyOptions options;
+    options.starts = 3;
+    options.posterior = options.leave_one_out = false;
+    options.profiles = profiles;
+    return identify(model, options);
+  }
+};
+
+// The mean torque is linear in the delivery pressure: its profile is that of a straight line.
+TEST_F(Identify, ALinearUnknownHasTheLimitsOfItsNormalDistribution) {
+  const Case base = base_case();
+  const double torque = value_of(base, "mean:Td");
+  const DataModel model(base, data_of(base, {"pressure.delivery_bar=200:400"},
+                                      {number(base, "mean:Td", torque, 0.01 * torque)}));
+  const Identification result = fit(model, true);
+  EXPECT_NEAR(result.fit.x[0], 275, 1e-6);
+  const double deviation = 0.01 * torque / torque_per_bar();
+  EXPECT_NEAR(result.profiles[0].low, 275 - 1.959964 * deviation, 0.02 * deviation);
+  EXPECT_NEAR(result.profiles[0].high, 275 + 1.959964 * deviation, 0.02 * deviation);
+  EXPECT_FALSE(result.profiles[0].open_low || result.profiles[0].open_high);
+  const double spread = 200 / std::sqrt(12.0);
+  EXPECT_NEAR(result.information.deviation[0], deviation / std::hypot(1, deviation / spread), 1e-4);
+}
+
+TEST_F(Identify, WordsNameWhatIsDeterminedOnlyTogether) {
+  const Case base = base_case();
+  const Datum torque = number(base, "mean:Td", value_of(base, "mean:Td"), 0.1);
+  const DataModel difference(
+      base,
+      data_of(base, {"pressure.delivery_bar=250:300", "pressure.suction_bar=-0.9:20"}, {torque}));
+  EXPECT_THAT(fit(difference).information.words,
+              Contains("pressure.delivery_bar and pressure.suction_bar are determined only through "
+                       "their difference"));
+  const DataModel product(
+      base,
+      data_of(base,
+              {"friction.block_viscous_Nm_per_rpm=0.004:0.007", "operation.speed_rpm=1000:2000"},
+              {number(base, "mean:Tcs_z2", value_of(base, "mean:Tcs_z2"), 0.01)}));
+  EXPECT_THAT(
+      fit(product).information.words,
+      Contains("friction.block_viscous_Nm_per_rpm and operation.speed_rpm are determined only "
+               "through their product"));
+  const DataModel nothing(
+      base, data_of(base, {"pressure.delivery_bar=250:300", "block.mass_kg=1:2"}, {torque}));
+  EXPECT_THAT(fit(nothing).information.words, Contains("the data say nothing of block.mass_kg"));
+}
+
+TEST_F(Identify, AWindowPushesOnlyFromOutside) {
+  const Case base = base_case();
+  Datum window = number(base, "mean:Td", 0, 1);
+  window.value.reset();
+  window.low = -HUGE_VAL;
+  window.high = torque_at(200);
+  const DataModel model(base, data_of(base, {"pressure.delivery_bar=100:400"}, {window}));
+  EXPECT_EQ(model.residual(window, 0, window.high - 5), 0);
+  EXPECT_DOUBLE_EQ(model.residual(window, 0, window.high + 5), 5);
+  const Identification result = fit(model, true);
+  EXPECT_NEAR(result.fit.sum_of_squares, 0, 1e-6);
+  EXPECT_TRUE(result.profiles[0].open_low);
+  EXPECT_FALSE(result.profiles[0].open_high);
+  // The torque may be 1.96 beyond its edge.
+  EXPECT_NEAR(result.profiles[0].high, 200 + 1.959964 / torque_per_bar(), 0.02);
+}
+
+TEST_F(Identify, ANumberLeftOutIsPredictedByTheOthers) {
+  const Case base = base_case();
+  const double torque = value_of(base, "mean:Td"), force = value_of(base, "max:Rs_z2");
+  // The second of two that should say the same is 2 % too high.
+  const DataModel model(base, data_of(base, {"pressure.delivery_bar=200:400"},
+                                      {number(base, "mean:Td", torque, 1e-3 * torque),
+                                       number(base, "max:Rs_z2", 1.02 * force, 1e-3 * force)}));
+  const auto left = leave_one_out(model, fit(model).fit, 1, {});
+  ASSERT_EQ(left.size(), 2U);
+  EXPECT_NEAR(left[1].value, force, 1e-3 * force) << "by the torque alone";
+  EXPECT_NEAR(left[1].distance, -20 / std::sqrt(2.0), 0.3) << "both uncertainties count";
+}
+
+TEST_F(Identify, ThePosteriorIsThatOfALineAndDoesNotDependOnThreads) {
+  const Case base = base_case();
+  const double torque = value_of(base, "mean:Td");
+  const DataModel model(base, data_of(base, {"pressure.delivery_bar=200:350", "block.mass_kg=1:2"},
+                                      {number(base, "mean:Td", torque, 0.01 * torque)}));
+  IdentifyOptions options;
+  options.steps = 400;
+  options.draws = 1000;
+  options.profiles = options.leave_one_out = false;
+  options.threads = 1;
+  const Identification one = identify(model, options);
+  options.threads = 2;
+  const Identification two = identify(model, options);
+  EXPECT_EQ(one.posterior.unknowns, two.posterior.unknowns);
+  double mean = 0, square = 0, mass = 0;
+  for (std::size_t d = 0; d < one.posterior.count; ++d) {
+    mean += one.posterior.unknowns[2 * d] / 1000;
+    mass += one.posterior.unknowns[2 * d + 1] / 1000;
+  }
+  for (std::size_t d = 0; d < one.posterior.count; ++d)
+    square += std::pow(one.posterior.unknowns[2 * d] - mean, 2) / 999;
+  const double deviation = 0.01 * torque / torque_per_bar();
+  EXPECT_GT(one.posterior.effective, 300);
+  // Within four of their own standard errors of 300 independent draws.
+  EXPECT_NEAR(mean, 275, 4 * deviation / std::sqrt(300));
+  EXPECT_NEAR(std::sqrt(square), deviation, 4 * deviation / std::sqrt(600));
+  EXPECT_NEAR(mass, 1.5, 4 / std::sqrt(12 * 300)) << "nothing is known of it but its bounds";
+  // Forces of the pistons go with the pressure, so does their band. A quantile at 2.5 % of 300
+  // independent draws errs by 0.15 of the deviation, standard.
+  const auto axial = std::find_if(one.bands.begin(), one.bands.end(), [&](const ReactionBand& b) {
+    return b.column == output("max:Rs_z2", base).columns[0];
+  });
+  ASSERT_NE(axial, one.bands.end());
+  EXPECT_NEAR(axial->half_width, 1.96 * deviation / 275, 3 * 0.15 / std::sqrt(2) * deviation / 275);
+}
+
+TEST_F(Identify, TheNumbersOfThePaperAreReadAndTheShippedCaseIsNearThem) {
+  const Case base = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml",
+                              {"operation.samples_per_revolution=180"});
+  IdentificationData data;
+  read_identification(BENTAXIS_SOURCE_DIR "/reference_data/identification/bap63.toml", base, data);
+  const DataModel model(base, data);
+  std::vector<double> numbers(model.numbers());
+  ASSERT_TRUE(model.predict(model.start(), numbers));
+  int fitted = 0, predicted = 0, left_out = 0;
+  for (std::size_t i = 0; i < data.data.size(); ++i) {
+    const Datum& datum = model.data().data[i];
+    fitted += datum.use == Use::fitted;
+    predicted += datum.use == Use::predicted;
+    left_out += datum.use == Use::left_out;
+    EXPECT_EQ(datum.use == Use::left_out, !datum.reason.empty()) << datum.what;
+    if (datum.what == "displacement") {
+      EXPECT_NEAR(numbers[model.place_of(i)], 63.71, 0.01);
+    } else if (datum.what == "torque from shaft to block at 0 deg" && datum.variant == "Cc = 0") {
+      EXPECT_NEAR(numbers[model.place_of(i)], 6.10, 0.02);
+    }
+  }
+  EXPECT_EQ(fitted + predicted + left_out, static_cast<int>(data.data.size()));
+  EXPECT_GE(fitted, 20);
+  EXPECT_GE(predicted, 10);
+}
+
+TEST_F(Identify, WhatCannotBeIsRefused) {
+  const Case base = base_case();
+  const Datum torque = number(base, "mean:Td", 1, 1);
+  const auto refusal = [&](const IdentificationData& data) {
+    return refusal_of([&] { DataModel(base, data); });
+  };
+  EXPECT_THAT(refusal(data_of(base, {}, {torque})), HasSubstr("nothing is unknown"));
+  EXPECT_THAT(refusal(data_of(base, {"pump.tilt_deg=30:50"}, {})), HasSubstr("nothing that"));
+  EXPECT_THAT(refusal(data_of(base, {"pump.tilt_deg=30:50", "pump.tilt_deg=30:50"}, {torque})),
+              HasSubstr("unknown twice"));
+  EXPECT_THAT(refusal_of([&] { unknown_of("--unknown", "pump.tilt_deg=50:30", base); }),
+              HasSubstr("below"));
+  EXPECT_THAT(refusal_of([&] { unknown_of("--unknown", "pump.pistons=3:9", base); }),
+              HasSubstr("no values in between"));
+}
+
+}  // namespace
+}  // namespace bentaxis::designs

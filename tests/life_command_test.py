@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""Tests of `bentaxis life` from outside: files, duty cycles, what is refused.
+
+usage: life_command_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import pathlib
+import sys
+import unittest
+
+import command_line_test as program
+from command_line_test import ProgramTest
+
+FILES = {"life.html", "life.json", "life.csv", "life_loads.csv"}
+IDEAL = ("--set", "pressure.kind=ideal", "--set", "operation.samples_per_revolution=72")
+
+
+class LifeTest(ProgramTest):
+    def life(self, *options, out="out", case=None):
+        return ("life", case or program.REPO / "cases" / "bap63_bearing_life.toml", *IDEAL, "--out", out, *options)
+
+    def duty(self, text):
+        (self.folder / "duty.csv").write_text(text)
+        return "--duty", "duty.csv"
+
+    def rows(self, name, out="out"):
+        with open(self.folder / out / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def hours(self, out="out"):
+        """L10h of both bearings and of both together, from the report."""
+        report = json.loads((self.folder / out / "life.json").read_text())
+        section = {s["title"]: s for s in report["runs"]}["Bearings"]
+        column = section["table"]["columns"].index("L10h, h")
+        return [row[column] for row in section["table"]["rows"]], report
+
+    def test_files_and_numbers_of_the_case_itself(self):
+        result = self.run_program(*self.life())
+        self.assertEqual({path.name for path in (self.folder / "out").iterdir()}, FILES)
+        (tapered, cylindrical), report = self.hours()
+        self.assertTrue(report["verdict"]["agrees"])
+        self.assertIn("The loads by both models agree", result.out)
+        # From the loads it wrote, by the definition.
+        loads = [row for row in self.rows("life_loads.csv") if row["model"] == "multibody"]
+        self.assertEqual(len(loads), 72)
+        for column, rating, life in (("tapered_P_N", 105000, tapered), ("cylindrical_P_N", 106000, cylindrical)):
+            used = sum((float(row[column]) / rating) ** (10 / 3) for row in loads) / len(loads)
+            self.assertAlmostEqual(life * used * 60 * 1500 / 1e6, 1, 9)
+        for row in loads:
+            fr, fa = float(row["tapered_Fr_N"]), float(row["tapered_Fa_N"])
+            self.assertAlmostEqual(float(row["tapered_P_N"]), fr if fa <= 0.83 * fr else 0.4 * fr + 0.73 * fa, 6)
+
+    def test_a_duty_cycle_uses_up_what_its_rows_do(self):
+        self.run_program(*self.life(*self.duty("share,speed_rpm,pressure.delivery_bar\n3,1500,275\n1,2000,120\n")))
+        both, _ = self.hours()
+        used = [0, 0]
+        for share, speed, bar in ((0.75, 1500, 275), (0.25, 2000, 120)):
+            out = f"row_{speed}"
+            self.run_program(*self.life("--set", f"operation.speed_rpm={speed}", "--set", f"pressure.delivery_bar={bar}", out=out))
+            for i, hours in enumerate(self.hours(out)[0]):
+                used[i] += share / hours
+        for i in range(2):
+            self.assertAlmostEqual(both[i] * used[i], 1, 9)
+        rows = self.rows("life.csv")
+        self.assertEqual([row["operation.speed_rpm"] for row in rows], ["1500", "2000"])
+        self.assertAlmostEqual(sum(float(row["tapered_life_share"]) for row in rows), 1, 12)
+        self.assertAlmostEqual(float(rows[1]["revolution_share"]), 500 / (500 + 1125), 12)
+
+    def test_standstill_wears_nothing(self):
+        result = self.run_program(*self.life("--set", "operation.speed_rpm=0"))
+        self.assertIn("no rating life", result.out)
+        self.assertEqual(self.hours()[0], [None, None])
+
+    def test_what_is_refused(self):
+        for text, *words in (("speed_rpm\n1500\n", "duty.csv", "share"), ("share,speed_rpm\n1,1500\n0,1500\n", "duty.csv:3", "share = 0"),
+                             ("share,tilt_deg\n1,95\n", "duty.csv:2", "tilt_deg = 95", "[0, 90)"), ("share,kind\n1,0\n", "several tables"),
+                             ("share,speed_rpm,operation.speed_rpm\n1,1,2\n", "speed_rpm", "twice"), ("share,share\n1,1\n", "two columns"),
+                             ("share\n", "no row"), ("share,backlash_um\n1,2\n", "backlash_um")):
+            with self.subTest(text):
+                (self.folder / "duty.csv").write_text(text)
+                self.assert_mentions(self.refused(*self.life("--duty", "duty.csv")), *words)
+        rated = program.REPO / "cases" / "bap63_rated.toml"
+        self.assert_mentions(self.refused("life", rated), "tapered_dynamic_rating_kN", "bearings")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program.PROGRAM, program.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,189 @@
+// Derivatives of outputs: exact ones against differences of the same outputs and of Simbody, what
+// differences say of their own error, and closed forms.
+#include "bentaxis/designs/sensitivity.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "bentaxis/designs/evaluator.h"
+#include "bentaxis/designs/sensitivity_document.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::designs {
+namespace {
+
+Case rated() {
+  Case base = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated.toml");
+  base.operation.samples_per_revolution = 60;
+  return base;
+}
+
+std::vector<Output> outputs_of(const Case& base, const std::vector<std::string>& names) {
+  std::vector<Output> outputs;
+  for (const std::string& name : names) outputs.push_back(output(name, base));
+  return outputs;
+}
+
+std::vector<Variable> variables_of(const Case& base, const std::vector<std::string>& names) {
+  std::vector<Variable> variables;
+  for (const std::string& name : names) variables.emplace_back(name, base);
+  return variables;
+}
+
+// Central differences of the outputs over kStep of a parameter: truncation of its square and
+// round-off of 1e-15 / kStep, of an output's scale per relative change. So short that no other
+// sample becomes the largest.
+constexpr double kStep = 1e-6;
+constexpr double kDifferences = 5e-9;
+
+TEST(Sensitivity, ExactDerivativesAreDifferencesOfTheOutputs) {
+  for (const bool another : {false, true}) {
+    Case base = rated();
+    base.pressure.transition_deg = 30;
+    if (another) {  // with everything that can be
+      base = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated.toml",
+                       {"piston.inertia=real", "gear.flanks=two", "operation.speed_rpm=-1200",
+                        "piston.spin_rpm=300", "friction.regularization_m_per_s=0.5",
+                        "pressure.transition_deg=40", "pressure.delivery_start_deg=179.7"});
+      base.operation.samples_per_revolution = 44;  // not whole per chamber
+    }
+    const auto variables = continuous_variables(base);
+    const auto outputs =
+        outputs_of(base, {"mean:Td", "max:Rb1_y1", "min:Rb1_y1", "peak:Rb1", "rms:Rb2", "range:Td",
+                          "mean:Rc_2", "peak:Th", "rms:Rcs", "peak:Rs_3_x2", "max:Fh"});
+    const Sensitivities found = sensitivities(base, variables, outputs);
+    const Evaluator evaluator(Family(base, variables), outputs);
+    std::size_t exact = 0;
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+      const double size = found.at[v] == 0 ? 1 : std::abs(found.at[v]);
+      const NumberRange range = variables[v].range(base);
+      if (found.derivatives[0][v].way != Way::exact) continue;
+      if (found.at[v] - kStep * size < range.low || found.at[v] + kStep * size > range.high)
+        continue;
+      ++exact;
+      const auto difference = [&](std::size_t o, double step) {
+        auto at = found.at;
+        at[v] = found.at[v] + step;
+        const double above = at[v], high = evaluator.evaluate(at).values[o];
+        at[v] = found.at[v] - step;
+        return (high - evaluator.evaluate(at).values[o]) / (above - at[v]);
+      };
+      for (std::size_t o = 0; o < outputs.size(); ++o) {
+        EXPECT_NEAR(found.derivatives[o][v].value * size, difference(o, kStep * size) * size,
+                    kDifferences * found.scales[o])
+            << outputs[o].name << " by " << variables[v].name();
+      }
+    }
+    EXPECT_GE(exact, 30U);
+  }
+}
+
+// Without inertia, friction and weight the mean torque is displacement x pressure / 2 pi, and with
+// a step of pressure at both dead centres it is linear in the pressures.
+TEST(Sensitivity, OfTheMeanTorqueByThePressureIsTheDisplacement) {
+  Case base = rated();
+  base.operation.samples_per_revolution = 720;
+  base.pressure.transition_deg = 0;
+  const Sensitivities found = sensitivities(base, variables_of(base, {"pressure.delivery_bar"}),
+                                            outputs_of(base, {"mean:Td", "displacement_cm3"}));
+  const double expected = found.values[1] * 1e-6 * 1e5 / (2 * M_PI);
+  const double factor = base.pump.friction.shaft_torque_factor;
+  // Trapezoidal sum over samples of a piecewise smooth torque: (2 pi / 720)^2 and the edges.
+  EXPECT_NEAR(found.derivatives[0][0].value * factor / expected, 1, 2e-3);
+  EXPECT_EQ(found.derivatives[0][0].way, Way::exact);
+  EXPECT_EQ(found.derivatives[1][0].way, Way::differences);
+  EXPECT_EQ(found.derivatives[1][0].value, 0);
+}
+
+// The displacement is N A stroke: twice itself over the diameter.
+TEST(Sensitivity, DifferencesKnowTheirError) {
+  const Case base = rated();
+  const Sensitivities found =
+      sensitivities(base, variables_of(base, {"pump.bore_diameter_mm", "pump.tilt_deg"}),
+                    outputs_of(base, {"displacement_cm3", "mean:budget.Td_pressure"}));
+  const Derivative& d = found.derivatives[0][0];
+  EXPECT_EQ(d.way, Way::differences);
+  const double exact = 2 * found.values[0] / found.at[0];
+  EXPECT_LE(std::abs(d.value - exact), d.error + 1e-12 * exact);
+  EXPECT_LE(d.error, 1e-9 * exact);
+  EXPECT_NEAR(found.elasticity(0, 0), 2, 1e-9);
+  for (const auto& row : found.derivatives)
+    for (const Derivative& each : row) EXPECT_LE(each.error, 1e-7 * std::abs(each.value));
+}
+
+// The share of a transition lies in the derivative of the pressure with respect to it.
+TEST(Sensitivity, AStepOfPressureIsNotDifferentiatedByItsPlace) {
+  Case base = rated();
+  base.pressure.transition_deg = 0;
+  const Sensitivities found = sensitivities(
+      base, variables_of(base, {"pressure.delivery_start_deg"}), outputs_of(base, {"mean:Td"}));
+  EXPECT_EQ(found.derivatives[0][0].way, Way::differences);
+}
+
+TEST(Sensitivity, AgreesWithDifferencesOfSimbody) {
+  Case base = rated();
+  base.operation.samples_per_revolution = 20;
+  const Sensitivities found = sensitivities(
+      base,
+      variables_of(base, {"pump.tilt_deg", "pump.axis_offset_mm", "pump.bore_circle_radius_mm",
+                          "piston.mass_kg", "bearings.tapered_z_mm", "operation.speed_rpm",
+                          "pressure.delivery_bar", "pressure.transition_deg",
+                          "friction.shaft_torque_factor", "port_plate.inner_land_mm.2"}),
+      outputs_of(base, {"mean:Td", "peak:Rb1", "max:Rb2_x1", "peak:Rs", "rms:Rc", "min:Fh"}));
+  const SensitivityCheck compared = check(found);
+  EXPECT_EQ(compared.missing, 0U);
+  EXPECT_TRUE(compared.agrees()) << found.outputs[compared.output].name << " by "
+                                 << found.variables[compared.variable].name() << ": "
+                                 << compared.worst;
+  // A derivative that is off by 1e-5 of itself is noticed.
+  Sensitivities wrong = found;
+  wrong.derivatives[1][0].value *= 1 + 1e-5;
+  EXPECT_FALSE(check(wrong).agrees());
+}
+
+TEST(Sensitivity, SaysWhatItCannotDo) {
+  const Case base = rated();
+  const auto refusal = [&](const std::string& name) -> std::string {
+    try {
+      sensitivities(base, variables_of(base, {name}), outputs_of(base, {"mean:Td"}));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal("pump.pistons"), testing::HasSubstr("no continuous number"));
+  EXPECT_THAT(refusal("assumptions.analytic.gear"), testing::HasSubstr("no continuous number"));
+  // On the bound of its range there are no two sides.
+  Case bound = base;
+  bound.pump.friction.shaft_torque_factor = 1;
+  const Sensitivities found =
+      sensitivities(bound, variables_of(bound, {"friction.shaft_torque_factor"}),
+                    outputs_of(bound, {"efficiency.mechanical", "mean:Td"}));
+  EXPECT_THAT(found.derivatives[0][0].reason, testing::HasSubstr("bound"));
+  EXPECT_FALSE(is_computed(found.derivatives[0][0].value));
+  EXPECT_NEAR(found.derivatives[1][0].value, -found.values[1], 1e-12 * found.values[1]);
+}
+
+TEST(Sensitivity, TablesHaveEveryDerivative) {
+  const Case base = rated();
+  const auto variables = variables_of(base, {"pump.tilt_deg", "pump.axis_offset_mm"});
+  const auto outputs = outputs_of(base, {"mean:Td", "stroke_mm"});
+  const Sensitivities found = sensitivities(base, variables, outputs);
+  const std::string csv = sensitivity_csv(found, {});
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_THAT(csv, testing::HasSubstr("mean:Td,Nm,"));
+  const report::Document document = sensitivity_document(found, {}, {});
+  ASSERT_EQ(document.figures->size(), 2U);
+  const auto& bars = std::get<report::BarsFigure>(document.figures->front().content).bars;
+  ASSERT_EQ(bars.size(), 2U);
+  EXPECT_EQ(bars[0].label, "pump.tilt_deg");
+  EXPECT_NEAR(bars[0].high, found.derivatives[0][0].value * 0.4, 1e-12 * bars[0].high);
+}
+
+}  // namespace
+}  // namespace bentaxis::designs

@@ -1,0 +1,312 @@
+#!/usr/bin/env python3
+"""Tests of `bentaxis sweep` and `bentaxis merge` from outside: files, ranks, parts, interruption and resumption.
+
+usage: sweep_command_test.py BENTAXIS REPO_ROOT [options of unittest]      (Debian's python3, with h5py)
+"""
+
+import csv
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import command_line_test as program
+from command_line_test import INTERRUPTED, OUT_OF_TOLERANCE, ProgramTest
+
+try:
+    import h5py
+except ImportError:
+    h5py = None
+
+MPIRUN = shutil.which("mpirun")
+RESULTS = ("sweep.csv", "sweep.h5", "sweep_checks.csv")
+RANKS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+class SweepTest(ProgramTest):
+    def command(self, *options, case="bap63_rated.toml", out="out", samples=36, **vary):
+        vary = vary or {"pump.tilt_deg": "20:100:#21", "pressure.delivery_bar": "50:400:#10"}
+        return ["sweep", program.REPO / "cases" / case, "--set", f"operation.samples_per_revolution={samples}",
+                "--out", out, *(word for item in vary.items() for word in ("--vary", "=".join(item))),
+                *(options if "--output" in options else ("--output", "max:Rb1_z1,peak:Rb1,mean:Td", *options))]
+
+    def rows(self, out="out", name="sweep.csv"):
+        with open(self.folder / out / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def results(self, out):
+        return {name: (self.folder / out / name).read_bytes() for name in RESULTS if (self.folder / out / name).exists()}
+
+    def ranks(self, count, *arguments):
+        command = [MPIRUN, "--oversubscribe", "-n", str(count), program.PROGRAM, *map(str, arguments)]
+        return subprocess.Popen(command, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, env=os.environ | RANKS, start_new_session=True)
+
+    def with_mpi(self):
+        """Whether program and machine can run in ranks; what cannot is said, not passed over."""
+        if MPIRUN is None:
+            self.skipTest("no mpirun")
+        process = self.ranks(1, "sweep", "--help")
+        out, err = process.communicate(timeout=program.SECONDS)
+        linked = subprocess.run(["ldd", program.PROGRAM], capture_output=True, text=True).stdout
+        if "libmpi" not in linked:
+            self.skipTest("built without MPI")
+        self.assertEqual(process.returncode, 0, err)
+
+    # ---- What is in the files ------------------------------------------------------------------------
+
+    def test_numbers_are_those_of_run(self):
+        self.run_program(*self.command("--check", "20%"))
+        rows = self.rows()
+        self.assertEqual(len(rows), 210)
+        self.assertEqual([row["design"] for row in rows], [str(i) for i in range(210)])
+        for i, row in enumerate(rows[:20]):  # the last variable fastest
+            self.assertAlmostEqual(float(row["pressure.delivery_bar"]), 50 + 350 * (i % 10) / 9, 9)
+            self.assertEqual(float(row["pump.tilt_deg"]), 20 + 4 * (i // 10))
+        row = rows[37]
+        self.run_program("run", program.REPO / "cases/bap63_rated.toml", "--model", "analytic", "--out", "run",
+                         "--set", "operation.samples_per_revolution=36", "--set", f"pump.tilt_deg={row['pump.tilt_deg']}",
+                         "--set", f"pressure.delivery_bar={row['pressure.delivery_bar']}")
+        table = self.rows("run", "analytic.csv")
+        axial = [float(line["Rb1_z1_N"]) for line in table]
+        peak = max(math.hypot(*(float(line[f"Rb1_{axis}1_N"]) for axis in "xyz")) for line in table)
+        torque = sum(float(line["Td_z1_Nm"]) for line in table) / 36
+        for found, expected in ((row["max:Rb1_z1_N"], max(axial)), (row["peak:Rb1 [N]"], peak), (row["mean:Td [Nm]"], torque)):
+            self.assertLess(abs(float(found) - expected), 1e-12 * abs(expected))
+        # Infeasible designs are data with their reason.
+        for row in rows:
+            infeasible = float(row["pump.tilt_deg"]) >= 90
+            self.assertEqual(row["reason"] != "", infeasible)
+            self.assertEqual(row["mean:Td [Nm]"] == "", infeasible)
+            if infeasible:
+                self.assert_mentions(row["reason"], "tilt_deg", row["pump.tilt_deg"], "[0, 90)")
+        # What was checked: about a fifth (standard deviation 5.8 designs), all of it agreeing.
+        checks = self.rows(name="sweep_checks.csv")
+        self.assertLess(abs(len(checks) / 3 - 42), 4 * 5.8)
+        self.assertEqual({row["agrees"] for row in checks}, {"1"})
+        self.assertIn("30 infeasible", json.loads((self.folder / "out" / "report.json").read_text())["verdict"]["headline"])
+
+    @unittest.skipIf(h5py is None, "no h5py")
+    def test_hdf5_holds_the_same_and_says_what_it_is(self):
+        vary = {"pump.tilt_deg": "20:100:#21", "piston.inertia": "lumped,real"}
+        self.run_program(*self.command("--check", "10%", **vary))
+        rows = self.rows()
+        with h5py.File(self.folder / "out" / "sweep.h5") as file:
+            self.assertEqual(set(file["designs"]), set(vary))
+            self.assertEqual(dict(file["designs/pump.tilt_deg"].attrs) | {"meaning": ""},
+                             {"unit": "deg", "symbol": "alpha", "meaning": ""})
+            self.assertEqual(file["designs/piston.inertia"].attrs["words"], "lumped,real,dynamically_equivalent")
+            self.assertEqual([("lumped", "real")[int(i)] for i in file["designs/piston.inertia"]],
+                             [row["piston.inertia"] for row in rows])
+            for column, name in (("max:Rb1_z1_N", "max:Rb1_z1_N"), ("peak:Rb1 [N]", "peak:Rb1"), ("mean:Td [Nm]", "mean:Td")):
+                set_ = file["outputs"][name]
+                self.assertEqual(set_.attrs["unit"], "Nm" if "Td" in name else "N")
+                self.assertIn(name.split(":")[0] + " of ", set_.attrs["meaning"])
+                self.assertIsNotNone(set_.chunks)
+                for number, row in zip(set_, rows):
+                    self.assertTrue(math.isnan(number) if row[column] == "" else number == float(row[column]))
+            self.assertEqual([text.decode() for text in file["reason"]], [row["reason"] for row in rows])
+            self.assertIn("tilt_deg = 40", file.attrs["case"])
+            self.assertIn('parameter = "pump.tilt_deg"', file.attrs["plan"])
+            checks = self.rows(name="sweep_checks.csv")
+            self.assertEqual(len(file["checks/design"]) * 3, len(checks))
+            self.assertEqual(int(file["checks/design"][0]), int(checks[0]["design"]))
+            # Plan and case of the file are enough to compute it again.
+            (self.folder / "case.toml").write_text(file.attrs["case"])
+            (self.folder / "plan.toml").write_text(file.attrs["plan"])
+        self.run_program("sweep", "case.toml", "--study", "plan.toml", "--out", "again")
+        self.assertEqual(self.results("again")["sweep.csv"], self.results("out")["sweep.csv"])
+
+    def test_samples(self):
+        vary = {"pump.tilt_deg": "normal(30, 1)", "pump.axis_offset_mm": "-1:1", "piston.inertia": "lumped",
+                "pump.pistons": "5:9"}
+        for sampling in ("lhs", "sobol", "random"):
+            self.run_program(*self.command("--sampling", sampling, "--samples", 256, "--seed", 3, out=sampling, **vary))
+            rows = self.rows(sampling)
+            tilts = [float(row["pump.tilt_deg"]) for row in rows]
+            self.assertLess(abs(sum(tilts) / 256 - 30), 4 / 16)
+            self.assertTrue(all(-1 < float(row["pump.axis_offset_mm"]) < 1 for row in rows))
+            counts = [sum(row["pump.pistons"] == str(n) for row in rows) for n in range(5, 10)]
+            self.assertEqual(sum(counts), 256)
+            for count in counts:  # a fifth each, within four standard deviations of random ones
+                self.assertLess(abs(count - 51.2), 4 * 6.4)
+        self.run_program(*self.command("--sampling", "lhs", "--samples", 256, "--seed", 4, out="other", **vary))
+        self.assertNotEqual(self.results("lhs")["sweep.csv"], self.results("other")["sweep.csv"])
+
+    def test_a_study_file_and_options_on_top(self):
+        (self.folder / "study.toml").write_text(
+            'sampling = "grid"\noutput = ["mean:Td"]\nminimise = ["peak:Rb1"]\n\n'
+            '[[vary]]\nparameter = "pump.tilt_deg"\nvalues = "20:40:10"\n\n'
+            '[[vary]]\nparameter = "operation.speed_rpm"\nvalues = "log(100:10000:#3)"\n')
+        case = program.REPO / "cases/bap63_rated.toml"
+        self.run_program("sweep", case, "--study", "study.toml", "--vary", "pump.tilt_deg=30,35", "--out", "out")
+        self.assertEqual([(row["operation.speed_rpm"], row["pump.tilt_deg"]) for row in self.rows()],
+                         [(n, a) for n in ("100", "1000", "10000") for a in ("30", "35")])
+        (self.folder / "study.toml").write_text('samplings = "grid"\n')
+        self.assert_mentions(self.refused("sweep", case, "--study", "study.toml"), "study.toml", "samplings")
+
+    def test_hydraulic_pressure(self):
+        self.run_program(*self.command("--output", "hydraulics.flow_l_per_min,efficiency.overall,mean:Td", "--check", "1%",
+                                       case="bap63_rated_hydraulic.toml", samples=60, **{"operation.speed_rpm": "1000:2000:#3"}))
+        flows = [float(row["hydraulics.flow_l_per_min [l/min]"]) for row in self.rows()]
+        self.assertEqual(flows, sorted(flows))
+        self.assertEqual(len(self.rows(name="sweep_checks.csv")), 3)  # at least one design, three outputs
+
+    def test_a_disagreement_is_reported_and_counts(self):
+        result = self.run_program(*self.command("--check", "100%", "--set", "assumptions.multibody.inertia=lumped",
+                                                "--set", "assumptions.analytic.inertia=real", **{"pump.tilt_deg": "20:40:#3"}),
+                                  status=OUT_OF_TOLERANCE)
+        self.assertIn("design 0, peak:Rb1: ", result.out)
+        self.assertIn("0", {row["agrees"] for row in self.rows(name="sweep_checks.csv")})
+
+    # ---- Blocks --------------------------------------------------------------------------------------
+
+    def test_threads_and_ranks_give_the_same(self):
+        whole = self.command("--check", "5%")
+        self.run_program(*whole, "--threads", 1)
+        expected = self.results("out")
+        self.assertEqual(set(expected), set(RESULTS) if h5py else set(expected))
+        self.run_program(*self.command("--check", "5%", out="two"), "--threads", 2)
+        self.assertEqual(self.results("two"), expected)
+        self.with_mpi()
+        for count in (1, 2, 3):
+            self.finish(self.ranks(count, *self.command("--check", "5%", out=f"ranks{count}")), 0)
+            self.assertEqual(self.results(f"ranks{count}"), expected)
+            self.assertFalse((self.folder / f"ranks{count}" / "sweep.parts").exists())
+
+    def test_ranks_refuse_together(self):
+        self.with_mpi()
+        process = self.ranks(3, *self.command(**{"pump.tilt": "1,2"}))
+        out, err = process.communicate(timeout=program.SECONDS)
+        self.assertEqual(process.returncode, 2, err)
+        self.assertEqual(err.count("no such parameter"), 1, err)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_parts_and_merge(self):
+        self.run_program(*self.command("--check", "5%", out="whole"))
+        for part in (1, 2):
+            self.run_program(*self.command("--check", "5%", "--part", f"{part}/3"))
+        self.assertFalse((self.folder / "out" / "sweep.csv").exists())
+        # The third part is missing: blocks 2, 5, 8, ..
+        line = self.refused("merge", "out")
+        self.assert_mentions(line, "sweep.parts", "missing or damaged: 2, 5, 8")
+        self.run_program(*self.command("--check", "5%", "--part", "3/3", out="elsewhere"))
+        self.run_program("merge", "out", "elsewhere")
+        self.assertEqual(self.results("out"), self.results("whole"))
+        # Blocks of two sweeps do not mix, in one folder or in several.
+        other = self.command("--check", "6%", "--part", "3/3", out="elsewhere")
+        self.assert_mentions(self.refused(*other), "elsewhere/sweep.parts", "another case or plan")
+        shutil.rmtree(self.folder / "elsewhere")
+        self.run_program(*other)
+        self.assert_mentions(self.refused("merge", "out", "elsewhere"), "elsewhere/sweep.parts", "another case")
+        self.assert_mentions(self.refused("merge", "nowhere"), "nowhere")
+
+    def interrupted(self, process, how, parts=pathlib.Path("out/sweep.parts")):
+        """Ends a run in the middle; returns the finished blocks."""
+        end = time.monotonic() + program.SECONDS
+        while len(list((self.folder / parts).glob("*.bin"))) < 3 and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.002)
+        how(process)
+        return process
+
+    def slow(self, *options, out="out"):
+        return self.command("--model", "multibody", *options, out=out, samples=120,
+                            **{"pump.tilt_deg": "20:40:#12", "pressure.delivery_bar": "50:400:#12"})
+
+    def test_an_interrupted_sweep_goes_on(self):
+        self.run_program(*self.slow(out="whole"))
+        process = self.interrupted(self.start(*self.slow("--threads", 1)), lambda p: p.send_signal(signal.SIGINT))
+        self.finish(process, INTERRUPTED)
+        self.assertRegex(process.err, "of 72 blocks are in out/sweep.parts: --resume goes on")
+        self.assertFalse((self.folder / "out" / "sweep.csv").exists())
+        parts = self.folder / "out" / "sweep.parts"
+        blocks = {file.name: file.stat().st_mtime_ns for file in parts.glob("*.bin")}
+        self.assertTrue(3 <= len(blocks) < 72)
+        # Another plan is refused, and nothing is touched.
+        self.assert_mentions(self.refused(*self.slow("--resume", "--set", "operation.speed_rpm=1600")), "sweep.parts", "another case")
+        # A block that was damaged is computed again; the others are taken as they are.
+        damaged = parts / sorted(blocks)[0]
+        content = damaged.read_bytes()
+        damaged.write_bytes(content[:200] + bytes([content[200] ^ 1]) + content[201:])
+        result = self.run_program(*self.slow("--resume"))
+        self.assertIn(f"{len(blocks) - 1} blocks were there already", result.err)
+        self.assertEqual(self.results("out"), self.results("whole"))
+        self.assertEqual(sorted(os.listdir(self.folder / "out")), sorted(os.listdir(self.folder / "whole")))
+
+    def test_a_killed_sweep_resumes_to_the_same_file(self):
+        self.run_program(*self.slow(out="whole"))
+        process = self.interrupted(self.start(*self.slow()), lambda p: p.kill())
+        process.communicate()
+        self.assertEqual(process.returncode, -signal.SIGKILL)
+        result = self.run_program(*self.slow("--resume"))
+        self.assertRegex(result.err, "[1-9][0-9]* blocks were there already")
+        self.assertEqual(self.results("out"), self.results("whole"))
+
+    def test_a_lost_rank_ends_the_run(self):
+        self.with_mpi()
+        self.run_program(*self.slow(out="whole"))
+
+        def kill_one(process):
+            ranks = [pid for pid in pathlib.Path("/proc").iterdir() if pid.name.isdigit() and self.is_rank_of(pid, process.pid)]
+            self.assertEqual(len(ranks), 2)
+            os.kill(int(ranks[1].name), signal.SIGKILL)
+
+        process = self.interrupted(self.ranks(2, *self.slow()), kill_one)
+        process.communicate(timeout=program.SECONDS)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertFalse((self.folder / "out" / "sweep.csv").exists())
+        self.finish(self.ranks(2, *self.slow("--resume")), 0)
+        self.assertEqual(self.results("out"), self.results("whole"))
+
+    @staticmethod
+    def is_rank_of(pid, mpirun):
+        try:
+            status = (pid / "stat").read_text()
+        except OSError:
+            return False
+        return int(status.rpartition(")")[2].split()[1]) == mpirun
+
+    # ---- Refusals ------------------------------------------------------------------------------------
+
+    def test_bad_options(self):
+        case = program.REPO / "cases/bap63_rated.toml"
+        output, vary = ("--output", "mean:Td"), ("--vary", "pump.tilt_deg=20:40:5")
+        for options, words in (
+            (output, ("--vary",)),
+            (vary, ("--output",)),
+            ((*output, "--vary", "pump.tilt_deg"), ("--vary pump.tilt_deg", "NAME=VALUES")),
+            ((*output, "--vary", "pump.tilt_deg=20:40"), ("pump.tilt_deg", "FROM:TO:STEP")),
+            ((*output, "--vary", "pump.tilt_deg=a"), ("pump.tilt_deg = a", "number")),
+            ((*output, "--vary", "pump.tilt_deg="), ("pump.tilt_deg", "values")),
+            ((*output, "--vary", "pump.tilt_deg=log(0:40:#3)"), ("pump.tilt_deg", "0 < FROM")),
+            ((*output, "--vary", "pump.tilt_deg=log(1:40:3)"), ("pump.tilt_deg", "#N")),
+            ((*output, "--vary", "pump.tilt_deg=normal(40, 1)"), ("pump.tilt_deg", "--sampling")),
+            ((*output, "--vary", "pump.pistons=5:9:0.5"), ("pump.pistons = 5.5", "whole")),
+            ((*output, "--vary", "assumptions.analytic.inertia=heavy"), ("assumptions.analytic.inertia = heavy", "lumped")),
+            ((*output, *vary, "--samples", 10), ("--samples", "grid")),
+            ((*output, *vary, "--sampling", "sobol"), ("--samples", "sobol")),
+            ((*output, *vary, *vary[:1], "pump.axis_offset_mm=1:2:#1000000", "--vary", "operation.speed_rpm=1:2:#1000"), ("designs", "at most")),
+            (("--output", "mean:Tdd", *vary), ("mean:Tdd",)),
+            ((*vary, "--minimise", "mean:Td", "--maximise", "mean:Td"), ("mean:Td", "both")),
+            ((*output, *vary, "--check", "101%"), ("--check 101%",)),
+            ((*output, *vary, "--check", "x"), ("--check x",)),
+            (("--output", "stroke_mm", *vary, "--check", "1%"), ("--check",)),
+            ((*output, *vary, "--part", "4/3"), ("--part 4/3", "I/N")),
+            ((*output, *vary, "--part", "0/3"), ("--part 0/3", "I/N")),
+            ((*output, *vary, "--format", "xlsx"), ("--format", "csv")),
+        ):
+            with self.subTest(options):
+                self.assert_mentions(self.refused("sweep", case, *options), *words)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program.PROGRAM, program.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
