@@ -9,13 +9,13 @@ namespace bentaxis::designs {
 std::vector<std::size_t> pareto_front(std::span<const double> results,
                                       std::span<const int> direction) {
   // What it costs to choose a design: the smaller the better, in every output that matters.
-  struct Candidate {
+  struct Costed {
     std::size_t design;
     std::vector<double> costs;
   };
-  std::vector<Candidate> candidates;
+  std::vector<Costed> candidates;
   for (std::size_t i = 0; (i + 1) * direction.size() <= results.size(); ++i) {
-    Candidate candidate{i, {}};
+    Costed candidate{i, {}};
     const auto row = results.subspan(i * direction.size(), direction.size());
     for (std::size_t k = 0; k < direction.size(); ++k)
       if (direction[k] != 0) candidate.costs.push_back(direction[k] < 0 ? row[k] : -row[k]);
@@ -25,8 +25,8 @@ std::vector<std::size_t> pareto_front(std::span<const double> results,
   }
   // In this order nobody is beaten by who comes later.
   std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.costs < b.costs; });
-  const auto beats = [](const Candidate& a, const Candidate& b) {
+                   [](const Costed& a, const Costed& b) { return a.costs < b.costs; });
+  const auto beats = [](const Costed& a, const Costed& b) {
     bool better = false;
     for (std::size_t k = 0; k < a.costs.size(); ++k) {
       if (a.costs[k] > b.costs[k]) return false;
@@ -34,14 +34,14 @@ std::vector<std::size_t> pareto_front(std::span<const double> results,
     }
     return better;
   };
-  std::vector<Candidate> front;
-  for (Candidate& candidate : candidates)
+  std::vector<Costed> front;
+  for (Costed& candidate : candidates)
     // Who was found last is the likeliest to beat.
     if (std::none_of(front.rbegin(), front.rend(),
-                     [&](const Candidate& other) { return beats(other, candidate); }))
+                     [&](const Costed& other) { return beats(other, candidate); }))
       front.push_back(std::move(candidate));
   std::vector<std::size_t> designs;
-  for (const Candidate& candidate : front) designs.push_back(candidate.design);
+  for (const Costed& candidate : front) designs.push_back(candidate.design);
   std::sort(designs.begin(), designs.end());
   return designs;
 }
