@@ -109,7 +109,7 @@ class SchemaTest(unittest.TestCase):
         used = set().union(*self.reports.values())
         self.assertEqual(set(self.schema["properties"]) - used, {"long_run"})  # of the whole catalogue only
         kinds = {figure["kind"] for report in self.reports.values() for figure in report.get("figures", [])}
-        self.assertEqual(kinds, {"curves", "piston_bars", "own_axis", "xy", "map", "scatter", "drawing", "parallel"})
+        self.assertEqual(kinds, {"curves", "piston_bars", "own_axis", "xy", "map", "scatter", "drawing", "parallel", "bars", "bands"})
         self.assertTrue(any("curves" in figure for figure in self.reports["regress"]["figures"]))
         maps = [figure for figure in self.reports["sweep"]["figures"] if figure["kind"] == "map"]
         self.assertTrue(any("reasons" in figure for figure in maps))  # of designs that do not assemble
