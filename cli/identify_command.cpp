@@ -45,8 +45,8 @@ int identify(const Options& options) {
                                  {"unknowns.csv", designs::unknowns_csv(model, result)}};
   if (const std::string bands = designs::bands_csv(model, result); !bands.empty())
     files.emplace_back("bands.csv", bands);
-  const auto paths = folders.write(
-      "report", designs::identify_document(model, result, versions()), {}, files);
+  const auto paths =
+      folders.write("report", designs::identify_document(model, result, versions()), {}, files);
   std::printf("%s\n", designs::identify_text(model, result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return kDone;

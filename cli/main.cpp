@@ -60,16 +60,15 @@ int run_program(int argc, char** argv) {
   ProgramParser parser(texts());
   const CommandParser program = parser.root();
   const std::vector<Command> commands = {
-      add_run_command(program),         add_compare_command(program),
-      add_regress_command(program),     add_reference_command(program),
-      add_hardcases_command(program),   add_inertia_command(program),
-      add_identify_command(program),
-      add_pressure_command(program),    add_tradeoff_command(program),
-      add_schema_command(program),      add_calibrate_command(program),
-      add_blocktorque_command(program), add_completion_command(program),
-      add_manual_command(program),      add_show_command(program),
-      add_simulate_command(program),    add_rattle_command(program),
-      add_fig34_command(program)};
+      add_run_command(program),        add_compare_command(program),
+      add_regress_command(program),    add_reference_command(program),
+      add_hardcases_command(program),  add_inertia_command(program),
+      add_identify_command(program),   add_pressure_command(program),
+      add_tradeoff_command(program),   add_schema_command(program),
+      add_calibrate_command(program),  add_blocktorque_command(program),
+      add_completion_command(program), add_manual_command(program),
+      add_show_command(program),       add_simulate_command(program),
+      add_rattle_command(program),     add_fig34_command(program)};
   return guarded([&]() -> int {
     if (!parser.parse(argc, argv)) return kDone;
     watch_for_interruption();

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <fstream>
 
+#include "bentaxis/designs/least_squares.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
 
@@ -36,6 +37,8 @@ std::vector<std::pair<std::string, std::string>> versions() {
                     "." + std::to_string(EIGEN_MINOR_VERSION)},
       {"Simbody", multibody::simbody_version()},
       {"BLAS", multibody::blas_library()},
+      {"least squares",
+       designs::least_squares_library().empty() ? "none" : designs::least_squares_library()},
       {"processor", processor()}};
 }
 

@@ -21,8 +21,8 @@ constexpr auto kModel = study::Model::analytic;
 double at_angle(const ResultTable& table, std::size_t column, double theta_deg) {
   const double angle = theta_deg - 360 * std::floor(theta_deg / 360);
   const auto& theta = table.theta_deg;
-  const auto next = static_cast<std::size_t>(std::upper_bound(theta.begin(), theta.end(), angle) -
-                                             theta.begin());
+  const auto next =
+      static_cast<std::size_t>(std::upper_bound(theta.begin(), theta.end(), angle) - theta.begin());
   const std::size_t before = next == 0 ? theta.size() - 1 : next - 1;
   const std::size_t after = next == theta.size() ? 0 : next;
   const double from = theta[before] - (next == 0 ? 360 : 0);
@@ -233,8 +233,7 @@ LeastSquaresProblem DataModel::problem(std::optional<std::size_t> without,
       const Datum& datum = data().data[i];
       if (datum.use != Use::fitted) continue;
       for (std::size_t k = 0; k < datum.size(); ++k)
-        residuals[next++] =
-            i == without ? 0 : residual(datum, k, numbers[place_of(i) + k]);
+        residuals[next++] = i == without ? 0 : residual(datum, k, numbers[place_of(i) + k]);
     }
     for (std::size_t i = 0; i < size(); ++i) {
       const Unknown& u = data().unknowns[i];
@@ -327,7 +326,8 @@ Identification identify(const DataModel& model, const IdentifyOptions& options,
   if (options.profiles)
     result.profiles = profiles_of(model, result.fit, options.threads, progress_of("profiles"));
   if (options.leave_one_out)
-    result.left_out = leave_one_out(model, result.fit, options.threads, progress_of("leave one out"));
+    result.left_out =
+        leave_one_out(model, result.fit, options.threads, progress_of("leave one out"));
   if (options.posterior) {
     result.posterior = posterior_of(model, result.fit, options, progress_of("posterior"));
     bands_of(model, options, result, progress_of("bands"));

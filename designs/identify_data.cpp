@@ -80,7 +80,9 @@ Unknown read_unknown(TableReader in, const Case& base, const IdentificationData&
   return unknown;
 }
 
-Use read_use(TableReader& in) { return in.choice("use", {"fitted", "predicted"}, 0) == 0 ? Use::fitted : Use::predicted; }
+Use read_use(TableReader& in) {
+  return in.choice("use", {"fitted", "predicted"}, 0) == 0 ? Use::fitted : Use::predicted;
+}
 
 Datum read_number(TableReader in, const Case& base, const IdentificationData& data) {
   Datum datum;
@@ -251,8 +253,7 @@ void read_identification(const fs::path& file, const Case& base, IdentificationD
       item.fail("name", "there is a condition of this name already");
     const auto texts = item.texts("set");
     under(item, "set", [&] {
-      for (const std::string& text : texts)
-        condition.settings.push_back(setting_of(text, base));
+      for (const std::string& text : texts) condition.settings.push_back(setting_of(text, base));
     });
     item.finish();
     data.conditions.push_back(std::move(condition));

@@ -73,9 +73,17 @@ Section unknowns_section(const DataModel& model, const Identification& result) {
       "Identified: the least sum of squares. Linear: standard uncertainty as if the model were "
       "linear there and bounds normal. Profile: 95 % limits, the others fitted anew; a limit at a "
       "bound is the bound's, not the data's. Posterior: 95 % of the draws.";
-  section.table.columns = {"unknown",      "unit",         "bounds",       "identified",
-                           "linear",       "profile from", "profile to",   "open at a bound",
-                           "2.5 % from",   "97.5 % to",    "share of bounds left"};
+  section.table.columns = {"unknown",
+                           "unit",
+                           "bounds",
+                           "identified",
+                           "linear",
+                           "profile from",
+                           "profile to",
+                           "open at a bound",
+                           "2.5 % from",
+                           "97.5 % to",
+                           "share of bounds left"};
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Unknown& u = model.data().unknowns[i];
     const Quantiles q = quantiles_of(result.posterior.unknowns, model.size(), i);
@@ -110,7 +118,8 @@ Section determined_section(const DataModel& model, const Identification& result)
     const Direction& direction = result.information.directions[d];
     std::vector<std::pair<double, std::size_t>> parts;
     for (std::size_t i = 0; i < direction.weights.size(); ++i)
-      if (std::abs(direction.weights[i]) > 0.2) parts.emplace_back(-std::abs(direction.weights[i]), i);
+      if (std::abs(direction.weights[i]) > 0.2)
+        parts.emplace_back(-std::abs(direction.weights[i]), i);
     std::sort(parts.begin(), parts.end());
     std::string along;
     for (const auto& [size, i] : parts)
@@ -125,27 +134,32 @@ Section fitted_section(const DataModel& model, const Identification& result) {
   Section section;
   section.title = "Data that unknowns are fitted to";
   section.text =
-      "Residual: model minus datum over its standard uncertainty, 0 inside a window. Left out: what "
+      "Residual: model minus datum over its standard uncertainty, 0 inside a window. Left out: "
+      "what "
       "the others predict for it, with its bounds as normal priors, and how far off that is over "
       "the standard uncertainty of prediction and datum together.";
-  section.table.columns = {"datum", "where", "at", "unit", "given", "model", "residual",
-                           "left out: predicted", "+-", "off by"};
+  section.table.columns = {"datum", "where", "at",       "unit",
+                           "given", "model", "residual", "left out: predicted",
+                           "+-",    "off by"};
   for (std::size_t i = 0; i < model.data().data.size(); ++i) {
     const Datum& datum = model.data().data[i];
     if (datum.use != Use::fitted) continue;
     const std::size_t place = model.place_of(i);
-    std::vector<Cell> row = {datum.what, datum.where, known_text(model, datum), datum.unit,
-                             given_text(datum),
-                             number_text(datum, result.numbers[place],
-                                         result.numbers[place + datum.size() - 1]),
-                             worst_residual(model, result, i)};
+    std::vector<Cell> row = {
+        datum.what,
+        datum.where,
+        known_text(model, datum),
+        datum.unit,
+        given_text(datum),
+        number_text(datum, result.numbers[place], result.numbers[place + datum.size() - 1]),
+        worst_residual(model, result, i)};
     const auto left = std::find_if(result.left_out.begin(), result.left_out.end(),
                                    [&](const LeftOut& l) { return l.datum == i; });
     if (left == result.left_out.end())
       row.insert(row.end(), {Cell(), Cell(), Cell()});
     else
-      row.insert(row.end(), {number_text(datum, left->value, left->high), left->deviation,
-                             left->distance});
+      row.insert(row.end(),
+                 {number_text(datum, left->value, left->high), left->deviation, left->distance});
     section.table.rows.push_back(std::move(row));
   }
   return section;
@@ -155,15 +169,19 @@ Section predicted_section(const DataModel& model, const Identification& result) 
   Section section;
   section.title = "Data that are predicted";
   section.text = "Nothing was fitted to them. Band: 95 % of the posterior; of a range its ends.";
-  section.table.columns = {"datum", "where", "at", "unit", "given", "model",
+  section.table.columns = {"datum",      "where",     "at",
+                           "unit",       "given",     "model",
                            "2.5 % from", "97.5 % to", "the band meets it"};
   for (std::size_t i = 0; i < model.data().data.size(); ++i) {
     const Datum& datum = model.data().data[i];
     if (datum.use != Use::predicted) continue;
     const std::size_t place = model.place_of(i), last = place + datum.size() - 1;
-    std::vector<Cell> row = {
-        datum.what, datum.where, known_text(model, datum), datum.unit, given_text(datum),
-        number_text(datum, result.numbers[place], result.numbers[last])};
+    std::vector<Cell> row = {datum.what,
+                             datum.where,
+                             known_text(model, datum),
+                             datum.unit,
+                             given_text(datum),
+                             number_text(datum, result.numbers[place], result.numbers[last])};
     const double low = quantiles_of(result.posterior.numbers, model.numbers(), place).low;
     const double high = quantiles_of(result.posterior.numbers, model.numbers(), last).high;
     if (datum.curve || !is_computed(low)) {
@@ -209,12 +227,13 @@ Section candidates_section(const Identification& result) {
   section.text =
       "By how much the bands would become narrower, mean over the reactions, if that number were "
       "measured too: linear, from the covariances of the draws.";
-  section.table.columns = {"measurement", "measured to, standard", "unit", "all bands narrower by, %",
-                           "most", "that one by, %"};
+  section.table.columns = {"measurement", "measured to, standard",
+                           "unit",        "all bands narrower by, %",
+                           "most",        "that one by, %"};
   for (std::size_t c = 0; c < std::min(kShown, result.candidates.size()); ++c) {
     const Candidate& k = result.candidates[c];
-    section.table.rows.push_back({k.output.name, k.deviation, k.output.unit, 100 * k.shrinks,
-                                  k.most, 100 * k.most_shrinks});
+    section.table.rows.push_back(
+        {k.output.name, k.deviation, k.output.unit, 100 * k.shrinks, k.most, 100 * k.most_shrinks});
   }
   return section;
 }
@@ -265,13 +284,13 @@ std::vector<report::Figure> figures_of(const DataModel& model, const Identificat
     const Unknown& u = model.data().unknowns[i];
     const Profile& p = result.profiles[i];
     if (p.values.size() < 3) continue;
-    figures.push_back({fmt::format("profile_{}", i + 1), "Profile of " + u.name(), "",
-                       report::XyFigure{{u.variable.symbol().empty() ? u.name() : u.variable.symbol(),
-                                         u.variable.unit()},
-                                        {"rise of the sum of squares", "", false, 0},
-                                        {{"others fitted anew", p.values, p.rises},
-                                         {"95 %", {p.values.front(), p.values.back()},
-                                          {3.841, 3.841}}}}});
+    figures.push_back(
+        {fmt::format("profile_{}", i + 1), "Profile of " + u.name(), "",
+         report::XyFigure{
+             {u.variable.symbol().empty() ? u.name() : u.variable.symbol(), u.variable.unit()},
+             {"rise of the sum of squares", "", false, 0},
+             {{"others fitted anew", p.values, p.rises},
+              {"95 %", {p.values.front(), p.values.back()}, {3.841, 3.841}}}}});
   }
   return figures;
 }
@@ -304,7 +323,8 @@ report::Document identify_document(const DataModel& model, const Identification&
   document.verdict = report::Verdict{std::nullopt, headline_of(model, result)};
   document.meaning =
       "What data say about the parameters of the model, given that the model is right and that "
-      "what is not unknown is known. It is no validation: only data that nothing was fitted to are.";
+      "what is not unknown is known. It is no validation: only data that nothing was fitted to "
+      "are.";
   document.runs = {unknowns_section(model, result), determined_section(model, result),
                    fitted_section(model, result)};
   document.runs->push_back(predicted_section(model, result));
@@ -343,11 +363,10 @@ std::string unknowns_csv(const DataModel& model, const Identification& result) {
     const Unknown& u = model.data().unknowns[i];
     const Quantiles q = quantiles_of(result.posterior.unknowns, model.size(), i);
     text += u.name() + "," + u.variable.unit();
-    for (const double value :
-         {u.low, u.high, result.fit.x[i], result.information.deviation[i],
-          result.profiles.empty() ? not_computed() : result.profiles[i].low,
-          result.profiles.empty() ? not_computed() : result.profiles[i].high, q.low, q.middle,
-          q.high})
+    for (const double value : {u.low, u.high, result.fit.x[i], result.information.deviation[i],
+                               result.profiles.empty() ? not_computed() : result.profiles[i].low,
+                               result.profiles.empty() ? not_computed() : result.profiles[i].high,
+                               q.low, q.middle, q.high})
       text += is_computed(value) ? fmt::format(",{}", value) : ",";
     text += "\n";
   }

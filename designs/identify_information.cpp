@@ -137,8 +137,7 @@ Information information_of(const DataModel& model, std::span<const double> x,
   Matrix a(static_cast<Index>(rows), static_cast<Index>(n));
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t i = 0; i < n; ++i)
-      a(static_cast<Index>(r), static_cast<Index>(i)) =
-          jacobian[r * n + i] * information.spread[i];
+      a(static_cast<Index>(r), static_cast<Index>(i)) = jacobian[r * n + i] * information.spread[i];
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(a.transpose() * a);
   Matrix after = Matrix::Zero(static_cast<Index>(n), static_cast<Index>(n)), open = after;
   for (Index k = static_cast<Index>(n) - 1; k >= 0; --k) {
@@ -151,9 +150,8 @@ Information information_of(const DataModel& model, std::span<const double> x,
     information.directions.push_back(std::move(direction));
   }
   for (std::size_t i = 0; i < n; ++i)
-    information.deviation.push_back(
-        information.spread[i] *
-        std::sqrt(after(static_cast<Index>(i), static_cast<Index>(i))));
+    information.deviation.push_back(information.spread[i] *
+                                    std::sqrt(after(static_cast<Index>(i), static_cast<Index>(i))));
   information.words = Words(model, x, information.spread, open).say();
   return information;
 }

@@ -71,8 +71,8 @@ class Density {
   std::vector<bool> logarithmic_;
 };
 
-// A place that data with errors of their own, and any start, could have led to: where the data leave
-// a direction open such places lie all along it.
+// A place that data with errors of their own, and any start, could have led to: where the data
+// leave a direction open such places lie all along it.
 Vector scattered(const DataModel& model, const Density& density, const LeastSquaresFit& fit,
                  Random& random) {
   const LeastSquaresProblem& whole = density.problem();
@@ -96,8 +96,8 @@ Vector scattered(const DataModel& model, const Density& density, const LeastSqua
   for (int attempt = 0; attempt < 4; ++attempt, share /= 3) {
     Vector start(fit.x);
     for (std::size_t i = 0; i < start.size(); ++i)
-      start[i] += share * (whole.low[i] + random.uniform() * (whole.high[i] - whole.low[i]) -
-                           start[i]);
+      start[i] +=
+          share * (whole.low[i] + random.uniform() * (whole.high[i] - whole.low[i]) - start[i]);
     try {
       const LeastSquaresFit found = least_squares(problem, start, rough);
       Vector residuals(whole.residuals);
@@ -300,8 +300,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
   std::vector<ResultTable> turns(posterior.count);
   study::Reporting reporting(posterior.count, progress);
   study::in_threads(options.threads, posterior.count, [&](std::size_t d) {
-    turns[d] =
-        model.turn(std::span(posterior.unknowns).subspan(d * model.size(), model.size()));
+    turns[d] = model.turn(std::span(posterior.unknowns).subspan(d * model.size(), model.size()));
     reporting.done();
   });
   const ChannelLayout layout(model.base().pump.geometry.pistons);
@@ -339,8 +338,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
   std::vector<Output> outputs;
   for (const ReactionBand& band : result.bands)
     for (const char* statistic : {"mean:", "min:", "max:"})
-      outputs.push_back(
-          output(statistic + layout.channels()[band.column].name, model.base()));
+      outputs.push_back(output(statistic + layout.channels()[band.column].name, model.base()));
   result.candidates.resize(outputs.size());
   study::in_threads(options.threads, outputs.size(), [&](std::size_t c) {
     const Output& o = outputs[c];
@@ -354,8 +352,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
     Candidate candidate;
     candidate.output = o;
     candidate.deviation = options.measured * result.bands[c / 3].peak;  // three of each reaction
-    const double variance =
-        of_measured.variance + candidate.deviation * candidate.deviation;
+    const double variance = of_measured.variance + candidate.deviation * candidate.deviation;
     for (std::size_t b = 0; b < result.bands.size() && variance > 0; ++b) {
       double before = 0, off = 0;
       for (std::size_t row = 0; row < rows; ++row) {

@@ -1,7 +1,6 @@
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/Dense>
 
 #include "bentaxis/designs/identify.h"
 #include "bentaxis/pump/error.h"
@@ -159,8 +158,7 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
     LeastSquaresOptions options;
     options.most_iterations = 40;
     options.enough = 1e-3;
-    const LeastSquaresFit refit =
-        least_squares(model.problem(rows[r], true), fit.x, options);
+    const LeastSquaresFit refit = least_squares(model.problem(rows[r], true), fit.x, options);
     std::vector<double> numbers(model.numbers());
     model.predict(refit.x, numbers);
     const std::size_t place = model.place_of(rows[r]);
@@ -184,8 +182,8 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
     std::vector<double> slopes(datum.size() * model.size());
     if (!derivatives_of(number, refit.x, slopes)) return;
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    const Eigen::Map<const RowMajor> jacobian(
-        refit.jacobian.data(), static_cast<Eigen::Index>(refit.residuals.size()), n);
+    const Eigen::Map<const RowMajor> jacobian(refit.jacobian.data(),
+                                              static_cast<Eigen::Index>(refit.residuals.size()), n);
     const Eigen::LDLT<Eigen::MatrixXd> information(jacobian.transpose() * jacobian);
     for (std::size_t k = 0; k < datum.size(); ++k) {
       const Eigen::Map<const Eigen::VectorXd> slope(slopes.data() + k * model.size(), n);

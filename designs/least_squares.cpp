@@ -1,11 +1,10 @@
 #include "bentaxis/designs/least_squares.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
-
-#include <Eigen/Dense>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/in_threads.h"
@@ -170,7 +169,7 @@ double sum_of_squares(const std::vector<double>& residuals) {
 // many digits; and along a bound it may have stopped early, because its steps are cut off there.
 void finish(const LeastSquaresProblem& problem, const std::vector<double>& units,
             const LeastSquaresOptions& options, LeastSquaresFit& fit) {
-  constexpr double kRank = 1e-9;    // of the longest column: shorter ones are left alone
+  constexpr double kRank = 1e-9;  // of the longest column: shorter ones are left alone
   constexpr double kRounding = 1e-13;
   const std::size_t n = problem.parameters, m = problem.residuals;
   double last = HUGE_VAL;
@@ -183,9 +182,9 @@ void finish(const LeastSquaresProblem& problem, const std::vector<double>& units
     const Eigen::VectorXd slope = jacobian.transpose() * residuals;
     for (std::size_t i = 0; i < n; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      const bool held = !problem.low.empty() &&
-                        ((fit.x[i] <= problem.low[i] && slope[column] >= 0) ||
-                         (fit.x[i] >= problem.high[i] && slope[column] <= 0));
+      const bool held =
+          !problem.low.empty() && ((fit.x[i] <= problem.low[i] && slope[column] >= 0) ||
+                                   (fit.x[i] >= problem.high[i] && slope[column] <= 0));
       free.col(column) *= held ? 0 : units[i];
     }
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> qr;
@@ -202,10 +201,11 @@ void finish(const LeastSquaresProblem& problem, const std::vector<double>& units
     // At the end of it only rounding is left in the sum, while steps still become shorter.
     const double length = step.norm();
     const bool better = next.sum_of_squares < fit.sum_of_squares * (1 - kRounding) - options.enough;
-    const bool nearer = next.sum_of_squares <= fit.sum_of_squares * (1 + kRounding) &&
-                        length < last / 2;
+    const bool nearer =
+        next.sum_of_squares <= fit.sum_of_squares * (1 + kRounding) && length < last / 2;
     if (!(better || (options.enough == 0 && nearer)) ||
-        !derivatives_of(problem, next.x, next.jacobian)) return;
+        !derivatives_of(problem, next.x, next.jacobian))
+      return;
     last = length;
     fit = std::move(next);
     ++fit.iterations;

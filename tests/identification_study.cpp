@@ -1,5 +1,5 @@
-// A hundred records of a rig with noise, each identified: whether the bands that are given hold what
-// they claim. Minutes long: among the slow tests (BENTAXIS_SLOW_TESTS=1).
+// A hundred records of a rig with noise, each identified: whether the bands that are given hold
+// what they claim. Minutes long: among the slow tests (BENTAXIS_SLOW_TESTS=1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,11 +15,11 @@ namespace bentaxis::designs {
 namespace {
 
 constexpr int kRecords = 100;
-constexpr double kNoise = 0.01;     // standard, of each channel's peak
-constexpr std::size_t kRow = 17;    // of 72: where the bands of reactions are looked at
-const std::vector<std::string> kUnknowns = {
-    "pump.tilt_deg=36:44", "pump.bore_diameter_mm=21:24", "pump.axis_offset_mm=0:1",
-    "pressure.delivery_bar=250:300"};
+constexpr double kNoise = 0.01;   // standard, of each channel's peak
+constexpr std::size_t kRow = 17;  // of 72: where the bands of reactions are looked at
+const std::vector<std::string> kUnknowns = {"pump.tilt_deg=36:44", "pump.bore_diameter_mm=21:24",
+                                            "pump.axis_offset_mm=0:1",
+                                            "pressure.delivery_bar=250:300"};
 const std::vector<std::string> kMeasured = {"Rb1_x1_N", "Rb1_z1_N", "Rb2_y1_N", "Td_z1_Nm"};
 
 Case truth() {
@@ -46,8 +46,7 @@ IdentificationData record_of(const Case& the_case, const ResultTable& turn, unsi
     for (std::size_t row = 0; row < turn.rows(); row += 2) {
       const double normal = std::sqrt(-2 * std::log(uniform())) * std::cos(2 * M_PI * uniform());
       datum.curve->theta_deg.push_back(turn.theta_deg[row]);
-      datum.curve->values.push_back(turn.at(row, datum.curve->column) +
-                                    datum.uncertainty * normal);
+      datum.curve->values.push_back(turn.at(row, datum.curve->column) + datum.uncertainty * normal);
       datum.curve->uncertainties.push_back(datum.uncertainty);
     }
     data.data.push_back(std::move(datum));
@@ -110,7 +109,8 @@ TEST(IdentificationStudy, TheTruthIsInsideItsBandsAndTheyAreAsNarrowAsTheyCanBe)
       for (std::size_t d = 0; d < found.posterior.count; ++d)
         draws.push_back(found.posterior.unknowns[d * n + i]);
       std::sort(draws.begin(), draws.end());
-      const double low = draws[draws.size() / 40], high = draws[draws.size() - 1 - draws.size() / 40];
+      const double low = draws[draws.size() / 40],
+                   high = draws[draws.size() - 1 - draws.size() / 40];
       unknowns[i].inside += low <= x[i] && x[i] <= high;
       unknowns[i].width += (high - low) / kRecords;
     }

@@ -94,16 +94,20 @@ TEST_F(Identify, WordsNameWhatIsDeterminedOnlyTogether) {
   const Case base = base_case();
   const Datum torque = number(base, "mean:Td", value_of(base, "mean:Td"), 0.1);
   const DataModel difference(
-      base, data_of(base, {"pressure.delivery_bar=250:300", "pressure.suction_bar=-0.9:20"}, {torque}));
+      base,
+      data_of(base, {"pressure.delivery_bar=250:300", "pressure.suction_bar=-0.9:20"}, {torque}));
   EXPECT_THAT(fit(difference).information.words,
               Contains("pressure.delivery_bar and pressure.suction_bar are determined only through "
                        "their difference"));
   const DataModel product(
-      base, data_of(base, {"friction.block_viscous_Nm_per_rpm=0.004:0.007", "operation.speed_rpm=1000:2000"},
-                    {number(base, "mean:Tcs_z2", value_of(base, "mean:Tcs_z2"), 0.01)}));
-  EXPECT_THAT(fit(product).information.words,
-              Contains("friction.block_viscous_Nm_per_rpm and operation.speed_rpm are determined only "
-                       "through their product"));
+      base,
+      data_of(base,
+              {"friction.block_viscous_Nm_per_rpm=0.004:0.007", "operation.speed_rpm=1000:2000"},
+              {number(base, "mean:Tcs_z2", value_of(base, "mean:Tcs_z2"), 0.01)}));
+  EXPECT_THAT(
+      fit(product).information.words,
+      Contains("friction.block_viscous_Nm_per_rpm and operation.speed_rpm are determined only "
+               "through their product"));
   const DataModel nothing(
       base, data_of(base, {"pressure.delivery_bar=250:300", "block.mass_kg=1:2"}, {torque}));
   EXPECT_THAT(fit(nothing).information.words, Contains("the data say nothing of block.mass_kg"));

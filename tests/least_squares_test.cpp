@@ -65,8 +65,7 @@ LeastSquaresProblem problem_of(const Certified& c) {
   problem.residuals = data.rows.size();
   problem.evaluate = [rows = data.rows, model = c.model](std::span<const double> x,
                                                          std::span<double> residuals) {
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      residuals[i] = rows[i][1] - model(rows[i][0], x);
+    for (std::size_t i = 0; i < rows.size(); ++i) residuals[i] = rows[i][1] - model(rows[i][0], x);
     return true;
   };
   return problem;

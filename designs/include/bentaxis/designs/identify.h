@@ -25,8 +25,8 @@ namespace bentaxis::designs {
 /// them is as likely as any other before there are data.
 struct Unknown {
   Variable variable;
-  double low, high;                 ///< file's unit
-  std::string condition = {};       ///< where it acts; "": a parameter of the pump, in all
+  double low, high;            ///< file's unit
+  std::string condition = {};  ///< where it acts; "": a parameter of the pump, in all
   std::optional<Distribution> prior = std::nullopt;  ///< normal or lognormal, beside the bounds
 
   /// "pump.tilt_deg", of a condition "peak load: pressure.delivery_bar".
@@ -134,8 +134,8 @@ struct Direction {
 
 /// What the data determine at a solution, as if the model were linear there.
 struct Information {
-  std::vector<double> spread;     ///< standard deviation of each unknown before data
-  std::vector<double> deviation;  ///< and after, bounds taken as normal with the same deviation
+  std::vector<double> spread;         ///< standard deviation of each unknown before data
+  std::vector<double> deviation;      ///< and after, bounds taken as normal with the same deviation
   std::vector<Direction> directions;  ///< the best determined first
   std::vector<std::string> words;     ///< what is determined only together with what, or not at all
 };
@@ -145,8 +145,8 @@ Information information_of(const DataModel& model, std::span<const double> x,
 
 /// Limits of an unknown by its profile: the others are fitted anew at each of its values.
 struct Profile {
-  std::vector<double> values, rises;  ///< of the sum of squares above its smallest
-  double low = 0, high = 0;           ///< 95 %: where it rises by 3.841
+  std::vector<double> values, rises;         ///< of the sum of squares above its smallest
+  double low = 0, high = 0;                  ///< 95 %: where it rises by 3.841
   bool open_low = false, open_high = false;  ///< a bound is met before
 };
 
@@ -164,8 +164,8 @@ struct Posterior {
 struct ReactionBand {
   std::size_t column = 0;
   std::vector<double> low, middle, high;  ///< 2.5 %, 50 %, 97.5 %
-  double half_width = 0;  ///< largest over the turn, of the peak
-  double peak = 0;        ///< largest magnitude of the middle curve
+  double half_width = 0;                  ///< largest over the turn, of the peak
+  double peak = 0;                        ///< largest magnitude of the middle curve
 };
 
 /// A measurement that could be made.
@@ -188,8 +188,8 @@ struct LeftOut {
 struct IdentifyOptions {
   int starts = 8;  ///< the case's own values and points of the bounds
   std::uint64_t seed = 1;
-  int draws = 400;  ///< of the posterior that are kept
-  int steps = 2000;  ///< of every walker of the ensemble
+  int draws = 400;         ///< of the posterior that are kept
+  int steps = 2000;        ///< of every walker of the ensemble
   double measured = 0.01;  ///< standard uncertainty of candidates, of the reaction's peak
   bool profiles = true, posterior = true, leave_one_out = true;
   int threads = 0;
@@ -209,7 +209,7 @@ struct Identification {
   std::vector<Profile> profiles;  ///< by unknown; empty where not asked for
   Posterior posterior;
   std::vector<double> theta_deg;
-  std::vector<ReactionBand> bands;  ///< of the reactions of piston 1, block, shaft and gear
+  std::vector<ReactionBand> bands;    ///< of the reactions of piston 1, block, shaft and gear
   std::vector<Candidate> candidates;  ///< the most useful first
   std::vector<LeftOut> left_out;
 };
