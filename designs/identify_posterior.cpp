@@ -117,13 +117,14 @@ Vector scattered(const DataModel& model, const Density& density, const LeastSqua
 // difference of two others (ter Braak 2006); moves of a half depend on the other half alone.
 class Ensemble {
  public:
-  Ensemble(const DataModel& model, const LeastSquaresFit& fit, const IdentifyOptions& options)
-      : density_(model), threads_(options.threads), parameters_(model.size()) {
+  Ensemble(const DataModel& model, const LeastSquaresFit& fit, std::uint64_t seed,
+           std::size_t number)
+      : density_(model), parameters_(model.size()) {
     const std::size_t count = std::max<std::size_t>(32, 3 * parameters_ + parameters_ % 2);
-    for (std::size_t w = 0; w < count; ++w) random_.emplace_back(options.seed, w);
+    for (std::size_t w = 0; w < count; ++w) random_.emplace_back(seed, number * count + w);
     places_.resize(count);
     heights_.resize(count);
-    study::in_threads(threads_, count, [&](std::size_t w) {
+    for (std::size_t w = 0; w < count; ++w) {
       places_[w] = density_.inner(scattered(model, density_, fit, random_[w]));
       // Two at one place would stay on a line.
       for (double& y : places_[w]) y *= 1 + 1e-9 * random_[w].normal();
@@ -132,26 +133,24 @@ class Ensemble {
         places_[w] = density_.inner(fit.x);
         heights_[w] = density_(places_[w]);
       }
-    });
+    }
   }
 
   void step() {
     const std::size_t half = places_.size() / 2;
-    std::vector<char> moved(places_.size(), 0);
     for (const std::size_t from : {std::size_t{0}, half})
-      study::in_threads(threads_, half, [&](std::size_t k) {
-        moved[from + k] = move(from + k, half - from, half) ? 1 : 0;
-      });
-    for (const char m : moved) accepted_ += m;
+      for (std::size_t k = 0; k < half; ++k) accepted_ += move(from + k, half - from, half);
     ++steps_;
   }
 
-  std::size_t size() const { return places_.size(); }
-  Vector place(std::size_t walker) const { return density_.outer(places_[walker]); }
+  std::vector<Vector> places() const {
+    std::vector<Vector> all;
+    for (const Vector& y : places_) all.push_back(density_.outer(y));
+    return all;
+  }
   double accepted() const {
     return static_cast<double>(accepted_) / static_cast<double>(steps_ * places_.size());
   }
-  void forget_accepted() { accepted_ = steps_ = 0; }
 
  private:
   bool move(std::size_t w, std::size_t others, std::size_t half) {
@@ -181,7 +180,6 @@ class Ensemble {
   }
 
   Density density_;
-  int threads_;
   std::size_t parameters_, accepted_ = 0, steps_ = 0;
   std::vector<Random> random_;
   std::vector<Vector> places_;
@@ -255,34 +253,40 @@ double quantile_of(const Vector& sorted, double q) {
 
 Posterior posterior_of(const DataModel& model, const LeastSquaresFit& fit,
                        const IdentifyOptions& options, const Progress& progress) {
-  Ensemble ensemble(model, fit, options);
+  constexpr std::size_t kEnsembles = 2;  // that know nothing of each other: R-hat compares them too
   const auto steps = static_cast<std::size_t>(options.steps), kept = steps / 2;
-  Chain chain;
-  for (std::size_t s = 0; s < steps; ++s) {
-    if (s == steps - kept) ensemble.forget_accepted();
-    ensemble.step();
-    if (s >= steps - kept) {
-      std::vector<Vector> places;
-      for (std::size_t w = 0; w < ensemble.size(); ++w) places.push_back(ensemble.place(w));
-      chain.push_back(std::move(places));
+  std::vector<Chain> parts(kEnsembles);
+  std::vector<double> accepted(kEnsembles);
+  study::Reporting reporting(kEnsembles * steps, progress);
+  study::in_threads(options.threads, kEnsembles, [&](std::size_t e) {
+    Ensemble ensemble(model, fit, options.seed, e);
+    for (std::size_t s = 0; s < steps; ++s) {
+      ensemble.step();
+      if (s >= steps - kept) parts[e].push_back(ensemble.places());
+      reporting.done();
     }
-    if (progress) progress(static_cast<double>(s + 1) / static_cast<double>(steps));
-  }
+    accepted[e] = ensemble.accepted();
+  });
+  Chain chain = std::move(parts[0]);
+  for (std::size_t s = 0; s < kept; ++s)
+    for (std::size_t e = 1; e < kEnsembles; ++e)
+      chain[s].insert(chain[s].end(), parts[e][s].begin(), parts[e][s].end());
+  const std::size_t walkers = chain[0].size();
   Posterior posterior;
-  posterior.accepted = ensemble.accepted();
+  for (const double share : accepted) posterior.accepted += share / kEnsembles;
   double slowest = 1;
   for (std::size_t i = 0; i < model.size(); ++i) {
     posterior.rhat.push_back(rhat_of(chain, i));
     slowest = std::max(slowest, correlation_steps(chain, i));
   }
-  const std::size_t all = kept * ensemble.size();
+  const std::size_t all = kept * walkers;
   posterior.effective = static_cast<double>(all) / slowest;
   posterior.count = std::min(static_cast<std::size_t>(options.draws), all);
   posterior.unknowns.resize(posterior.count * model.size());
   posterior.numbers.resize(posterior.count * model.numbers());
   study::in_threads(options.threads, posterior.count, [&](std::size_t d) {
     const std::size_t at = (2 * d + 1) * all / (2 * posterior.count);
-    const Vector& x = chain[at / ensemble.size()][at % ensemble.size()];
+    const Vector& x = chain[at / walkers][at % walkers];
     std::copy(x.begin(), x.end(),
               posterior.unknowns.begin() + static_cast<std::ptrdiff_t>(d * model.size()));
     model.predict(x, std::span(posterior.numbers).subspan(d * model.numbers(), model.numbers()));

@@ -100,8 +100,8 @@ TEST(IdentificationStudy, TheTruthIsInsideItsBandsAndTheyAreAsNarrowAsTheyCanBe)
     const DataModel model(the_case, record_of(the_case, turn, 1000 + static_cast<unsigned>(r)));
     IdentifyOptions options;
     options.starts = 1;
-    options.steps = 300;
-    options.draws = 1000;
+    options.steps = 160;
+    options.draws = 400;
     options.profiles = options.leave_one_out = false;
     const Identification found = identify(model, options);
     for (std::size_t i = 0; i < n; ++i) {

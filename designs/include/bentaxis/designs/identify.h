@@ -51,7 +51,7 @@ enum class Use {
 /// curve must not leave, or a curve.
 struct Datum {
   struct Curve {
-    std::size_t column = 0;  ///< of a ChannelLayout
+    std::size_t column;  ///< of a ChannelLayout
     std::vector<double> theta_deg, values, uncertainties;
   };
   std::string what, where, unit;

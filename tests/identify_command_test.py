@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Tests of `bentaxis identify` from outside: files, refusals, what is written.
+
+usage: identify_command_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import pathlib
+import sys
+import unittest
+
+import command_line_test as program
+from command_line_test import BAD_INPUT, ProgramTest
+
+DATA = """schema = 1
+[[condition]]
+name = "low"
+set = ["pressure.delivery_bar=100"]
+[[unknown]]
+parameter = "pump.bore_diameter_mm"
+between = [20, 25]
+[[number]]
+output = "mean:Td"
+value = 292.5
+uncertainty = 1
+[[number]]
+output = "mean:Td"
+value = 120
+uncertainty = 1
+condition = "low"
+use = "predicted"
+[[window]]
+output = "max:Rs_z2"
+below = 12000
+uncertainty = 50
+"""
+
+
+class IdentifyTest(ProgramTest):
+    def case(self):
+        return program.REPO / "cases" / "bap63_rated.toml"
+
+    def write(self, text, name="data.toml"):
+        (self.folder / name).write_text(text)
+        return name
+
+    def identify(self, text, *options, **others):
+        return self.run_program("identify", self.case(), "--set", "operation.samples_per_revolution=60", "--data",
+                                self.write(text), "--steps", 20, "--draws", 10, "--starts", 1, "--out", "out", *options,
+                                **others)
+
+    def test_files_and_tables(self):
+        self.identify(DATA)
+        self.assertEqual({path.name for path in (self.folder / "out").iterdir()},
+                         {"report.html", "report.json", "identified.toml", "unknowns.csv", "bands.csv"})
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        tables = {run["title"]: run["table"]["rows"] for run in report["runs"]}
+        self.assertEqual(len(tables["Data that unknowns are fitted to"]), 2)
+        self.assertEqual(len(tables["Data that are predicted"]), 1)
+        with open(self.folder / "out" / "unknowns.csv", newline="") as file:
+            [row] = csv.DictReader(file)
+        self.assertEqual(row["unknown"], "pump.bore_diameter_mm")
+        self.assertLess(float(row["profile_low"]), float(row["identified"]))
+        # The case's bore, 22.5 mm, gives 292.5 Nm; 1 Nm is 0.04 mm.
+        self.assertAlmostEqual(float(row["identified"]), 22.5, delta=0.05)
+
+    def test_the_identified_pump_is_a_case_that_runs(self):
+        self.identify(DATA, "--fit-only")
+        self.run_program("run", "out/identified.toml", "--model", "analytic", "--out", "run")
+        self.assertIn("identified", (self.folder / "out" / "identified.toml").read_text())
+
+    def test_a_record_of_the_case_itself_gives_its_values_back(self):
+        self.run_program("run", self.case(), "--set", "operation.samples_per_revolution=60", "--model", "analytic", "--channels", "Rs_1_z2_N", "--out", "rig")
+        text = DATA.split("[[number]]")[0] + '[[curve]]\nfile = "rig/analytic.csv"\nrelative_uncertainty = 0.01\n'
+        self.identify(text, "--fit-only", "--set", "pump.bore_diameter_mm=21")
+        with open(self.folder / "out" / "unknowns.csv", newline="") as file:
+            [row] = csv.DictReader(file)
+        self.assertAlmostEqual(float(row["identified"]), 22.5, delta=1e-4)
+
+    def refused_with(self, text, *words):
+        line = self.identify(text, status=BAD_INPUT).err.strip().splitlines()[-1]
+        for word in words:
+            self.assertIn(word, line)
+        self.assertFalse((self.folder / "out" / "report.json").exists())
+
+    def test_refusals_name_file_line_and_key(self):
+        self.refused_with(DATA.replace("bore_diameter_mm", "bore_diametre_mm"), "data.toml:6", "bore_diametre_mm",
+                          "bore_diameter_mm")
+        self.refused_with(DATA.replace("[20, 25]", "[25, 20]"), "data.toml:7", "below")
+        self.refused_with(DATA.replace('"max:Rs_z2"', '"max:Rs_z9"'), "data.toml", "max:Rs_z9")
+        self.refused_with(DATA.replace('condition = "low"', 'condition = "lwo"'), "lwo", "low")
+        self.refused_with(DATA.replace("uncertainty = 1\n", "uncertainty = 0\n"), "uncertainty", "0")
+        self.refused_with(DATA.replace('use = "predicted"', 'use = "guessed"'), "guessed")
+        self.refused_with(DATA.replace("below = 12000\n", ""), "above")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    program.PROGRAM, program.REPO = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
