@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <fstream>
 
+#include "bentaxis/designs/least_squares.h"
 #include "bentaxis/designs/propagation.h"
 #include "bentaxis/designs/sweep_tables.h"
-#include "bentaxis/designs/least_squares.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
 #include "ranks.h"
@@ -43,7 +43,7 @@ std::vector<std::pair<std::string, std::string>> versions() {
       {"HDF5", designs::hdf5_version()},
       {"MPI", mpi_library()},
       {"OpenTURNS", designs::openturns_version()},
-      {"least squares",
+      {"Ceres",
        designs::least_squares_library().empty() ? "none" : designs::least_squares_library()},
       {"processor", processor()}};
 }

@@ -16,12 +16,6 @@ std::vector<std::size_t> pareto_front(std::span<const double> results,
   std::vector<Competitor> candidates;
   for (std::size_t i = 0; (i + 1) * direction.size() <= results.size(); ++i) {
     Competitor candidate{i, {}};
-  struct Contender {
-  std::vector<Contender> candidates;
-    Contender candidate{i, {}};
-  struct Costed {
-  std::vector<Costed> candidates;
-    Costed candidate{i, {}};
     const auto row = results.subspan(i * direction.size(), direction.size());
     for (std::size_t k = 0; k < direction.size(); ++k)
       if (direction[k] != 0) candidate.costs.push_back(direction[k] < 0 ? row[k] : -row[k]);
@@ -33,10 +27,6 @@ std::vector<std::size_t> pareto_front(std::span<const double> results,
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Competitor& a, const Competitor& b) { return a.costs < b.costs; });
   const auto beats = [](const Competitor& a, const Competitor& b) {
-                   [](const Contender& a, const Contender& b) { return a.costs < b.costs; });
-  const auto beats = [](const Contender& a, const Contender& b) {
-                   [](const Costed& a, const Costed& b) { return a.costs < b.costs; });
-  const auto beats = [](const Costed& a, const Costed& b) {
     bool better = false;
     for (std::size_t k = 0; k < a.costs.size(); ++k) {
       if (a.costs[k] > b.costs[k]) return false;
@@ -52,14 +42,6 @@ std::vector<std::size_t> pareto_front(std::span<const double> results,
       front.push_back(std::move(candidate));
   std::vector<std::size_t> designs;
   for (const Competitor& candidate : front) designs.push_back(candidate.design);
-  std::vector<Contender> front;
-  for (Contender& candidate : candidates)
-                     [&](const Contender& other) { return beats(other, candidate); }))
-  for (const Contender& candidate : front) designs.push_back(candidate.design);
-  std::vector<Costed> front;
-  for (Costed& candidate : candidates)
-                     [&](const Costed& other) { return beats(other, candidate); }))
-  for (const Costed& candidate : front) designs.push_back(candidate.design);
   std::sort(designs.begin(), designs.end());
   return designs;
 }
