@@ -27,7 +27,8 @@ Quantiles quantiles_of(const std::vector<double>& draws, std::size_t columns, st
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
   const auto at = [&](double share) {
-    return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+    return values[static_cast<std::size_t>(
+        std::lround(share * static_cast<double>(values.size() - 1)))];
   };
   return {at(0.025), at(0.5), at(0.975)};
 }
@@ -300,7 +301,8 @@ std::string headline_of(const DataModel& model, const Identification& result) {
   for (const Datum& datum : model.data().data) fitted += datum.use == Use::fitted;
   for (const Direction& direction : result.information.directions) open += direction.strength < 2;
   std::string text = fmt::format(
-      "unknowns: {}; data they are fitted to: {}; {} of {} directions become less than half as wide as "
+      "unknowns: {}; data they are fitted to: {}; {} of {} directions become less than half as "
+      "wide as "
       "the bounds",
       model.size(), fitted, static_cast<int>(model.size()) - open, model.size());
   if (result.bands.empty()) return text;
