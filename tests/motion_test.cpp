@@ -417,6 +417,20 @@ TEST(FreeMotion, DerivativesAreThoseOfThePositions) {
 
 // ---- hard states -------------------------------------------------------------------------------
 
+TEST(HardStates, ARowNeedsAMotionAndAPressureForEachPiston) {
+  States states;
+  states.pistons = 5;
+  states.motion.resize(2);
+  states.chamber_pressure = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  Instant instant;
+  states.instant(0, instant);
+  EXPECT_EQ(instant.chamber_pressure, (std::vector<double>{1, 2, 3, 4, 5}));
+  EXPECT_THROW(states.instant(1, instant), InputError);
+  states.chamber_pressure.resize(20);
+  EXPECT_NO_THROW(states.instant(1, instant));
+  EXPECT_THROW(states.instant(2, instant), InputError);
+}
+
 TEST(HardStates, AnglesOfManyTurnsAreThoseOfOne) {
   const Case the_case = read_case(motion_folder() / "free_block" / "case.toml");
   States states;

@@ -637,6 +637,9 @@ TEST(MultibodyMechanics, RefusesWhatSimulateRefuses) {
   jumping.pump.friction.regularization = 0;
   EXPECT_THAT(message([&] { multibody::mechanics(jumping, jumping.multibody); }),
               testing::HasSubstr("regularization_m_per_s = 0"));
+  Case smooth = jumping;
+  smooth.pump.friction.piston_coulomb = 0;
+  EXPECT_NO_THROW(multibody::mechanics(smooth, smooth.multibody));
   jumping.pump.gear.contact = ToothContact::rigid;
   EXPECT_NO_THROW(multibody::mechanics(jumping, jumping.multibody));
 

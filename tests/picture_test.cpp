@@ -136,6 +136,65 @@ TEST(Picture, TheBandIsWhatIsAllowed) {
   EXPECT_NEAR(high - low, 78 / 1.12, 0.1);
 }
 
+std::vector<std::string> texts(const std::string& svg) {
+  std::vector<std::string> all;
+  const auto document = read(svg);
+  for (const auto& found : document.select_nodes("//text"))
+    all.emplace_back(found.node().text().get());
+  return all;
+}
+
+TEST(Picture, NumbersOfALogarithmicAxis) {
+  const auto at = [](const Values& x) {
+    const auto all = texts(
+        svg_of({"id", "t", "", XyFigure{{"x", "", true}, {"y"}, {{"s", x, {3000, 4000}}}}}));
+    std::vector<double> numbers;  // below those of y
+    for (const std::string& text : all)
+      if (!text.empty() && text.find_first_not_of("0123456789.e") == std::string::npos &&
+          std::stod(text) < 2000)
+        numbers.push_back(std::stod(text));
+    return numbers;
+  };
+  EXPECT_THAT(at({1, 100}), testing::ElementsAre(1, 2, 5, 10, 20, 50, 100));
+  EXPECT_THAT(at({1.4, 4.4}), testing::ElementsAre(1.5, 2, 3, 4));
+}
+
+// Beside the only value of an axis there is its number, and no other.
+TEST(Picture, MapOfOneRow) {
+  const auto all = texts(svg_of(
+      {"id", "t", "", MapFigure{{"x"}, {"y"}, {"z"}, {1, 2, 3}, {275}, {{5, 6, 7}}, {}, {}}}));
+  EXPECT_THAT(all, testing::Contains("275"));
+  EXPECT_THAT(all, Not(testing::Contains("276")));
+  EXPECT_THAT(all, Not(testing::Contains("275.0")));
+  EXPECT_THAT(all, Not(testing::Contains("275.2")));
+  EXPECT_THAT(all, testing::IsSupersetOf({"1.0", "2.0", "3.0"}));
+}
+
+TEST(Picture, LegendNamesWhatIsShownAndStaysOnThePage) {
+  std::vector<std::pair<std::string, Values>> columns;
+  std::vector<std::string> names;
+  for (int i = 0; i < 12; ++i) {
+    names.push_back("a channel of number " + std::to_string(10 + i));
+    columns.push_back({names.back(), {0, 1.0 * i, 0, 1}});
+  }
+  names.push_back("a channel without values");
+  const auto document =
+      read(svg_of({"id", "t", "", ChannelFigure{"N", names}}, curves_of(columns, 90)));
+  const double width = document.first_child().attribute("width").as_double();
+  int named = 0;
+  for (const auto& found : document.select_nodes("//text")) {
+    const std::string text = found.node().text().get();
+    if (text.rfind("a channel", 0) != 0) continue;
+    ++named;
+    EXPECT_NE(text, names.back());
+    // A letter is at least 5 px wide.
+    EXPECT_LT(found.node().attribute("x").as_double() + 5.0 * static_cast<double>(text.size()),
+              width)
+        << text;
+  }
+  EXPECT_EQ(named, 12);
+}
+
 // Everything that a document can hold without being refused.
 std::vector<Figure> odd_figures() {
   const double gap = not_computed(), inf = std::numeric_limits<double>::infinity();
