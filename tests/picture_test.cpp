@@ -177,9 +177,11 @@ TEST(Picture, LegendNamesWhatIsShownAndStaysOnThePage) {
     names.push_back("a channel of number " + std::to_string(10 + i));
     columns.push_back({names.back(), {0, 1.0 * i, 0, 1}});
   }
-  names.push_back("a channel without values");
-  const auto document =
-      read(svg_of({"id", "t", "", ChannelFigure{"N", names}}, curves_of(columns, 90)));
+  Curves curves = curves_of(columns, 90);
+  names.emplace_back("a channel of the rig alone");
+  curves.reference = {"rig", {{names.back(), {1, 2, 3, 4}, 0.5, {}, {}, {}}}};
+  names.emplace_back("a channel without values");
+  const auto document = read(svg_of({"id", "t", "", ChannelFigure{"N", names}}, curves));
   const double width = document.first_child().attribute("width").as_double();
   int named = 0;
   for (const auto& found : document.select_nodes("//text")) {
@@ -192,7 +194,7 @@ TEST(Picture, LegendNamesWhatIsShownAndStaysOnThePage) {
               width)
         << text;
   }
-  EXPECT_EQ(named, 12);
+  EXPECT_EQ(named, 13);
 }
 
 // Everything that a document can hold without being refused.
