@@ -196,6 +196,8 @@ class CompletionTest(WordsTest):
             (["comp"], "words", ["compare", "completion"]),
             (["run", ""], "files", []),
             (["run", "case.toml", ""], "nothing", []),
+            (["run", "case.toml", "--mod"], "words", ["--model"]),
+            (["run", "a=b"], "files", []),
             (["run", "case.toml", "--model", ""], "words", ["analytic", "multibody"]),
             (["run", "case.toml", "--model", "m"], "words", ["multibody"]),
             (["run", "case.toml", "--model=m"], "words", ["--model=multibody"]),
