@@ -652,6 +652,15 @@ TEST(MultibodyMechanics, RefusesWhatSimulateRefuses) {
               testing::HasSubstr("1 chamber pressures for 5 pistons"));
 }
 
+TEST(MechanicsOfBothModels, SayNothingOfTeethThatAreNotModelled) {
+  const Case the_case = stored_case("rattle");
+  TeethAction action;
+  const auto closed = analytic::mechanics(the_case, the_case.analytic);
+  EXPECT_FALSE(closed->teeth(0, closed->start(), action));
+  const auto multi = multibody::mechanics(the_case, the_case.multibody);
+  EXPECT_FALSE(multi->teeth(0, multi->start(), action));
+}
+
 TEST(MultibodyMechanics, SaysWherePistonsCannotBePlaced) {
   Case the_case = stored_case("rattle");
   the_case.pump.geometry.piston_length = 0.03;

@@ -9,6 +9,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
+#include "bentaxis/study/state_doubts.h"
 #include "simulation_pieces.h"
 
 namespace bentaxis::study {
@@ -239,6 +240,18 @@ TEST(SimulationDocument, ShowsContactAndEffort) {
   ASSERT_NE(at, std::string::npos);
   const std::string axis = text.substr(text.rfind('{', at), text.find('}', at) - text.rfind('{', at));
   EXPECT_THAT(axis, HasSubstr("\"log\":true"));
+}
+
+TEST(StateDoubts, NameBothPressures) {
+  States states;
+  states.pistons = 1;
+  states.motion.resize(1);
+  states.chamber_pressure = {-1.1e5};
+  const auto warnings = state_doubts(Case{}, states);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].name, "states-vacuum");
+  EXPECT_THAT(warnings[0].text, testing::ContainsRegex(
+                                    "-1\\.1 bar is below absolute zero, -1\\.01[0-9]+ bar gauge"));
 }
 
 TEST(SimulationStudy, PeriodicOilWithoutOilIsRefused) {
