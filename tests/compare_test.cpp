@@ -376,9 +376,7 @@ TEST(Split, MarksOnlyExplainedChannels) {
 // A channel that is zero all round has no peak that a rest could be a share of.
 TEST(Split, RestOfAChannelThatIsZero) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
-  const auto model = [&](double x) {
-    return table("m", channels, {[=](double) { return x; }});
-  };
+  const auto model = [&](double x) { return table("m", channels, {[=](double) { return x; }}); };
   const auto split = [&](double x) {
     return split_difference(
         model(0), model(x), {"p"}, [&](unsigned) { return model(0); }, {}, 1e-9);
@@ -430,6 +428,22 @@ TEST(Json, ContributionsAreOverThePeak) {
   EXPECT_THAT(text, HasSubstr("\"over_peak\":0.25"));
   EXPECT_THAT(text, HasSubstr("\"over_peak\":0.1"));
   EXPECT_EQ(text.find("null"), std::string::npos) << text;
+}
+
+TEST(Json, SaysOnlyWhatThereIsToSay) {
+  report::Document document;
+  document.verdict = report::Verdict{true, "h"};
+  document.comparison.emplace();
+  ChannelComparison c;
+  c.channel = channel("X_N", "X");
+  document.comparison->channels = {c};
+  const auto written = [&] { return nlohmann::json::parse(report::json_text(document)); };
+  EXPECT_FALSE(written()["verdict"].contains("word"));
+  EXPECT_FALSE(written()["channels"][0].contains("gap"));
+  document.verdict->word = "Balanced";
+  document.comparison->channels[0].gap = "at 3 deg";
+  EXPECT_EQ(written()["verdict"]["word"], "Balanced");
+  EXPECT_EQ(written()["channels"][0]["gap"], "at 3 deg");
 }
 
 TEST(Json, AMapHasItsLinesWhereThereAreAny) {

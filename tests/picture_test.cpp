@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <pugixml.hpp>
 #include <random>
 #include <regex>
@@ -146,8 +147,8 @@ std::vector<std::string> texts(const std::string& svg) {
 
 TEST(Picture, NumbersOfALogarithmicAxis) {
   const auto at = [](const Values& x) {
-    const auto all = texts(
-        svg_of({"id", "t", "", XyFigure{{"x", "", true}, {"y"}, {{"s", x, {3000, 4000}}}}}));
+    const auto all =
+        texts(svg_of({"id", "t", "", XyFigure{{"x", "", true}, {"y"}, {{"s", x, {3000, 4000}}}}}));
     std::vector<double> numbers;  // below those of y
     for (const std::string& text : all)
       if (!text.empty() && text.find_first_not_of("0123456789.e") == std::string::npos &&
@@ -157,6 +158,24 @@ TEST(Picture, NumbersOfALogarithmicAxis) {
   };
   EXPECT_THAT(at({1, 100}), testing::ElementsAre(1, 2, 5, 10, 20, 50, 100));
   EXPECT_THAT(at({1.4, 4.4}), testing::ElementsAre(1.5, 2, 3, 4));
+}
+
+TEST(Picture, NumbersOfAnAxisStandAtTheirPlaces) {
+  const auto places = [](double end, bool angle) {
+    std::map<std::string, double> at;
+    const auto document = read(svg_of(
+        {"id", "t", "", OwnFigure{"N", "x", angle, {0, end / 2, end}, {{"s", {-7, -8, -9}}}}}));
+    for (const auto& found : document.select_nodes("//text[@text-anchor='middle']"))
+      at[found.node().text().get()] = found.node().attribute("x").as_double();
+    return at;
+  };
+  auto angles = places(360, true), values = places(40, false);
+  ASSERT_THAT(angles, testing::Contains(testing::Key("360")));
+  EXPECT_NEAR(angles["90"] - angles["0"], (angles["360"] - angles["0"]) / 4, 0.1);
+  EXPECT_GT(angles["360"] - angles["0"], 500);
+  ASSERT_THAT(values, testing::Contains(testing::Key("40")));
+  EXPECT_NEAR(values["10"] - values["0"], (values["40"] - values["0"]) / 4, 0.1);
+  EXPECT_NEAR(values["40"], angles["360"], 0.1);
 }
 
 // Beside the only value of an axis there is its number, and no other.

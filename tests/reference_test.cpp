@@ -333,17 +333,30 @@ TEST_F(ReferenceFolder, NotesAPartThatTheModelsLack) {
   channels[1].axis = "y1";
   const auto notes = [&](double along_z) {
     write_curve(
-        36, [&](double a) -> std::array<double, 4> { return {a, x_of(a), y_of(a), along_z}; },
+        36,
+        [&](double a) -> std::array<double, 4> {
+          return {a, x_of(a), y_of(a), along_z};
+        },
         "theta_deg,a,b,c");
     const auto d = description(
-        36, "[[curve.vector]]\ntheirs = [\"a\", \"b\", \"c\"]\nours = \"X\"\n",
-        "relative = 1e-3");
+        36, "[[curve.vector]]\ntheirs = [\"a\", \"b\", \"c\"]\nours = \"X\"\n", "relative = 1e-3");
     return read_reference_curve(d, d.curves.at(0), channels, 9000).notes;
   };
   const double peak = result(36).peak("X");
   EXPECT_THAT(notes(0.9e-3 * peak), testing::IsEmpty());
   EXPECT_THAT(notes(-2e-3 * peak),
               testing::ElementsAre(HasSubstr("X along z1 up to 2.00e-03 of its peak")));
+}
+
+// By their definitions: pound-force 0.45359237 kg x 9.80665 m/s2, inch 25.4 mm.
+TEST(ForeignUnits, HaveTheirSizeInSi) {
+  constexpr double kPound = 0.45359237 * 9.80665, kInch = 0.0254;
+  EXPECT_NEAR(find_unit("psi")->si, kPound / (kInch * kInch), 1e-9);
+  EXPECT_EQ(find_unit("kN")->si, 1e3);
+  EXPECT_EQ(degrees_per("turn"), 360);
+  EXPECT_EQ(degrees_per("deg"), 1);
+  EXPECT_NEAR(degrees_per("rad"), 180 / kPi, 1e-13);
+  EXPECT_EQ(find_unit("furlong"), nullptr);
 }
 
 TEST(CurveDescriptions, SayWhatWasAssumedOfTheAngle) {

@@ -207,8 +207,8 @@ SimulationResult written(double speed_rpm, double fastest_rpm) {
   for (const double rpm : {speed_rpm, fastest_rpm}) {
     std::vector<double> state(run.table.state_names.size(), 0);
     state[3] = rpm;
-    append_trajectory_row(run.table, state,
-                          std::vector<double>(ChannelLayout(pistons).size(), 0), {});
+    append_trajectory_row(run.table, state, std::vector<double>(ChannelLayout(pistons).size(), 0),
+                          {});
     run.lag.push_back(0);
     run.oil->values.insert(run.oil->values.end(), run.oil->columns.size(), 10);
   }
@@ -238,7 +238,8 @@ TEST(SimulationDocument, ShowsContactAndEffort) {
   EXPECT_THAT(text, HasSubstr("\"12.5 %\""));
   const auto at = text.find("\"label\":\"time of the run\"");
   ASSERT_NE(at, std::string::npos);
-  const std::string axis = text.substr(text.rfind('{', at), text.find('}', at) - text.rfind('{', at));
+  const std::string axis =
+      text.substr(text.rfind('{', at), text.find('}', at) - text.rfind('{', at));
   EXPECT_THAT(axis, HasSubstr("\"log\":true"));
 }
 
@@ -250,8 +251,8 @@ TEST(StateDoubts, NameBothPressures) {
   const auto warnings = state_doubts(Case{}, states);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0].name, "states-vacuum");
-  EXPECT_THAT(warnings[0].text, testing::ContainsRegex(
-                                    "-1\\.1 bar is below absolute zero, -1\\.01[0-9]+ bar gauge"));
+  EXPECT_THAT(warnings[0].text,
+              testing::ContainsRegex("-1\\.1 bar is below absolute zero, -1\\.01[0-9]+ bar gauge"));
 }
 
 TEST(SimulationStudy, PeriodicOilWithoutOilIsRefused) {
