@@ -198,7 +198,8 @@ TEST_F(Identify, TheNumbersOfThePaperAreReadAndTheShippedCaseIsNearThem) {
   const Case base = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml",
                               {"operation.samples_per_revolution=180"});
   IdentificationData data;
-  read_identification(BENTAXIS_SOURCE_DIR "/reference_data/published/bap63/unknowns.toml", base, data);
+  read_identification(BENTAXIS_SOURCE_DIR "/reference_data/published/bap63/unknowns.toml", base,
+                      data);
   const DataModel model(base, data);
   std::vector<double> numbers(model.numbers());
   ASSERT_TRUE(model.predict(model.start(), numbers));
