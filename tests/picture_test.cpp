@@ -462,44 +462,46 @@ TEST(Picture, MapHatchesWhatHasAReason) {
   EXPECT_THAT(titles, testing::ElementsAre("n 1 rpm, p 4: 90 %", "n 2 rpm, p 4: pistons <touch>",
                                            "n 3 rpm, p 4: not computed"));
   EXPECT_STREQ(document.select_node("//text[starts-with(., 'e:')]").node().text().get(), "e: 80 %");
-  // Over a plane that rises along x a line of equal height stands upright.
-  TEST(Picture, ContourLiesWhereItsLevelIs) {
-    MapFigure map{{"x"}, {"y"}, {"z"}, {1, 2, 3}, {4, 5, 6}, {}, {2.25}, {}};
-    for (int row = 0; row < 3; ++row) map.values.push_back({1, 2, 3});
-    map.linear = true;
-    map.marks = XySeries{"dot", {2, 3}, {4, 4}};
-    const auto document = read(svg_of({"id", "t", "", map}));
-    std::vector<double> dots;
-    for (const auto& found : document.select_nodes("//circle"))
-      dots.push_back(found.node().attribute("cx").as_double());
-    ASSERT_GE(dots.size(), 2U);
-    const auto lines = document.select_nodes("//path[@class='contour']");
-    ASSERT_GE(lines.size(), 1U);
-    std::string text = lines[0].node().attribute("d").value();
-    for (char& c : text)
-      if (c == 'M' || c == 'L') c = ' ';
-    std::istringstream in(text);
-    std::sort(dots.begin(), dots.end());
-    const double right = dots.back(), middle = dots[dots.size() - 2];
-    double low = 1e9, high = -1e9;
-    for (double x = 0, y = 0; in >> x >> y;) {
-      EXPECT_NEAR(x, middle + 0.25 * (right - middle), 0.2);
-      low = std::min(low, y);
-      high = std::max(high, y);
-    }
-    EXPECT_GT(high - low, 100);
-  }
+}
 
-  TEST(Picture, PngHasTwiceTheSize) {
-    const std::string png = png_of(
-        "<svg xmlns='http://www.w3.org/2000/svg' width='30' height='20'><rect width='9' "
-        "height='9'/></svg>");
-    ASSERT_GT(png.size(), 24U);
-    EXPECT_EQ(png.substr(1, 3), "PNG");
-    EXPECT_EQ(png[19], 60);
-    EXPECT_EQ(png[23], 40);
-    EXPECT_THROW(png_of("no picture"), std::runtime_error);
+// Over a plane that rises along x a line of equal height stands upright.
+TEST(Picture, ContourLiesWhereItsLevelIs) {
+  MapFigure map{{"x"}, {"y"}, {"z"}, {1, 2, 3}, {4, 5, 6}, {}, {2.25}, {}};
+  for (int row = 0; row < 3; ++row) map.values.push_back({1, 2, 3});
+  map.linear = true;
+  map.marks = XySeries{"dot", {2, 3}, {4, 4}};
+  const auto document = read(svg_of({"id", "t", "", map}));
+  std::vector<double> dots;
+  for (const auto& found : document.select_nodes("//circle"))
+    dots.push_back(found.node().attribute("cx").as_double());
+  ASSERT_GE(dots.size(), 2U);
+  const auto lines = document.select_nodes("//path[@class='contour']");
+  ASSERT_GE(lines.size(), 1U);
+  std::string text = lines[0].node().attribute("d").value();
+  for (char& c : text)
+    if (c == 'M' || c == 'L') c = ' ';
+  std::istringstream in(text);
+  std::sort(dots.begin(), dots.end());
+  const double right = dots.back(), middle = dots[dots.size() - 2];
+  double low = 1e9, high = -1e9;
+  for (double x = 0, y = 0; in >> x >> y;) {
+    EXPECT_NEAR(x, middle + 0.25 * (right - middle), 0.2);
+    low = std::min(low, y);
+    high = std::max(high, y);
   }
+  EXPECT_GT(high - low, 100);
+}
+
+TEST(Picture, PngHasTwiceTheSize) {
+  const std::string png = png_of(
+      "<svg xmlns='http://www.w3.org/2000/svg' width='30' height='20'><rect width='9' "
+      "height='9'/></svg>");
+  ASSERT_GT(png.size(), 24U);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(png[19], 60);
+  EXPECT_EQ(png[23], 40);
+  EXPECT_THROW(png_of("no picture"), std::runtime_error);
+}
 
 }  // namespace
 }  // namespace bentaxis::report
