@@ -109,7 +109,8 @@ std::string other_model(const SensitivityCheck& check) {
 
 std::string headline(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
   if (!check)
-    return fmt::format("{} derivatives exact, {} by differences", count_of(s, Way::exact),
+    return fmt::format("{} derivatives exact, {} by differences",
+                       count_of(s, Way::exact) + count_of(s, Way::forward),
                        count_of(s, Way::differences));
   const std::string worst = check->worst > 0
                                 ? fmt::format(" ({} by {})", s.outputs[check->output].name,
