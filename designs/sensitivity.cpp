@@ -212,20 +212,26 @@ constexpr double kFine = 1e-9, kCoarse = 1e-8;
 
 double size_of(double value) { return value == 0 ? 1 : std::abs(value); }
 
-// None where one of them is refused.
+// None where one of them is refused; but of what the closed form takes, and the oil hardly does,
+// the other side alone will do.
 std::optional<hydraulics::Neighbours> neighbours(const Variable& variable, const Case& base) {
-  const double at = variable.value(base), step = kApart * size_of(at);
   const Family family(base, {variable});
+  const double at = variable.value(base), size = size_of(at);
   hydraulics::Neighbours two{base, base, 0};
-  const double above = at + step, below = at - step;
-  try {
-    family.make({&above, 1}, two.above);
-    family.make({&below, 1}, two.below);
-  } catch (const InputError&) {
-    return {};
-  }
-  two.apart = (above - below) / size_of(at);
-  return two;
+  const auto go = [&](Case& to, double way) {
+    const double there = at + way * kApart * size;
+    try {
+      family.make({&there, 1}, to);
+      two.apart += std::abs(there - at) / size;
+      return true;
+    } catch (const InputError&) {
+      to = base;
+      return false;
+    }
+  };
+  const int sides = static_cast<int>(go(two.above, 1)) + static_cast<int>(go(two.below, -1));
+  if (sides == 2 || (sides == 1 && is_of_closed_form(variable))) return two;
+  return {};
 }
 
 // Samples of a case with its pressure, and how that changes with some variables.
@@ -316,9 +322,9 @@ std::vector<std::size_t> find_exact(Sensitivities& s, const std::vector<std::siz
   }
   const auto chamber_rate = [&](std::size_t d, std::size_t row, std::size_t k) {
     if (hydraulic) return of_pressure(d).chamber[row * n + k];
-    return ideal.rate(piston_angle_deg(turn.samples.theta_deg[row], static_cast<int>(k) + 1,
-                                       static_cast<int>(n)),
-                      rates[d]);
+    return ideal.rate(
+        piston_angle_deg(turn.samples.theta_deg[row], static_cast<int>(k) + 1, static_cast<int>(n)),
+        rates[d]);
   };
   std::vector<double> values(reactions), derivatives(reactions * directions);
   for (std::size_t row = 0; row < turn.samples.theta_deg.size(); ++row) {

@@ -42,7 +42,7 @@ struct Problem {
   Network::Flows flows;
   const std::vector<Direction>& directions;
   std::vector<double> by_state, by_load, above, below;  // of the sensitivity equations
-  double mass_scale = 1;                  // kg/degree: of the integrals, for their error control
+  double mass_scale = 1;  // kg/degree: of the integrals, for their error control
   double work_scale = 1;
   bool energies = false;  // the integrals wanted are those of power by place
 };
@@ -207,8 +207,8 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
   check(CVodeSetLinearSolver(cv.memory, cv.solver, cv.matrix));
   check(CVodeSetJacFn(cv.memory, jacobian));
   if (sensitivity != nullptr) {
-    cv.sensitivities = network_.states() + (network_.load_sought() ? 1 : 0) +
-                       static_cast<int>(directions_.size());
+    cv.sensitivities =
+        network_.states() + (network_.load_sought() ? 1 : 0) + static_cast<int>(directions_.size());
     cv.sensitivity = N_VCloneVectorArray(cv.sensitivities, cv.y);
     if (cv.sensitivity == nullptr) throw std::bad_alloc();
     for (int j = 0; j < cv.sensitivities; ++j) {

@@ -55,7 +55,8 @@ std::vector<Passage> passages_of(const Network& network, std::span<const double>
   for (std::size_t i = 0; i < theta_k_deg.size(); ++i) {
     const double angle = wrap_degrees(theta_k_deg[i]);
     const int segment = std::min(static_cast<int>(angle / network.period_deg()), n - 1);
-    const double past = std::clamp(angle - segment * network.period_deg(), 0.0, network.period_deg());
+    const double past =
+        std::clamp(angle - segment * network.period_deg(), 0.0, network.period_deg());
     if (network.backwards())
       places.push_back({network.period_deg() - past, (2 * n - segment - 1) % n, i});
     else
@@ -152,10 +153,10 @@ std::vector<PressureRates> pressure_rates(const SteadyState& state,
           pairs[p]->difference([](const Network& each) { return each.delivery_pressure(); });
     } else {
       const Vector last = by.row(size - 1);
-      rates[p].delivery_mean =
-          network.mean_scale() * of(last) +
-          end[size - 1] *
-              pairs[p]->difference([](const Network& each) { return each.mean_scale(); });
+      rates[p].delivery_mean = network.mean_scale() * of(last) +
+                               end[size - 1] * pairs[p]->difference([](const Network& each) {
+                                 return each.mean_scale();
+                               });
     }
   }
   return rates;

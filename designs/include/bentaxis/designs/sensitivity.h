@@ -52,7 +52,8 @@ std::vector<Variable> continuous_variables(const Case& base);
 
 /// Derivatives at the case itself. Exact are those by the analytic model of statistics of
 /// reactions, without teeth, with respect to what pump, speed and pressure are made of; under
-/// hydraulic pressure, but for a spline in its place, they are forward sensitivities; a largest or least value changes as at the sample that attains it.
+/// hydraulic pressure, but for a spline in its place, they are forward sensitivities; a largest or
+/// least value changes as at the sample that attains it.
 /// @throws InputError where a variable is no continuous number, or as the case; ComputationError
 Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
                             const std::vector<Output>& outputs,
