@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ostream>
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/files/case_file.h"
@@ -348,6 +349,11 @@ struct Changed {
     return read_case(fs::path(BENTAXIS_SOURCE_DIR) / "cases/bap63_rated_hydraulic.toml", changes);
   }
 };
+
+void PrintTo(const Changed& changed, std::ostream* to) {
+  for (const std::string& change : changed.circuit) *to << change << ", ";
+  *to << changed.key;
+}
 
 std::vector<Changed> parameters_of_the_plain_circuit() {
   return {{{}, "hydraulics.bulk_modulus_MPa", 1400},
