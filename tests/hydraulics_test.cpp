@@ -350,9 +350,9 @@ struct Changed {
   }
 };
 
-void PrintTo(const Changed& changed, std::ostream* to) {
-  for (const std::string& change : changed.circuit) *to << change << ", ";
-  *to << changed.key;
+std::ostream& operator<<(std::ostream& to, const Changed& changed) {
+  for (const std::string& change : changed.circuit) to << change << ", ";
+  return to << changed.key;
 }
 
 std::vector<Changed> parameters_of_the_plain_circuit() {
