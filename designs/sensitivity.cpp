@@ -7,6 +7,7 @@
 
 #include "bentaxis/analytic/derivatives.h"
 #include "bentaxis/designs/evaluator.h"
+#include "bentaxis/hydraulics/sensitivity.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -49,9 +50,10 @@ bool is_of_closed_form(const Variable& variable) {
 }
 
 bool is_exact(const Variable& variable, const Case& base) {
-  if (base.pressure.kind == PressureKind::hydraulic ||
-      base.pump.gear.contact == ToothContact::teeth || !is_of_closed_form(variable))
-    return false;
+  if (base.pump.gear.contact == ToothContact::teeth) return false;
+  // A spline through points of a computed curve is another curve.
+  if (base.pressure.kind == PressureKind::hydraulic) return base.pressure.points == 0;
+  if (!is_of_closed_form(variable)) return false;
   // A step passes samples or does not.
   const bool moves_edges = variable.name() == "pressure.transition_deg" ||
                            variable.name() == "pressure.delivery_start_deg";
@@ -199,44 +201,149 @@ class StatisticRates {
   LargestRate low_, high_, peak_;      // of what is lowest the negative
 };
 
-void find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
-                const std::vector<std::size_t>& variables) {
-  const Case& base = s.base;
+// ---- Hydraulic pressure
+
+// Of a parameter, between the cases by which the equations are differentiated: truncation of its
+// square and round-off of 1e-16 / kApart.
+constexpr double kApart = 1e-6;
+// Errors per step of the sensitivities, of d(ln P) per relative change: of the result, and of what
+// it is compared with.
+constexpr double kFine = 1e-9, kCoarse = 1e-8;
+
+double size_of(double value) { return value == 0 ? 1 : std::abs(value); }
+
+// None where one of them is refused; but of what the closed form takes, and the oil hardly does,
+// the other side alone will do.
+std::optional<hydraulics::Neighbours> neighbours(const Variable& variable, const Case& base) {
+  const Family family(base, {variable});
+  const double at = variable.value(base), size = size_of(at);
+  hydraulics::Neighbours two{base, base, 0};
+  const auto go = [&](Case& to, double way) {
+    const double there = at + way * kApart * size;
+    try {
+      family.make({&there, 1}, to);
+      two.apart += std::abs(there - at) / size;
+      return true;
+    } catch (const InputError&) {
+      to = base;
+      return false;
+    }
+  };
+  const int sides = static_cast<int>(go(two.above, 1)) + static_cast<int>(go(two.below, -1));
+  if (sides == 2 || (sides == 1 && is_of_closed_form(variable))) return two;
+  return {};
+}
+
+// Samples of a case with its pressure, and how that changes with some variables.
+struct Turn {
+  Case the_case;
+  Samples samples;
+  std::vector<hydraulics::PressureRates> fine, coarse;  // of hydraulic pressure
+};
+
+// Takes from `variables` those that the hydraulic pressure has no derivatives by.
+Turn turn_of(const Sensitivities& s, std::vector<std::size_t>& variables,
+             const study::PartProgress& progress_of) {
+  study::ReadyCase ready = study::prepare(s.base, progress_of);
+  Turn turn{ready.the_case, ready.samples(study::Way::driven), {}, {}};
+  if (!ready.hydraulics) return turn;
+  std::vector<hydraulics::Neighbours> parameters;
+  std::vector<std::size_t> kept;
+  for (const std::size_t v : variables) {
+    auto two = neighbours(s.variables[v], s.base);
+    if (!two || !hydraulics::has_rates(*ready.hydraulics, *two)) continue;
+    parameters.push_back(std::move(*two));
+    kept.push_back(v);
+  }
+  variables = kept;
+  const int n = s.base.pump.geometry.pistons;
+  std::vector<double> angles;
+  for (const double theta : turn.samples.theta_deg)
+    for (int k = 1; k <= n; ++k) angles.push_back(piston_angle_deg(theta, k, n));
+  const auto rates = [&](double tolerance) {
+    auto found = hydraulics::pressure_rates(*ready.hydraulics, parameters, angles, tolerance,
+                                            progress_of("derivatives of the pressure"));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double size = size_of(s.at[variables[i]]);
+      for (double& rate : found[i].chamber) rate /= size;
+      found[i].delivery_mean /= size;
+    }
+    return found;
+  };
+  try {
+    turn.fine = rates(kFine);
+    turn.coarse = rates(kCoarse);
+  } catch (const ComputationError&) {
+    variables.clear();  // differences may get through
+  }
+  return turn;
+}
+
+// Whether the mean delivery pressure is a result.
+bool load_sets_pressure(const Case& base) {
+  return base.pressure.kind == PressureKind::hydraulic && base.hydraulics->load &&
+         base.hydraulics->load->sets_pressure() && base.pressure.ports.delivery > 0;
+}
+
+// @return the variables for which it could be done
+std::vector<std::size_t> find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
+                                    std::vector<std::size_t> variables,
+                                    const study::PartProgress& progress_of) {
+  const Turn turn = turn_of(s, variables, progress_of);
+  if (variables.empty()) return variables;
+  const Case& base = turn.the_case;
+  const std::size_t count = variables.size();
+  const bool hydraulic = base.pressure.kind == PressureKind::hydraulic;
+  // Under hydraulic pressure every direction once more, with the coarse rates.
+  const std::size_t directions = hydraulic ? 2 * count : count;
   std::vector<Rates> rates;
   std::vector<PumpParameters> pumps;
-  for (const std::size_t v : variables) {
-    rates.push_back(rates_of(s.variables[v], base));
+  for (std::size_t d = 0; d < directions; ++d) {
+    rates.push_back(rates_of(s.variables[variables[d % count]], s.base));
     pumps.push_back(rates.back().pump);
   }
   std::vector<StatisticRates> statistics;
   for (const std::size_t o : outputs)
-    statistics.emplace_back(s.outputs[o], s.scales[o], variables.size());
+    statistics.emplace_back(s.outputs[o], s.scales[o], directions);
   const analytic::DerivativeModel model(base.pump, base.analytic, pumps);
   const std::size_t reactions = model.layout().reactions();
-  const int n = model.layout().pistons();
-  const Samples samples = sample_case(base, PressureTrace(base.pressure));
-  const IdealPressure ideal(base.pressure);
+  const auto n = static_cast<std::size_t>(model.layout().pistons());
+  const IdealPressure ideal(s.base.pressure);
+  const auto of_pressure = [&](std::size_t d) -> const hydraulics::PressureRates& {
+    return d < count ? turn.fine[d] : turn.coarse[d - count];
+  };
   Instant instant;
-  std::vector<Instant> along(variables.size());
-  for (std::size_t d = 0; d < along.size(); ++d) {
+  std::vector<Instant> along(directions);
+  for (std::size_t d = 0; d < directions; ++d) {
     along[d].turn(0, rates[d].speed);
     along[d].ports = rates[d].ports;
-    if (base.pressure.kind == PressureKind::ideal)
-      along[d].chamber_pressure.resize(static_cast<std::size_t>(n));
+    if (load_sets_pressure(s.base)) along[d].ports.delivery = of_pressure(d).delivery_mean;
+    if (base.pressure.kind != PressureKind::curve) along[d].chamber_pressure.resize(n);
   }
-  std::vector<double> values(reactions), derivatives(reactions * variables.size());
-  for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
-    samples.instant(row, instant);
-    for (std::size_t d = 0; d < along.size(); ++d)
+  const auto chamber_rate = [&](std::size_t d, std::size_t row, std::size_t k) {
+    if (hydraulic) return of_pressure(d).chamber[row * n + k];
+    return ideal.rate(
+        piston_angle_deg(turn.samples.theta_deg[row], static_cast<int>(k) + 1, static_cast<int>(n)),
+        rates[d]);
+  };
+  std::vector<double> values(reactions), derivatives(reactions * directions);
+  for (std::size_t row = 0; row < turn.samples.theta_deg.size(); ++row) {
+    turn.samples.instant(row, instant);
+    for (std::size_t d = 0; d < directions; ++d)
       for (std::size_t k = 0; k < along[d].chamber_pressure.size(); ++k)
-        along[d].chamber_pressure[k] = ideal.rate(
-            piston_angle_deg(samples.theta_deg[row], static_cast<int>(k) + 1, n), rates[d]);
+        along[d].chamber_pressure[k] = chamber_rate(d, row, k);
     model.reactions(instant, along, values, derivatives);
     for (StatisticRates& statistic : statistics) statistic.add(values, derivatives, reactions);
   }
   for (std::size_t i = 0; i < outputs.size(); ++i)
-    for (std::size_t d = 0; d < variables.size(); ++d)
-      s.derivatives[outputs[i]][variables[d]] = statistics[i].derivative(d);
+    for (std::size_t d = 0; d < count; ++d) {
+      Derivative& found = s.derivatives[outputs[i]][variables[d]];
+      found = statistics[i].derivative(d);
+      if (!hydraulic) continue;
+      found.way = Way::forward;
+      found.error += std::abs(statistics[i].derivative(count + d).value - found.value);
+    }
+  return variables;
 }
 
 // ---- Differences
@@ -375,7 +482,17 @@ std::vector<std::size_t> numbers(std::size_t count, const Wanted& wanted) {
 
 }  // namespace
 
-std::string to_string(Way way) { return way == Way::exact ? "exact" : "differences"; }
+std::string to_string(Way way) {
+  switch (way) {
+    case Way::exact:
+      return "exact";
+    case Way::forward:
+      return "forward sensitivities (CVODES)";
+    case Way::differences:
+      break;
+  }
+  return "differences";
+}
 
 double Sensitivities::elasticity(std::size_t output, std::size_t variable) const {
   if (at[variable] == 0 || values[output] == 0) return not_computed();
@@ -412,11 +529,14 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
   const auto exact_output = [&](std::size_t o) {
     return analytic && is_exact(s.outputs[o], layout) && is_computed(s.values[o]);
   };
-  const auto exact_variable = [&](std::size_t v) { return is_exact(s.variables[v], base); };
   const auto outputs_found = numbers(outputs.size(), exact_output);
-  const auto variables_found = numbers(variables.size(), exact_variable);
+  auto variables_found =
+      numbers(variables.size(), [&](std::size_t v) { return is_exact(s.variables[v], base); });
   if (!outputs_found.empty() && !variables_found.empty())
-    find_exact(s, outputs_found, variables_found);
+    variables_found = find_exact(s, outputs_found, std::move(variables_found), progress_of);
+  const auto exact_variable = [&](std::size_t v) {
+    return std::find(variables_found.begin(), variables_found.end(), v) != variables_found.end();
+  };
 
   // Of the outputs that differences are needed of alone, so that these can be quick.
   const Progress progress = progress_of("derivatives");

@@ -109,8 +109,10 @@ std::string other_model(const SensitivityCheck& check) {
 
 std::string headline(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
   if (!check)
-    return fmt::format("{} derivatives exact, {} by differences", count_of(s, Way::exact),
-                       count_of(s, Way::differences));
+    return fmt::format(
+        "{} derivatives {}, {} by differences", count_of(s, Way::exact) + count_of(s, Way::forward),
+        s.base.pressure.kind == PressureKind::hydraulic ? "by forward sensitivities" : "exact",
+        count_of(s, Way::differences));
   const std::string worst = check->worst > 0
                                 ? fmt::format(" ({} by {})", s.outputs[check->output].name,
                                               s.variables[check->variable].name())

@@ -40,8 +40,9 @@ struct Problem {
   const Network& network;
   double load_size = 0;
   Network::Flows flows;
-  std::vector<double> by_state, by_load;  // of the sensitivity equations
-  double mass_scale = 1;                  // kg/degree: of the integrals, for their error control
+  const std::vector<Direction>& directions;
+  std::vector<double> by_state, by_load, above, below;  // of the sensitivity equations
+  double mass_scale = 1;  // kg/degree: of the integrals, for their error control
   double work_scale = 1;
   bool energies = false;  // the integrals wanted are those of power by place
 };
@@ -65,10 +66,21 @@ int sensitivity_rates(int count, realtype x, N_Vector y, N_Vector, N_Vector* s, 
   const Network& network = problem.network;
   network.jacobian(x, data(y), problem.load_size, problem.by_state.data(), problem.by_load.data());
   const int size = network.size();
+  const int first_direction = count - static_cast<int>(problem.directions.size());
   for (int j = 0; j < count; ++j) {
     double* to = data(ds[j]);
     const double* from = data(s[j]);
-    for (int row = 0; row < size; ++row) to[row] = j < network.states() ? 0 : problem.by_load[row];
+    if (j >= first_direction) {
+      const Direction& way = problem.directions[j - first_direction];
+      if (!way.above->rates(x, data(y), way.above_load, problem.above.data()) ||
+          !way.below->rates(x, data(y), way.below_load, problem.below.data()))
+        return 1;
+      for (int row = 0; row < size; ++row)
+        to[row] = (problem.above[row] - problem.below[row]) / way.apart;
+    } else {
+      for (int row = 0; row < size; ++row)
+        to[row] = j < network.states() ? 0 : problem.by_load[row];
+    }
     for (int column = 0; column < size; ++column) {
       if (from[column] == 0) continue;
       const double* entries = problem.by_state.data() + column * size;
@@ -144,6 +156,11 @@ std::string sundials_version() {
 Integrator::Integrator(const Network& network, std::function<void()> alive)
     : network_(network), alive_(std::move(alive)) {}
 
+void Integrator::follow(std::vector<Direction> directions, double tolerance) {
+  directions_ = std::move(directions);
+  directions_tolerance_ = tolerance;
+}
+
 double Integrator::share_of_effort() const { return effort_ / most_effort(network_); }
 
 std::vector<double> Integrator::over_period(const std::vector<double>& states, double load_size,
@@ -151,9 +168,11 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
                                             Integrals* integrals, const Watch& watch,
                                             PowerBudget* energy) {
   const int size = network_.size();
-  Problem problem{network_, load_size, {}, {}, {}, 1, 1, energy != nullptr};
+  Problem problem{network_, load_size, {}, directions_, {}, {}, {}, {}, 1, 1, energy != nullptr};
   problem.by_state.resize(static_cast<std::size_t>(size) * size);
   problem.by_load.resize(size);
+  problem.above.resize(size);
+  problem.below.resize(size);
   // Integrals are scaled to the mass and the work of one piston's stroke at delivery pressure.
   const double stroke = network_.chamber().swept();
   problem.mass_scale = network_.fluid().state(0).density * stroke;
@@ -188,7 +207,8 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
   check(CVodeSetLinearSolver(cv.memory, cv.solver, cv.matrix));
   check(CVodeSetJacFn(cv.memory, jacobian));
   if (sensitivity != nullptr) {
-    cv.sensitivities = network_.states() + (network_.load_sought() ? 1 : 0);
+    cv.sensitivities =
+        network_.states() + (network_.load_sought() ? 1 : 0) + static_cast<int>(directions_.size());
     cv.sensitivity = N_VCloneVectorArray(cv.sensitivities, cv.y);
     if (cv.sensitivity == nullptr) throw std::bad_alloc();
     for (int j = 0; j < cv.sensitivities; ++j) {
@@ -200,10 +220,13 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
     // They serve as the Jacobian of a Newton iteration: the states set the steps. But a mode of a
     // delivery line that the states do not excite would be followed in steps far too long.
     const bool waves = network_.has_delivery_line();
-    const double sensitivity_tolerance = waves ? std::max(tolerance, kForWaves) : tolerance;
+    const bool as_result = !directions_.empty();
+    const double sensitivity_tolerance = as_result ? directions_tolerance_
+                                         : waves   ? std::max(tolerance, kForWaves)
+                                                   : tolerance;
     std::vector<double> absolute(cv.sensitivities, sensitivity_tolerance);
     check(CVodeSensSStolerances(cv.memory, sensitivity_tolerance, absolute.data()));
-    check(CVodeSetSensErrCon(cv.memory, waves ? SUNTRUE : SUNFALSE));
+    check(CVodeSetSensErrCon(cv.memory, waves || as_result ? SUNTRUE : SUNFALSE));
   }
   const bool integrate = integrals != nullptr || energy != nullptr;
   if (integrate) {
@@ -217,6 +240,12 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
     check(CVodeSetQuadErrCon(cv.memory, SUNTRUE));
   }
 
+  std::vector<double> sampled_sensitivity;
+  const auto copy_sensitivities = [&](std::vector<double>& to) {
+    to.clear();
+    for (int j = 0; j < cv.sensitivities; ++j)
+      to.insert(to.end(), data(cv.sensitivity[j]), data(cv.sensitivity[j]) + size);
+  };
   Step taken;
   taken.state = [&](double x) -> const double* {
     check(CVodeGetDky(cv.memory, x, 0, cv.sampled));
@@ -225,6 +254,12 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
   taken.integrals = [&](double x) {
     check(CVodeGetQuadDky(cv.memory, x, 0, cv.sampled_integrals));
     return in_units(problem, data(cv.sampled_integrals));
+  };
+
+  taken.sensitivities = [&](double x) -> const std::vector<double>& {
+    check(CVodeGetSensDky(cv.memory, x, 0, cv.sensitivity));
+    copy_sensitivities(sampled_sensitivity);
+    return sampled_sensitivity;
   };
 
   std::vector<double> stops = network_.edges_deg();
@@ -272,12 +307,7 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
       (*energy)[static_cast<Place>(i)] = data(cv.integrals)[i] * problem.work_scale;
   else if (integrals != nullptr)
     *integrals = in_units(problem, data(cv.integrals));
-  if (sensitivity != nullptr) {
-    sensitivity->clear();
-    for (int j = 0; j < cv.sensitivities; ++j)
-      sensitivity->insert(sensitivity->end(), data(cv.sensitivity[j]),
-                          data(cv.sensitivity[j]) + size);
-  }
+  if (sensitivity != nullptr) copy_sensitivities(*sensitivity);
   return {data(cv.y), data(cv.y) + size};
 }
 

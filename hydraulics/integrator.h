@@ -27,6 +27,14 @@ struct Work {
   long steps = 0, evaluations = 0, factorizations = 0;
 };
 
+/// A way in the space of parameters: the equations a little before and after on it.
+struct Direction {
+  const Network* above;
+  const Network* below;
+  double above_load, below_load;  ///< sizes of their loads
+  double apart;                   ///< of the two on the way
+};
+
 /// Carries states through one period of 360/N degrees. Restarts at every port edge. Uses CVODES'
 /// dense Newton iteration with the network's own Jacobian, and its forward sensitivities.
 class Integrator {
@@ -42,6 +50,9 @@ class Integrator {
     std::function<const double*(double x)> state;
     /// Integrals from the start of the period, where they were asked for.
     std::function<Integrals(double x)> integrals;
+    /// Sensitivities at an angle of the step, where they were asked for, as over_period gives them;
+    /// until the next call.
+    std::function<const std::vector<double>&(double x)> sensitivities;
   };
   using Watch = std::function<void(const Step& step)>;
 
@@ -62,6 +73,11 @@ class Integrator {
                                   Integrals* integrals = nullptr, const Watch& watch = {},
                                   PowerBudget* energy = nullptr);
 
+  /// From now on sensitivities have a column more for each direction, of states that start as they
+  /// are, and all columns are integrated with control of their own error: `tolerance` of a column
+  /// and, absolute, of d(state)/d(way).
+  void follow(std::vector<Direction> directions, double tolerance);
+
   const Work& work() const { return work_; }  ///< of all calls so far
   /// Of the effort after which every call fails, what is gone.
   double share_of_effort() const;
@@ -71,6 +87,8 @@ class Integrator {
   struct Implementation;
   const Network& network_;
   std::function<void()> alive_;
+  std::vector<Direction> directions_;
+  double directions_tolerance_ = 0;
   Work work_;
   double effort_ = 0;  // of all calls so far
   double most_ = 1;    // of the effort allowed

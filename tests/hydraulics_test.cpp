@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ostream>
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/files/case_file.h"
+#include "bentaxis/hydraulics/sensitivity.h"
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "integrator.h"
 #include "kinematics.h"
 #include "network.h"
@@ -327,6 +330,133 @@ TEST(Orders, OfTheKinematicFlow) {
     EXPECT_NEAR(order.flow / state.summary.mass_flow, expected, scaled(1e-5)) << m;
     EXPECT_EQ(order.delivery, 0);
   }
+}
+
+// ---- How pressures change with parameters
+
+// A case with its tightest curve, and a parameter that is changed by a share of itself.
+struct Changed {
+  std::vector<std::string> circuit;
+  std::string key;
+  double value = 0;
+  std::string before = {}, after = {};  // around the value: of a pair
+
+  Case at(double share) const {
+    std::vector<std::string> changes = {"hydraulics.tolerance=1e-12", "hydraulics.curve_error=1e-9",
+                                        "operation.samples_per_revolution=360"};
+    changes.insert(changes.end(), circuit.begin(), circuit.end());
+    changes.push_back(key + "=" + before + number_text(value * (1 + share)) + after);
+    return read_case(fs::path(BENTAXIS_SOURCE_DIR) / "cases/bap63_rated_hydraulic.toml", changes);
+  }
+};
+
+std::ostream& operator<<(std::ostream& to, const Changed& changed) {
+  for (const std::string& change : changed.circuit) to << change << ", ";
+  return to << changed.key;
+}
+
+std::vector<Changed> parameters_of_the_plain_circuit() {
+  return {{{}, "hydraulics.bulk_modulus_MPa", 1400},
+          {{}, "hydraulics.dead_volume_cm3", 3},
+          {{}, "hydraulics.air_percent", 0.5},
+          {{}, "hydraulics.delivery_notch_deg", 18},
+          {{}, "port_plate.delivery_arc_deg", 204, "[", ", 336]"},
+          {{}, "pump.piston_length_mm", 46},
+          {{}, "pump.bore_diameter_mm", 22.5},
+          {{}, "pressure.delivery_bar", 275},
+          {{}, "operation.speed_rpm", 1500}};
+}
+
+// The same by differences of whole searches, of a step and of twice the step: what is left is their
+// noise, at most the curves' errors times (8 + 8 + 1 + 1)/12 over the step, and the fourth power of
+// the step, 0.02 deg at an edge of an arc.
+class PressureRatesAre : public testing::TestWithParam<Changed> {};
+TEST_P(PressureRatesAre, DifferencesOfPeriodicStates) {
+  const Changed& changed = GetParam();
+  constexpr double kDifferentiated = 1e-6;
+  const SteadyState base = steady_state(changed.at(0));
+  std::vector<double> angles;
+  for (int i = 0; i < 360; ++i) angles.push_back(i + 0.3);
+  const Neighbours neighbours{changed.at(kDifferentiated), changed.at(-kDifferentiated),
+                              2 * kDifferentiated};
+  ASSERT_TRUE(has_rates(base, neighbours));
+  const PressureRates rates = pressure_rates(base, {&neighbours, 1}, angles).front();
+
+  constexpr double kStep = 1e-4;
+  const SteadyState states[] = {steady_state(changed.at(kStep)), steady_state(changed.at(-kStep)),
+                                steady_state(changed.at(2 * kStep)),
+                                steady_state(changed.at(-2 * kStep))};
+  const auto difference = [&](const auto& of) {
+    return (8 * (of(states[0]) - of(states[1])) - (of(states[2]) - of(states[3]))) / (12 * kStep);
+  };
+  double noise = 0, largest = 0;
+  for (const SteadyState& state : states) noise = std::max(noise, state.computed->error / kStep);
+  for (const double rate : rates.chamber) largest = std::max(largest, std::abs(rate));
+  EXPECT_LT(noise, 2e-4 * base.computed->peak);
+  double worst = 0, at = 0;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double off = std::abs(rates.chamber[i] - difference([&](const SteadyState& state) {
+                                  return state.computed->gauge(angles[i]);
+                                }));
+    if (off > worst) worst = off, at = angles[i];
+  }
+  EXPECT_LE(worst, 1.5 * noise + 1e-6 * largest) << at;
+  EXPECT_NEAR(rates.delivery_mean,
+              difference([](const SteadyState& state) { return state.summary.delivery_mean; }),
+              1.5 * noise);
+}
+INSTANTIATE_TEST_SUITE_P(PlainCircuit, PressureRatesAre,
+                         testing::ValuesIn(parameters_of_the_plain_circuit()));
+INSTANTIATE_TEST_SUITE_P(
+    OtherCircuits, PressureRatesAre,
+    testing::Values(Changed{{"load.kind=laminar", "load.conductance_l_per_min_per_bar=0.33"},
+                            "hydraulics.bulk_modulus_MPa",
+                            1400},
+                    Changed{{"load.kind=laminar"}, "load.conductance_l_per_min_per_bar", 0.33},
+                    Changed{{"load.kind=constant_pressure"}, "pressure.delivery_bar", 275},
+                    Changed{{"load.kind=constant_pressure", "operation.speed_rpm=-900"},
+                            "hydraulics.dead_volume_cm3",
+                            3},
+                    Changed{{"suction_line.length_m=1", "suction_line.diameter_mm=40"},
+                            "suction_line.length_m",
+                            1},
+                    Changed{{"accumulator.gas_volume_l=0.3", "accumulator.precharge_bar=150"},
+                            "accumulator.precharge_bar",
+                            150},
+                    Changed{{"hydraulics.cavitation=rate"}, "operation.speed_rpm", 1500},
+                    Changed{{"delivery_line.length_m=1", "delivery_line.diameter_mm=20"},
+                            "delivery_line.length_m",
+                            1},
+                    Changed{{"delivery_line.length_m=1", "delivery_line.diameter_mm=20"},
+                            "hydraulics.delivery_volume_l",
+                            0.5}));
+
+// Areas open from 0, so what moves an edge moves nothing at once: no jump there, but a change of
+// slope. Both sides of an edge are 2e-7 deg apart, rates change by their size in a degree or so.
+TEST(PressureRates, HaveNoJumpsAtEdgesOfPorts) {
+  const Changed changed{{}, "port_plate.delivery_arc_deg", 204, "[", ", 336]"};
+  const SteadyState base = steady_state(changed.at(0));
+  const Neighbours neighbours{changed.at(1e-6), changed.at(-1e-6), 2e-6};
+  std::vector<double> angles;
+  for (const double edge : base.computed->edges_deg)
+    for (const double side : {-1e-7, 1e-7}) angles.push_back(edge + side);
+  ASSERT_GE(angles.size(), 8U);
+  const auto rates = pressure_rates(base, {&neighbours, 1}, angles).front().chamber;
+  const double largest = std::abs(*std::max_element(
+      rates.begin(), rates.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+  EXPECT_GT(largest, 0.1 * base.computed->peak);
+  for (std::size_t i = 0; i < angles.size(); i += 2)
+    EXPECT_NEAR(rates[i], rates[i + 1], 1e-5 * largest) << angles[i];
+}
+
+TEST(PressureRates, AreRefusedWhereTheCircuitChanges) {
+  const SteadyState base = steady_state(rated());
+  Neighbours two{rated(), rated(), 1};
+  EXPECT_TRUE(has_rates(base, two));
+  two.above.hydraulics->load = LoadData();
+  two.above.hydraulics->load->kind = LoadKind::constant_pressure;
+  EXPECT_FALSE(has_rates(base, two));
+  EXPECT_THROW(pressure_rates(base, {&two, 1}, {}), InputError);
 }
 
 TEST(Orders, AreTheHarmonicsOfTheTable) {

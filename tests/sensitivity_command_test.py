@@ -29,8 +29,8 @@ class Sensitivity(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
         self.out = self.folder / "out"
 
-    def run_program(self, *options, status=DONE):
-        done = subprocess.run([PROGRAM, "sensitivity", REPO / "cases/bap63_rated.toml", "--out", self.out,
+    def run_program(self, *options, status=DONE, case="bap63_rated"):
+        done = subprocess.run([PROGRAM, "sensitivity", REPO / f"cases/{case}.toml", "--out", self.out,
                                "--set", "operation.samples_per_revolution=40", *options],
                               capture_output=True, text=True, timeout=SECONDS)
         self.assertEqual(done.returncode, status, done.stderr)
@@ -64,6 +64,16 @@ class Sensitivity(unittest.TestCase):
         difference = (mean_torque(1e-3) - mean_torque(-1e-3)) / 2e-3
         # Third derivative times 1e-6, and round-off of 1e-13 over 1e-3.
         self.assertAlmostEqual(float(row["derivative"]), difference, delta=1e-7 * abs(difference))
+
+    def test_hydraulic_pressure_names_its_method(self):
+        done = self.run_program("--output", "mean:Td,efficiency.volumetric", "--parameter",
+                                "hydraulics.bulk_modulus_MPa", case="bap63_rated_hydraulic")
+        reactions, efficiency = rows_of(self.out / "sensitivity.csv")
+        self.assertEqual(reactions["found_by"], "forward sensitivities (CVODES)")
+        self.assertGreater(float(reactions["error"]), 0)
+        self.assertEqual(efficiency["found_by"], "differences")
+        self.assertIn("1 derivatives by forward sensitivities, 1 by differences", done.stdout)
+        self.assertIn("forward sensitivities (CVODES)", (self.out / "sensitivity.json").read_text())
 
     def test_without_names_every_number_of_the_case(self):
         self.run_program()

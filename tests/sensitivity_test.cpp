@@ -146,6 +146,79 @@ TEST(Sensitivity, AgreesWithDifferencesOfSimbody) {
   EXPECT_FALSE(check(wrong).agrees());
 }
 
+// Under hydraulic pressure: differences of whole searches, of a step and of twice the step. Curves
+// of an error of 1e-9 of their peak, over the step, are what is left; reactions follow the
+// pressure.
+constexpr double kStepOfSearch = 1e-4;
+constexpr double kDifferencesOfSearch = 1.5 * 1e-9 / kStepOfSearch;
+
+TEST(Sensitivity, UnderHydraulicPressureIsThatOfThePeriodicState) {
+  for (const bool load_given : {false, true}) {
+    std::vector<std::string> changes = {"hydraulics.tolerance=1e-12", "hydraulics.curve_error=1e-9",
+                                        "operation.samples_per_revolution=60"};
+    std::vector<std::string> names = {"hydraulics.bulk_modulus_MPa", "hydraulics.dead_volume_cm3",
+                                      "operation.speed_rpm"};
+    if (load_given) {  // the delivery pressure, on the lands too, follows
+      changes.insert(changes.end(),
+                     {"load.kind=laminar", "load.conductance_l_per_min_per_bar=0.33"});
+      names.emplace_back("load.conductance_l_per_min_per_bar");
+    } else {  // on the pump alone, on its pressure alone, on both
+      for (const char* name :
+           {"port_plate.delivery_arc_deg.1", "port_plate.inner_land_mm.2", "pump.piston_length_mm",
+            "pump.tilt_deg", "pump.bore_diameter_mm", "pressure.delivery_bar", "piston.mass_kg"})
+        names.emplace_back(name);
+    }
+    const Case base =
+        read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated_hydraulic.toml", changes);
+    const auto variables = variables_of(base, names);
+    const auto outputs =
+        outputs_of(base, {"mean:Td", "peak:Rb1", "max:Rb2_x1", "rms:Rc", "mean:Rs", "min:Fh"});
+    const Sensitivities found = sensitivities(base, variables, outputs);
+    const Evaluator evaluator(Family(base, variables), outputs);
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+      const auto at_share = [&](double share) {
+        auto at = found.at;
+        at[v] *= 1 + share;
+        return evaluator.evaluate(at).values;
+      };
+      const auto up = at_share(kStepOfSearch), down = at_share(-kStepOfSearch);
+      const auto far_up = at_share(2 * kStepOfSearch), far_down = at_share(-2 * kStepOfSearch);
+      for (std::size_t o = 0; o < outputs.size(); ++o) {
+        const Derivative& d = found.derivatives[o][v];
+        EXPECT_EQ(d.way, Way::forward);
+        EXPECT_NEAR(d.value * found.at[v],
+                    (8 * (up[o] - down[o]) - (far_up[o] - far_down[o])) / (12 * kStepOfSearch),
+                    kDifferencesOfSearch * found.scales[o])
+            << outputs[o].name << " by " << variables[v].name();
+        EXPECT_LE(d.error * found.at[v], 1e-6 * found.scales[o])
+            << outputs[o].name << " by " << variables[v].name();
+      }
+    }
+  }
+}
+
+TEST(Sensitivity, UnderHydraulicPressureSaysWhereDifferencesAreTaken) {
+  Case base = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated_hydraulic.toml",
+                        {"operation.samples_per_revolution=60"});
+  const auto ways = [&] {
+    const Sensitivities found =
+        sensitivities(base, variables_of(base, {"hydraulics.bulk_modulus_MPa"}),
+                      outputs_of(base, {"mean:Td", "efficiency.volumetric"}));
+    return std::vector<Way>{found.derivatives[0][0].way, found.derivatives[1][0].way};
+  };
+  EXPECT_THAT(ways(), testing::ElementsAre(Way::forward, Way::differences));
+  base.pressure.points = 72;  // a spline
+  EXPECT_THAT(ways(), testing::ElementsAre(Way::differences, Way::differences));
+  // On the bound of its range: of the pump alone.
+  base.pressure.points = 0;
+  base.pump.friction.shaft_torque_factor = 1;
+  const Sensitivities found = sensitivities(
+      base, variables_of(base, {"friction.shaft_torque_factor"}), outputs_of(base, {"mean:Td"}));
+  EXPECT_EQ(found.derivatives[0][0].way, Way::forward);
+  EXPECT_NEAR(found.derivatives[0][0].value, -found.values[0], 1e-12 * found.values[0]);
+  EXPECT_EQ(to_string(Way::forward), "forward sensitivities (CVODES)");
+}
+
 TEST(Sensitivity, SaysWhatItCannotDo) {
   const Case base = rated();
   const auto refusal = [&](const std::string& name) -> std::string {

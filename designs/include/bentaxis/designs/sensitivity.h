@@ -15,13 +15,15 @@ namespace bentaxis::designs {
 /// Where a derivative comes from.
 enum class Way {
   exact,        ///< numbers that carry derivatives through the closed form: right to round-off
+  forward,      ///< exact, through the pressures' own derivatives: CVODES' forward sensitivities
   differences,  ///< central differences, extrapolated to no step (Ridders 1982)
 };
 std::string to_string(Way way);
 
 struct Derivative {
   double value;  ///< in the files' units; not_computed() where there is none
-  /// Of differences: estimate. Of an exact one 0, but at a kink, where several samples attain an
+  /// Of differences: estimate; of forward sensitivities: what ten times their tolerance changes. Of
+  /// an exact one 0, but at a kink, where several samples attain an
   /// extreme: derivatives to either side are value - error and value + error.
   double error = 0;
   Way way = Way::exact;
@@ -49,8 +51,9 @@ struct Sensitivities {
 std::vector<Variable> continuous_variables(const Case& base);
 
 /// Derivatives at the case itself. Exact are those by the analytic model of statistics of
-/// reactions, under ideal pressure or a curve and without teeth, with respect to what pump, speed
-/// and pressure are made of; a largest or least value changes as at the sample that attains it.
+/// reactions, without teeth, with respect to what pump, speed and pressure are made of; under
+/// hydraulic pressure, but for a spline in its place, they are forward sensitivities; a largest or
+/// least value changes as at the sample that attains it.
 /// @throws InputError where a variable is no continuous number, or as the case; ComputationError
 Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
                             const std::vector<Output>& outputs,

@@ -1,0 +1,165 @@
+#include "bentaxis/hydraulics/sensitivity.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "integrator.h"
+#include "network.h"
+#include "period_map.h"
+
+namespace bentaxis::hydraulics {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+
+// The equations of two neighbours.
+struct Pair {
+  Pair(const Neighbours& of, const Network& network)
+      : above(of.above), below(of.below), apart(of.apart) {
+    for (const Network* other : {&above, &below})
+      if (other->size() != network.size() || other->states() != network.states() ||
+          other->pistons() != network.pistons() || other->backwards() != network.backwards() ||
+          other->load_sought() != network.load_sought())
+        throw InputError("hydraulics: a parameter changes the circuit: it has no derivative");
+  }
+  Direction direction(const Network& network, double load_size) const {
+    const bool sought = network.load_sought();
+    return {&above, &below, sought ? load_size : above.load().size(),
+            sought ? load_size : below.load().size(), apart};
+  }
+  // Of what a network says, with the state as it is.
+  template <class F>
+  double difference(const F& f) const {
+    return (f(above) - f(below)) / apart;
+  }
+  Network above, below;
+  double apart;
+};
+
+// Where in the period which chamber passes an angle.
+struct Passage {
+  double x;
+  int chamber;
+  std::size_t number;  // of the angle
+};
+
+std::vector<Passage> passages_of(const Network& network, std::span<const double> theta_k_deg) {
+  const int n = network.pistons();
+  std::vector<Passage> places;
+  for (std::size_t i = 0; i < theta_k_deg.size(); ++i) {
+    const double angle = wrap_degrees(theta_k_deg[i]);
+    const int segment = std::min(static_cast<int>(angle / network.period_deg()), n - 1);
+    const double past =
+        std::clamp(angle - segment * network.period_deg(), 0.0, network.period_deg());
+    if (network.backwards())
+      places.push_back({network.period_deg() - past, (2 * n - segment - 1) % n, i});
+    else
+      places.push_back({past, (n - segment) % n, i});
+  }
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Passage& a, const Passage& b) { return a.x < b.x; });
+  return places;
+}
+
+// ln P of a chamber at an angle, and its derivatives by start, ln load size and parameters.
+struct Sample {
+  double s = 0;
+  Vector row;
+};
+
+}  // namespace
+
+bool has_rates(const SteadyState& state, const Neighbours& parameter) {
+  try {
+    const Pair pair(parameter, *state.equations);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+std::vector<PressureRates> pressure_rates(const SteadyState& state,
+                                          std::span<const Neighbours> parameters,
+                                          std::span<const double> theta_k_deg, double tolerance,
+                                          const Progress& progress) {
+  const Network& network = *state.equations;
+  Integrator integrator(network, [&] {
+    if (progress) progress(0.5);
+  });
+  const PeriodMap map(network, Sizing::mean_pressure, integrator);
+  const double load_size = state.corrected_load_size;
+  std::vector<std::unique_ptr<const Pair>> pairs;
+  std::vector<Direction> directions;
+  for (const Neighbours& each : parameters) {
+    pairs.push_back(std::make_unique<const Pair>(each, network));
+    directions.push_back(pairs.back()->direction(network, load_size));
+  }
+  integrator.follow(directions, tolerance);
+
+  const auto places = passages_of(network, theta_k_deg);
+  std::vector<Sample> samples(places.size());
+  std::size_t next = 0;
+  const int size = network.size(), states = network.states();
+  const int unknowns = map.unknowns();
+  const auto columns = unknowns + static_cast<int>(pairs.size());
+  std::vector<double> at_end;
+  const std::vector<double> end = integrator.over_period(
+      state.corrected_states, load_size, state.convergence.tolerance, &at_end, nullptr,
+      [&](const Integrator::Step& step) {
+        while (next < places.size() && places[next].x <= step.to) {
+          const double x = places[next].x;
+          const Eigen::Map<const Matrix> by(step.sensitivities(x).data(), size, columns);
+          const double* const y = step.state(x);
+          for (; next < places.size() && places[next].x == x; ++next)
+            samples[next] = {y[places[next].chamber], by.row(places[next].chamber)};
+        }
+      });
+
+  // How start and load follow: what the end becomes, in its new order, is what the start becomes.
+  const Eigen::Map<const Matrix> by(at_end.data(), size, columns);
+  Matrix residual(unknowns, columns);
+  for (int j = 0; j < columns; ++j) {
+    const auto moved = map.relabelled({by.col(j).data(), by.col(j).data() + size});
+    residual.col(j).head(states) = Eigen::Map<const Vector>(moved.data(), states);
+  }
+  residual.leftCols(states).topRows(states).diagonal().array() -= 1;
+  if (network.load_sought()) residual.row(states) = by.row(size - 1);
+  const Matrix follow =
+      -residual.leftCols(unknowns).partialPivLu().solve(residual.rightCols(columns - unknowns));
+  if (!follow.allFinite())
+    throw ComputationError("hydraulics: the periodic state has no derivatives here");
+
+  std::vector<PressureRates> rates(pairs.size());
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const auto direction = static_cast<Eigen::Index>(p);
+    const auto of = [&](const auto& row) {
+      return row.head(unknowns).dot(follow.col(direction)) + row[unknowns + direction];
+    };
+    rates[p].chamber.resize(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double s = samples[i].s;
+      rates[p].chamber[places[i].number] =
+          network.fluid().state(s).pressure * of(samples[i].row) +
+          pairs[p]->difference([s](const Network& each) { return each.fluid().gauge(s); });
+    }
+    if (network.fixed_line()) {
+      rates[p].delivery_mean =
+          pairs[p]->difference([](const Network& each) { return each.delivery_pressure(); });
+    } else {
+      const Vector last = by.row(size - 1);
+      rates[p].delivery_mean = network.mean_scale() * of(last) +
+                               end[size - 1] * pairs[p]->difference([](const Network& each) {
+                                 return each.mean_scale();
+                               });
+    }
+  }
+  return rates;
+}
+
+}  // namespace bentaxis::hydraulics
