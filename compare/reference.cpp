@@ -408,9 +408,7 @@ std::vector<double> largest_nearby(const std::vector<double>& values) {
 // cannot be told from its points alone: a steep flank beside the jump looks as smooth.
 std::vector<double> resampling_errors(const std::vector<double>& theta,
                                       const std::vector<double>& values) {
-  std::vector<double> errors(theta.size(), 0);
-  if (theta.size() < 6) return errors;
-  errors = largest_nearby(misses(theta, values));
+  std::vector<double> errors = largest_nearby(misses(theta, values));
   for (double& error : errors) error *= 3;
   return errors;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 
 #include "bentaxis/designs/identify.h"
@@ -284,9 +285,12 @@ Posterior posterior_of(const DataModel& model, const LeastSquaresFit& fit,
   posterior.count = std::min(static_cast<std::size_t>(options.draws), all);
   posterior.unknowns.resize(posterior.count * model.size());
   posterior.numbers.resize(posterior.count * model.numbers());
+  // Evenly over the steps, and over all walkers: those of one are not independent of each other.
+  std::size_t stride = walkers * 5 / 8;
+  while (std::gcd(stride, walkers) != 1) ++stride;
   study::in_threads(options.threads, posterior.count, [&](std::size_t d) {
-    const std::size_t at = (2 * d + 1) * all / (2 * posterior.count);
-    const Vector& x = chain[at / walkers][at % walkers];
+    const std::size_t step = (2 * d + 1) * kept / (2 * posterior.count);
+    const Vector& x = chain[step][d * stride % walkers];
     std::copy(x.begin(), x.end(),
               posterior.unknowns.begin() + static_cast<std::ptrdiff_t>(d * model.size()));
     model.predict(x, std::span(posterior.numbers).subspan(d * model.numbers(), model.numbers()));

@@ -19,6 +19,9 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// Of the longest column: what is shorter is the error of derivatives by differences.
+constexpr double kRank = 1e-9;
+
 double scale_of(const LeastSquaresProblem& problem, std::size_t i) {
   if (!problem.scales.empty()) return problem.scales[i];
   if (!problem.low.empty() && std::isfinite(problem.high[i] - problem.low[i]))
@@ -90,7 +93,9 @@ std::vector<double> LeastSquaresFit::covariance() const {
   Eigen::VectorXd lengths = j.colwise().norm();  // so that units of parameters do not count
   for (double& length : lengths) length = length > 0 ? length : 1;
   j = j * lengths.cwiseInverse().asDiagonal();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(j);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(kRank);
+  qr.compute(j);
   if (qr.rank() < n)
     throw ComputationError("least squares: the data do not determine all parameters");
   const Eigen::MatrixXd r =
@@ -169,7 +174,6 @@ double sum_of_squares(const std::vector<double>& residuals) {
 // many digits; and along a bound it may have stopped early, because its steps are cut off there.
 void finish(const LeastSquaresProblem& problem, const std::vector<double>& units,
             const LeastSquaresOptions& options, LeastSquaresFit& fit) {
-  constexpr double kRank = 1e-9;  // of the longest column: shorter ones are left alone
   constexpr double kRounding = 1e-13;
   const std::size_t n = problem.parameters, m = problem.residuals;
   double last = HUGE_VAL;

@@ -153,7 +153,7 @@ report::Document sensitivity_document(const Sensitivities& found,
   study::describe_case(document, found.base);
   document.derived = study::derived_section(found.base);
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
-                                     headline(found, check)};
+                                     headline(found, check), check ? "" : "Sensitivities"};
   document.meaning =
       "A derivative holds for small changes of one parameter, the others staying. An exact one is "
       "right to round-off; one by differences has the error beside it. A largest or least value "

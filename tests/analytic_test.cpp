@@ -534,18 +534,26 @@ TEST(Kinematics, StrokeCountsInnerStationaryPoints) {
     g.axis_offset = random.in(-0.2, 0.2);
     if (assembly_margin(g).longest_distance > 0.999 * g.piston_length) continue;
     const analytic::Kinematics kinematics(g);
-    double low = 1e9;
-    double high = -1e9;
+    double low = 1e9, least_tilt = 1e9;
+    double high = -1e9, most_tilt = -1e9;
     for (int i = 0; i <= 5000; ++i) {
       const double t = kPi * i / 5000;
-      const double z = kinematics.piston(std::sin(t), std::cos(t)).ring().z();
+      const auto piston = kinematics.piston(std::sin(t), std::cos(t));
+      const double z = piston.ring().z();
       low = std::min(low, z);
       high = std::max(high, z);
+      const auto axis = piston.axis.value;
+      const double tilt = std::atan2(std::hypot(axis.x(), axis.y()), std::abs(axis.z()));
+      least_tilt = std::min(least_tilt, tilt);
+      most_tilt = std::max(most_tilt, tilt);
     }
     const double ends =
         std::abs(kinematics.piston(0, 1).ring().z() - kinematics.piston(0, -1).ring().z());
-    const double stroke = analytic::derived_quantities(g).stroke;
+    const auto derived = analytic::derived_quantities(g);
+    const double stroke = derived.stroke;
     EXPECT_NEAR(stroke, high - low, 1e-6);
+    EXPECT_NEAR(derived.smallest_tilt, least_tilt, 1e-3);  // may be 0, past which it rises
+    EXPECT_NEAR(derived.largest_tilt, most_tilt, 1e-6);
     if (stroke > ends + 1e-6) ++inner;
   }
   EXPECT_GT(inner, 3);  // the sample contains what the test is about

@@ -964,13 +964,14 @@ class OutputTest(ProgramTest):
             self.assertNotEqual(after[f"out/{name}"], before[f"out/{name}"], name)
 
     def test_output_that_does_not_arrive_is_no_success(self):
-        for arguments in (["--help"], ["--version"], ["run", self.case(), "--model", "analytic", "--out", "out"],
+        # A long text fails before its end: why is then forgotten, and nothing else is said instead.
+        for arguments in (["--help"], ["--version"], ["schema"], ["run", self.case(), "--model", "analytic", "--out", "out"],
                           ["compare", self.case(), "--out", "out"]):
             with self.subTest(arguments), open("/dev/full", "w") as full:
                 done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, stdin=subprocess.DEVNULL,
                                       stdout=full, stderr=subprocess.PIPE, text=True)
                 self.assertEqual(done.returncode, BAD_INPUT)
-                self.assertRegex(PUMP.sub("", done.stderr), r"^bentaxis: standard output cannot be written(: [^\n]+)?\n$")
+                self.assertRegex(PUMP.sub("", done.stderr), r"^bentaxis: standard output cannot be written(: No space left on device)?\n$")
         # Of a job that fails anyway, one line says why.
         shutil.copytree(REPO / "reference_data" / "hard" / "tilt_45", self.folder / "hard" / "tilt_45")
         shutil.copy(REPO / "reference_data" / "hard" / "catalogue.toml", self.folder / "hard")

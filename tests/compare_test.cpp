@@ -92,6 +92,16 @@ TEST(Comparison, OrdersOfATableOverSeveralTurnsAreOfOneTurn) {
   EXPECT_NEAR(c.channels[0].harmonics[0].amplitude[0], 3, 1e-12);
 }
 
+TEST(Comparison, OrdersNeedWholeTurns) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  ResultTable a = table("a", channels, {[](double t) { return wave(t, 1); }}, 24);
+  Options options;
+  options.orders = {1};
+  EXPECT_EQ(compare_tables(a, a, options).channels.at(0).harmonics.size(), 1U);
+  for (double& angle : a.theta_deg) angle *= 0.75;
+  EXPECT_TRUE(compare_tables(a, a, options).channels.at(0).harmonics.empty());
+}
+
 TEST(Comparison, WorstIsTheFirstOfEquals) {
   const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_N", "Y")};
   const auto one = [](double) { return 1.0; };
@@ -363,6 +373,19 @@ TEST(Split, MarksOnlyExplainedChannels) {
   EXPECT_NEAR(split.largest_rest(), 0.02, 1e-12);
 }
 
+// A channel that is zero all round has no peak that a rest could be a share of.
+TEST(Split, RestOfAChannelThatIsZero) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto model = [&](double x) { return table("m", channels, {[=](double) { return x; }}); };
+  const auto split = [&](double x) {
+    return split_difference(
+        model(0), model(x), {"p"}, [&](unsigned) { return model(0); }, {}, 1e-9);
+  };
+  EXPECT_EQ(split(0).largest_rest(), 0);
+  EXPECT_TRUE(split(0).explained());
+  EXPECT_FALSE(split(1e-3).explained());
+}
+
 TEST(Page, HoldsTheDataAndNeedsNoNetwork) {
   report::Document document;
   document.title = "<T>";
@@ -382,6 +405,58 @@ TEST(Json, IsOnePerLineForAReaderAndOneLineForThePage) {
   EXPECT_THAT(report::compact_json(document), HasSubstr("\"title\":\"Größe\""));
   EXPECT_EQ(report::compact_json(document).find('\n'), std::string::npos);
   EXPECT_EQ(report::compact_json(report::Curves{{0, 1}, {}, {}}).find('\n'), std::string::npos);
+}
+
+// What an assumption explains of a channel, over the channel's peak; nothing of one that is zero.
+TEST(Json, ContributionsAreOverThePeak) {
+  report::Document document;
+  document.assumptions.emplace();
+  Split& split = document.assumptions->split;
+  split.assumptions = {"friction"};
+  split.tolerance = 1e-9;
+  for (const double peak : {200.0, 0.0}) {
+    ChannelSplit part;
+    part.channel = channel("X_N", "X");
+    part.computed = true;
+    part.peak = peak;
+    part.largest_difference = peak / 4;
+    part.contributions = {{peak / 10, 0}};
+    split.channels.push_back(part);
+  }
+  const auto json = nlohmann::json::parse(report::json_text(document));
+  const std::string text = json["assumptions"].dump();
+  EXPECT_THAT(text, HasSubstr("\"over_peak\":0.25"));
+  EXPECT_THAT(text, HasSubstr("\"over_peak\":0.1"));
+  EXPECT_EQ(text.find("null"), std::string::npos) << text;
+}
+
+TEST(Json, SaysOnlyWhatThereIsToSay) {
+  report::Document document;
+  document.verdict = report::Verdict{true, "h"};
+  document.comparison.emplace();
+  ChannelComparison c;
+  c.channel = channel("X_N", "X");
+  document.comparison->channels = {c};
+  const auto written = [&] { return nlohmann::json::parse(report::json_text(document)); };
+  EXPECT_FALSE(written()["verdict"].contains("word"));
+  EXPECT_FALSE(written()["channels"][0].contains("gap"));
+  document.verdict->word = "Balanced";
+  document.comparison->channels[0].gap = "at 3 deg";
+  EXPECT_EQ(written()["verdict"]["word"], "Balanced");
+  EXPECT_EQ(written()["channels"][0]["gap"], "at 3 deg");
+}
+
+TEST(Json, AMapHasItsLinesWhereThereAreAny) {
+  report::MapFigure map{{"n"}, {"p"}, {"e"}, {1, 2}, {3}, {{5, 6}}, {}, {}};
+  const auto written = [&] {
+    report::Document document;
+    document.figures = {{"id", "t", "", map}};
+    return nlohmann::json::parse(report::json_text(document))["figures"][0];
+  };
+  EXPECT_FALSE(written().contains("lines")) << written();
+  map.lines = {{"edge", {1, 2}, {3, 3}}};
+  ASSERT_TRUE(written().contains("lines")) << written();
+  EXPECT_EQ(written()["lines"][0]["label"], "edge");
 }
 
 TEST(Json, ALimitIsViolatedByTheSmallestShare) {
@@ -415,6 +490,13 @@ TEST(Text, OrderOfTheGroups) {
     places.push_back(text.find(name));
   EXPECT_TRUE(std::is_sorted(places.begin(), places.end())) << text;
   EXPECT_NE(places.back(), std::string::npos);
+  const auto row = [&](const std::string& name) {
+    const auto from = text.find("\n" + name) + 1;
+    return text.substr(from, text.find('\n', from) - from);
+  };
+  EXPECT_THAT(row("C_N"), HasSubstr("agrees"));
+  EXPECT_THAT(row("C_N"), HasSubstr(" 2.00e+00 "));
+  EXPECT_THAT(row("A_N"), HasSubstr("not computed by both"));
 }
 
 TEST(Curves, DifferencesAreTakenBeforeRounding) {

@@ -682,6 +682,7 @@ TEST(Steady, LongRunDecaysTowardsItAsTheMultiplierSays) {
   const LinearOil oil;
   const SteadyMotion motion = steady("toy", shaft, oil, drive_for(1, 10), within(1e-11));
   ASSERT_EQ(motion.multipliers.size(), kPistons + 2U);
+  EXPECT_LE(motion.iterations, 6);  // forward differences are good enough to begin with
   EXPECT_TRUE(motion.stable());
   const double expected = std::abs(motion.multipliers[0]);
   EXPECT_EQ(motion.multipliers[0].imag(), 0);

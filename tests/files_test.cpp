@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/files/toml_reader.h"
@@ -160,6 +161,52 @@ TEST_F(OutputFolderTest, WhatIsNotOfTheEarlierSetStays) {
   write_with("report.txt");
   EXPECT_THAT(contents(),
               UnorderedElementsAre("changed.csv", "folder", "outside.csv", "report.txt"));
+}
+
+TEST_F(OutputFolderTest, WhatTheDiskDoesNotHoldIsNotBegun) {
+  OutputFolder folder(folder_);
+  OutputFolder::Stream& stream = folder.open("curve.csv");
+  EXPECT_NO_THROW(stream.expect(1000));
+  EXPECT_THROW(stream.expect(1e30), InputError);
+}
+
+class ForeignTableTest : public OutputFolderTest {
+ protected:
+  ForeignTable table(const std::string& text) const {
+    file("table.txt", text);
+    return read_table(folder_ / "table.txt");
+  }
+};
+
+// What stands above a blank line belongs to something else.
+TEST_F(ForeignTableTest, UnitsStandNextToTheNames) {
+  using testing::ElementsAre;
+  const ForeignTable apart = table("s;N\n\ntime;force\n1;2\n2;3\n");
+  EXPECT_THAT(apart.header, ElementsAre("time", "force"));
+  EXPECT_THAT(apart.units, ElementsAre("", ""));
+  EXPECT_THAT(table("s;N\ntime;force\n1;2\n2;3\n").units, ElementsAre("s", "N"));
+  EXPECT_THAT(table("time;force\n[s];[N]\n1;2\n2;3\n").units, ElementsAre("s", "N"));
+}
+
+TEST_F(ForeignTableTest, AFaultIsNamedByItsColumn) {
+  const auto said = [&](const std::string& text) {
+    try {
+      table(text);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(said("1;2;0\n2;3;0\n3;many;0\n4;5;0\n"), testing::HasSubstr("column 2 = "));
+  EXPECT_THAT(said("t;F;m\n1;2;0\n2;3;0\n3;many;0\n4;5;0\n"), testing::HasSubstr("F = "));
+}
+
+TEST(ForeignUnits, AreKnownByAnySpelling) {
+  EXPECT_EQ(known_unit("N.m"), "Nm");
+  EXPECT_EQ(known_unit("N*m"), "Nm");
+  EXPECT_EQ(known_unit("N-m"), "Nm");
+  EXPECT_EQ(known_unit("newton_mm"), "Nmm");
+  EXPECT_EQ(known_unit("furlong"), "");
 }
 
 // FIPS 180-4's examples, and lengths about those of its blocks, by sha256sum.

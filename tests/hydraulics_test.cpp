@@ -430,6 +430,9 @@ TEST(Report, LinesAreOneAnothersByTheirMeaning) {
   EXPECT_DOUBLE_EQ(value.at("mean torque of that work") * 2 * kPi,
                    value.at("work of the pistons per turn"));
   EXPECT_DOUBLE_EQ(value.at("load orifice"), state.summary.load_size * 1e6);
+  EXPECT_NEAR(value.at("mean delivery pressure"), 275, 0.1);  // the rated one, bar
+  EXPECT_LT(value.at("delivery pressure, least"), value.at("mean delivery pressure"));
+  EXPECT_LT(value.at("mean delivery pressure"), value.at("delivery pressure, greatest"));
   for (const char* angle : {"angle of the greatest", "angle of the least"}) {
     EXPECT_GE(value.at(angle), 0);
     EXPECT_LT(value.at(angle), 360);

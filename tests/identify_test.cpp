@@ -179,11 +179,27 @@ TEST_F(Identify, ThePosteriorIsThatOfALineAndDoesNotDependOnThreads) {
   EXPECT_NEAR(axial->half_width, 1.96 * deviation / 275, 3 * 0.15 / std::sqrt(2) * deviation / 275);
 }
 
+TEST_F(Identify, FewDrawsAreOfManyWalkers) {
+  const Case base = base_case();
+  const double torque = torque_at(275);
+  const DataModel model(base, data_of(base, {"pressure.delivery_bar=200:350"},
+                                      {number(base, "mean:Td", torque, 0.01 * torque)}));
+  IdentifyOptions options;
+  options.steps = 20;
+  options.draws = 10;
+  options.profiles = options.leave_one_out = false;
+  std::vector<double> draws = identify(model, options).posterior.unknowns;
+  std::sort(draws.begin(), draws.end());
+  // Ten independent normal numbers lie within one deviation once in 100000 times.
+  EXPECT_GT(draws.back() - draws.front(), 0.01 * torque / torque_per_bar());
+}
+
 TEST_F(Identify, TheNumbersOfThePaperAreReadAndTheShippedCaseIsNearThem) {
   const Case base = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml",
                               {"operation.samples_per_revolution=180"});
   IdentificationData data;
-  read_identification(BENTAXIS_SOURCE_DIR "/reference_data/identification/bap63.toml", base, data);
+  read_identification(BENTAXIS_SOURCE_DIR "/reference_data/published/bap63/unknowns.toml", base,
+                      data);
   const DataModel model(base, data);
   std::vector<double> numbers(model.numbers());
   ASSERT_TRUE(model.predict(model.start(), numbers));

@@ -1,10 +1,13 @@
 // The closed form for a block that moves on its own: high-precision instants, a second formulation,
 // derivatives against differences, and what must hold for any motion.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <optional>
 
@@ -417,6 +420,32 @@ TEST(FreeMotion, DerivativesAreThoseOfThePositions) {
 }
 
 // ---- hard states -------------------------------------------------------------------------------
+
+TEST(HardStates, ARowNeedsAMotionAndAPressureForEachPiston) {
+  States states;
+  states.pistons = 5;
+  states.motion.resize(2);
+  states.chamber_pressure = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  Instant instant;
+  states.instant(0, instant);
+  EXPECT_EQ(instant.chamber_pressure, (std::vector<double>{1, 2, 3, 4, 5}));
+  EXPECT_THROW(states.instant(1, instant), InputError);
+  states.chamber_pressure.resize(20);
+  EXPECT_NO_THROW(states.instant(1, instant));
+  EXPECT_THROW(states.instant(2, instant), InputError);
+}
+
+TEST(HardStates, PressuresOfAFileAreThoseOfTheirPistons) {
+  const Case the_case = read_case(motion_folder() / "free_block" / "case.toml");
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("bentaxis_states_" + std::to_string(::getpid()) + ".csv");
+  std::ofstream(file) << "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2,"
+                         "p_5_bar,p_1_bar,p_2_bar,p_3_bar,p_4_bar\n"
+                         "10,10,1500,1500,0,0,50,10,20,30,40\n";
+  const States states = read_states(file, the_case, PressureTrace(the_case.pressure));
+  std::filesystem::remove(file);
+  EXPECT_EQ(states.chamber_pressure, (std::vector<double>{10e5, 20e5, 30e5, 40e5, 50e5}));
+}
 
 TEST(HardStates, AnglesOfManyTurnsAreThoseOfOne) {
   const Case the_case = read_case(motion_folder() / "free_block" / "case.toml");

@@ -637,6 +637,9 @@ TEST(MultibodyMechanics, RefusesWhatSimulateRefuses) {
   jumping.pump.friction.regularization = 0;
   EXPECT_THAT(message([&] { multibody::mechanics(jumping, jumping.multibody); }),
               testing::HasSubstr("regularization_m_per_s = 0"));
+  Case smooth = jumping;
+  smooth.pump.friction.piston_coulomb = 0;
+  EXPECT_NO_THROW(multibody::mechanics(smooth, smooth.multibody));
   jumping.pump.gear.contact = ToothContact::rigid;
   EXPECT_NO_THROW(multibody::mechanics(jumping, jumping.multibody));
 
@@ -647,6 +650,15 @@ TEST(MultibodyMechanics, RefusesWhatSimulateRefuses) {
                 mechanics->rates(0, {}, {{1e5}, {}}, dy);
               }),
               testing::HasSubstr("1 chamber pressures for 5 pistons"));
+}
+
+TEST(MechanicsOfBothModels, SayNothingOfTeethThatAreNotModelled) {
+  const Case the_case = stored_case("rattle");
+  TeethAction action;
+  const auto closed = analytic::mechanics(the_case, the_case.analytic);
+  EXPECT_FALSE(closed->teeth(0, closed->start(), action));
+  const auto multi = multibody::mechanics(the_case, the_case.multibody);
+  EXPECT_FALSE(multi->teeth(0, multi->start(), action));
 }
 
 TEST(MultibodyMechanics, SaysWherePistonsCannotBePlaced) {

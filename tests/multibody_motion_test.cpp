@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "bentaxis/analytic/model.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/model.h"
@@ -237,6 +238,26 @@ TEST(FreeMotion, TheToothForceIsSignedByTheDirectionOfTheInstant) {
         EXPECT_NEAR(std::abs(rcs), forward, 1e-2);
       }
     }
+  }
+}
+
+// Pistons slide where one of both turns; dry friction rests only where nothing does.
+TEST(FreeMotion, DryFrictionActsWhereShaftOrBlockRests) {
+  Case the_case = read_case(motion_file("free_block/case.toml"));
+  the_case.pump.friction.regularization = 0;
+  ASSERT_GT(the_case.pump.friction.piston_coulomb, 0);
+  multibody::Model model(the_case.pump, the_case.multibody, 1);
+  const analytic::Model closed(the_case.pump, the_case.analytic);
+  Instant i;
+  i.chamber_pressure.assign(5, 1e7);
+  std::vector<double> v(model.layout().size()), expected(closed.layout().size());
+  for (const auto& [shaft, block] : {std::pair{100.0, 0.0}, {0.0, 100.0}}) {
+    i.shaft = {0.3, shaft, 0};
+    i.block = {0.3, block, 0};
+    model.evaluate(i, v);
+    closed.evaluate(i, expected);
+    const std::size_t torque = model.layout().Td();
+    EXPECT_NEAR(v[torque], expected[torque], 1e-9 * std::abs(expected[torque])) << shaft;
   }
 }
 

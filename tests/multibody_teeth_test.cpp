@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/mechanics.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/teeth.h"
@@ -266,10 +267,15 @@ TEST(MultibodyTeeth, BudgetAddsUp) {
   const Case the_case = teeth_case();
   multibody::Model model(the_case.pump, the_case.multibody, 1);
   ASSERT_TRUE(model.has_teeth());
+  analytic::BudgetModel twin(the_case.pump, the_case.analytic);
   std::vector<double> values(model.layout().size());
   double lost = 0;
   for (int deg = 0; deg < 40; ++deg) {
-    model.evaluate(turning(the_case, deg * kRadPerDegree, 157), values);
+    const Instant now = turning(the_case, deg * kRadPerDegree, 157);
+    model.evaluate(now, values);
+    double closed = 0;
+    for (const double part : twin.evaluate(now).drive) closed += part;
+    EXPECT_NEAR(closed, values[model.layout().Td()], scaled(1e-9) * 300);
     const Budget budget = model.budget();
     double drive = 0, carrying = 0;
     for (const double part : budget.drive) drive += part;

@@ -275,6 +275,20 @@ TEST(Integrated, ATorqueThatIsNoNumberEndsTheRun) {
   }
 }
 
+TEST(Integrated, ATorqueNeedsBodiesThatResistIt) {
+  const Case sound = reference_case("bap63_rated");
+  const PressureTrace pressure(sound.pressure);
+  const Samples samples = sample_case(sound, pressure, 1);
+  const auto torque = [](double) { return 290.0; };
+  for (const bool of_shaft : {true, false}) {
+    Case the_case = sound;
+    (of_shaft ? the_case.pump.shaft.axial_inertia : the_case.pump.block.axial_inertia) = 0;
+    EXPECT_THROW(
+        multibody::run_torque_driven(the_case, the_case.multibody, samples, pressure, torque, {}),
+        InputError);
+  }
+}
+
 TEST(Worst, KeepsTheLargestMagnitudeAndEveryNaN) {
   double worst = 0;
   keep_worst(worst, -2);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <pugixml.hpp>
 #include <random>
 #include <regex>
@@ -134,6 +135,85 @@ TEST(Picture, TheBandIsWhatIsAllowed) {
   }
   // The axis shows -2 to 2 and 6 % more at either end, over 78 px.
   EXPECT_NEAR(high - low, 78 / 1.12, 0.1);
+}
+
+std::vector<std::string> texts(const std::string& svg) {
+  std::vector<std::string> all;
+  const auto document = read(svg);
+  for (const auto& found : document.select_nodes("//text"))
+    all.emplace_back(found.node().text().get());
+  return all;
+}
+
+TEST(Picture, NumbersOfALogarithmicAxis) {
+  const auto at = [](const Values& x) {
+    const auto all =
+        texts(svg_of({"id", "t", "", XyFigure{{"x", "", true}, {"y"}, {{"s", x, {3000, 4000}}}}}));
+    std::vector<double> numbers;  // below those of y
+    for (const std::string& text : all)
+      if (!text.empty() && text.find_first_not_of("0123456789.e") == std::string::npos &&
+          std::stod(text) < 2000)
+        numbers.push_back(std::stod(text));
+    return numbers;
+  };
+  EXPECT_THAT(at({1, 100}), testing::ElementsAre(1, 2, 5, 10, 20, 50, 100));
+  EXPECT_THAT(at({1.4, 4.4}), testing::ElementsAre(1.5, 2, 3, 4));
+}
+
+TEST(Picture, NumbersOfAnAxisStandAtTheirPlaces) {
+  const auto places = [](double end, bool angle) {
+    std::map<std::string, double> at;
+    const auto document = read(svg_of(
+        {"id", "t", "", OwnFigure{"N", "x", angle, {0, end / 2, end}, {{"s", {-7, -8, -9}}}}}));
+    for (const auto& found : document.select_nodes("//text[@text-anchor='middle']"))
+      at[found.node().text().get()] = found.node().attribute("x").as_double();
+    return at;
+  };
+  auto angles = places(360, true), values = places(40, false);
+  ASSERT_THAT(angles, testing::Contains(testing::Key("360")));
+  EXPECT_NEAR(angles["90"] - angles["0"], (angles["360"] - angles["0"]) / 4, 0.1);
+  EXPECT_GT(angles["360"] - angles["0"], 500);
+  ASSERT_THAT(values, testing::Contains(testing::Key("40")));
+  EXPECT_NEAR(values["10"] - values["0"], (values["40"] - values["0"]) / 4, 0.1);
+  EXPECT_NEAR(values["40"], angles["360"], 0.1);
+}
+
+// Beside the only value of an axis there is its number, and no other.
+TEST(Picture, MapOfOneRow) {
+  const auto all = texts(svg_of(
+      {"id", "t", "", MapFigure{{"x"}, {"y"}, {"z"}, {1, 2, 3}, {275}, {{5, 6, 7}}, {}, {}}}));
+  EXPECT_THAT(all, testing::Contains("275"));
+  EXPECT_THAT(all, Not(testing::Contains("276")));
+  EXPECT_THAT(all, Not(testing::Contains("275.0")));
+  EXPECT_THAT(all, Not(testing::Contains("275.2")));
+  EXPECT_THAT(all, testing::IsSupersetOf({"1.0", "2.0", "3.0"}));
+}
+
+TEST(Picture, LegendNamesWhatIsShownAndStaysOnThePage) {
+  std::vector<std::pair<std::string, Values>> columns;
+  std::vector<std::string> names;
+  for (int i = 0; i < 12; ++i) {
+    names.push_back("a channel of number " + std::to_string(10 + i));
+    columns.push_back({names.back(), {0, 1.0 * i, 0, 1}});
+  }
+  Curves curves = curves_of(columns, 90);
+  names.emplace_back("a channel of the rig alone");
+  curves.reference = {"rig", {{names.back(), {1, 2, 3, 4}, 0.5, {}, {}, {}}}};
+  names.emplace_back("a channel without values");
+  const auto document = read(svg_of({"id", "t", "", ChannelFigure{"N", names}}, curves));
+  const double width = document.first_child().attribute("width").as_double();
+  int named = 0;
+  for (const auto& found : document.select_nodes("//text")) {
+    const std::string text = found.node().text().get();
+    if (text.rfind("a channel", 0) != 0) continue;
+    ++named;
+    EXPECT_NE(text, names.back());
+    // A letter is at least 5 px wide.
+    EXPECT_LT(found.node().attribute("x").as_double() + 5.0 * static_cast<double>(text.size()),
+              width)
+        << text;
+  }
+  EXPECT_EQ(named, 13);
 }
 
 // Everything that a document can hold without being refused.
@@ -382,6 +462,34 @@ TEST(Picture, MapHatchesWhatHasAReason) {
   EXPECT_THAT(titles, testing::ElementsAre("n 1 rpm, p 4: 90 %", "n 2 rpm, p 4: pistons <touch>",
                                            "n 3 rpm, p 4: not computed"));
   EXPECT_STREQ(document.select_node("//text[starts-with(., 'e:')]").node().text().get(), "e: 80 %");
+}
+
+// Over a plane that rises along x a line of equal height stands upright.
+TEST(Picture, ContourLiesWhereItsLevelIs) {
+  MapFigure map{{"x"}, {"y"}, {"z"}, {1, 2, 3}, {4, 5, 6}, {}, {2.25}, {}};
+  for (int row = 0; row < 3; ++row) map.values.push_back({1, 2, 3});
+  map.linear = true;
+  map.marks = XySeries{"dot", {2, 3}, {4, 4}};
+  const auto document = read(svg_of({"id", "t", "", map}));
+  std::vector<double> dots;
+  for (const auto& found : document.select_nodes("//circle"))
+    dots.push_back(found.node().attribute("cx").as_double());
+  ASSERT_GE(dots.size(), 2U);
+  const auto lines = document.select_nodes("//path[@class='contour']");
+  ASSERT_GE(lines.size(), 1U);
+  std::string text = lines[0].node().attribute("d").value();
+  for (char& c : text)
+    if (c == 'M' || c == 'L') c = ' ';
+  std::istringstream in(text);
+  std::sort(dots.begin(), dots.end());
+  const double right = dots.back(), middle = dots[dots.size() - 2];
+  double low = 1e9, high = -1e9;
+  for (double x = 0, y = 0; in >> x >> y;) {
+    EXPECT_NEAR(x, middle + 0.25 * (right - middle), 0.2);
+    low = std::min(low, y);
+    high = std::max(high, y);
+  }
+  EXPECT_GT(high - low, 100);
 }
 
 TEST(Picture, PngHasTwiceTheSize) {

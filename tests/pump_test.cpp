@@ -209,6 +209,14 @@ TEST(Pressure, StepTakesItsEdgeWithinRoundOff) {
   EXPECT_EQ(trace.edges_deg(), (std::vector<double>{0, 180}));
 }
 
+// Just below 0 lies, after rounding, a whole turn: that is 0 again.
+TEST(Angles, WrapToATurn) {
+  EXPECT_EQ(wrap_degrees(-1e-20), 0);
+  EXPECT_EQ(wrap_degrees(360), 0);
+  EXPECT_EQ(wrap_degrees(-90), 270);
+  EXPECT_EQ(wrap_degrees(725), 5);
+}
+
 TEST(Pressure, SplineIsPeriodicSmoothAndOfFourthOrder) {
   const auto error = [](int points) {
     PressureSpec spec;

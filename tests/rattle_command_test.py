@@ -143,6 +143,7 @@ class RattleTest(ProgramTest):
     def test_check_counts_for_the_status(self):
         result = self.run_program(*self.command("--check", 1, speeds="1500:1500:#1", delivery="275:275:#1"))
         self.assertIn("Simbody agrees at 1 of 1 points", result.out)
+        self.assertRegex(result.out, r"[a-z] at 1 of 1 points.*; Simbody")  # the class it has
         other = ("--set", "friction.block_viscous_Nm_per_rpm=0.0054", "--set", "friction.piston_coulomb_N=500",
                  "--set", "assumptions.multibody.piston_friction=false", "--check", 1)
         result = self.run_program(*self.command(*other, speeds="1500:1500:#1", delivery="100:100:#1"), status=1)

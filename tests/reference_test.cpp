@@ -309,6 +309,68 @@ TEST_F(ReferenceFolder, HintsNameWhatHappened) {
   EXPECT_EQ(hint(j, "X_x_N"), "");
 }
 
+// Of two turns the one that was asked for, and nothing of the other.
+TEST_F(ReferenceFolder, OneTurnOfALongerRecord) {
+  write_curve(72, [](double a) -> std::array<double, 4> {
+    const double angle = 2 * a, other = angle < 180 || angle > 540 ? 5 : 0;
+    return {angle, x_of(angle) + other, y_of(angle), t_of(angle)};
+  });
+  const auto judged = [&](const std::string& from) {
+    const auto d = description(72, "[curve.angle]\nturn_from_deg = " + from + "\n");
+    const ReferenceCurve c = curve(d);
+    EXPECT_EQ(c.table.rows(), 36U);
+    return judge(d, {c}, result(36), {}).agrees();
+  };
+  EXPECT_TRUE(judged("180"));
+  EXPECT_THAT(thrown([&] { judged("170"); }), HasSubstr("not periodic"));
+}
+
+// A vector of three components, of which the models have two.
+TEST_F(ReferenceFolder, NotesAPartThatTheModelsLack) {
+  std::vector<Channel> channels = {kChannels[0], kChannels[1]};
+  for (Channel& c : channels) c.frame = "S1";
+  channels[0].axis = "x1";
+  channels[1].axis = "y1";
+  const auto notes = [&](double along_z) {
+    write_curve(
+        36,
+        [&](double a) -> std::array<double, 4> {
+          return {a, x_of(a), y_of(a), along_z};
+        },
+        "theta_deg,a,b,c");
+    const auto d = description(
+        36, "[[curve.vector]]\ntheirs = [\"a\", \"b\", \"c\"]\nours = \"X\"\n", "relative = 1e-3");
+    return read_reference_curve(d, d.curves.at(0), channels, 9000).notes;
+  };
+  const double peak = result(36).peak("X");
+  EXPECT_THAT(notes(0.9e-3 * peak), testing::IsEmpty());
+  EXPECT_THAT(notes(-2e-3 * peak),
+              testing::ElementsAre(HasSubstr("X along z1 up to 2.00e-03 of its peak")));
+}
+
+// By their definitions: pound-force 0.45359237 kg x 9.80665 m/s2, inch 25.4 mm.
+TEST(ForeignUnits, HaveTheirSizeInSi) {
+  constexpr double kPound = 0.45359237 * 9.80665, kInch = 0.0254;
+  EXPECT_NEAR(find_unit("psi")->si, kPound / (kInch * kInch), 1e-9);
+  EXPECT_EQ(find_unit("kN")->si, 1e3);
+  EXPECT_EQ(degrees_per("turn"), 360);
+  EXPECT_EQ(degrees_per("deg"), 1);
+  EXPECT_NEAR(degrees_per("rad"), 180 / kPi, 1e-13);
+  EXPECT_EQ(find_unit("furlong"), nullptr);
+}
+
+TEST(CurveDescriptions, SayWhatWasAssumedOfTheAngle) {
+  CurveDescription c;
+  c.guessed = true;
+  c.file = "rig.csv";
+  c.angle.column = "ANGLE";
+  c.angle.unit = "deg";
+  c.angle.offset_deg = -30;
+  EXPECT_THAT(assumptions_of(c).at(0), HasSubstr("theta = ANGLE in deg - 30 deg"));
+  c.angle.offset_deg = 12.5;
+  EXPECT_THAT(assumptions_of(c).at(0), HasSubstr("theta = ANGLE in deg + 12.5 deg"));
+}
+
 TEST_F(ReferenceFolder, RefusesWhatCannotBeMeant) {
   write_plain(36);
   const auto refusal = [&](int points, const std::string& more) {

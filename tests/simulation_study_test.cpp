@@ -4,9 +4,12 @@
 
 #include <cmath>
 
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/simulation.h"
+#include "bentaxis/study/simulation_document.h"
+#include "bentaxis/study/state_doubts.h"
 #include "simulation_pieces.h"
 
 namespace bentaxis::study {
@@ -187,6 +190,69 @@ TEST(SimulationStudy, HeadlineOfAPeriodicMotion) {
   EXPECT_EQ(r.headline(),
             "periodic motion of the analytic model found: 3000 rpm, without states that could be "
             "disturbed");
+}
+
+// A run put together by hand: two rows, of a pump whose teeth give way.
+SimulationResult written(double speed_rpm, double fastest_rpm) {
+  SimulationResult r = result(0.5, 2.5);
+  r.ready.the_case = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_tooth_rattle.toml");
+  r.ready.the_case.operation.speed_rpm = speed_rpm;
+  r.choice.only = Model::analytic;
+  r.oil_follows = true;
+  const int pistons = r.ready.the_case.pump.geometry.pistons;
+  Trajectory run;
+  run.table = trajectory_table("analytic", ChannelLayout(pistons), *r.ready.the_case.drive);
+  run.oil.emplace();
+  for (int k = 0; k < pistons; ++k) run.oil->columns.push_back({"p_1_bar", "pressure"});
+  for (const double rpm : {speed_rpm, fastest_rpm}) {
+    std::vector<double> state(run.table.state_names.size(), 0);
+    state[3] = rpm;
+    append_trajectory_row(run.table, state, std::vector<double>(ChannelLayout(pistons).size(), 0),
+                          {});
+    run.lag.push_back(0);
+    run.oil->values.insert(run.oil->values.end(), run.oil->columns.size(), 10);
+  }
+  run.record.share_out_of_contact = 0.125;
+  r.analytic = run;
+  return r;
+}
+
+TEST(SimulationDocument, SaysWhereTheShaftRunsAway) {
+  const auto said = [](double speed_rpm, double fastest_rpm) {
+    std::vector<std::string> names;
+    const report::Document document = simulation_document(written(speed_rpm, fastest_rpm), {});
+    for (const auto& warning : *document.warnings) names.push_back(warning.name);
+    return names;
+  };
+  EXPECT_THAT(said(1500, 4400), testing::IsEmpty());
+  EXPECT_THAT(said(1500, -4600), testing::ElementsAre("course-overspeed"));
+  EXPECT_THAT(said(-0.5, 1.6), testing::ElementsAre("course-overspeed"));
+  EXPECT_THAT(said(0, 1.6), testing::IsEmpty());  // from rest nothing is usual
+}
+
+TEST(SimulationDocument, ShowsContactAndEffort) {
+  SimulationResult r = written(1500, 1500);
+  r.effort = {{Model::analytic, "steps", 1e-6, 1e-7, 2, 10, 20}};
+  const std::string text = report::compact_json(simulation_document(r, {}));
+  EXPECT_THAT(text, HasSubstr("share of the time out of contact"));
+  EXPECT_THAT(text, HasSubstr("\"12.5 %\""));
+  const auto at = text.find("\"label\":\"time of the run\"");
+  ASSERT_NE(at, std::string::npos);
+  const std::string axis =
+      text.substr(text.rfind('{', at), text.find('}', at) - text.rfind('{', at));
+  EXPECT_THAT(axis, HasSubstr("\"log\":true"));
+}
+
+TEST(StateDoubts, NameBothPressures) {
+  States states;
+  states.pistons = 1;
+  states.motion.resize(1);
+  states.chamber_pressure = {-1.1e5};
+  const auto warnings = state_doubts(Case{}, states);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].name, "states-vacuum");
+  EXPECT_THAT(warnings[0].text,
+              testing::ContainsRegex("-1\\.1 bar is below absolute zero, -1\\.01[0-9]+ bar gauge"));
 }
 
 TEST(SimulationStudy, PeriodicOilWithoutOilIsRefused) {

@@ -211,6 +211,7 @@ TEST(Simulation, RigidTeethAreTheLimitOfStiffOnes) {
   rigid.drive->duration = 0.02;
   rigid.drive->samples = 20;
   const Trajectory limit = run(rigid);
+  EXPECT_EQ(limit.record.share_out_of_contact, 0);
   const double force = column(limit, "Rcs_z4_N")[0];
   double before = 0, reactions_before = 0;
   for (const double stiffness : {1e9, 1e10, 1e11}) {

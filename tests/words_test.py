@@ -196,6 +196,8 @@ class CompletionTest(WordsTest):
             (["comp"], "words", ["compare", "completion"]),
             (["run", ""], "files", []),
             (["run", "case.toml", ""], "nothing", []),
+            (["run", "case.toml", "--mod"], "words", ["--model"]),
+            (["run", "a=b"], "files", []),
             (["run", "case.toml", "--model", ""], "words", ["analytic", "multibody"]),
             (["run", "case.toml", "--model", "m"], "words", ["multibody"]),
             (["run", "case.toml", "--model=m"], "words", ["--model=multibody"]),
@@ -273,6 +275,7 @@ class ManualTest(WordsTest):
                 if option != "--help":
                     self.assertIn(f"\n{option}", manual, command)
         self.assertIn(".SS bentaxis reference golden", manual)
+        self.assertIn("analytic|\\:multibody", manual)  # a line may break there
 
     def test_is_good_roff(self):
         if shutil.which("groff") is None:
