@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -26,9 +27,14 @@ int sensitivity(const Options& options) {
   const Case base = options.the_case.read();
   std::vector<designs::Output> outputs;
   for (const std::string& name : options.outputs.empty() ? kOutputs : options.outputs)
-    outputs.push_back(designs::output(name, base));
+    if (const auto wanted = designs::output(name, base);
+        std::find(outputs.begin(), outputs.end(), wanted) == outputs.end())
+      outputs.push_back(wanted);
   std::vector<designs::Variable> variables;
-  for (const std::string& name : options.parameters) variables.emplace_back(name, base);
+  for (const std::string& name : options.parameters)
+    if (std::none_of(variables.begin(), variables.end(),
+                     [&](const designs::Variable& v) { return v.name() == name; }))
+      variables.emplace_back(name, base);
   if (variables.empty()) variables = designs::continuous_variables(base);
   ReportFolders folders(options.place);
 

@@ -60,14 +60,16 @@ designs::SweepRequest request_of(const PlanOptions& options, const CommandParser
   designs::SweepRequest request;
   if (!options.study.empty()) request = designs::read_sweep_request(options.study);
   const designs::SweepRequest& given = options.request;
+  decltype(request.vary) varied;
   for (const std::string& text : options.vary) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
       throw InputError("--vary " + text + ": must be NAME=VALUES, as in pump.tilt_deg=20:40:5");
-    const std::string name = text.substr(0, equals);
-    std::erase_if(request.vary, [&](const auto& old) { return old.first == name; });
-    request.vary.emplace_back(name, text.substr(equals + 1));
+    varied.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    std::erase_if(request.vary, [&](const auto& old) { return old.first == varied.back().first; });
   }
+  // After those of the file are gone, so that an option given twice is refused as it is there.
+  request.vary.insert(request.vary.end(), varied.begin(), varied.end());
   const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {
     to.insert(to.end(), more.begin(), more.end());
   };

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,12 @@ void vary(Case& the_case, const std::string& text) {
 
 int uncertainty(const Options& options) {
   Case the_case = options.the_case.read();
-  for (const std::string& text : options.varied) vary(the_case, text);
+  std::set<std::string> varied;
+  for (const std::string& text : options.varied) {
+    vary(the_case, text);
+    if (!varied.insert(the_case.uncertainty.parameters.back().name).second)
+      throw InputError("--vary " + text + ": varies twice");
+  }
   designs::UncertaintyOptions how = options.uncertainty;
   how.samples = static_cast<std::size_t>(options.samples);
   how.sobol = static_cast<std::size_t>(options.sobol);

@@ -40,7 +40,8 @@ std::size_t read_condition_name(TableReader& in, const IdentificationData& data)
   const std::size_t index = index_of_condition(data, name);
   if (index == data.conditions.size()) {
     std::set<std::string> known;
-    for (const Condition& c : data.conditions) known.insert(c.name);
+    for (const Condition& c : data.conditions)
+      if (!c.name.empty()) known.insert(c.name);  // the case's own has none
     in.fail("condition", "there is no [[condition]] of this name" + suggestion(name, known));
   }
   return index;

@@ -66,6 +66,10 @@ Variable::Variable(const std::string& name, const Case& base) : name_(name) {
   if (std::holds_alternative<ChoiceField>(p.field)) words_ = p.words;
   integer_ = std::holds_alternative<IntegerField>(p.field);
   const ConstView view = view_of(base);
+  // Nothing forbids it here, but the case leaves it out: it has no value to vary about.
+  if (p.part != nullptr && p.part->needed.words.empty() && !p.part->exists(view))
+    throw InputError(name + ": is not in this case: give it a value there or by --set, then it " +
+                     "can vary");
   if (!is_active(*table_, p, standard_registry(), view) || !bentaxis::value_of(p, view))
     throw InputError(name + ": changes nothing in this case" +
                      (p.active.words.empty()

@@ -38,6 +38,11 @@ TEST(Variable, IsAParameterByItsName) {
   EXPECT_THAT(refusal([&] { Variable("name", base); }), testing::HasSubstr("cannot vary"));
   EXPECT_THAT(refusal([&] { Variable("gear.backlash_um", base); }),
               testing::HasSubstr("changes nothing"));
+  // Where the bore force acts does something in every case, but this one leaves it to its default.
+  EXPECT_THAT(refusal([&] { Variable("piston.contact_mm", base); }),
+              testing::HasSubstr("is not in this case: give it a value"));
+  const Case with_ring = read_case(kRated, {"piston.contact_mm=44"});
+  EXPECT_EQ(Variable("piston.contact_mm", with_ring).value(with_ring), 44);
   EXPECT_THAT(refusal([&] { Variable("port_plate.delivery_arc_deg", base); }),
               testing::HasSubstr("delivery_arc_deg.1"));
 }

@@ -90,6 +90,8 @@ class IdentifyTest(ProgramTest):
         self.refused_with(DATA.replace("[20, 25]", "[25, 20]"), "data.toml:7", "below")
         self.refused_with(DATA.replace('"max:Rs_z2"', '"max:Rs_z9"'), "data.toml", "max:Rs_z9")
         self.refused_with(DATA.replace('condition = "low"', 'condition = "lwo"'), "lwo", "low")
+        without = DATA.replace('[[condition]]\nname = "low"\nset = ["pressure.delivery_bar=100"]\n', "")
+        self.assertNotIn("allowed", self.refused("identify", self.case(), "--data", self.write(without), "--out", "out"))
         self.refused_with(DATA.replace("uncertainty = 1\n", "uncertainty = 0\n"), "uncertainty", "0")
         self.refused_with(DATA.replace('use = "predicted"', 'use = "guessed"'), "guessed")
         self.refused_with(DATA.replace("below = 12000\n", ""), "above")

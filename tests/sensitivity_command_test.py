@@ -37,7 +37,9 @@ class Sensitivity(unittest.TestCase):
         return done
 
     def test_every_pair_is_written_and_the_check_agrees(self):
-        self.run_program("--output", "mean:Td,peak:Rb1", "--parameter", "pump.tilt_deg,pressure.delivery_bar", "--check")
+        # What is named twice is there once.
+        self.run_program("--output", "mean:Td,peak:Rb1,mean:Td", "--parameter",
+                         "pump.tilt_deg,pressure.delivery_bar,pump.tilt_deg", "--check")
         rows = rows_of(self.out / "sensitivity.csv")
         self.assertEqual([(r["output"], r["parameter"]) for r in rows],
                          [(o, p) for o in ("mean:Td", "peak:Rb1") for p in ("pump.tilt_deg", "pressure.delivery_bar")])
