@@ -570,6 +570,10 @@ TEST(Words, WhatIsAlikeWasMeant) {
   EXPECT_EQ(meant("tilt", keys, 0.9), std::nullopt);
   EXPECT_EQ(suggestion("spring", {"block", "gear"}), "; allowed: block, gear");
   EXPECT_EQ(suggestion("gaer", {"block", "gear"}), "; did you mean \"gear\"?");
+  std::set<std::string> many;
+  for (int i = 10; i < 51; ++i) many.insert("n" + std::to_string(i));
+  EXPECT_EQ(suggestion("xyz", many),
+            "; allowed: n10, n11, n12, n13, n14, n15, n16, n17, n18, n19 and 31 more, in docs/");
 }
 
 TEST(Words, DecimalCommasAreToldFromLists) {
