@@ -13,8 +13,8 @@ namespace bentaxis {
 std::optional<std::string> meant(const std::string& word, const std::set<std::string>& known,
                                  double alike = 0.6);
 
-/// "; did you mean ...?" for a word that is like one of those known, or else a list of them, of very
-/// many the first.
+/// "; did you mean ...?" for a word that is like one of those known, or else a list of them, of
+/// very many the first.
 std::string suggestion(const std::string& word, const std::set<std::string>& known);
 
 /// "; decimals follow a point: 40.0" for text such as 40,0; "" for any other.
