@@ -233,14 +233,18 @@ std::optional<PublishedValue> value_of(const PublishedNumber& n, const Published
   }
   if (run.table == nullptr) return std::nullopt;
   const ResultTable& table = *run.table;
+  std::vector<std::size_t> columns;
+  for (const auto& name : n.channels) {
+    columns.push_back(table.find(name));
+    if (columns.back() == table.columns()) return std::nullopt;
+  }
   std::vector<double> theta, curve;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double angle = wrap_degrees(table.theta_deg[row]);
     if (angle < n.from_deg || angle > n.to_deg) continue;
     double square = 0, value = 0;
-    for (const auto& name : n.channels) {
-      const std::size_t column = table.find(name);
-      value = column < table.columns() ? table.at(row, column) : not_computed();
+    for (const std::size_t column : columns) {
+      value = table.at(row, column);
       if (!is_computed(value)) return std::nullopt;
       square += value * value;
     }

@@ -53,22 +53,6 @@ struct Evaluator::Implementation {
   }
 };
 
-namespace {
-
-// What the kernel cannot follow from design to design: channels that come and go, teeth, another
-// kind of pressure.
-bool stays_in_reach(const Family& family) {
-  const Case& base = family.base();
-  const auto leaves = [](const Variable& v) {
-    return v.name() == "pump.pistons" || v.name() == "gear.contact" || v.name() == "pressure.kind";
-  };
-  return base.pressure.kind != PressureKind::hydraulic &&
-         base.pump.gear.contact != ToothContact::teeth &&
-         std::none_of(family.variables().begin(), family.variables().end(), leaves);
-}
-
-}  // namespace
-
 Evaluator::Implementation::Implementation(Family the_family, std::vector<Output> the_outputs,
                                           study::Model the_model)
     : family(std::move(the_family)), outputs(std::move(the_outputs)), model(the_model) {

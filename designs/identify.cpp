@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <set>
 
 #include "bentaxis/designs/points.h"
@@ -11,6 +12,7 @@
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/run.h"
+#include "turn_statistics.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -51,6 +53,7 @@ struct DataModel::Implementation {
     std::vector<std::size_t> data;  // that are read off it
     std::vector<Output> outputs;    // of them, in their order
     bool table = false;             // whether one of them needs the curves
+    bool kernel = false;            // whether `wanted` has all columns they need
   };
   // The cases of a condition, and which unknowns act in it.
   struct Branch {
@@ -65,6 +68,161 @@ struct DataModel::Implementation {
   std::vector<State> states;
   std::vector<std::size_t> places;
   std::size_t numbers = 0;
+  std::vector<std::size_t> wanted;  // columns that the kernel computes, rising
+
+  // What one thread works in.
+  struct Scratch {
+    std::vector<Case> of_branch;
+    Case the_case;
+    KernelTurn turn;
+    std::optional<analytic::BatchColumns> columns;
+    ResultTable table;  // of the wanted columns
+  };
+  mutable std::mutex mutex;
+  mutable std::vector<std::unique_ptr<Scratch>> idle;
+
+  std::unique_ptr<Scratch> take() const {
+    {
+      const std::lock_guard lock(mutex);
+      if (!idle.empty()) {
+        auto scratch = std::move(idle.back());
+        idle.pop_back();
+        return scratch;
+      }
+    }
+    auto scratch = std::make_unique<Scratch>();
+    scratch->of_branch.assign(branches.size(), base);
+    const ChannelLayout layout(base.pump.geometry.pistons);
+    for (const std::size_t column : wanted)
+      scratch->table.channels.push_back(layout.channels()[column]);
+    return scratch;
+  }
+  void give_back(std::unique_ptr<Scratch> scratch) const {
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(scratch));
+  }
+  std::size_t place_in_table(std::size_t column) const {
+    return static_cast<std::size_t>(std::lower_bound(wanted.begin(), wanted.end(), column) -
+                                    wanted.begin());
+  }
+
+  // Lets the kernel compute what it can.
+  void use_kernel() {
+    const ChannelLayout layout(base.pump.geometry.pistons);
+    const auto gives = [&](std::size_t column) {
+      return column < layout.reactions() || column == layout.Tcs();
+    };
+    std::set<std::size_t> all;
+    for (State& state : states) {
+      state.kernel = stays_in_reach(branches[state.condition].family) &&
+                     base.analytic.flanks == FlankShape::involute &&
+                     base.analytic.gear == BlockDrive::mesh;
+      std::set<std::size_t> columns;
+      for (const std::size_t i : state.data) {
+        const Datum& datum = data.data[i];
+        if (datum.curve) columns.insert(datum.curve->column);
+        if (datum.output && datum.output->source == Source::curve)
+          columns.insert(datum.output->columns.begin(), datum.output->columns.end());
+        else if (datum.output && datum.output->source != Source::derived)
+          state.kernel = false;
+        if (datum.printed)
+          for (const std::string& name : datum.printed->channels)
+            columns.insert(static_cast<std::size_t>(
+                std::find_if(layout.channels().begin(), layout.channels().end(),
+                             [&](const Channel& c) { return c.name == name; }) -
+                layout.channels().begin()));
+      }
+      state.kernel = state.kernel && std::all_of(columns.begin(), columns.end(), gives);
+      if (state.kernel) all.insert(columns.begin(), columns.end());
+    }
+    wanted.assign(all.begin(), all.end());
+  }
+
+  // Fills the table of a scratch by the kernel. @return false where the general way has to say what
+  // is wrong
+  bool tabulate(Scratch& scratch, const Assumptions& assumptions) const {
+    if (assumptions.gear != BlockDrive::mesh) return false;
+    scratch.turn.become(scratch.the_case, assumptions);
+    const ChannelLayout& layout = scratch.turn.model().layout();
+    const analytic::BatchInstants instants = scratch.turn.instants();
+    const std::size_t rows = instants.count;
+    ResultTable& table = scratch.table;
+    if (table.rows() != rows) {
+      scratch.columns.emplace(layout.reactions(), rows);
+      table.theta_deg.resize(rows);
+      for (std::size_t i = 0; i < rows; ++i)
+        table.theta_deg[i] = 360.0 * static_cast<double>(i) / static_cast<double>(rows);
+      table.values.resize(rows * wanted.size());
+    }
+    // The torque on the block is the tooth force's on its arm.
+    const auto source = [&](std::size_t column) {
+      return column == layout.Tcs() ? layout.Rcs() : column;
+    };
+    analytic::BatchOutputs outputs(layout.reactions());
+    for (const std::size_t column : wanted)
+      outputs[source(column)] = scratch.columns->column(source(column));
+    scratch.turn.model().reactions(instants, outputs);
+    const Gear& gear = scratch.the_case.pump.gear;
+    for (std::size_t c = 0; c < wanted.size(); ++c) {
+      double factor = 1 / table.channels[c].unit_in_si;
+      if (wanted[c] == layout.Tcs())
+        factor *= gear.pitch_diameter / 2 * std::cos(gear.pressure_angle);
+      const double* values = scratch.columns->column(source(wanted[c]));
+      for (std::size_t row = 0; row < rows; ++row) {
+        if (!std::isfinite(values[row])) return false;
+        table.values[row * wanted.size() + c] = factor * values[row];
+      }
+    }
+    return true;
+  }
+
+  double value_of(const Output& output, const Scratch& scratch) const {
+    if (output.source == Source::derived)
+      return derived_value(output, scratch.the_case.pump.geometry);
+    std::vector<double> curve(scratch.table.rows());
+    for (std::size_t row = 0; row < curve.size(); ++row) {
+      double square = 0, value = 0;
+      for (const std::size_t column : output.columns) {
+        value = scratch.table.at(row, place_in_table(column));
+        square += value * value;
+      }
+      curve[row] = output.columns.size() > 1 ? std::sqrt(square) : value;
+    }
+    return statistic_of(output.statistic, curve);
+  }
+
+  // Of a state that the kernel serves. @return as tabulate()
+  bool read_off_kernel(const State& state, Scratch& scratch, std::span<double> results) const {
+    Assumptions assumptions = scratch.the_case.analytic;
+    study::apply_variant(state.variant, scratch.the_case, assumptions);
+    if (!tabulate(scratch, assumptions)) return false;
+    read_table(
+        state, {&scratch.table, study::facts_of(scratch.the_case, assumptions)},
+        [&](std::size_t column) { return place_in_table(column); }, results);
+    for (const std::size_t i : state.data)
+      if (data.data[i].output) results[places[i]] = value_of(*data.data[i].output, scratch);
+    return true;
+  }
+
+  // What is read off curves: printed numbers and records.
+  template <class PlaceOf>
+  void read_table(const State& state, const compare::PublishedRun& run, const PlaceOf& place_of,
+                  std::span<double> results) const {
+    for (const std::size_t i : state.data) {
+      const Datum& datum = data.data[i];
+      const std::size_t place = places[i];
+      if (datum.printed) {
+        const auto value = compare::value_of(*datum.printed, run);
+        if (!value) throw ComputationError(datum.what + ": is not computed");
+        results[place] = value->low;
+        if (datum.size() == 2) results[place + 1] = value->high;
+      } else if (datum.curve) {
+        for (std::size_t k = 0; k < datum.size(); ++k)
+          results[place + k] =
+              at_angle(*run.table, place_of(datum.curve->column), datum.curve->theta_deg[k]);
+      }
+    }
+  }
 
   Branch branch_of(const Condition& condition) const {
     std::vector<Variable> variables;
@@ -111,23 +269,12 @@ struct DataModel::Implementation {
     options.assumptions = assumptions;
     const ResultTable table = study::run(ready, options).table;
     run.table = &table;
-    for (const std::size_t i : state.data) {
-      const Datum& datum = data.data[i];
-      const std::size_t place = places[i];
-      if (datum.printed) {
-        const auto value = compare::value_of(*datum.printed, run);
-        if (!value) throw ComputationError(datum.what + ": is not computed");
-        results[place] = value->low;
-        if (datum.size() == 2) results[place + 1] = value->high;
-      } else if (datum.curve) {
-        for (std::size_t k = 0; k < datum.size(); ++k)
-          results[place + k] = at_angle(table, datum.curve->column, datum.curve->theta_deg[k]);
-      }
-    }
+    read_table(
+        state, run, [](std::size_t column) { return column; }, results);
   }
 };
 
-DataModel::DataModel(Case base, IdentificationData data) {
+DataModel::DataModel(Case base, IdentificationData data, bool kernel) {
   auto made = std::make_unique<Implementation>();
   made->base = std::move(base);
   made->data = std::move(data);
@@ -164,6 +311,7 @@ DataModel::DataModel(Case base, IdentificationData data) {
   if (std::none_of(all.data.begin(), all.data.end(),
                    [](const Datum& d) { return d.use == Use::fitted; }))
     throw InputError("identify: the data have nothing that unknowns could be fitted to");
+  if (kernel) made->use_kernel();
   implementation_ = std::move(made);
 }
 
@@ -191,19 +339,23 @@ std::vector<double> DataModel::start() const {
 bool DataModel::predict(std::span<const double> x, std::span<double> numbers) const {
   const Implementation& self = *implementation_;
   std::fill(numbers.begin(), numbers.end(), not_computed());
+  auto scratch = self.take();
+  bool found = true;
   try {
-    Case scratch = self.base;
     for (const Implementation::State& state : self.states) {
-      scratch = self.base;
-      self.make(self.branches[state.condition], x, scratch);
-      self.read_off(state, scratch, numbers);
+      Case& the_case = scratch->of_branch[state.condition];
+      self.make(self.branches[state.condition], x, the_case);
+      scratch->the_case = the_case;
+      if (!state.kernel || !self.read_off_kernel(state, *scratch, numbers))
+        self.read_off(state, the_case, numbers);
     }
   } catch (const InputError&) {
-    return false;
+    found = false;
   } catch (const ComputationError&) {
-    return false;
+    found = false;
   }
-  return true;
+  self.give_back(std::move(scratch));
+  return found;
 }
 
 double DataModel::residual(const Datum& datum, std::size_t number, double model) const {

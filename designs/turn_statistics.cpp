@@ -41,6 +41,16 @@ PressureSpec shares_of(PressureSpec spec) {
 
 }  // namespace
 
+bool stays_in_reach(const Family& family) {
+  const Case& base = family.base();
+  const auto leaves = [](const Variable& v) {
+    return v.name() == "pump.pistons" || v.name() == "gear.contact" || v.name() == "pressure.kind";
+  };
+  return base.pressure.kind != PressureKind::hydraulic &&
+         base.pump.gear.contact != ToothContact::teeth &&
+         std::none_of(family.variables().begin(), family.variables().end(), leaves);
+}
+
 std::optional<TurnOutputs> turn_outputs(const std::vector<Output>& outputs, const Case& base) {
   const ChannelLayout layout(base.pump.geometry.pistons);
   TurnOutputs result;
@@ -68,10 +78,7 @@ std::optional<TurnOutputs> turn_outputs(const std::vector<Output>& outputs, cons
   return result;
 }
 
-TurnStatistics::TurnStatistics(const TurnOutputs& outputs)
-    : outputs_(outputs), statistics_(outputs.measured.size()) {}
-
-void TurnStatistics::set_samples(std::size_t samples, int pistons) {
+void KernelTurn::set_samples(std::size_t samples, int pistons) {
   if (theta_.size() == samples) return;
   made_for_.reset();
   theta_.resize(samples);
@@ -87,7 +94,7 @@ void TurnStatistics::set_samples(std::size_t samples, int pistons) {
   }
 }
 
-void TurnStatistics::set_pressure(const PressureSpec& pressure, int pistons) {
+void KernelTurn::set_pressure(const PressureSpec& pressure, int pistons) {
   const bool ideal = pressure.kind == PressureKind::ideal;
   const std::size_t samples = theta_.size();
   const bool same_shape = made_for_ && made_for_->transition_deg == pressure.transition_deg &&
@@ -117,26 +124,37 @@ void TurnStatistics::set_pressure(const PressureSpec& pressure, int pistons) {
   made_for_->ports = pressure.ports;
 }
 
+void KernelTurn::become(const Case& the_case, const Assumptions& assumptions) {
+  const int pistons = the_case.pump.geometry.pistons;
+  if (model_)
+    model_->set_pump(the_case.pump, assumptions);
+  else
+    model_.emplace(the_case.pump, assumptions);
+  set_samples(static_cast<std::size_t>(the_case.operation.samples_per_revolution), pistons);
+  set_pressure(the_case.pressure, pistons);
+  speed_rpm_ = the_case.operation.speed_rpm;
+  ports_ = the_case.pressure.ports;
+}
+
+analytic::BatchInstants KernelTurn::instants() const {
+  return {.count = theta_.size(),
+          .theta = {theta_.data(), 0},
+          .omega = {nullptr, rad_per_second(speed_rpm_)},
+          .omega_dot = {},
+          .chamber_pressure = chambers_,
+          .suction = {nullptr, ports_.suction},
+          .delivery = {nullptr, ports_.delivery}};
+}
+
+TurnStatistics::TurnStatistics(const TurnOutputs& outputs)
+    : outputs_(outputs), statistics_(outputs.measured.size()) {}
+
 bool TurnStatistics::find(const Case& the_case, std::span<double> results) {
   // The other flanks are refused, in words of the general way.
   if (the_case.analytic.flanks != FlankShape::involute) return false;
-  const int pistons = the_case.pump.geometry.pistons;
-  if (model_)
-    model_->set_pump(the_case.pump, the_case.analytic);
-  else
-    model_.emplace(the_case.pump, the_case.analytic);
-  set_samples(static_cast<std::size_t>(the_case.operation.samples_per_revolution), pistons);
-  set_pressure(the_case.pressure, pistons);
-  const PortPressures& ports = the_case.pressure.ports;
-  const analytic::BatchInstants instants = {
-      .count = theta_.size(),
-      .theta = {theta_.data(), 0},
-      .omega = {nullptr, rad_per_second(the_case.operation.speed_rpm)},
-      .omega_dot = {},
-      .chamber_pressure = chambers_,
-      .suction = {nullptr, ports.suction},
-      .delivery = {nullptr, ports.delivery}};
-  model_->statistics(instants, outputs_.measured, statistics_);
+  turn_.become(the_case, the_case.analytic);
+  const analytic::BatchModel& model = turn_.model();
+  model.statistics(turn_.instants(), outputs_.measured, statistics_);
   const bool tooth = the_case.analytic.gear == BlockDrive::mesh;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const TurnOutputs::Place& place = outputs_.places[i];
@@ -146,7 +164,7 @@ bool TurnStatistics::find(const Case& the_case, std::span<double> results) {
     }
     const analytic::Statistics& found = statistics_[place.measured];
     const bool absent =
-        !tooth && outputs_.measured[place.measured].reaction == model_->layout().Rcs();
+        !tooth && outputs_.measured[place.measured].reaction == model.layout().Rcs();
     if (!absent && !std::isfinite(found.mean_square)) return false;
     results[i] = value_of(place.statistic, found) / place.unit_in_si;
   }

@@ -8,6 +8,7 @@
 
 #include "bentaxis/analytic/batch.h"
 #include "bentaxis/designs/output.h"
+#include "bentaxis/designs/variable.h"
 #include "bentaxis/pump/case.h"
 
 namespace bentaxis::designs {
@@ -25,11 +26,43 @@ struct TurnOutputs {
   std::vector<Output> geometry;  ///< what follows from the geometry alone
 };
 
+/// Whether the kernel can follow from design to design: no channels that come and go, no teeth, no
+/// other kind of pressure.
+bool stays_in_reach(const Family& family);
+
 /// Nothing where one of them is neither a statistic of a reaction nor one of the geometry.
 std::optional<TurnOutputs> turn_outputs(const std::vector<Output>& outputs, const Case& base);
 
-/// Evaluates one design after the other: for one thread. Angles and pressures are kept from one to
-/// the next while what they depend on stays.
+/// The kernel over a turn of one design after the other: for one thread. Angles and pressures are
+/// kept from one to the next while what they depend on stays.
+class KernelTurn {
+ public:
+  /// Becomes a turn of this design.
+  /// @param the_case  valid; every time as many pistons, no teeth, pressure ideal or the same curve
+  /// @throws InputError
+  void become(const Case& the_case, const Assumptions& assumptions);
+
+  // Of the last design:
+  const analytic::BatchModel& model() const { return *model_; }
+  analytic::BatchInstants instants() const;
+
+ private:
+  void set_samples(std::size_t samples, int pistons);
+  void set_pressure(const PressureSpec& pressure, int pistons);
+
+  std::optional<analytic::BatchModel> model_;
+  double speed_rpm_ = 0;
+  PortPressures ports_;
+  std::vector<double> theta_;  // rad
+  // Chamber by chamber where chambers pass the samples at places of their own; else of the first
+  // chamber twice, each other one beginning somewhere in its first turn. Shares are of the way from
+  // suction to delivery, on which ideal pressures have no influence.
+  std::vector<double> shares_, pressures_;
+  std::vector<analytic::Varying> chambers_;
+  std::optional<PressureSpec> made_for_;  // without a curve
+};
+
+/// Evaluates one design after the other: for one thread.
 class TurnStatistics {
  public:
   /// @param outputs  must outlive this object
@@ -42,19 +75,9 @@ class TurnStatistics {
   bool find(const Case& the_case, std::span<double> results);
 
  private:
-  void set_samples(std::size_t samples, int pistons);
-  void set_pressure(const PressureSpec& pressure, int pistons);
-
   const TurnOutputs& outputs_;
-  std::optional<analytic::BatchModel> model_;
+  KernelTurn turn_;
   std::vector<analytic::Statistics> statistics_;
-  std::vector<double> theta_;  // rad
-  // Chamber by chamber where chambers pass the samples at places of their own; else of the first
-  // chamber twice, each other one beginning somewhere in its first turn. Shares are of the way from
-  // suction to delivery, on which ideal pressures have no influence.
-  std::vector<double> shares_, pressures_;
-  std::vector<analytic::Varying> chambers_;
-  std::optional<PressureSpec> made_for_;  // without a curve
 };
 
 }  // namespace bentaxis::designs

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "bentaxis/designs/points.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 
@@ -219,6 +220,51 @@ TEST_F(Identify, TheNumbersOfThePaperAreReadAndTheShippedCaseIsNearThem) {
   EXPECT_EQ(fitted + predicted + left_out, static_cast<int>(data.data.size()));
   EXPECT_GE(fitted, 20);
   EXPECT_GE(predicted, 10);
+}
+
+// What the kernel gives for the data of the paper, a record and outputs: what the general way does.
+TEST_F(Identify, TheKernelGivesTheSameNumbers) {
+  const Case base = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml",
+                              {"operation.samples_per_revolution=60"});
+  IdentificationData data;
+  read_identification(BENTAXIS_SOURCE_DIR "/reference_data/published/bap63/unknowns.toml", base,
+                      data);
+  const ResultTable turn = study::run_turn(study::prepare(base), study::Model::analytic);
+  for (const char* name : {"Rb1_x1_N", "Tcs_z2_Nm"}) {
+    Datum record;
+    record.what = name;
+    record.uncertainty = 1;
+    record.curve.emplace();
+    record.curve->column = turn.find(name);
+    record.curve->theta_deg = {1, 100.5, 359};
+    record.curve->values = record.curve->uncertainties = {1, 1, 1};
+    data.data.push_back(record);
+  }
+  for (const char* name : {"peak:Rs_3", "rms:Rb2_y1", "stroke_mm"})
+    data.data.push_back(number(base, name, 1, 1));
+  const DataModel fast(base, data), general(base, data, false);
+  const auto points = latin_hypercube(fast.size(), 20, 1);
+  int pumps = 0;
+  for (std::size_t p = 0; p < points->size(); ++p) {
+    std::vector<double> x(fast.size()), found(fast.numbers()), expected(fast.numbers());
+    points->point(p, x);
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = data.unknowns[i].low + x[i] * (data.unknowns[i].high - data.unknowns[i].low);
+    const bool pump = general.predict(x, expected);
+    ASSERT_EQ(fast.predict(x, found), pump);
+    if (!pump) continue;
+    ++pumps;
+    // Rb1 and Rb2 are differences of forces 1e5 N large.
+    for (std::size_t i = 0; i < data.data.size(); ++i)
+      for (std::size_t k = 0; k < data.data[i].size(); ++k) {
+        const std::size_t at = fast.place_of(i) + k;
+        EXPECT_EQ(is_computed(found[at]), is_computed(expected[at])) << data.data[i].what;
+        if (!is_computed(expected[at])) continue;
+        EXPECT_NEAR(found[at], expected[at], 1e-12 * std::max(1e5, std::abs(expected[at])))
+            << data.data[i].what;
+      }
+  }
+  EXPECT_GE(pumps, 10);
 }
 
 TEST_F(Identify, WhatCannotBeIsRefused) {

@@ -89,8 +89,9 @@ void read_identification(const std::filesystem::path& file, const Case& base,
 /// Immutable: serves many threads.
 class DataModel {
  public:
+  /// @param kernel  whether the batch kernel may compute what it can: the same to round-off, faster
   /// @throws InputError where there is no unknown, nothing to fit, or one unknown twice
-  DataModel(Case base, IdentificationData data);
+  DataModel(Case base, IdentificationData data, bool kernel = true);
   ~DataModel();
   DataModel(DataModel&&) noexcept;
 
