@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
@@ -14,6 +15,17 @@ namespace {
 
 using report::Cell;
 using report::Section;
+
+// Largest R-hat of walkers that have settled (Vehtari et al. 2021 ask for 1.01 of long chains).
+constexpr double kSettled = 1.1;
+
+// The largest R-hat of walkers that have not settled.
+std::optional<double> unsettled(const Identification& result) {
+  const auto& rhat = result.posterior.rhat;
+  if (result.posterior.count == 0 || rhat.empty()) return std::nullopt;
+  const double largest = *std::max_element(rhat.begin(), rhat.end());
+  return largest <= kSettled ? std::nullopt : std::optional(largest);
+}
 
 struct Quantiles {
   double low = not_computed(), middle = not_computed(), high = not_computed();
@@ -250,7 +262,8 @@ Section search_section(const DataModel& model, const Identification& result) {
     const auto& p = result.posterior;
     section.facts.emplace_back("moves accepted", fmt::format("{:.0f} %", 100 * p.accepted));
     section.facts.emplace_back("independent draws, of the worst unknown",
-                               fmt::format("{:.0f}", p.effective));
+                               unsettled(result) ? "not known: the walkers have not settled"
+                                                 : fmt::format("{:.0f}", p.effective));
     section.facts.emplace_back(
         "largest R-hat", fmt::format("{:.3f}", *std::max_element(p.rhat.begin(), p.rhat.end())));
   }
@@ -328,6 +341,12 @@ report::Document identify_document(const DataModel& model, const Identification&
       "What data say about the parameters of the model, given that the model is right and that "
       "what is not unknown is known. It is no validation: only data that nothing was fitted to "
       "are.";
+  if (const auto rhat = unsettled(result))
+    document.warnings = {
+        {"Posterior not settled",
+         fmt::format("R-hat {:.3g}, above {:g}: the walkers still are where they began, and bands "
+                     "are a rough size only. More --steps, fewer unknowns or narrower bounds help",
+                     *rhat, kSettled)}};
   document.runs = {unknowns_section(model, result), determined_section(model, result),
                    fitted_section(model, result)};
   document.runs->push_back(predicted_section(model, result));
@@ -353,6 +372,9 @@ std::string identify_text(const DataModel& model, const Identification& result) 
     text += "\n";
   }
   for (const std::string& line : result.information.words) text += line + "\n";
+  if (const auto rhat = unsettled(result))
+    text +=
+        fmt::format("posterior not settled: R-hat {:.3g}; bands are a rough size only\n", *rhat);
   if (!result.candidates.empty())
     text += fmt::format("most useful further measurement: {}\n", result.candidates[0].output.name);
   text.pop_back();
