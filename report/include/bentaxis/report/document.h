@@ -13,14 +13,14 @@
 #include "bentaxis/compare/published.h"
 #include "bentaxis/compare/split.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/report/curves.h"
+#include "bentaxis/report/scene.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::report {
 
 /// Names and values of a short list of facts, in the order in which they are shown.
 using Lines = std::vector<std::pair<std::string, std::string>>;
-/// Values of a curve; what was not computed (pump/number.h) becomes null.
-using Values = std::vector<double>;
 
 // ---- Tables of the section "runs"
 
@@ -40,41 +40,6 @@ struct Section {
 };
 
 // ---- Figures
-
-/// Curves of both models under the names of the page's curves, with their difference.
-struct Curves {
-  struct Table {
-    std::string name;  ///< of the model
-    std::vector<std::pair<std::string, Values>> columns;
-  };
-  Values theta_deg;  ///< or what `axis` names
-  std::vector<Table> tables;
-  std::vector<std::pair<std::string, Values>> difference;  ///< second minus first table
-
-  /// A curve from elsewhere, at the same angles, and what is allowed beside it.
-  struct Held {
-    std::string channel;
-    Values values;
-    double allowed = 0;  ///< on either side of the curve, or of the span of its values nearby:
-    Values low, high;    ///< that span; empty where it is the curve itself
-    std::vector<std::pair<std::string, Values>> differences = {};  ///< by table: table minus curve
-  };
-  /// The curves that the tables are held to.
-  struct Reference {
-    std::string name;
-    std::vector<Held> held;
-  };
-  std::optional<Reference> reference = std::nullopt;
-
-  std::string axis = {};  ///< where it is no shaft angle: "time (ms)"
-  /// Something that happens at a place of the axis: a tick below the curves, those of `upper` in a
-  /// row above the others.
-  struct Mark {
-    double x;
-    bool upper;
-  };
-  std::vector<Mark> marks = {};
-};
 
 /// A curve that a figure brings itself.
 struct Series {
@@ -432,6 +397,7 @@ struct Document {
   std::optional<CaseSection> the_case = std::nullopt;
   std::optional<PlausibilitySection> plausibility = std::nullopt;
   std::string picture = {};  ///< SVG at the head of the page, or ""; not in the JSON
+  std::optional<Scene> scene = std::nullopt;  ///< the pump in space; not in the JSON
   std::optional<std::vector<DerivedQuantity>> derived = std::nullopt;
   std::optional<Verdict> verdict = std::nullopt;
   std::string meaning = {};  ///< what the verdict says and what not, or ""

@@ -1,0 +1,49 @@
+// Curves of a report's page.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bentaxis::report {
+
+/// Values of a curve; what was not computed (pump/number.h) becomes null.
+using Values = std::vector<double>;
+
+/// Curves of both models under the names of the page's curves, with their difference.
+struct Curves {
+  struct Table {
+    std::string name;  ///< of the model
+    std::vector<std::pair<std::string, Values>> columns;
+  };
+  Values theta_deg;  ///< or what `axis` names
+  std::vector<Table> tables;
+  std::vector<std::pair<std::string, Values>> difference;  ///< second minus first table
+
+  /// A curve from elsewhere, at the same angles, and what is allowed beside it.
+  struct Held {
+    std::string channel;
+    Values values;
+    double allowed = 0;  ///< on either side of the curve, or of the span of its values nearby:
+    Values low, high;    ///< that span; empty where it is the curve itself
+    std::vector<std::pair<std::string, Values>> differences = {};  ///< by table: table minus curve
+  };
+  /// The curves that the tables are held to.
+  struct Reference {
+    std::string name;
+    std::vector<Held> held;
+  };
+  std::optional<Reference> reference = std::nullopt;
+
+  std::string axis = {};  ///< where it is no shaft angle: "time (ms)"
+  /// Something that happens at a place of the axis: a tick below the curves, those of `upper` in a
+  /// row above the others.
+  struct Mark {
+    double x;
+    bool upper;
+  };
+  std::vector<Mark> marks = {};
+};
+
+}  // namespace bentaxis::report
