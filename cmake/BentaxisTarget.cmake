@@ -76,13 +76,17 @@ function(bentaxis_with_sundials name source variable)
 endfunction()
 
 # For what runs once a command and is long to compile (documents, JSON, option parsing): less optimisation
-# costs nothing there. Never for what computes at angles.
+# costs nothing there. Never for what computes at angles. With sanitizers, whose builds are mostly compiling: none.
 #   bentaxis_compile_fast(<target> [<source>...])    all of the target, or these sources of it
 function(bentaxis_compile_fast target)
+  set(level $<$<CONFIG:Release>:-O1>)
+  if(BENTAXIS_SANITIZE OR BENTAXIS_SANITIZE_THREAD)
+    set(level -O0)
+  endif()
   if(ARGN)
-    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS ${level})
   else()
-    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_compile_options(${target} PRIVATE ${level})
   endif()
 endfunction()
 
