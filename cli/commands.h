@@ -30,6 +30,7 @@ Command add_compare_command(CommandParser program);
 Command add_fig34_command(CommandParser program);
 Command add_hardcases_command(CommandParser program);
 Command add_identify_command(CommandParser program);
+Command add_index_command(CommandParser program);
 Command add_inertia_command(CommandParser program);
 Command add_life_command(CommandParser program);
 Command add_manual_command(CommandParser program);

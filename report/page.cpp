@@ -5,32 +5,10 @@
 #include <vector>
 
 #include "bentaxis/report/picture.h"
+#include "bentaxis/report/text.h"
 
 namespace bentaxis::report {
 namespace {
-
-void replace_once(std::string& text, const std::string& marker, const std::string& value) {
-  const auto at = text.find(marker);
-  if (at == std::string::npos) throw std::logic_error("page template lacks " + marker);
-  text.replace(at, marker.size(), value);
-}
-
-std::string escape_html(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 // JSON inside a script element must not contain "</" or "<!--".
 std::string script_safe(const std::string& json) {
@@ -59,29 +37,34 @@ std::string pictures(const Document& document, const Curves& curves) {
   std::string text;
   if (!document.figures) return text;
   for (const Figure& figure : *document.figures)
-    text += "<div data-figure=\"" + escape_html(figure.id) + "\">" + svg_of(figure, curves) +
+    text += "<div data-figure=\"" + escaped_markup(figure.id) + "\">" + svg_of(figure, curves) +
             "</div>\n";
   return text;
 }
 
 }  // namespace
 
+std::string filled_template(const std::string& part, const Fillings& fillings) {
+  std::string text = page_parts().at(part);
+  for (const auto& [marker, value] : fillings) {
+    const auto at = text.find(marker);
+    if (at == std::string::npos) throw std::logic_error("page template lacks " + marker);
+    text.replace(at, marker.size(), value);
+  }
+  return text;
+}
+
 std::string render_page(const Document& document, const Curves& curves) {
   const auto& parts = page_parts();
-  std::string page = parts.at("template.html");
-  // The data come last: nothing is searched for in them.
-  for (const auto& [marker, value] : std::vector<std::pair<std::string, std::string>>{
-           {"@TITLE@", escape_html(document.title)},
-           {"@CSS@", parts.at("report.css")},
-           {"@DYGRAPHS_CSS@", parts.at("dygraph.min.css")},
-           {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},
-           {"@REPORT_JS@", script()},
-           {"@PICTURES@", pictures(document, curves)},
-           {"@PICTURE@", document.picture},
-           {"@CURVES_JSON@", script_safe(compact_json(curves))},
-           {"@REPORT_JSON@", script_safe(compact_json(document))}})
-    replace_once(page, marker, value);
-  return page;
+  return filled_template("template.html", {{"@TITLE@", escaped_markup(document.title)},
+                                           {"@CSS@", parts.at("report.css")},
+                                           {"@DYGRAPHS_CSS@", parts.at("dygraph.min.css")},
+                                           {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},
+                                           {"@REPORT_JS@", script()},
+                                           {"@PICTURES@", pictures(document, curves)},
+                                           {"@PICTURE@", document.picture},
+                                           {"@CURVES_JSON@", script_safe(compact_json(curves))},
+                                           {"@REPORT_JSON@", script_safe(compact_json(document))}});
 }
 
 }  // namespace bentaxis::report
