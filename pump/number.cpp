@@ -26,6 +26,14 @@ bool is_stray_nan(double value) {
   return !is_computed(value) && bits != kNotComputedBits;
 }
 
+std::optional<double> number_in(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 void append_number(std::string& text, double value) {
   if (!is_computed(value)) return;
   std::array<char, 32> buffer;

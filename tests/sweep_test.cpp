@@ -16,11 +16,13 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "support.h"
 
 namespace bentaxis::designs {
 namespace {
 
 namespace fs = std::filesystem;
+using test::refusal;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -35,15 +37,6 @@ SweepRequest tilts(const std::string& values = "20:40:5") {
   request.vary = {{"pump.tilt_deg", values}};
   request.outputs = {"max:Rb1_z1", "mean:Td"};
   return request;
-}
-
-std::string refusal(const std::function<void()>& job) {
-  try {
-    job();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 class Folder {
