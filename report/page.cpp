@@ -15,23 +15,6 @@ void replace_once(std::string& text, const std::string& marker, const std::strin
   text.replace(at, marker.size(), value);
 }
 
-std::string escape_html(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 // JSON inside a script element must not contain "</" or "<!--".
 std::string script_safe(const std::string& json) {
   std::string out;
@@ -59,8 +42,8 @@ std::string pictures(const Document& document, const Curves& curves) {
   std::string text;
   if (!document.figures) return text;
   for (const Figure& figure : *document.figures)
-    text += "<div data-figure=\"" + escape_html(figure.id) + "\">" + svg_of(figure, curves) +
-            "</div>\n";
+    text +=
+        "<div data-figure=\"" + markup_of(figure.id) + "\">" + svg_of(figure, curves) + "</div>\n";
   return text;
 }
 
@@ -71,7 +54,7 @@ std::string render_page(const Document& document, const Curves& curves) {
   std::string page = parts.at("template.html");
   // The data come last: nothing is searched for in them.
   for (const auto& [marker, value] : std::vector<std::pair<std::string, std::string>>{
-           {"@TITLE@", escape_html(document.title)},
+           {"@TITLE@", markup_of(document.title)},
            {"@CSS@", parts.at("report.css")},
            {"@DYGRAPHS_CSS@", parts.at("dygraph.min.css")},
            {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},

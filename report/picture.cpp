@@ -1389,6 +1389,25 @@ Picture picture_of(const ParallelFigure& figure, const Curves&) {
 
 }  // namespace
 
+std::string markup_of(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      out += ' ';
+    else
+      out += c;
+  }
+  return out;
+}
+
 std::string svg_of(const Figure& figure, const Curves& curves) {
   return drawn(figure, std::visit([&](const auto& content) { return picture_of(content, curves); },
                                   figure.content));

@@ -9,6 +9,7 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/report/picture.h"
 
 namespace bentaxis::study {
 namespace {
@@ -52,23 +53,6 @@ constexpr const char* kStyle = R"(
 .bentaxis-pump .dimension { fill: none; stroke: currentColor; stroke-opacity: 0.75; stroke-width: 0.9px; }
 .bentaxis-pump .mass { fill: currentColor; stroke: none; }
 )";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += ' ';
-    else
-      out += c;
-  }
-  return out;
-}
 
 struct Point {
   double x = 0, y = 0;
@@ -131,7 +115,7 @@ class View {
     // Kept on the sheet by its middle: a label is never lost with the point that it belongs to.
     words_ += fmt::format("<text{} x=\"{}\" y=\"{}\">{}</text>\n",
                           *style != '\0' ? fmt::format(" class=\"{}\"", style) : std::string(),
-                          px(std::clamp(p.x, 4.0, kWidth - 4)), px(p.y), escaped(text));
+                          px(std::clamp(p.x, 4.0, kWidth - 4)), px(p.y), report::markup_of(text));
   }
   // A dimension line with arrow heads from a to b, moved aside by `aside` px, with its text.
   void dimension(Point a, Point b, double aside, const std::string& text, const char* style,
@@ -216,7 +200,7 @@ class Picture {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"bentaxis-pump\" viewBox=\"0 0 {} {}\" "
         "role=\"img\" aria-label=\"The pump to scale\">\n<title>{}, to scale</title>\n"
         "<style>{}</style>\n{}{}{}{}</svg>\n",
-        at(kWidth), px(bottom_ + kFoot), escaped(case_.name), kStyle, side_.text("side"),
+        at(kWidth), px(bottom_ + kFoot), report::markup_of(case_.name), kStyle, side_.text("side"),
         joints_.text("joints"), block_.text("block"), rule_);
   }
 
