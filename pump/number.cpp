@@ -52,7 +52,7 @@ namespace {
 
 // One unit of the third digit further where rounding went the wrong way.
 std::string rounded_to(double value, double direction) {
-  const std::string text = rounded_text(value);
+  std::string text = rounded_text(value);
   double rounded = 0;
   std::from_chars(text.data(), text.data() + text.size(), rounded);
   if (!((rounded - value) * direction < 0)) return text;
