@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -94,8 +93,7 @@ int compare(const Options& options) {
   const auto paths =
       folders.write("report", document, study::comparison_curves(result, document), curves);
 
-  std::printf("%s%s\n", study::comparison_text(result).c_str(), known.c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(study::comparison_text(result) + known, paths);
   const bool held = !result.with || result.with->state == study::Outcome::State::agrees;
   return result.agrees() && held ? kDone : kOutOfTolerance;
 }

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "bentaxis/pump/error.h"
@@ -50,8 +49,7 @@ int run(Options& options) {
   const auto paths = folders.write("fig34", study::fig34_document(result, versions()), {},
                                    {{"fig34.csv", study::fig34_csv(result)},
                                     {"fig34_curves.csv", study::fig34_curves_csv(result)}});
-  std::printf("%s\n", study::fig34_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(study::fig34_text(result), paths);
   return kDone;
 }
 

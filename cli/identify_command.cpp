@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 
 #include "bentaxis/designs/identify_document.h"
@@ -47,8 +46,7 @@ int identify(const Options& options) {
     files.emplace_back("bands.csv", bands);
   const auto paths =
       folders.write("report", designs::identify_document(model, result, versions()), {}, files);
-  std::printf("%s\n", designs::identify_text(model, result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(designs::identify_text(model, result), paths);
   return kDone;
 }
 
@@ -90,11 +88,8 @@ Command add_identify_command(CommandParser program) {
       .text("NUMBER [0.01]");
   command.flag("--fit-only", options->fit_only,
                "least squares and their derivatives alone: no profiles, posterior, leaving out");
-  command
-      .option("--threads", identify_options.threads,
-              "threads, at most one per processor; 0: as many. Results do not depend on it")
-      .integer_in(0, 1024)
-      .text("NUMBER [0]");
+  add_threads(command, identify_options.threads,
+              "threads, at most one per processor; 0: as many. Results do not depend on it");
   return {command, [options] { return identify(*options); }};
 }
 

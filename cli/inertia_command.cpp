@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "bentaxis/pump/error.h"
@@ -42,8 +41,7 @@ int run(const Options& options) {
                                    {{"inertia.csv", study::inertia_curves_csv(result)},
                                     {"inertia_errors.csv", study::inertia_errors_csv(result)},
                                     {"inertia_map.csv", study::inertia_map_csv(result.map)}});
-  std::printf("%s\n", study::inertia_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(study::inertia_text(result), paths);
   return result.agrees() ? kDone : kOutOfTolerance;
 }
 

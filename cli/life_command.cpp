@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -29,8 +28,7 @@ int life(const Options& options) {
   const auto paths = folders.write("life", designs::life_document(result, versions()), {},
                                    {{"life.csv", designs::life_csv(result)},
                                     {"life_loads.csv", designs::life_loads_csv(result)}});
-  std::printf("%s\n", designs::life_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(designs::life_text(result), paths);
   return result.agrees() ? kDone : kOutOfTolerance;
 }
 

@@ -72,6 +72,10 @@ void add_out(CommandParser command, std::string& folder, const std::string& what
       .text("DIR [" + folder + "]");
 }
 
+void add_threads(CommandParser command, int& threads, const std::string& what) {
+  command.option("--threads", threads, what).integer_in(0, 1024).text("NUMBER [0]");
+}
+
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators) {
   command.choices("--integrators", integrators, multibody::integrator_names(),
                   "time integrators to try");

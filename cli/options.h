@@ -33,6 +33,8 @@ struct CaseOption {
 /// @param otherwise  what the command takes where no CASE is given; empty: it must be
 void add_case(CommandParser command, CaseOption& the_case, const std::string& otherwise = {});
 void add_out(CommandParser command, std::string& folder, const std::string& what);
+/// --threads.
+void add_threads(CommandParser command, int& threads, const std::string& what);
 /// A list of integrators; empty where not given.
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators);
 

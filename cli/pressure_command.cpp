@@ -1,6 +1,3 @@
-#include <charconv>
-#include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -8,6 +5,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/pressure_document.h"
@@ -33,14 +31,12 @@ struct Options {
 double suction_limit(const std::string& text, const HydraulicData& data) {
   if (text == "saturation") return data.saturation_pressure;
   if (text == "vapour") return data.vapour_pressure - data.atmosphere;
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || !(pascals(value) > -data.atmosphere))
+  const auto value = number_in(text);
+  if (!value || !(pascals(*value) > -data.atmosphere))
     throw InputError(
         "--suction-speed " + text +
         ": must be saturation, vapour or a gauge pressure in bar, above absolute zero");
-  return pascals(value);
+  return pascals(*value);
 }
 
 int pressure(const Options& options) {
@@ -89,11 +85,10 @@ int pressure(const Options& options) {
   const auto paths = folders.write("pressure", document,
                                    report::curves_of(point.analytic, point.multibody), curves);
 
-  std::printf("%s", study::pressure_text(point, power, document).c_str());
-  if (published) std::printf("\n%s", study::text_of(document.published->section).c_str());
-  if (curve) std::printf("\n%s", to_csv(*curve).c_str());
-  std::printf("\n");
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  std::string text = study::pressure_text(point, power, document);
+  if (published) text += "\n" + study::text_of(document.published->section);
+  if (curve) text += "\n" + to_csv(*curve);
+  print_result(text, paths);
   return !published || document.published->section.calibrated() ? kDone : kOutOfTolerance;
 }
 

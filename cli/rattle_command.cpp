@@ -80,8 +80,7 @@ int rattle(const Options& options) {
     throw;
   }
   file.remove();
-  std::printf("%s\n", study::rattle_text(map).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(study::rattle_text(map), paths);
   return map.agrees() ? kDone : kOutOfTolerance;
 }
 
@@ -118,11 +117,8 @@ Command add_rattle_command(CommandParser program) {
               "points, spread over the classes, that Simbody computes too")
       .integer_in(0, 10000)
       .text("NUMBER [0]");
-  command
-      .option("--threads", rattle_options.threads,
-              "rows computed at a time, at most one per processor; 0: as many")
-      .integer_in(0, 1024)
-      .text("NUMBER [0]");
+  add_threads(command, rattle_options.threads,
+              "rows computed at a time, at most one per processor; 0: as many");
   command.flag("--resume", options->resume,
                "go on with the rows that an interrupted run has left in the folder");
   return {command, [options] { return rattle(*options); }};

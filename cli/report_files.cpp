@@ -1,5 +1,7 @@
 #include "report_files.h"
 
+#include <cstdio>
+
 #include "bentaxis/report/page.h"
 #include "bentaxis/report/picture.h"
 #include "options.h"
@@ -58,6 +60,11 @@ std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
   auto paths = report_.commit(name + ".json", report::files_of);
   if (figures_) paths.push_back(commit_figures(*figures_));
   return paths;
+}
+
+void print_result(const std::string& text, const std::vector<std::filesystem::path>& files) {
+  std::printf("%s\n", text.c_str());
+  for (const std::filesystem::path& file : files) std::printf("%s\n", file.c_str());
 }
 
 void add_figure_files(OutputFolder& folder, const report::Document& document,

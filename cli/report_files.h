@@ -49,6 +49,9 @@ class ReportFolders {
   std::optional<OutputFolder> figures_;
 };
 
+/// What a command found, on standard output, and the files that hold it.
+void print_result(const std::string& text, const std::vector<std::filesystem::path>& files);
+
 /// Each figure as SVG, PNG and CSV, and figures.csv that lists them.
 /// @throws InputError, std::runtime_error where there is no librsvg
 void add_figure_files(OutputFolder& folder, const report::Document& document,

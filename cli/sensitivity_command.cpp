@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 #include "bentaxis/designs/sensitivity_document.h"
@@ -45,8 +44,7 @@ int sensitivity(const Options& options) {
   const auto paths =
       folders.write("sensitivity", designs::sensitivity_document(found, check, versions()), {},
                     {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
-  std::printf("%s\n", designs::sensitivity_text(found, check).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(designs::sensitivity_text(found, check), paths);
   return !check || check->agrees() ? kDone : kOutOfTolerance;
 }
 

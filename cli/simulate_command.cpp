@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -59,8 +58,7 @@ int simulate(const Options& options, const CommandParser& command) {
   }
   const auto paths = folders.write("report", study::simulation_document(result, versions()),
                                    study::simulation_curves(result), curves);
-  std::printf("%s\n", study::simulation_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(study::simulation_text(result), paths);
   return result.agrees() ? kDone : kOutOfTolerance;
 }
 

@@ -94,11 +94,7 @@ Command add_sweep_command(CommandParser program) {
       .text("I/N");
   command.flag("--resume", options->share.resume,
                "keep the blocks that an interrupted run has left in the folder");
-  command
-      .option("--threads", options->share.threads,
-              "0: one per processor, one where started by mpirun")
-      .integer_in(0, 1024)
-      .text("NUMBER [0]");
+  add_threads(command, options->share.threads, "0: one per processor, one where started by mpirun");
   return {command, [options, command] {
             return in_ranks([&](const Ranks& ranks) { return sweep(*options, command, ranks); });
           }};

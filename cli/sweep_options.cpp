@@ -1,10 +1,10 @@
 #include "sweep_options.h"
 
-#include <charconv>
 #include <cstdio>
 
 #include "bentaxis/designs/sweep_document.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "commands.h"
 #include "console.h"
 #include "versions.h"
@@ -15,11 +15,9 @@ namespace {
 
 double check_share(const std::string& text) {
   const bool percent = text.ends_with('%');
-  const char* const end = text.data() + text.size() - (percent ? 1 : 0);
-  double share = -1;
-  const auto [stop, error] = std::from_chars(text.data(), end, share);
-  if (percent) share /= 100;
-  if (error != std::errc() || stop != end || !(share >= 0 && share <= 1))
+  const auto number = number_in(percent ? text.substr(0, text.size() - 1) : text);
+  const double share = number.value_or(-1) / (percent ? 100 : 1);
+  if (!(share >= 0 && share <= 1))
     throw InputError("--check " + text + ": must be a share of the designs, 0% to 100%");
   return share;
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 #include "bentaxis/study/run.h"
@@ -26,8 +25,7 @@ int tradeoff(const Options& options) {
       study::run_tradeoff_study(the_case, options.tradeoff, progress_of("tradeoff"));
   const auto paths = folders.write("tradeoff", study::tradeoff_document(result, versions()), {},
                                    {{"tradeoff.csv", study::tradeoff_csv(result)}});
-  std::printf("%s\n", study::tradeoff_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(study::tradeoff_text(result), paths);
   return kDone;
 }
 

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <memory>
 #include <set>
 #include <string>
@@ -63,8 +62,7 @@ int uncertainty(const Options& options) {
   if (!result.bands.empty()) files.emplace_back("bands.csv", designs::bands_csv(result));
   const auto paths =
       folders.write("report", designs::uncertainty_document(result, versions()), {}, files);
-  std::printf("%s\n", designs::uncertainty_text(result).c_str());
-  for (const auto& path : paths) std::printf("%s\n", path.c_str());
+  print_result(designs::uncertainty_text(result), paths);
   return kDone;
 }
 
@@ -104,10 +102,7 @@ Command add_uncertainty_command(CommandParser program) {
       .text("NUMBER [0]");
   command.flag("--no-curves", options->no_curves, "numbers only, no bands on reactions");
   command.choice("--model", how.model, {"analytic", "multibody"}, "the model that computes them");
-  command
-      .option("--threads", how.threads, "samples computed at a time, at most; 0: one per processor")
-      .integer_in(0, 1024)
-      .text("NUMBER [0]");
+  add_threads(command, how.threads, "samples computed at a time, at most; 0: one per processor");
   return {command, [options] { return uncertainty(*options); }};
 }
 

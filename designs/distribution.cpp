@@ -7,7 +7,6 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/triangular.hpp>
 #include <boost/math/distributions/uniform.hpp>
-#include <charconv>
 #include <cmath>
 #include <set>
 
@@ -86,14 +85,6 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-std::optional<double> number_in(const std::string& text) {
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (text.empty() || error != std::errc() || stop != end) return std::nullopt;
-  return value;
-}
-
 }  // namespace
 
 double Distribution::quantile(double share) const {
@@ -150,7 +141,7 @@ Distribution distribution(const std::string& text, const std::string& what,
     const auto comma = rest.find(',');
     more = comma != std::string::npos;
     const auto number = number_in(trimmed(rest.substr(0, comma)));
-    if (!number) fail("\"" + trimmed(rest.substr(0, comma)) + "\" must be a number");
+    if (!number) fail("\"" + trimmed(rest.substr(0, comma)) + "\" must be a finite number");
     numbers.push_back(*number);
     if (more) rest.erase(0, comma + 1);
   }

@@ -1,7 +1,6 @@
 #include "bentaxis/designs/spaced_values.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "bentaxis/pump/error.h"
@@ -25,11 +24,9 @@ std::vector<double> spaced_values(const std::string& what, const std::string& te
       counted = true;
       ++at;
     }
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data() + at, text.data() + end, value);
-    if (error != std::errc() || stop != text.data() + end || !std::isfinite(value)) fail(forms);
-    if (numbers.size() < 2 && value < least) fail(forms);
-    numbers.push_back(value);
+    const auto value = number_in(std::string_view(text).substr(at, end - at));
+    if (!value || (numbers.size() < 2 && *value < least)) fail(forms);
+    numbers.push_back(*value);
     at = end + 1;
   }
   if (numbers.size() == 1) return numbers;

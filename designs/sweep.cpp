@@ -17,7 +17,7 @@ namespace {
 
 // Of the numbers that choose the designs to be checked.
 constexpr std::uint64_t kCheckStream = 0x636865636b;
-constexpr std::size_t kWantedBlocks = 64;  // as many at least, where there are designs for them
+constexpr std::size_t kWantedBlocks = 256;  // as many at least, where there are designs for them
 
 std::unique_ptr<Points> points_of(const SweepPlan& plan) {
   if (plan.sampling == Sampling::grid) {

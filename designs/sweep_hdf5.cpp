@@ -23,8 +23,12 @@ std::string hdf5_version() {
 
 namespace {
 
-constexpr hsize_t kChunk = 16384;     // rows
-constexpr unsigned kCompression = 1;  // lightly: of random numbers little can be saved
+constexpr hsize_t kChunk = 16384;  // rows
+
+enum class Packing {
+  none,  // of results: compression saves a third at most, and takes longer than all else here
+  light  // of levels and texts, which come again and again
+};
 
 // An identifier of the library, given back at the end.
 class Handle {
@@ -78,7 +82,7 @@ Handle group(hid_t parent, const char* name) {
 }
 
 Handle data_set(hid_t parent, const std::string& name, hid_t type,
-                const std::vector<hsize_t>& extent) {
+                const std::vector<hsize_t>& extent, Packing packing) {
   const auto rank = static_cast<int>(extent.size());
   const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
   const Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
@@ -87,8 +91,10 @@ Handle data_set(hid_t parent, const std::string& name, hid_t type,
     std::vector<hsize_t> chunk = extent;
     chunk[0] = std::min(chunk[0], kChunk);
     must(H5Pset_chunk(*how, rank, chunk.data()));
-    if (H5Tis_variable_str(type) <= 0) must(H5Pset_shuffle(*how));
-    must(H5Pset_deflate(*how, kCompression));
+    if (packing == Packing::light) {
+      if (H5Tis_variable_str(type) <= 0) must(H5Pset_shuffle(*how));
+      must(H5Pset_deflate(*how, 1));
+    }
   }
   return {H5Dcreate2(parent, name.c_str(), type, *space, H5P_DEFAULT, *how, H5P_DEFAULT), H5Dclose};
 }
@@ -122,7 +128,8 @@ struct Hdf5File::Implementation {
     const std::vector<hsize_t> extent = {sweep.designs()};
     const Handle designs = group(*file, "designs"), results = group(*file, "outputs");
     for (const Varied& v : sweep.plan().varied) {
-      columns.push_back(data_set(*designs, v.variable.name(), H5T_IEEE_F64LE, extent));
+      columns.push_back(
+          data_set(*designs, v.variable.name(), H5T_IEEE_F64LE, extent, Packing::light));
       attribute(*columns.back(), "unit", v.variable.unit());
       attribute(*columns.back(), "meaning", v.variable.meaning());
       attribute(*columns.back(), "symbol", v.variable.symbol());
@@ -131,11 +138,11 @@ struct Hdf5File::Implementation {
       if (!words.empty()) attribute(*columns.back(), "words", words);
     }
     for (const Output& o : sweep.plan().outputs) {
-      columns.push_back(data_set(*results, o.name, H5T_IEEE_F64LE, extent));
+      columns.push_back(data_set(*results, o.name, H5T_IEEE_F64LE, extent, Packing::none));
       attribute(*columns.back(), "unit", o.unit);
       attribute(*columns.back(), "meaning", o.meaning);
     }
-    reasons.push_back(data_set(*file, "reason", *reason_type, extent));
+    reasons.push_back(data_set(*file, "reason", *reason_type, extent, Packing::light));
     attribute(*reasons.back(), "meaning", "why a design is infeasible; empty where it is not");
   }
 
@@ -150,7 +157,8 @@ struct Hdf5File::Implementation {
                      std::vector<double> SweepCheck::*which, const Handle& parent) const {
     std::vector<double> all;
     for (const SweepCheck& c : checks) all.insert(all.end(), (c.*which).begin(), (c.*which).end());
-    const Handle set = data_set(*parent, name, H5T_IEEE_F64LE, {checks.size(), outputs_});
+    const Handle set =
+        data_set(*parent, name, H5T_IEEE_F64LE, {checks.size(), outputs_}, Packing::none);
     must(H5Dwrite(*set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()));
     attribute(*set, "columns", "as /outputs, in the order of the plan");
   }
@@ -173,7 +181,9 @@ void Hdf5File::add(const SweepBlock& block) {
   for (std::size_t i = 0; i < it.outputs; ++i)
     write(it.columns[it.variables + i], block.results, i, it.outputs);
   std::vector<const char*> texts;
-  for (const std::string& reason : block.reasons) texts.push_back(reason.c_str());
+  // A text that is not there reads as an empty one, and takes no place.
+  for (const std::string& reason : block.reasons)
+    texts.push_back(reason.empty() ? nullptr : reason.c_str());
   write_rows(it.reasons.front(), *it.reason_type, block.first, block.designs, texts.data());
 }
 
@@ -185,7 +195,7 @@ void Hdf5File::finish(const std::vector<SweepCheck>& checks) {
     attribute(*parent, "tolerance", kCheckTolerance);
     std::vector<double> designs;
     for (const SweepCheck& c : checks) designs.push_back(static_cast<double>(c.design));
-    const Handle set = data_set(*parent, "design", H5T_STD_U64LE, {checks.size()});
+    const Handle set = data_set(*parent, "design", H5T_STD_U64LE, {checks.size()}, Packing::none);
     must(H5Dwrite(*set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, designs.data()));
     it.check_columns("own", checks, it.outputs, &SweepCheck::own, parent);
     it.check_columns("other", checks, it.outputs, &SweepCheck::values, parent);

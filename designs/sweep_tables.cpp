@@ -69,6 +69,11 @@ std::string checks_csv(const std::vector<SweepCheck>& checks, const SweepPlan& p
   return text;
 }
 
+struct ReadBlock {
+  std::optional<SweepBlock> block;  // none: it is missing
+  std::string rows;                 // of sweep.csv
+};
+
 double bytes_expected(const Sweep& sweep) {
   constexpr double kBytesOfNumber = 18;
   const auto columns =
@@ -112,30 +117,39 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   std::unique_ptr<Hdf5File> hdf5;
   if (formats.hdf5)
     hdf5 = std::make_unique<Hdf5File>(folder.reserve("sweep.h5"), sweep, parts.record());
-  std::vector<std::size_t> missing;
-  // Some blocks at a time: read side by side, then both files written side by side.
-  constexpr std::size_t kAtATime = 16;
-  std::vector<std::optional<SweepBlock>> blocks(kAtATime);
-  for (std::size_t first = 0; first < sweep.blocks(); first += kAtATime) {
-    const std::size_t count = std::min(kAtATime, sweep.blocks() - first);
-    study::in_threads(threads, count, [&](std::size_t i) { blocks[i] = parts.read(first + i); });
-    for (std::size_t i = 0; i < count; ++i)
-      if (!blocks[i]) missing.push_back(first + i);
-    if (missing.empty()) {
-      study::in_threads(threads, 2, [&](std::size_t file) {
-        for (std::size_t i = 0; i < count; ++i) {
-          if (file == 0 && csv != nullptr) csv->write(csv_rows(*blocks[i], result.plan));
-          if (file == 1 && hdf5) hdf5->add(*blocks[i]);
-        }
-      });
-      for (std::size_t i = 0; i < count; ++i) take(result, *blocks[i]);
+  const auto write = [&](const std::vector<ReadBlock>& some) {
+    for (const ReadBlock& one : some) {
+      if (csv != nullptr) csv->write(one.rows);
+      if (hdf5) hdf5->add(*one.block);
     }
-    progress(static_cast<double>(first + count) / static_cast<double>(sweep.blocks()));
+  };
+  std::vector<std::size_t> missing;
+  // Some blocks at a time are read and made text side by side; those before are written meanwhile.
+  constexpr std::size_t kAtATime = 8;
+  std::vector<ReadBlock> before, now;
+  for (std::size_t first = 0; first < sweep.blocks(); first += kAtATime) {
+    now.assign(std::min(kAtATime, sweep.blocks() - first), {});
+    study::in_threads(threads, 1 + now.size(), [&](std::size_t job) {
+      if (job == 0) return write(before);
+      ReadBlock& one = now[job - 1];
+      one.block = parts.read(first + job - 1);
+      if (one.block && csv != nullptr) one.rows = csv_rows(*one.block, result.plan);
+    });
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (now[i].block)
+        take(result, *now[i].block);
+      else
+        missing.push_back(first + i);
+    }
+    before.swap(now);
+    progress(static_cast<double>(first + before.size()) / static_cast<double>(sweep.blocks()));
+    if (!missing.empty()) before.clear();
   }
   if (!missing.empty())
     throw InputError(fmt::format("{}: of {} blocks (0-{}) {} are missing or damaged: {}",
                                  parts.folder().string(), sweep.blocks(), sweep.blocks() - 1,
                                  missing.size(), list_of(missing)));
+  write(before);
   if (hdf5) hdf5->finish(result.checks);
   if (!result.checks.empty())
     folder.add("sweep_checks.csv", checks_csv(result.checks, result.plan));

@@ -99,8 +99,7 @@ std::vector<ValidationCurve> curves_of(const study::ComparisonResult& result,
       curve.theta_deg.push_back(uncertainty.theta_deg[i]);
       curve.data.push_back(error.data);
       within += error.within() ? 1 : 0;
-      const double ratio =
-          error.validation() > 0 ? std::abs(error.error()) / error.validation() : 0;
+      const double ratio = error.error() == 0 ? 0 : std::abs(error.error()) / error.validation();
       if (ratio > worst) {
         worst = ratio;
         curve.worst = error;

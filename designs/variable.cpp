@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <utility>
 #include <variant>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
 #include "bentaxis/pump/words.h"
 
@@ -131,14 +131,12 @@ double Variable::value_of(const std::string& text) const {
                        suggestion(text, {words_.begin(), words_.end()}));
     return static_cast<double>(word - words_.begin());
   }
-  double value = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value))
+  const auto value = number_in(text);
+  if (!value)
     throw InputError(name_ + " = " + text + ": must be a number" + decimal_point_hint(text));
-  if (integer_ && value != std::round(value))
+  if (integer_ && *value != std::round(*value))
     throw InputError(name_ + " = " + text + ": must be a whole number");
-  return value;
+  return *value;
 }
 
 Family::Family(Case base, std::vector<Variable> variables)

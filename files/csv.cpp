@@ -5,7 +5,6 @@
 #include <libfccp/csv.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -63,16 +62,11 @@ NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empt
       row.reserve(fields.size());
       for (std::size_t i = 0; i < fields.size(); ++i) {
         const auto field = fields[i];
-        double value = 0;
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-        if (field.empty() && allow_empty) {
-          value = not_computed();
-        } else if (error != std::errc() || end != field.data() + field.size() ||
-                   !std::isfinite(value)) {
+        const auto value = number_in(field);
+        if (!value && !(field.empty() && allow_empty))
           throw InputError(where + ": " + table.header[i] + " = \"" + std::string(field) +
                            "\": must be a finite number");
-        }
-        row.push_back(value);
+        row.push_back(value.value_or(not_computed()));
       }
       table.rows.push_back(std::move(row));
       table.lines.push_back(reader.get_file_line());

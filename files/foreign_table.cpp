@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -300,8 +299,9 @@ bool parse_number(std::string_view text, char decimal, double& value, int& digit
     }
   }
   if (grouped && (!point || first_group == 0)) return false;
-  const auto [end, error] = std::from_chars(buffer.data(), buffer.data() + n, value);
-  return error == std::errc() && end == buffer.data() + n && std::isfinite(value);
+  const auto number = number_in({buffer.data(), n});
+  value = number.value_or(value);
+  return number.has_value();
 }
 
 void fill(const Grid& grid, ForeignTable& table) {

@@ -26,6 +26,14 @@ bool is_stray_nan(double value) {
   return !is_computed(value) && bits != kNotComputedBits;
 }
 
+std::optional<double> number_in(std::string_view text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 void append_number(std::string& text, double value) {
   if (!is_computed(value)) return;
   std::array<char, 32> buffer;
@@ -44,7 +52,7 @@ namespace {
 
 // One unit of the third digit further where rounding went the wrong way.
 std::string rounded_to(double value, double direction) {
-  const std::string text = rounded_text(value);
+  std::string text = rounded_text(value);
   double rounded = 0;
   std::from_chars(text.data(), text.data() + text.size(), rounded);
   if (!((rounded - value) * direction < 0)) return text;

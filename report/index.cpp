@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bentaxis/report/page.h"
-#include "bentaxis/report/text.h"
+#include "bentaxis/report/picture.h"
 
 namespace bentaxis::report {
 namespace {
@@ -66,7 +66,7 @@ std::string row_of(const IndexEntry& entry) {
   const std::string& target = entry.page.empty() ? entry.json : entry.page;
   std::string worst;
   if (!entry.worst_channel.empty())
-    worst = "<code>" + escaped_markup(entry.worst_channel) + "</code>" +
+    worst = "<code>" + markup_of(entry.worst_channel) + "</code>" +
             (entry.worst_over_peak ? fmt::format(" {:.1e} of peak", *entry.worst_over_peak) : "");
   return fmt::format(
       "<tr><th scope=\"row\"><a href=\"{}\">{}</a><small>{}</small><small>{}</small></th>"
@@ -75,10 +75,10 @@ std::string row_of(const IndexEntry& entry) {
       "<td data-head=\"Worst channel\"><div>{}</div></td>"
       "<td data-head=\"Made\"><div>{}<small>{}</small></div></td>"
       "<td data-head=\"Pump\"><div>{}</div></td></tr>\n",
-      escaped_markup(address(target)), escaped_markup(entry.title), escaped_markup(target),
-      escaped_markup(entry.case_file), tone_of(entry), escaped_markup(word_of(entry)),
-      escaped_markup(entry.headline), worst, escaped_markup(entry.date),
-      escaped_markup(entry.command), image(entry.picture));
+      markup_of(address(target)), markup_of(entry.title), markup_of(target),
+      markup_of(entry.case_file), tone_of(entry), markup_of(word_of(entry)),
+      markup_of(entry.headline), worst, markup_of(entry.date), markup_of(entry.command),
+      image(entry.picture));
 }
 
 std::string counts_of(const std::vector<IndexEntry>& entries) {
@@ -96,7 +96,7 @@ std::string counts_of(const std::vector<IndexEntry>& entries) {
 std::string skipped_text(const std::vector<std::string>& skipped) {
   if (skipped.empty()) return {};
   std::string list;
-  for (const std::string& file : skipped) list += "<li>" + escaped_markup(file) + "</li>\n";
+  for (const std::string& file : skipped) list += "<li>" + markup_of(file) + "</li>\n";
   return fmt::format(
       "<details class=\"others\"><summary>JSON files that are no report ({})</summary>\n<ul>\n{}"
       "</ul></details>\n",
@@ -158,11 +158,11 @@ std::string index_page(const std::string& title, const std::vector<IndexEntry>& 
   std::string rows;
   for (const IndexEntry& entry : entries) rows += row_of(entry);
   return filled_template("index.html", {{"@CSS@", page_parts().at("report.css")},
-                                        {"@COUNTS@", escaped_markup(counts_of(entries))},
+                                        {"@COUNTS@", markup_of(counts_of(entries))},
                                         {"@SKIPPED@", skipped_text(skipped)},
                                         {"@ROWS@", rows},
-                                        {"@TITLE@", escaped_markup(title)},
-                                        {"@TITLE@", escaped_markup(title)}});
+                                        {"@TITLE@", markup_of(title)},
+                                        {"@TITLE@", markup_of(title)}});
 }
 
 std::string index_json(const std::vector<IndexEntry>& entries) {

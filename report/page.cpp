@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "bentaxis/report/picture.h"
-#include "bentaxis/report/text.h"
 
 namespace bentaxis::report {
 namespace {
@@ -37,8 +36,8 @@ std::string pictures(const Document& document, const Curves& curves) {
   std::string text;
   if (!document.figures) return text;
   for (const Figure& figure : *document.figures)
-    text += "<div data-figure=\"" + escaped_markup(figure.id) + "\">" + svg_of(figure, curves) +
-            "</div>\n";
+    text +=
+        "<div data-figure=\"" + markup_of(figure.id) + "\">" + svg_of(figure, curves) + "</div>\n";
   return text;
 }
 
@@ -56,7 +55,7 @@ std::string filled_template(const std::string& part, const Fillings& fillings) {
 
 std::string render_page(const Document& document, const Curves& curves) {
   const auto& parts = page_parts();
-  return filled_template("template.html", {{"@TITLE@", escaped_markup(document.title)},
+  return filled_template("template.html", {{"@TITLE@", markup_of(document.title)},
                                            {"@CSS@", parts.at("report.css")},
                                            {"@DYGRAPHS_CSS@", parts.at("dygraph.min.css")},
                                            {"@DYGRAPHS_JS@", parts.at("dygraph.min.js")},

@@ -4,6 +4,25 @@
 
 namespace bentaxis::report {
 
+std::string markup_of(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      out += ' ';
+    else
+      out += c;
+  }
+  return out;
+}
+
 std::string svg_of(const Figure& figure, const Curves& curves) {
   const auto content = [&](const auto& shown) { return picture::picture_of(shown, curves); };
   return picture::drawn(figure, std::visit(content, figure.content));

@@ -9,7 +9,7 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/report/text.h"
+#include "bentaxis/report/picture.h"
 
 namespace bentaxis::study {
 namespace {
@@ -113,10 +113,9 @@ class View {
   }
   void paper(const std::string& text, Point p, const char* style = "") {
     // Kept on the sheet by its middle: a label is never lost with the point that it belongs to.
-    words_ +=
-        fmt::format("<text{} x=\"{}\" y=\"{}\">{}</text>\n",
-                    *style != '\0' ? fmt::format(" class=\"{}\"", style) : std::string(),
-                    px(std::clamp(p.x, 4.0, kWidth - 4)), px(p.y), report::escaped_markup(text));
+    words_ += fmt::format("<text{} x=\"{}\" y=\"{}\">{}</text>\n",
+                          *style != '\0' ? fmt::format(" class=\"{}\"", style) : std::string(),
+                          px(std::clamp(p.x, 4.0, kWidth - 4)), px(p.y), report::markup_of(text));
   }
   // A dimension line with arrow heads from a to b, moved aside by `aside` px, with its text.
   void dimension(Point a, Point b, double aside, const std::string& text, const char* style,
@@ -201,8 +200,8 @@ class Picture {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"bentaxis-pump\" viewBox=\"0 0 {} {}\" "
         "role=\"img\" aria-label=\"The pump to scale\">\n<title>{}, to scale</title>\n"
         "<style>{}</style>\n{}{}{}{}</svg>\n",
-        at(kWidth), px(bottom_ + kFoot), report::escaped_markup(case_.name), kStyle,
-        side_.text("side"), joints_.text("joints"), block_.text("block"), rule_);
+        at(kWidth), px(bottom_ + kFoot), report::markup_of(case_.name), kStyle, side_.text("side"),
+        joints_.text("joints"), block_.text("block"), rule_);
   }
 
  private:

@@ -8,20 +8,14 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "support.h"
 
 namespace bentaxis::designs {
 namespace {
 
-const std::string kRated = std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated.toml";
+using test::refusal;
 
-std::string refusal(const std::function<void()>& job) {
-  try {
-    job();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+const std::string kRated = std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_rated.toml";
 
 TEST(Variable, IsAParameterByItsName) {
   const Case base = read_case(kRated);

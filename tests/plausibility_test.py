@@ -196,9 +196,10 @@ class SaidTest(unittest.TestCase):
             table = json.loads((self.folder / "at" / "pressure.json").read_text())["runs"][0]["table"]["rows"]
             least = next(value for name, value, _ in table if name == "chamber pressure, least")
             self.assertEqual(least >= -0.5, above, least)
-        done = run("pressure", case, "--suction-speed", "deep", cwd=self.folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertIn("saturation, vapour or a gauge pressure in bar", done.stderr)
+        for wrong in ("deep", "inf", "1bar"):
+            done = run("pressure", case, "--suction-speed", wrong, cwd=self.folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("saturation, vapour or a gauge pressure in bar", done.stderr)
 
     def test_strict_lets_pass_what_is_not_doubtful(self):
         self.assertEqual(run("show", self.rated, "--strict").returncode, 0)

@@ -38,16 +38,6 @@ using testing::Not;
 
 std::string rated_text() { return case_text(reference_case("bap63_rated")); }
 
-template <class Job>
-std::string refusal(const Job& job) {
-  try {
-    job();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 // ---- A parameter more
 // ----------------------------------------------------------------------------
 

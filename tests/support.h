@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <numeric>
 #include <random>
@@ -16,6 +17,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 
@@ -48,6 +50,16 @@ inline std::vector<double> column(const ResultTable& table, const std::string& n
 
 inline double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// What a job is refused for; "accepted" where it is not.
+inline std::string refusal(const std::function<void()>& job) {
+  try {
+    job();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
 }
 
 /// A folder of a test's own, gone with it.

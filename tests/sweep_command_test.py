@@ -227,11 +227,11 @@ class SweepTest(ProgramTest):
         self.run_program(*self.slow(out="whole"))
         process = self.interrupted(self.start(*self.slow("--threads", 1)), lambda p: p.send_signal(signal.SIGINT))
         self.finish(process, INTERRUPTED)
-        self.assertRegex(process.err, "^bentaxis: interrupted; [0-9]+ of 72 blocks are in out/sweep.parts: --resume goes on from them\n$")
+        self.assertRegex(process.err, "^bentaxis: interrupted; [0-9]+ of 144 blocks are in out/sweep.parts: --resume goes on from them\n$")
         self.assertFalse((self.folder / "out" / "sweep.csv").exists())
         parts = self.folder / "out" / "sweep.parts"
         blocks = {file.name: file.stat().st_mtime_ns for file in parts.glob("*.bin")}
-        self.assertTrue(3 <= len(blocks) < 72)
+        self.assertTrue(3 <= len(blocks) < 144)
         # Another plan is refused, and nothing is touched.
         self.assert_mentions(self.refused(*self.slow("--resume", "--set", "operation.speed_rpm=1600")), "sweep.parts", "another case")
         # A block that was damaged is computed again; the others are taken as they are.

@@ -16,11 +16,13 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "support.h"
 
 namespace bentaxis::designs {
 namespace {
 
 namespace fs = std::filesystem;
+using test::refusal;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -35,15 +37,6 @@ SweepRequest tilts(const std::string& values = "20:40:5") {
   request.vary = {{"pump.tilt_deg", values}};
   request.outputs = {"max:Rb1_z1", "mean:Td"};
   return request;
-}
-
-std::string refusal(const std::function<void()>& job) {
-  try {
-    job();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 class Folder {
@@ -117,11 +110,11 @@ TEST(SweepPlan, IsReadBackFromItsText) {
 TEST(Sweep, BlocksHoldWhatTheEvaluatorGives) {
   const Case base = rated();
   SweepRequest request = tilts("20:100:#9");
-  request.vary.emplace_back("pressure.delivery_bar", "50:400:#40");
+  request.vary.emplace_back("pressure.delivery_bar", "50:400:#160");
   const Sweep sweep(base, sweep_plan(request, base));
-  ASSERT_EQ(sweep.designs(), 360U);
-  EXPECT_EQ(sweep.block_size(), 4U);  // of 64 blocks and more the largest power of two
-  EXPECT_EQ(sweep.blocks(), 90U);
+  ASSERT_EQ(sweep.designs(), 1440U);
+  EXPECT_EQ(sweep.block_size(), 4U);  // of 256 blocks and more the largest power of two
+  EXPECT_EQ(sweep.blocks(), 360U);
   const Evaluator evaluator(
       Family(base, {Variable("pump.tilt_deg", base), Variable("pressure.delivery_bar", base)}),
       sweep.plan().outputs);
@@ -131,8 +124,8 @@ TEST(Sweep, BlocksHoldWhatTheEvaluatorGives) {
     ASSERT_EQ(block.first, b * 4);
     for (std::size_t i = 0; i < block.designs; ++i) {
       const std::size_t design = block.first + i;
-      const double values[] = {20 + 10 * static_cast<double>(design / 40),
-                               50 + 350.0 / 39 * static_cast<double>(design % 40)};
+      const double values[] = {20 + 10 * static_cast<double>(design / 160),
+                               50 + 350.0 / 159 * static_cast<double>(design % 160)};
       EXPECT_NEAR(block.values[2 * i], values[0], 1e-12);
       EXPECT_NEAR(block.values[2 * i + 1], values[1], 1e-12);
       const Evaluation one = evaluator.evaluate(std::span(block.values).subspan(2 * i, 2));
@@ -143,7 +136,7 @@ TEST(Sweep, BlocksHoldWhatTheEvaluatorGives) {
       infeasible += one.feasible() ? 0 : 1;
     }
   }
-  EXPECT_EQ(infeasible, 80U);  // at 90 and 100 deg
+  EXPECT_EQ(infeasible, 320U);  // at 90 and 100 deg
 }
 
 // What a file of a block says is what was kept; one bit less is nothing.

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace bentaxis {
 
@@ -12,6 +14,9 @@ double not_computed();
 inline bool is_computed(double value) { return value == value; }
 /// Whether a value is a NaN that arithmetic produced.
 bool is_stray_nan(double value);
+
+/// The finite number that a text is, as written in files and on command lines, and nothing else.
+std::optional<double> number_in(std::string_view text);
 
 /// Appends the shortest text that reads back to the same double; nothing where not computed.
 void append_number(std::string& text, double value);

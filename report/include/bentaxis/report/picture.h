@@ -7,6 +7,9 @@
 
 namespace bentaxis::report {
 
+/// Text as HTML and SVG hold it, in quotes too; control characters are spaces.
+std::string markup_of(const std::string& text);
+
 /// The figure as SVG that stands alone, dark on white. The page shows, prints and hands out the
 /// same text.
 /// @param curves  those of the page, which the figure may name

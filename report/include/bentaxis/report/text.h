@@ -1,4 +1,4 @@
-// Text: the comparison in words, for a terminal; any text, for markup.
+// The comparison in words, for a terminal.
 #pragma once
 
 #include <string>
@@ -9,8 +9,5 @@ namespace bentaxis::report {
 
 /// The comparison as a plain-text table, one line per scale group, worst first.
 std::string text_table(const compare::Comparison& comparison);
-
-/// As HTML, XML and SVG take it, between quotes too. Control characters become blanks.
-std::string escaped_markup(const std::string& text);
 
 }  // namespace bentaxis::report
