@@ -16,6 +16,7 @@ namespace bentaxis::designs {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string refusal_of(const std::function<void()>& job) {
@@ -113,6 +114,25 @@ TEST_F(Identify, WordsNameWhatIsDeterminedOnlyTogether) {
   const DataModel nothing(
       base, data_of(base, {"pressure.delivery_bar=250:300", "block.mass_kg=1:2"}, {torque}));
   EXPECT_THAT(fit(nothing).information.words, Contains("the data say nothing of block.mass_kg"));
+}
+
+// Where the fit ends is right to rounding; the words are those of the place.
+TEST_F(Identify, WordsDoNotDependOnRounding) {
+  for (const char* suction : {"0", "1e-15", "-1e-13", "1e-9"}) {
+    const Case base = read_case(
+        BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml",
+        {"operation.samples_per_revolution=60", std::string("pressure.suction_bar=") + suction});
+    for (const double share : {0.0, 1e-15, -1e-13}) {
+      const double torque = (1 + share) * value_of(base, "mean:Td");
+      const DataModel model(
+          base, data_of(base, {"pressure.delivery_bar=250:300", "pressure.suction_bar=-0.9:20"},
+                        {number(base, "mean:Td", torque, 0.1)}));
+      EXPECT_THAT(fit(model).information.words,
+                  ElementsAre("pressure.delivery_bar and pressure.suction_bar are determined only "
+                              "through their difference"))
+          << suction << " bar, " << share;
+    }
+  }
 }
 
 TEST_F(Identify, AWindowPushesOnlyFromOutside) {
