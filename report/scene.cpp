@@ -78,9 +78,9 @@ Json per_model(const std::vector<Item>& items) {
   return alike ? Json::array({list.front()}) : list;
 }
 
-Json flat(const std::vector<Point>& points) {
+Json flat(const std::vector<report::Point>& points) {
   Json list = Json::array();
-  for (const Point& point : points)
+  for (const report::Point& point : points)
     for (const double x : point) list.push_back(x);
   return list;
 }
