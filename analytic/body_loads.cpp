@@ -24,11 +24,6 @@ struct Inertia {
   Vector force, moment;  // about the centre of mass
 };
 
-// Pairs of TeethAction in words.
-constexpr const char* kPairs[2 * kPairsPerFlank] = {
-    "flank +1, pair at O4", "flank +1, pair before", "flank +1, pair after",
-    "flank -1, pair at O4", "flank -1, pair before", "flank -1, pair after"};
-
 }  // namespace
 
 struct BodyLoads::Implementation {
@@ -204,7 +199,7 @@ void BodyLoads::Implementation::add_gear(const Instant& instant, const std::vect
     const PairContact& pair = acting.pairs[i];
     const bool touches = pair.force > 0;
     const Vector force = touches ? pair.force * vector(pair.normal) : kNone;
-    put(kPairs[i], touches ? vector(pair.point) + o2() : o4, force, -1.0 * force);
+    put(kPairNames[i], touches ? vector(pair.point) + o2() : o4, force, -1.0 * force);
   }
 }
 
