@@ -41,6 +41,13 @@ std::string pictures(const Document& document, const Curves& curves) {
   return text;
 }
 
+// What only a page with the pump in space needs.
+std::string scene_block(const Document& document) {
+  if (!document.scene) return {};
+  return "<script type=\"application/json\" id=\"scene\">\n" +
+         script_safe(compact_json(*document.scene)) + "\n</script>\n";
+}
+
 }  // namespace
 
 std::string filled_template(const std::string& part, const Fillings& fillings) {
@@ -62,6 +69,7 @@ std::string render_page(const Document& document, const Curves& curves) {
                                            {"@REPORT_JS@", script()},
                                            {"@PICTURES@", pictures(document, curves)},
                                            {"@PICTURE@", document.picture},
+                                           {"@SCENE@", scene_block(document)},
                                            {"@CURVES_JSON@", script_safe(compact_json(curves))},
                                            {"@REPORT_JSON@", script_safe(compact_json(document))}});
 }
