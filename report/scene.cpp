@@ -1,8 +1,11 @@
 #include "bentaxis/report/scene.h"
 
+#include <fmt/format.h>
+
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -78,20 +81,35 @@ Json per_model(const std::vector<Item>& items) {
   return alike ? Json::array({list.front()}) : list;
 }
 
+// Shapes are drawn in floats.
+Json drawn(double x) { return std::strtod(fmt::format("{:.7g}", x).c_str(), nullptr); }
+template <std::size_t size>
+Json drawn(const std::array<double, size>& numbers) {
+  Json list = Json::array();
+  for (const double x : numbers) list.push_back(drawn(x));
+  return list;
+}
+template <class Item>
+Json drawn(const std::vector<Item>& items) {
+  Json list = Json::array();
+  for (const Item& item : items) list.push_back(drawn(item));
+  return list;
+}
 Json flat(const std::vector<report::Point>& points) {
   Json list = Json::array();
   for (const report::Point& point : points)
-    for (const double x : point) list.push_back(x);
+    for (const double x : point) list.push_back(drawn(x));
   return list;
 }
 
-void put_form(Json& json, const Lathe& lathe) { json["lathe"] = lathe.profile; }
+void put_form(Json& json, const Lathe& lathe) { json["lathe"] = drawn(lathe.profile); }
 void put_form(Json& json, const Prism& prism) {
-  json["prism"] = {{"outline", prism.outline}, {"z", {prism.z_low, prism.z_high}}};
-  if (!prism.holes.empty()) json["prism"]["holes"] = prism.holes;
+  json["prism"] = {{"outline", drawn(prism.outline)},
+                   {"z", {drawn(prism.z_low), drawn(prism.z_high)}}};
+  if (!prism.holes.empty()) json["prism"]["holes"] = drawn(prism.holes);
 }
 void put_form(Json& json, const Ball& ball) {
-  json["ball"] = {{"centre", ball.centre}, {"radius", ball.radius}};
+  json["ball"] = {{"centre", drawn(ball.centre)}, {"radius", drawn(ball.radius)}};
 }
 void put_form(Json& json, const Mesh& mesh) {
   Json corners = Json::array();
