@@ -266,7 +266,7 @@ void expect_scene_of(Case the_case) {
   SCOPED_TRACE(the_case.name);
   the_case.operation.samples_per_revolution = 45;
   study::ComparisonOptions options;
-  options.body_loads = true;
+  options.loads = true;
   const study::ComparisonResult r = study::compare_models(std::move(the_case), {}, options);
   const report::Document document = study::comparison_document(r, {});
   ASSERT_TRUE(document.scene);
