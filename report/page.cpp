@@ -48,7 +48,7 @@ std::string script() {
       "that\n"
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
-  for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "curves.js",
+  for (const char* module : {"elements.js", "axes.js", "packed.js", "sections.js", "comparison.js", "curves.js",
                              "bars.js", "drawing.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
@@ -86,7 +86,7 @@ std::string render_page(const Document& document, const Curves& curves) {
            {"@PICTURES@", pictures(document, curves)},
            {"@PICTURE@", document.picture},
            {"@SCENE@", scene_block(document)},
-           {"@CURVES_JSON@", script_safe(compact_json(curves))},
+           {"@CURVES_JSON@", script_safe(packed_json(curves))},
            {"@REPORT_JSON@", script_safe(compact_json(document))}})
     replace_once(page, marker, value);
   return page;

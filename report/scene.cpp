@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <boost/archive/iterators/base64_from_binary.hpp>
-#include <boost/archive/iterators/transform_width.hpp>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base64.h"
 #include "bentaxis/report/document.h"
 
 namespace bentaxis::report {
@@ -35,20 +34,10 @@ const char* to_string(Look look) {
 }
 
 std::string base64_floats(const Values& values) {
-  std::string bytes;
-  for (const double value : values) {
-    const auto single = static_cast<float>(value);  // what was not computed stays NaN
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &single, sizeof bits);
-    for (int i = 0; i < 4; ++i) bytes += static_cast<char>((bits >> (8 * i)) & 0xFF);
-  }
-  const std::size_t missing = (3 - bytes.size() % 3) % 3;
-  bytes.append(missing, '\0');
-  using namespace boost::archive::iterators;
-  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
-  std::string text(Digits(bytes.cbegin()), Digits(bytes.cend()));
-  text.replace(text.size() - missing, missing, missing, '=');
-  return text;
+  std::vector<std::uint32_t> words;
+  for (const double value : values)  // what was not computed stays NaN
+    words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+  return base64_of(words);
 }
 
 Json json_of(const Scalar& scalar) {
@@ -187,7 +176,7 @@ std::string compact_json(const Scene& scene) {
   if (scene.film_point) json["film_point"] = json_of(*scene.film_point);
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   // The curves in the format of their own block, behind the rest.
-  if (scene.curves) text.replace(text.size() - 1, 1, ",\"curves\":" + compact_json(*scene.curves) + "}");
+  if (scene.curves) text.replace(text.size() - 1, 1, ",\"curves\":" + packed_json(*scene.curves) + "}");
   return text;
 }
 
