@@ -133,9 +133,11 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.title = the_case.name;
   document.program = program;
   std::optional<report::Scene> scene;
-  if (r.analytic_loads && r.multibody_loads)
+  // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
+  if (r.options.loads && r.options.way == Way::driven &&
+      r.options.scene.scene == multibody::Scene::full)
     scene =
-        pump_scene(the_case, {{r.analytic, *r.analytic_loads}, {r.multibody, *r.multibody_loads}});
+        pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
   describe_case(document, the_case, std::move(scene));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);

@@ -36,7 +36,8 @@ function orderOf(theta, angle) {
   return { theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil) };
 }
 
-function prepare(report, curves) {
+function prepare(report, given) {
+  const curves = unpacked(given);
   const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
   const channels = new Map(list(report.channels).map(c => [c.name, c]));
   const about = name => channels.get(name) || {};
