@@ -48,8 +48,8 @@ std::string script() {
       "that\n"
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
-  for (const char* module : {"elements.js", "axes.js", "packed.js", "sections.js", "comparison.js", "curves.js",
-                             "bars.js", "drawing.js", "hand_out.js", "page.js"})
+  for (const char* module : {"elements.js", "axes.js", "packed.js", "sections.js", "comparison.js",
+                             "curves.js", "bars.js", "drawing.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
 }

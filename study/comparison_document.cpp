@@ -136,8 +136,8 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
   if (r.options.loads && r.options.way == Way::driven &&
       r.options.scene.scene == multibody::Scene::full)
-    scene = pump_scene(the_case,
-                       {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
+    scene =
+        pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
   describe_case(document, the_case, std::move(scene));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
