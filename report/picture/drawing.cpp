@@ -20,6 +20,16 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
   for (const DrawingFigure::Look& look : figure.looks)
     picture.legend[1].push_back(line_key(
         look.label, pick(kColours, static_cast<std::size_t>(look.colour)), look.filled ? 6 : 2.5));
+  if (figure.shades) {
+    picture.legend.emplace_back();
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
+      picture.legend[2].push_back(shade_key(
+          with_unit(
+              short_number(figure.shades->low + t * (figure.shades->high - figure.shades->low)),
+              figure.shades->unit),
+          shade(t)));
+    picture.legend[2][0].label = figure.shades->label + ": " + picture.legend[2][0].label;
+  }
   for (std::size_t p = 0; p < figure.panels.size(); ++p) {
     const DrawingFigure::Panel& from = figure.panels[p];
     const double scale = (kRight - kLeft) / (from.x_high - from.x_low);
@@ -29,7 +39,8 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
                 {from.x_low, from.x_high},
                 {from.y_low, from.y_high}};
     panel.y_margin = Margin::none;
-    panel.draw = [=, looks = figure.looks](pugi::xml_node root, const Scale& x, const Scale& y) {
+    panel.draw = [=, looks = figure.looks, shades = figure.shades](pugi::xml_node root,
+                                                                   const Scale& x, const Scale& y) {
       const auto colour = [&](int look) {
         return std::string(
             pick(kColours, static_cast<std::size_t>(looks[static_cast<std::size_t>(look)].colour)));
@@ -42,11 +53,16 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
             path += fmt::format("{}{} {}", path.empty() ? "M" : "L",
                                 px(std::clamp(x.place(line.x[i]), kLeft, kRight)),
                                 px(std::clamp(y.place(line.y[i]), y.last, y.first)));
+        const bool shaded = shades && line.value && std::isfinite(*line.value);
         const bool filled = looks[static_cast<std::size_t>(line.look)].filled;
         add(root, "path",
             {{"d", path},
-             {"fill", filled ? colour(line.look) : "none"},
-             {"fill-opacity", filled ? "0.18" : "0"},
+             {"fill", shaded   ? shade((*line.value - shades->low) / (shades->high - shades->low))
+                      : filled ? colour(line.look)
+                               : "none"},
+             {"fill-opacity", shaded   ? "1"
+                              : filled ? "0.18"
+                                       : "0"},
              {"stroke", colour(line.look)},
              {"stroke-width", px(line.width)}});
       }
