@@ -85,16 +85,15 @@ class SceneMaker {
     const double radius = p_.gear.pitch_diameter / 2, half = std::tan(g_.tilt / 2);
     const Vector3d i4 = Vector3d(0, -radius, radius * half).normalized();
     const double across = std::sin(p_.gear.pressure_angle);
-    const Vector3d k4 = direction * Vector3d(-std::cos(p_.gear.pressure_angle),
-                                             across * std::sin(g_.tilt / 2),
-                                             across * std::cos(g_.tilt / 2));
+    const Vector3d k4 =
+        direction * Vector3d(-std::cos(p_.gear.pressure_angle), across * std::sin(g_.tilt / 2),
+                             across * std::cos(g_.tilt / 2));
     return {point(i4), point(k4.cross(i4)), point(k4)};
   }
 
   Scalar add_series(report::Values values) {
     // What stays is a number.
-    if (std::all_of(values.begin(), values.end(),
-                    [&](double v) { return v == values.front(); }))
+    if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); }))
       return {values.front()};
     Scalar scalar{0, 1};
     scalar.series = scene_.series.size();
@@ -138,8 +137,7 @@ void SceneMaker::add_bodies(const SceneMotion* motion) {
     for (const double angle : motion->*of) turn.push_back(std::remainder(angle, 2 * kPi));
     return report::Turning{add_series(std::move(turn))};
   };
-  scene_.bodies.push_back(
-      {"shaft", {}, axes_["S1"], turning(&SceneMotion::shaft), shapes_.shaft});
+  scene_.bodies.push_back({"shaft", {}, axes_["S1"], turning(&SceneMotion::shaft), shapes_.shaft});
   add_pistons();
   scene_.bodies.push_back(
       {"block", point(o2()), axes_["S2"], turning(&SceneMotion::block), shapes_.block});
@@ -217,8 +215,8 @@ Place SceneMaker::place_of(const BodyLoad& load, const SceneRun& run, std::size_
   if (starts(load.on, "piston") && load.point == "centre of mass")
     for (const BodyLoad& joint : run.loads.row(0))
       if (joint.on == load.on && joint.symbol == "Rs")
-        return {load.on, constant({0, 0,
-                                   (vector(run.loads.at(0, index).at) - vector(joint.at)).norm()})};
+        return {load.on,
+                constant({0, 0, (vector(run.loads.at(0, index).at) - vector(joint.at)).norm()})};
   if (load.symbol == "Fh" && at_film_point_)
     return {"plate",
             {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
@@ -365,17 +363,16 @@ report::SceneLoad SceneMaker::described(const BodyLoad& load) {
 
 void SceneMaker::add_loads() {
   at_film_point_ = film_point_is_near();
-  scene_.film_point = Place{
-      "plate",
-      {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
+  scene_.film_point =
+      Place{"plate",
+            {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
   // Loads of all models, each behind those before it where a model first has it.
   std::vector<BodyLoad> loads;
   for (const SceneRun& run : runs_) {
     auto next = loads.begin();
     for (const BodyLoad& load : run.loads.loads) {
-      const auto same = std::find_if(loads.begin(), loads.end(), [&](const BodyLoad& one) {
-        return same_load(one, load);
-      });
+      const auto same = std::find_if(loads.begin(), loads.end(),
+                                     [&](const BodyLoad& one) { return same_load(one, load); });
       next = (same != loads.end() ? same : loads.insert(next, load)) + 1;
     }
   }
@@ -452,8 +449,11 @@ std::vector<double> every(std::size_t step, const std::vector<double>& values,
 }
 
 ResultTable every(std::size_t step, const ResultTable& table) {
-  ResultTable thin{table.name, table.channels, every(step, table.theta_deg),
-                   every(step, table.values, table.columns()), {}};
+  ResultTable thin{table.name,
+                   table.channels,
+                   every(step, table.theta_deg),
+                   every(step, table.values, table.columns()),
+                   {}};
   return thin;
 }
 

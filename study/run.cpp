@@ -132,17 +132,15 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
     result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"),
                                  options.teeth ? &*result.teeth : nullptr);
     if (options.budget) result.budget = analytic::run_budget(the_case, assumptions, samples);
-    if (options.body_loads)
-      result.loads = analytic::run_body_loads(the_case, assumptions, samples);
+    if (options.body_loads) result.loads = analytic::run_body_loads(the_case, assumptions, samples);
   } else if (options.way == Way::driven) {
     if (options.budget) result.budget.emplace();
     if (options.teeth) result.teeth.emplace();
     if (options.body_loads) result.loads.emplace();
-    result.table = multibody::run_driven(the_case, assumptions, samples, progress_of("multibody"),
-                                         options.scene.scene, options.scene.method,
-                                         options.budget ? &*result.budget : nullptr,
-                                         options.teeth ? &*result.teeth : nullptr,
-                                         options.body_loads ? &*result.loads : nullptr);
+    result.table = multibody::run_driven(
+        the_case, assumptions, samples, progress_of("multibody"), options.scene.scene,
+        options.scene.method, options.budget ? &*result.budget : nullptr,
+        options.teeth ? &*result.teeth : nullptr, options.body_loads ? &*result.loads : nullptr);
   } else if (options.target) {
     const auto& among = options.target->integrators;
     VerifiedRun verified =

@@ -138,9 +138,8 @@ TEST(BodyLoadTable, RefusesARowWithOtherLoads) {
 // ---- the closed form ---------------------------------------------------------------------------
 
 TEST(AnalyticLoads, BalanceOnRandomPumps) {
-  for_each_pump(300, [](const Drawn& d) {
-    expect_balance(sums_of(d.loads()), d.pump.geometry.pistons + 2);
-  });
+  for_each_pump(
+      300, [](const Drawn& d) { expect_balance(sums_of(d.loads()), d.pump.geometry.pistons + 2); });
 }
 
 TEST(AnalyticLoads, BalanceInEveryRowOfTheStoredCases) {
@@ -235,8 +234,8 @@ TEST(AnalyticLoads, AreThoseOfTheFreeBodiesWrittenOut) {
       std::vector<double> off = values;
       off[c] += 1e-3 * (1 + std::abs(off[c]));
       double worst = 0;
-      for (const BodySum& sum : sums_of(analytic::BodyLoads(d.pump, d.assumptions)
-                                            .of_row(d.instant, off, TeethAction())))
+      for (const BodySum& sum : sums_of(
+               analytic::BodyLoads(d.pump, d.assumptions).of_row(d.instant, off, TeethAction())))
         worst = std::max(worst, left(sum));
       EXPECT_GT(worst, 100 * kSum) << model.layout().channels()[c].name;
       EXPECT_GT(free_body_residual(d.pump, d.assumptions, d.instant, off), 100 * kSum)
@@ -388,8 +387,7 @@ TEST(SimulatedLoads, BalanceInEveryRowOfBothModels) {
     const PressureTrace pressure(the_case.pressure);
     analytic::SimulationOptions options;
     options.body_loads = true;
-    const Trajectory a =
-        analytic::simulate(the_case, the_case.analytic, pressure, options);
+    const Trajectory a = analytic::simulate(the_case, the_case.analytic, pressure, options);
     expect_balanced_rows(the_case, a);
     expect_torque_of_rows(a);
     SimulationOptions coarse;
@@ -416,8 +414,8 @@ TEST(SimulatedLoads, BalanceWhereTeethTouch) {
   options.body_loads = true;
   for (const study::Model model : study::kModels) {
     SCOPED_TRACE(to_string(model));
-    const auto oil = coupled::prescribed_oil(the_case.pump.geometry.pistons, pressure,
-                                             the_case.pressure.ports);
+    const auto oil =
+        coupled::prescribed_oil(the_case.pump.geometry.pistons, pressure, the_case.pressure.ports);
     const auto mechanics = model == study::Model::analytic
                                ? analytic::mechanics(the_case, the_case.analytic)
                                : multibody::mechanics(the_case, the_case.analytic);

@@ -59,8 +59,8 @@ struct ComparisonResult {
   ResultTable analytic, multibody;  ///< all channels
   compare::Comparison comparison;   ///< of the channels asked for
   std::vector<compare::Check> checks;
-  std::optional<BudgetComparison> budget;      ///< of a driven run of full pumps whose Td is wanted
-  std::optional<TeethComparison> teeth;        ///< likewise, where the contact is that of teeth
+  std::optional<BudgetComparison> budget;  ///< of a driven run of full pumps whose Td is wanted
+  std::optional<TeethComparison> teeth;    ///< likewise, where the contact is that of teeth
   std::optional<BodyLoadTable> analytic_loads, multibody_loads;  ///< where they were asked for
   std::vector<report::AssumptionRow> changes;  ///< where the models assume different things
   std::optional<compare::Split> split;         ///< then: the difference taken apart
