@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/report/picture.h"
 
 namespace bentaxis::report {
 namespace {
@@ -340,6 +341,7 @@ Json json_of(const ParallelFigure& figure) {
 Json json_of(const Figure& figure) {
   Json json = std::visit([](const auto& content) { return json_of(content); }, figure.content);
   json["id"] = figure.id;
+  json["file"] = file_name_of(figure);
   json["title"] = figure.title;
   json["paper"] = figure.paper;
   json["note"] = figure.note;

@@ -20,6 +20,7 @@ enum Look { kPort, kChamber, kFilm, kPath };
 constexpr double kMillimetre = 1e3;     // of a metre
 constexpr double kDegreesPerPoint = 6;  // of an arc
 constexpr int kBorePoints = 24;
+constexpr std::size_t kPathPoints = 72;
 constexpr int kRings = 4;         // that a land is drawn as
 constexpr double kBeyond = 1.25;  // of the drawn radius: a film force further out is said only
 
@@ -65,7 +66,7 @@ void add_port(DrawingFigure& drawing, const PortPlate& plate, const PortArc& arc
 }  // namespace
 
 report::Figure plate_pressure(const DiagramRun& run) {
-  constexpr std::size_t kMostFrames = 24;
+  constexpr std::size_t kMostFrames = 18;
   const PumpParameters& pump = run.the_case.pump;
   const Geometry& g = pump.geometry;
   const ChannelLayout at(g.pistons);
@@ -103,7 +104,7 @@ report::Figure plate_pressure(const DiagramRun& run) {
     return std::hypot(table.at(row, at.xh()), table.at(row, at.yh())) < kBeyond * radius;
   };
   DrawingFigure::Line path{0, kPath, 1.2, {}, {}};
-  for (const std::size_t row : frame_rows(table.rows(), 240))
+  for (const std::size_t row : frame_rows(table.rows(), kPathPoints))
     if (near(row)) put(path, table.at(row, at.xh()), table.at(row, at.yh()));
 
   const std::vector<std::size_t> rows = frame_rows(table.rows(), kMostFrames);

@@ -82,7 +82,7 @@ function handOut(figure, data, picture) {
   return el("span.hand-out", {}, Object.entries(files).map(([type, make]) => {
     const button = el("button.small", { type: "button", title: `Save this figure as ${type}`,
                                         "aria-label": `Save "${figure.title}" as ${type}` }, type);
-    button.addEventListener("click", async () => save(`${figure.id}.${type.toLowerCase()}`, await make()));
+    button.addEventListener("click", async () => save(`${figure.file}.${type.toLowerCase()}`, await make()));
     return button;
   }));
 }
