@@ -214,7 +214,11 @@ TEST(ForceFigures, ThePlateShowsThePressuresOfChambersAndPorts) {
     }
   }
   // Of either port: full pressure between r2 and r3, two lands in four steps that fall to 0.
-  ASSERT_EQ(drawing.ground.size(), 18U);
+  ASSERT_EQ(drawing.ground.size(), 19U);  // and the path of the film force
+  for (std::size_t i = 0; i < 72; ++i) {
+    EXPECT_NEAR(drawing.ground[18].x[i], turn.at(i, "xh_x2_mm"), 0.00051);
+    EXPECT_NEAR(drawing.ground[18].y[i], turn.at(i, "yh_y2_mm"), 0.00051);
+  }
   const auto value = [&](std::size_t ring) { return drawing.ground[ring].value.value() / 275; };
   EXPECT_NEAR(value(8), 1, 1e-3);
   for (std::size_t ring = 0; ring < 8; ++ring)
@@ -236,7 +240,8 @@ TEST(ForceFigures, RunsInTimeHaveTimeAsTheirAxis) {
   const auto& shares = std::get<OwnFigure>(find(figures, "moment_shares").content);
   EXPECT_FALSE(shares.angle);
   EXPECT_EQ(shares.x, run.time_ms);
-  EXPECT_TRUE(std::get<DrawingFigure>(find(figures, "plate_pressure").content).ground.empty());
+  // Ports whose pressure changes in time are not drawn; the path of the film force is.
+  EXPECT_EQ(std::get<DrawingFigure>(find(figures, "plate_pressure").content).ground.size(), 1U);
   EXPECT_EQ(std::get<report::XyFigure>(find(figures, "bearing_loci").content).points.size(), 1U);
 }
 

@@ -385,7 +385,8 @@ TEST(Picture, EqualAxesDrawACircleRound) {
   content.points = {{"start", 3, 0}, {"further", 9, 0}};
   const auto span = [&] {
     std::array<double, 4> box = {1e9, -1e9, 1e9, -1e9};
-    for (const auto& point : drawn(svg_of({"id", "t", "", content})).at(0)) {
+    const auto curve = drawn(svg_of({"id", "t", "", content})).at(0);
+    for (const auto& point : curve) {
       box = {std::min(box[0], point[0]), std::max(box[1], point[0]), std::min(box[2], point[1]),
              std::max(box[3], point[1])};
     }
