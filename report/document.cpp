@@ -264,12 +264,9 @@ Json json_of(const DrawingFigure& figure) {
                 {"text", frame.text},
                 {"lines", list_of(frame.lines, line_of)},
                 {"arrows", list_of(frame.arrows, [](const DrawingFigure::Arrow& arrow) {
-                   return Json{{"panel", arrow.panel},
-                               {"look", arrow.look},
-                               {"x", rounded(arrow.x, kPlotDigits)},
-                               {"y", rounded(arrow.y, kPlotDigits)},
-                               {"dx", rounded(arrow.dx, kPlotDigits)},
-                               {"dy", rounded(arrow.dy, kPlotDigits)}};
+                   return Json{{"panel", arrow.panel},           {"look", arrow.look},
+                               {"x", number_or_null(arrow.x)},   {"y", number_or_null(arrow.y)},
+                               {"dx", number_or_null(arrow.dx)}, {"dy", number_or_null(arrow.dy)}};
                  })}};
   };
   Json json = {

@@ -63,7 +63,7 @@ function pixelsOf(text) {
     const image = new Image();
     image.onerror = () => fail(new Error("the picture cannot be drawn as PNG"));
     image.onload = () => {
-      const canvas = el("canvas", { width: 2 * image.width, height: 2 * image.height });
+      const canvas = el("canvas", { width: 3 * image.width, height: 3 * image.height });
       canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
       canvas.toBlob(done, "image/png");
     };

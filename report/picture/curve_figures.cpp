@@ -52,21 +52,38 @@ Axis with_ends(Axis axis, const std::optional<Ends>& ends) {
   return axis;
 }
 
-// Areas upon each other: two for each of the parts, above and below 0.
+// The stretches of a band that are no line, with a place on either side.
+void add_stretches(std::vector<Band>& bands, const Band& all) {
+  const auto wide = [&](std::size_t i) { return i < all.x.size() && all.low[i] != all.high[i]; };
+  bool joined = false;
+  for (std::size_t i = 0; i < all.x.size(); ++i) {
+    const bool kept = wide(i) || wide(i + 1) || (i > 0 && wide(i - 1));
+    if (kept) {
+      if (!joined) bands.push_back({{}, {}, {}, all.colour, all.opacity});
+      Band& band = bands.back();
+      band.x.push_back(all.x[i]);
+      band.low.push_back(all.low[i]);
+      band.high.push_back(all.high[i]);
+    }
+    joined = kept;
+  }
+}
+
+// Areas upon each other, above and below 0.
 std::vector<Band> stacked(const Values& x, const std::vector<Series>& parts) {
   constexpr double kOpacity = 0.6;
   std::vector<Band> bands;
   Values above(x.size(), 0.0), below(x.size(), 0.0);
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    Band up{x, above, above, pick(kColours, k), kOpacity},
-        down{x, below, below, up.colour, kOpacity};
+    Band up{x, above, above, pick(kColours, k), kOpacity};
+    Band down{x, below, below, up.colour, kOpacity};
     for (std::size_t i = 0; i < x.size(); ++i) {
       const double value = parts[k].values[i];
       if (value > 0) above[i] = up.high[i] += value;
       if (value < 0) below[i] = down.low[i] += value;
     }
-    bands.push_back(std::move(up));
-    bands.push_back(std::move(down));
+    add_stretches(bands, up);
+    add_stretches(bands, down);
   }
   return bands;
 }

@@ -20,7 +20,7 @@ std::string file_name_of(const Figure& figure);
 /// each. What was not computed is an empty field.
 std::string csv_of(const Figure& figure, const Curves& curves = {});
 
-/// SVG in pixels, twice its size. @throws std::runtime_error where librsvg refuses it
+/// SVG in pixels, three times its size. @throws std::runtime_error where librsvg refuses it
 std::string png_of(const std::string& svg);
 
 }  // namespace bentaxis::report
