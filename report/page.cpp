@@ -48,8 +48,10 @@ std::string script() {
       "that\n"
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
-  for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "curves.js",
-                             "bars.js", "drawing.js", "hand_out.js", "page.js"})
+  for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "cursor.js",
+                             "curves.js", "bars.js", "drawing.js", "scene_state.js",
+                             "scene_shapes.js", "scene_view.js", "scene_tables.js",
+                             "scene_panel.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
 }
