@@ -48,10 +48,10 @@ std::string script() {
       "that\n"
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
-  for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "cursor.js",
-                             "curves.js", "bars.js", "drawing.js", "scene_state.js",
-                             "scene_shapes.js", "scene_view.js", "scene_tables.js",
-                             "scene_panel.js", "hand_out.js", "page.js"})
+  for (const char* module :
+       {"elements.js", "axes.js", "packed.js", "sections.js", "comparison.js", "cursor.js",
+        "curves.js", "bars.js", "drawing.js", "scene_state.js", "scene_shapes.js", "scene_view.js",
+        "scene_tables.js", "scene_panel.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
 }
@@ -64,6 +64,13 @@ std::string pictures(const Document& document, const Curves& curves) {
     text += "<div data-figure=\"" + escape_html(figure.id) + "\">" + svg_of(figure, curves) +
             "</div>\n";
   return text;
+}
+
+// What only a page with the pump in space needs.
+std::string scene_block(const Document& document) {
+  if (!document.scene) return {};
+  return "<script type=\"application/json\" id=\"scene\">\n" +
+         script_safe(compact_json(*document.scene)) + "\n</script>\n";
 }
 
 }  // namespace
@@ -80,7 +87,8 @@ std::string render_page(const Document& document, const Curves& curves) {
            {"@REPORT_JS@", script()},
            {"@PICTURES@", pictures(document, curves)},
            {"@PICTURE@", document.picture},
-           {"@CURVES_JSON@", script_safe(compact_json(curves))},
+           {"@SCENE@", scene_block(document)},
+           {"@CURVES_JSON@", script_safe(packed_json(curves))},
            {"@REPORT_JSON@", script_safe(compact_json(document))}})
     replace_once(page, marker, value);
   return page;

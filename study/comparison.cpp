@@ -115,8 +115,10 @@ void Maker::run_models() {
   RunOptions analytic_run;
   analytic_run.budget = has_budget();
   analytic_run.teeth = has_teeth();
+  analytic_run.loads = o.loads;
   ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
   r.analytic = std::move(analytic.table);
+  r.analytic_loads = std::move(analytic.loads);
   analytic_budget_ = std::move(analytic.budget);
   if (integrated()) {
     integrate_all();
@@ -125,8 +127,10 @@ void Maker::run_models() {
   RunOptions driven = multibody_run(0);
   driven.budget = has_budget();
   driven.teeth = has_teeth();
+  driven.loads = o.loads;
   ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
   r.multibody = std::move(multibody.table);
+  r.multibody_loads = std::move(multibody.loads);
   multibody_budget_ = std::move(multibody.budget);
   if (analytic.teeth)
     r.teeth = compare_teeth(std::move(*analytic.teeth), std::move(*multibody.teeth), r.tolerance,
@@ -137,9 +141,11 @@ void Maker::run_models() {
 void Maker::integrate_all() {
   ComparisonResult& r = result_;
   for (const double accuracy : r.options.accuracies) {
-    const RunOptions options = multibody_run(accuracy);
+    RunOptions options = multibody_run(accuracy);
+    options.loads = r.options.loads && accuracy == r.options.accuracies.back();
     ModelRun run = study::run(r.second, multibody_samples_, options, progress_of_);
     r.multibody = std::move(run.table);
+    r.multibody_loads = std::move(run.loads);
     const auto comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
     const auto worst = [&](const std::string& group) { return worst_of_group(comparison, group); };
     r.integrations.push_back(

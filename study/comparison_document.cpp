@@ -10,6 +10,7 @@
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/regression_document.h"
 #include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
@@ -131,7 +132,13 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  describe_case(document, the_case);
+  std::optional<report::Scene> scene;
+  // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
+  if (r.options.loads && r.options.way == Way::driven &&
+      r.options.scene.scene == multibody::Scene::full)
+    scene = pump_scene(the_case,
+                       {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
+  describe_case(document, the_case, std::move(scene));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =

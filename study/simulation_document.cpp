@@ -12,6 +12,7 @@
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth.h"
 
 namespace bentaxis::study {
@@ -426,6 +427,22 @@ std::vector<report::Warning> warnings_of(const SimulationResult& r) {
   return warnings;
 }
 
+std::optional<report::Scene> scene_of(const SimulationResult& r) {
+  std::vector<SceneRun> shown;
+  SceneMotion motion;
+  for (const auto& [name, run] : runs_of(r)) {
+    if (run->loads.rows() != run->lag.size()) return std::nullopt;
+    shown.push_back({run->table.results, run->loads});
+  }
+  const Trajectory& first = *runs_of(r).front().second;
+  motion.time_ms = times_of(first);
+  for (std::size_t row = 0; row < first.lag.size(); ++row) {
+    motion.shaft.push_back(radians(first.table.state(row, 1)));
+    motion.block.push_back(motion.shaft.back() - first.lag[row]);
+  }
+  return pump_scene(r.ready.the_case, shown, &motion);
+}
+
 report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
@@ -440,7 +457,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  describe_case(document, the_case);
+  describe_case(document, the_case, scene_of(r));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =

@@ -38,7 +38,8 @@ function orderOf(theta, angle) {
 
 const SHAFT_ANGLE = "shaft angle (deg)";
 
-function prepare(report, curves) {
+function prepare(report, given) {
+  const curves = unpacked(given);
   const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
   const channels = new Map(list(report.channels).map(c => [c.name, c]));
   const about = name => channels.get(name) || {};

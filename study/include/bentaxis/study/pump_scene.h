@@ -1,0 +1,42 @@
+// The pump in space, from its own dimensions and the loads that the models find.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bentaxis/pump/case.h"
+#include "bentaxis/report/scene.h"
+#include "bentaxis/results/body_loads.h"
+#include "bentaxis/results/result_table.h"
+
+namespace bentaxis::study {
+
+/// One model's part in a scene: rows of `loads` are those of `table`.
+struct SceneRun {
+  const ResultTable& table;
+  const BodyLoadTable& loads;
+};
+
+/// Rows of a simulation: when they are, and how shaft and block stand.
+struct SceneMotion {
+  std::vector<double> time_ms;
+  std::vector<double> shaft, block;  ///< rad
+};
+
+/// Of more rows than this a scene shows every second, third, .. with curves of its own.
+inline constexpr std::size_t kMostSceneRows = 1440;
+
+/// @param runs    as many rows each as the curves that the scene is shown with, whose tables have
+///                the channels of these
+/// @param motion  of a simulation; otherwise shaft and block turn by the tables' angle, which is
+///                the axis of the curves
+/// @throws ComputationError where runs differ in their rows
+report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs,
+                         const SceneMotion* motion = nullptr);
+
+/// By the analytic model alone, over one turn of at most 120 samples, with curves of its own. None
+/// where the model has no answer, and where the chamber pressure has not been computed
+/// (study::prepare).
+std::optional<report::Scene> analytic_scene(const Case& the_case);
+
+}  // namespace bentaxis::study
