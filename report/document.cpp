@@ -487,6 +487,21 @@ Json json_of(const compare::Check& check) {
           {"verdict", check.holds() ? "holds" : "violated"}};
 }
 
+Json json_of(const KeyFigures::Row& row) {
+  return {{"quantity", row.quantity},
+          {"symbol", row.symbol},
+          {"unit", row.unit},
+          {"values", exact(row.values)},
+          {"difference", value_or_null(row.difference)},
+          {"over_value", value_or_null(row.over_value)},
+          {"at", value_or_null(row.at)},
+          {"note", row.note}};
+}
+
+Json json_of(const KeyFigures& key) {
+  return {{"models", key.models}, {"at_unit", key.at_unit}, {"rows", list_of(key.rows)}};
+}
+
 Json json_of(const Budget::Torque& line) {
   return {{"cause", line.cause},
           {"column", line.column},
@@ -633,6 +648,7 @@ Json to_json(const Document& document) {
   add(json, "derived", document.derived);
   add(json, "verdict", document.verdict);
   if (!document.meaning.empty()) json["meaning"] = document.meaning;
+  add(json, "key_figures", document.key_figures);
   add(json, "summary", document.summary);
   add(json, "warnings", document.warnings);
   add(json, "common", document.common);

@@ -15,6 +15,7 @@
 #include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
 #include "hydraulic_sections.h"
+#include "key_figures.h"
 
 namespace bentaxis::study {
 namespace {
@@ -34,6 +35,20 @@ report::Verdict verdict_of(const ComparisonResult& r) {
     verdict.rest_tolerance = r.split->tolerance;
   }
   return verdict;
+}
+
+report::KeyFigures key_figures_of(const ComparisonResult& r, const report::Document& document) {
+  report::KeyFigures key{{r.analytic.name, r.multibody.name}};
+  key.rows = turn_figures({&r.analytic, &r.multibody});
+  const auto add = [&](report::KeyFigures::Row row) { key.rows.push_back(std::move(row)); };
+  if (document.budget)
+    for (const auto& line : document.budget->efficiency)
+      if (line.name == "hydraulic-mechanical" && is_computed(line.values.front()))
+        add(key_row(line.name + " efficiency", "", line.unit, line.values));
+  if (r.first.hydraulics)
+    for (auto& row : oil_figures(r.first.hydraulics->summary, key.models.size()))
+      add(std::move(row));
+  return key;
 }
 
 report::Section integration_section(const ComparisonResult& r) {
@@ -153,6 +168,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.checks = r.checks;
   if (r.budget)
     document.budget = budget_section(*r.budget, r.first, r.second, r.analytic, r.multibody);
+  document.key_figures = key_figures_of(r, document);
   if (r.split)
     document.assumptions = {
         "The models were asked to assume different things. Each assumption's contribution is its "

@@ -14,6 +14,7 @@
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth.h"
+#include "key_figures.h"
 
 namespace bentaxis::study {
 namespace {
@@ -443,6 +444,18 @@ std::optional<report::Scene> scene_of(const SimulationResult& r) {
   return pump_scene(r.ready.the_case, shown, &motion);
 }
 
+report::KeyFigures key_figures_of(const SimulationResult& r) {
+  report::KeyFigures key;
+  key.at_unit = "ms";
+  std::vector<const ResultTable*> tables;
+  for (const auto& [name, run] : runs_of(r)) {
+    key.models.push_back(name);
+    tables.push_back(&run->table.results);
+  }
+  key.rows = motion_figures(tables, times_of(*runs_of(r).front().second));
+  return key;
+}
+
 report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
@@ -473,6 +486,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
           : "Two derivations of the motion, each integrated by its own method, against each other "
             "in time. Agreement says that both follow the same description; whether a pump does "
             "is another question (docs/limits.md).";
+  document.key_figures = key_figures_of(r);
   document.warnings = warnings_of(r);
   if (!r.choice.only) document.common = common_inputs(the_case, true, r.oil_follows);
   document.checks = r.checks;

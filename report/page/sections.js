@@ -56,7 +56,7 @@ function keyFigures({ key_figures: key }) {
     ...key.models.map((name, i) => ({ head: name, num: true, cell: r => unit(number(r.values[i]), r.unit) })),
     ...(apart ? [{ head: "Difference", num: true, cell: r => unit(small(r.difference), r.unit) },
                  { head: "of the value", num: true, cell: r => ratio(r.over_value) }] : []),
-    { head: "at", num: true, cell: r => unit(number(r.at, 6), key.axis_unit) },
+    { head: "at", num: true, cell: r => unit(number(r.at, 6), key.at_unit) },
   ], key.rows, { fold: false });
 }
 
