@@ -9,6 +9,7 @@
 #include "bentaxis/report/text.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/regression_document.h"
@@ -180,6 +181,10 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.runs.emplace();
   if (!r.integrations.empty()) document.runs->push_back(integration_section(r));
   document.figures = comparison_figures(r);
+  if (r.options.channels.all())
+    for (auto& figure :
+         force_figures({the_case, r.analytic, r.analytic_loads ? &*r.analytic_loads : nullptr}))
+      document.figures->push_back(std::move(figure));
   if (r.first.hydraulics) {
     document.runs->push_back(hydraulic_section(the_case, *r.first.hydraulics));
     for (auto& figure : hydraulic_figures(the_case, *r.first.hydraulics))

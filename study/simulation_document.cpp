@@ -11,6 +11,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/comparison.h"
+#include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth.h"
@@ -456,6 +457,16 @@ report::KeyFigures key_figures_of(const SimulationResult& r) {
   return key;
 }
 
+std::vector<report::Figure> diagrams_of(const SimulationResult& r) {
+  const auto& [name, run] = runs_of(r).front();
+  DiagramRun shown{r.ready.the_case, run->table.results, &run->loads};
+  shown.time_ms = times_of(*run);
+  for (std::size_t row = 0; row < run->lag.size(); ++row)
+    shown.block_deg.push_back(run->table.state(row, 1) - run->lag[row] / kRadPerDegree);
+  shown.constant_ports = !r.oil_follows;
+  return force_figures(shown);
+}
+
 report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
@@ -511,6 +522,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
     document.models->push_back(std::move(model));
   }
   document.figures = figures_of(r);
+  for (auto& figure : diagrams_of(r)) document.figures->push_back(std::move(figure));
   if (r.has_teeth() && r.analytic)
     document.figures->push_back(teeth_picture(
         r.ready.the_case.pump, teeth_table_of(*r.analytic, r.ready.the_case.pump.gear).results));

@@ -6,7 +6,8 @@ const axisName = axis => axis.label + (axis.unit ? ` (${axis.unit})` : "");
 // Columns of equal length: [name, values].
 function columnsOf(figure, data) {
   if (figure.kind === "own_axis")
-    return [[figure.x.label, figure.x.values], ...figure.series.map(s => [s.label, s.values])];
+    return [[figure.x.label, figure.x.values], ...[...figure.series, ...list(figure.stack)].map(s => [s.label, s.values]),
+      ...list(figure.right && figure.right.series).map(s => [axisName({ label: s.label, unit: figure.right.unit }), s.values])];
   const columns = [[data.axis.angle ? "theta_deg" : data.axis.label, data.theta]];
   for (const name of figure.channels) {
     for (const t of data.tables) if (t.columns[name]) columns.push([`${name} ${t.name}`, t.columns[name]]);
@@ -24,7 +25,8 @@ const POINTS = {
   xy: f => [["series", axisName(f.x), axisName(f.y)], ...f.series.flatMap(s => s.x.map((x, i) => [s.label, x, s.y[i]]))],
   scatter: f => [["series", axisName(f.x), axisName(f.y), "note"],
     ...f.series.flatMap(s => s.points.map(p => [s.name, p.x, p.y, p.note]))],
-  drawing: f => [["theta_deg", "panel", "look", "shape", "x", "y"], ...f.frames.flatMap(frame => [
+  drawing: f => [[f.axis || "theta_deg", "panel", "look", "shape", "x", "y"],
+    ...[{ theta_deg: null, lines: list(f.ground), arrows: [] }, ...f.frames].flatMap(frame => [
     ...frame.lines.map(l => [l, l.x.map((x, i) => [x, l.y[i]])]),
     ...frame.arrows.map(a => [a, [[a.x, a.y], [a.x + a.dx, a.y + a.dy]]])].flatMap(([shape, points], k) =>
     points.map(([x, y]) => [frame.theta_deg, shape.panel + 1, f.looks[shape.look].label, k + 1, x, y])))],

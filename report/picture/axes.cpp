@@ -111,6 +111,7 @@ Scale scale_of(const Axis& axis, Range range, double first, double last, Margin 
     range = {std::max(range.low, 1e-290), std::max(range.high, 1e-290)};
   if (range.empty()) range = axis.log ? Range{0.1, 1} : Range{0, 1};
   if (axis.from) range.low = *axis.from;
+  if (axis.to) range.high = *axis.to;
   if (margin == Margin::decades && axis.log) {
     range = {std::pow(10, std::floor(std::log10(range.low) - 0.05)),
              std::pow(10, std::ceil(std::log10(range.high) + 0.05))};
@@ -122,7 +123,7 @@ Scale scale_of(const Axis& axis, Range range, double first, double last, Margin 
                              range.low + std::max(1e-12, std::abs(range.low) / 2)};
   } else if (margin != Margin::none && !axis.log) {
     const double more = 0.06 * (range.high - range.low);
-    range = {axis.from ? range.low : range.low - more, range.high + more};
+    range = {axis.from ? range.low : range.low - more, axis.to ? range.high : range.high + more};
   }
   const double most = std::max(3.0, std::abs(last - first) / (first < last ? 80 : 32));
   return {name_of(axis),

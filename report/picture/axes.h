@@ -1,6 +1,7 @@
 // Axes of a picture: from values to pixels, with ticks, and numbers as text.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -50,7 +51,7 @@ struct Scale {
 
 enum class Margin { none, some, decades };
 
-/// @param axis   label, unit; `from`, where it begins
+/// @param axis   label, unit; `from` and `to`, where its ends stand
 /// @param range  of the values it is to show
 /// @param first  px, of its low end
 /// @param last   px, of its high end

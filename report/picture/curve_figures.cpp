@@ -44,6 +44,74 @@ Band band_of(const Values& theta, const Curves::Held& held, bool around_zero,
   return band;
 }
 
+Axis with_ends(Axis axis, const std::optional<Ends>& ends) {
+  if (ends) {
+    axis.from = ends->low;
+    axis.to = ends->high;
+  }
+  return axis;
+}
+
+// Areas upon each other: two for each of the parts, above and below 0.
+std::vector<Band> stacked(const Values& x, const std::vector<Series>& parts) {
+  constexpr double kOpacity = 0.6;
+  std::vector<Band> bands;
+  Values above(x.size(), 0.0), below(x.size(), 0.0);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    Band up{x, above, above, pick(kColours, k), kOpacity},
+        down{x, below, below, up.colour, kOpacity};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double value = parts[k].values[i];
+      if (value > 0) above[i] = up.high[i] += value;
+      if (value < 0) below[i] = down.low[i] += value;
+    }
+    bands.push_back(std::move(up));
+    bands.push_back(std::move(down));
+  }
+  return bands;
+}
+
+// The second axis of a panel with its curves, dashed.
+Panel::Right right_of(const OwnFigure& figure, std::size_t first_colour, Keys& keys) {
+  std::vector<Curve> lines;
+  Range range;
+  for (const Series& series : figure.right->series) {
+    if (!any(&series.values)) continue;
+    const char* colour = pick(kColours, first_colour + lines.size());
+    lines.push_back({figure.x, series.values, colour, 1.9, 1, pick(kDashes, 1)});
+    keys.push_back(line_key(series.label + " (right)", colour, 2.5, pick(kDashes, 1)));
+    range.include(series.values);
+  }
+  return {{figure.right->value, figure.right->unit},
+          range,
+          [lines = std::move(lines)](pugi::xml_node root, const Scale& x, const Scale& y) {
+            for (const Curve& line : lines) draw_curve(root, x, y, line);
+          }};
+}
+
+// Both axes so that a unit is as long across as up, within the space there is.
+void make_equal(Panel& panel) {
+  constexpr double kMostHeight = 430, kLeastHeight = 120, kMargin = 0.06;  // px; of a span
+  const auto widened = [&](Range range, const Axis& axis) {
+    const double more = kMargin * (range.high - range.low);
+    return Range{axis.from.value_or(range.low - more), axis.to.value_or(range.high + more)};
+  };
+  if (panel.xs.empty() || panel.ys.empty()) return;
+  Range xs = widened(panel.xs, panel.x), ys = widened(panel.ys, panel.y);
+  const double width = kRight - panel.left;
+  const double unit = std::max((xs.high - xs.low) / width, (ys.high - ys.low) / kMostHeight);
+  if (!(unit > 0)) return;
+  panel.height = std::max(kLeastHeight, (ys.high - ys.low) / unit);
+  const auto stretch = [](Range& range, double span, Axis& axis) {
+    const double middle = (range.low + range.high) / 2;
+    range = {middle - span / 2, middle + span / 2};
+    axis.from = range.low;
+    axis.to = range.high;
+  };
+  stretch(xs, unit * width, panel.x);
+  stretch(ys, unit * panel.height, panel.y);
+}
+
 }  // namespace
 
 Picture picture_of(const ChannelFigure& figure, const Curves& page) {
@@ -102,8 +170,8 @@ Picture picture_of(const ChannelFigure& figure, const Curves& page) {
   if (lines.empty() || theta.size() < 2) return picture;  // one angle makes no curve
   picture.legend = {channels, tables};
   const bool three = !from_reference.empty();
-  picture.panels.push_back(curve_panel(axis, {"value", figure.unit}, three ? 135 : 185,
-                                       std::move(lines), std::move(bands)));
+  picture.panels.push_back(curve_panel(axis, with_ends({"value", figure.unit}, figure.ends),
+                                       three ? 135 : 185, std::move(lines), std::move(bands)));
   if (!curves.marks.empty()) add_marks(picture.panels.back(), curves.marks);
   const bool exact = std::all_of(differences.begin(), differences.end(), [](const Curve& curve) {
     return std::all_of(curve.y.begin(), curve.y.end(), [](double v) { return !(v < 0 || v > 0); });
@@ -132,16 +200,26 @@ Picture picture_of(const OwnFigure& figure, const Curves&) {
   Picture picture;
   std::vector<Curve> lines;
   Keys keys;
+  for (std::size_t k = 0; k < figure.stack.size(); ++k)
+    keys.push_back(shade_key(figure.stack[k].label, pick(kColours, k)));
+  const bool over_stack = !figure.stack.empty();
   for (std::size_t i = 0; i < figure.series.size(); ++i) {
     if (!any(&figure.series[i].values)) continue;
-    lines.push_back({figure.x, figure.series[i].values, pick(kColours, i)});
-    keys.push_back(line_key(figure.series[i].label, pick(kColours, i), 4));
+    const char* colour = over_stack ? pick(kExtraColours, i) : pick(kColours, i);
+    lines.push_back({figure.x, figure.series[i].values, colour});
+    keys.push_back(line_key(figure.series[i].label, colour, 4));
   }
-  if (lines.empty()) return picture;
+  std::optional<Panel::Right> right;
+  if (figure.right) right = right_of(figure, figure.series.size(), keys);
+  if (lines.empty() && figure.stack.empty()) return picture;
   picture.legend = {keys};
-  picture.panels.push_back(
-      curve_panel({figure.axis}, {"value", figure.unit}, 230, std::move(lines)));
-  if (figure.angle) whole_turns(picture.panels[0], figure.x);
+  picture.panels.push_back(curve_panel({figure.axis},
+                                       with_ends({figure.value, figure.unit}, figure.ends), 230,
+                                       std::move(lines), stacked(figure.x, figure.stack)));
+  Panel& panel = picture.panels[0];
+  panel.xs.include(figure.x);
+  panel.right = std::move(right);
+  if (figure.angle) whole_turns(panel, figure.x);
   return picture;
 }
 
@@ -158,8 +236,9 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
   picture.legend = {keys};
   picture.panels.push_back(curve_panel(figure.x, figure.y, 250, lines));
   Panel& panel = picture.panels.back();
-  panel.draw = [=, names = figure.series, curves = panel.draw](pugi::xml_node root, const Scale& x,
-                                                               const Scale& y) {
+  if (figure.equal) make_equal(panel);
+  panel.draw = [=, names = figure.series, points = figure.points, curves = panel.draw](
+                   pugi::xml_node root, const Scale& x, const Scale& y) {
     curves(root, x, y);
     for (std::size_t s = 0; s < lines.size(); ++s) {
       const Curve& line = lines[s];
@@ -168,6 +247,16 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
           draw_mark(root, 0, x.place(line.x[i]), y.place(line.y[i]), line.colour,
                     fmt::format("{}: {} at {}", names[s].label, short_number(line.y[i]),
                                 short_number(line.x[i])));
+    }
+    for (const NamedPoint& point : points) {
+      if (!x.shows(point.x) || !y.shows(point.y)) continue;
+      draw_mark(root, 0, x.place(point.x), y.place(point.y), "#000000", point.label);
+      add_text(root, x.place(point.x) + 7, y.place(point.y) - 5, point.label,
+               {{"class", "mark"},
+                {"font-size", "11"},
+                {"stroke", "#fff"},
+                {"stroke-width", "3"},
+                {"paint-order", "stroke"}});
     }
   };
   return picture;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bentaxis/pump/number.h"
 
@@ -47,7 +48,90 @@ void draw_band(pugi::xml_node root, const Scale& x, const Scale& y, const Band& 
   for (const auto& [a, b] : upper) points += fmt::format("{:.1f},{:.2f} ", a, b);
   points.pop_back();
   add(root, "polygon",
-      {{"points", points}, {"fill", band.colour}, {"opacity", "0.18"}, {"class", "band"}});
+      {{"points", points},
+       {"fill", band.colour},
+       {"opacity", fmt::format("{:g}", band.opacity)},
+       {"class", "band"}});
+}
+
+// An axis in pixels, and a hair beyond: rounding is no leaving.
+struct Span {
+  double low, high;
+  explicit Span(const Scale& scale)
+      : low(std::min(scale.first, scale.last) - kSimplified),
+        high(std::max(scale.first, scale.last) + kSimplified) {}
+  bool holds(double at) const { return at >= low && at <= high; }
+};
+
+// What of a piece of curve lies within both axes (Liang and Barsky).
+std::vector<std::vector<Pixel>> within(const std::vector<Pixel>& piece, const Span& xs,
+                                       const Span& ys) {
+  const auto inside = [&](const Pixel& p) { return xs.holds(p[0]) && ys.holds(p[1]); };
+  if (std::all_of(piece.begin(), piece.end(), inside)) return {piece};
+  std::vector<std::vector<Pixel>> parts;
+  bool joined = false;
+  for (std::size_t i = 0; i + 1 < piece.size(); ++i) {
+    const Pixel &a = piece[i], &b = piece[i + 1];
+    double from = 0, to = 1;
+    const auto cut = [&](double start, double along, const Span& span) {
+      if (along == 0) {
+        if (!span.holds(start)) to = -1;
+        return;
+      }
+      const double low = (span.low - start) / along, high = (span.high - start) / along;
+      from = std::max(from, std::min(low, high));
+      to = std::min(to, std::max(low, high));
+    };
+    cut(a[0], b[0] - a[0], xs);
+    cut(a[1], b[1] - a[1], ys);
+    if (from > to) {
+      joined = false;
+      continue;
+    }
+    const auto at = [&](double t) -> Pixel {
+      return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
+    };
+    if (!joined || from > 0) parts.push_back({at(from)});
+    parts.back().push_back(at(to));
+    joined = to == 1;
+  }
+  return parts;
+}
+
+// A triangle at the end of the axis for each stretch of a curve beyond it, where it is furthest.
+void mark_leaving(pugi::xml_node root, const Scale& x, const Scale& y, const Curve& curve) {
+  constexpr double kApart = 12;  // px; nearer stretches share one
+  const Span ys(y), xs(x);
+  std::optional<std::size_t> furthest;
+  double last = -INFINITY;
+  const auto beyond = [&](std::size_t i) {
+    return std::max(ys.low - y.place(curve.y[i]), y.place(curve.y[i]) - ys.high);
+  };
+  const auto draw = [&] {
+    if (!furthest) return;
+    const double at = x.place(curve.x[*furthest]);
+    const bool up = y.place(curve.y[*furthest]) < ys.low;
+    const double end = up ? std::min(y.first, y.last) : std::max(y.first, y.last);
+    pugi::xml_node node = add(root, "path",
+                              {{"class", "beyond"},
+                               {"d", fmt::format("M{} {}l5 {}h-10z", px(at), px(end), up ? 8 : -8)},
+                               {"fill", curve.colour}});
+    node.append_child("title").text() =
+        fmt::format("beyond the axis: {} at {}", short_number(curve.y[*furthest]),
+                    short_number(curve.x[*furthest]))
+            .c_str();
+    furthest.reset();
+  };
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (!x.shows(curve.x[i]) || !y.shows(curve.y[i]) || !xs.holds(x.place(curve.x[i])) ||
+        beyond(i) <= 0)
+      continue;
+    const double at = x.place(curve.x[i]);
+    if (furthest && std::abs(at - last) > kApart) draw();
+    if (!furthest || beyond(i) > beyond(*furthest)) furthest = i;
+    last = at;
+  }
+  draw();
 }
 
 }  // namespace
@@ -61,13 +145,15 @@ void draw_curve(pugi::xml_node root, const Scale& x, const Scale& y, const Curve
       pieces.emplace_back();
   }
   std::string path;
-  for (const auto& piece : pieces) {
-    char command = 'M';
-    for (const auto& [px_x, px_y] : simplified(piece)) {
-      path += command + fmt::format("{:.1f} {:.2f}", px_x, px_y);
-      command = 'L';
+  for (const auto& piece : pieces)
+    for (const auto& part : within(piece, Span(x), Span(y))) {
+      char command = 'M';
+      for (const auto& [px_x, px_y] : simplified(part)) {
+        path += command + fmt::format("{:.1f} {:.2f}", px_x, px_y);
+        command = 'L';
+      }
     }
-  }
+  mark_leaving(root, x, y, curve);
   if (path.empty()) return;
   add(root, "path",
       {{"d", path},

@@ -22,9 +22,11 @@ struct Curve {
 struct Band {
   Values x, low, high;
   std::string colour;
+  double opacity = 0.18;
 };
 
-/// Between two neighbours of a curve over angles nothing is drawn where one was not computed.
+/// Between two neighbours of a curve over angles nothing is drawn where one was not computed. What
+/// lies beyond the ends of an axis is cut off; a triangle at the end says where values go on.
 void draw_curve(pugi::xml_node root, const Scale& x, const Scale& y, const Curve& curve);
 
 /// The panel of curves over one axis, as large as they.

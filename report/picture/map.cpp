@@ -246,7 +246,7 @@ Picture picture_of(const MapFigure& figure, const Curves&) {
     if (figure.marks)
       for (std::size_t k = 0; k < figure.marks->x.size(); ++k)
         draw_dot_over(root, x.place(figure.marks->x[k]), y.place(figure.marks->y[k]));
-    for (const MapFigure::Point& p : figure.points) {
+    for (const NamedPoint& p : figure.points) {
       if (p.x < xs.low || p.x > xs.high || p.y < ys.low || p.y > ys.high) continue;
       add(root, "circle",
           {{"cx", px(x.place(p.x))},

@@ -26,9 +26,17 @@ double draw_legend(pugi::xml_node root, const std::vector<Keys>& rows, double y)
   return y;
 }
 
+// Name of an axis of values, along it.
+void name_upwards(pugi::xml_node root, double x, double y, const std::string& name) {
+  add_text(
+      root, x, y, name,
+      {{"text-anchor", "middle"}, {"transform", fmt::format("rotate(-90 {} {})", px(x), px(y))}});
+}
+
 void draw_panel(pugi::xml_node root, const Panel& panel, double top) {
-  const double bottom = top + panel.height;
-  Scale x = scale_of(panel.x, panel.xs, panel.left, kRight, panel.x_margin, panel.angle);
+  constexpr double kRightAxis = 64;  // px, room for numbers and name
+  const double bottom = top + panel.height, right = kRight - (panel.right ? kRightAxis : 0);
+  Scale x = scale_of(panel.x, panel.xs, panel.left, right, panel.x_margin, panel.angle);
   if (!panel.x_ticks.empty()) x.ticks = panel.x_ticks;
   Scale y = scale_of(panel.y, panel.ys, bottom, top, panel.y_margin);
   if (!panel.y_ticks.empty()) y.ticks = panel.y_ticks;
@@ -42,18 +50,25 @@ void draw_panel(pugi::xml_node root, const Panel& panel, double top) {
       add_line(root, x.place(tick.value), top, x.place(tick.value), bottom, grid);
   if (panel.y_ticks.empty())
     for (const Tick& tick : y.ticks)
-      add_line(root, panel.left, y.place(tick.value), kRight, y.place(tick.value),
+      add_line(root, panel.left, y.place(tick.value), right, y.place(tick.value),
                tick.value == 0 ? Attributes{{"stroke", "#67727e"}, {"class", "zero"}} : grid);
   panel.draw(root, x, y);
+  const double middle = (top + bottom) / 2;
+  if (panel.right) {
+    const Scale other =
+        scale_of(panel.right->axis, panel.right->range, bottom, top, panel.y_margin);
+    panel.right->draw(root, x, other);
+    add_line(root, right, top, right, bottom, {{"stroke", "#67727e"}, {"class", "zero"}});
+    for (const Tick& tick : other.ticks)
+      add_text(root, right + 7, other.place(tick.value) + 4, tick.label);
+    name_upwards(root, kWidth - 8, middle, other.name);
+  }
   for (const Tick& tick : x.ticks)
     add_text(root, x.place(tick.value), bottom + 16, tick.label, kMiddle);
   for (const Tick& tick : y.ticks)
     add_text(root, panel.left - 7, y.place(tick.value) + 4, tick.label, {{"text-anchor", "end"}});
-  add_text(root, (panel.left + kRight) / 2, bottom + 33, x.name, kMiddle);
-  const double middle = (top + bottom) / 2;
-  add_text(
-      root, 13, middle, y.name,
-      {{"text-anchor", "middle"}, {"transform", fmt::format("rotate(-90 13 {})", px(middle))}});
+  add_text(root, (panel.left + right) / 2, bottom + 33, x.name, kMiddle);
+  name_upwards(root, 13, middle, y.name);
 }
 
 }  // namespace

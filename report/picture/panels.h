@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,15 @@ struct Panel {
   std::function<void(pugi::xml_node, const Scale&, const Scale&)> draw = {};
   std::string title = {};
   std::vector<Tick> x_ticks = {}, y_ticks = {};  ///< instead of numbers
-  double left = kLeft;                           ///< px, where y begins
+  double left = kLeft;                           ///< px, where x begins
   bool bare = false;                             ///< draws its axes itself
+  /// A second axis of values, on the right.
+  struct Right {
+    Axis axis;
+    Range range;
+    std::function<void(pugi::xml_node, const Scale&, const Scale&)> draw;
+  };
+  std::optional<Right> right = std::nullopt;
 };
 
 // A piece of line, a filled box or a mark, with a text.
