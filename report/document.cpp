@@ -775,15 +775,17 @@ const Values* find(const std::vector<std::pair<std::string, Values>>& columns,
   return nullptr;
 }
 
+Curves curves_of(const ResultTable& only) {
+  Curves::Table columns{only.name, {}};
+  for (const Channel& channel : only.channels)
+    if (channel.kind != ChannelKind::check)
+      columns.columns.emplace_back(channel.name, values_of(only, channel.name));
+  return {only.theta_deg, {std::move(columns)}, {}, {}};
+}
+
 Curves curves_of(const ResultTable& first, const ResultTable& second) {
-  Curves curves{first.theta_deg, {}, {}, {}};
-  for (const ResultTable* table : {&first, &second}) {
-    Curves::Table columns{table->name, {}};
-    for (const Channel& channel : table->channels)
-      if (channel.kind != ChannelKind::check)
-        columns.columns.emplace_back(channel.name, values_of(*table, channel.name));
-    curves.tables.push_back(std::move(columns));
-  }
+  Curves curves = curves_of(first);
+  curves.tables.push_back(std::move(curves_of(second).tables.front()));
   for (std::size_t a = 0; a < first.columns(); ++a) {
     const std::size_t b = second.find(first.channels[a].name);
     const ChannelKind kind = first.channels[a].kind;

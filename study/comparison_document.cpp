@@ -108,14 +108,6 @@ report::Section rounding_section(const std::vector<RoundingLine>& lines) {
   return section;
 }
 
-std::vector<report::ValidityRow> validity_of(const std::vector<analytic::ValidityLimit>& limits) {
-  std::vector<report::ValidityRow> rows;
-  for (const auto& limit : limits)
-    rows.push_back({limit.limit, limit.unit, limit.consequence, limit.applicable,
-                    limit.violated_share, limit.worst, limit.theta_deg});
-  return rows;
-}
-
 // The verdict on a reference, its source, and what it says of each figure's reactions.
 void add_reference(report::Document& document, const Outcome& outcome) {
   document.verdict->reference = {outcome.name, held_text(outcome),
@@ -161,7 +153,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
       "so is validation, and needs measurements.";
   document.warnings = r.warnings;
   document.common = common_inputs(the_case, false);
-  document.validity = validity_of(r.limits);
+  document.validity = validity_section(r.limits);
   if (r.first.hydraulics) document.timing = timing_rows(r.first.the_case, *r.first.hydraulics);
   document.models = {report::model_of(r.analytic, in_words(the_case.analytic)),
                      report::model_of(r.multibody, in_words(r.second.the_case.multibody))};

@@ -13,7 +13,8 @@ namespace {
 using Row = report::KeyFigures::Row;
 using Tables = std::vector<const ResultTable*>;
 
-// What is larger by no more than this is the same peak, at the next piston or a part of a turn later.
+// What is larger by no more than this is the same peak, at the next piston or a part of a turn
+// later.
 constexpr double kSamePeak = 1e-9;
 
 struct Peak {
@@ -41,8 +42,7 @@ Peak peak_of(const ResultTable& table, const Channel& channel) {
       double square = 0;
       for (const std::size_t c : columns) square += table.at(row, c) * table.at(row, c);
       const double value = std::sqrt(square);
-      if (is_computed(value) &&
-          (!is_computed(peak.value) || value > peak.value * (1 + kSamePeak)))
+      if (is_computed(value) && (!is_computed(peak.value) || value > peak.value * (1 + kSamePeak)))
         peak = {value, row, piston};
     }
   return peak;
@@ -129,8 +129,8 @@ Row key_row(std::string quantity, std::string symbol, std::string unit, report::
 std::vector<Row> turn_figures(const Tables& tables) {
   std::vector<Row> rows;
   add(rows, torque_row(tables, "drive torque, mean", "Nm", &Torque::mean));
-  add(rows, torque_row(tables, "drive torque, greatest less least over the mean", "%",
-                       &Torque::ripple));
+  add(rows,
+      torque_row(tables, "drive torque, greatest less least over the mean", "%", &Torque::ripple));
   append(rows, peaks(tables, tables.front()->theta_deg));
   return rows;
 }

@@ -488,6 +488,9 @@ const Values* find(const std::vector<std::pair<std::string, Values>>& columns,
 /// Differences are taken before rounding.
 Curves curves_of(const ResultTable& first, const ResultTable& second);
 
+/// Of one table.
+Curves curves_of(const ResultTable& only);
+
 /// One channel's values.
 Values values_of(const ResultTable& table, const std::string& channel_name);
 
