@@ -76,6 +76,7 @@ Json json_of(const ModelSection&);
 Json json_of(const compare::Harmonic&);
 Json json_of(const compare::ChannelComparison&);
 Json json_of(const compare::Check&);
+Json json_of(const KeyFigures::Row&);
 Json json_of(const Budget::Torque&);
 Json json_of(const Budget::Quantity&);
 Json json_of(const Budget&);
