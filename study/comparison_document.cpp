@@ -39,8 +39,8 @@ report::Verdict verdict_of(const ComparisonResult& r) {
 }
 
 report::KeyFigures key_figures_of(const ComparisonResult& r, const report::Document& document) {
-  report::KeyFigures key{{r.analytic.name, r.multibody.name}};
-  key.rows = turn_figures({&r.analytic, &r.multibody});
+  report::KeyFigures key{
+      {r.analytic.name, r.multibody.name}, "deg", turn_figures({&r.analytic, &r.multibody})};
   const auto add = [&](report::KeyFigures::Row row) { key.rows.push_back(std::move(row)); };
   if (document.budget)
     for (const auto& line : document.budget->efficiency)

@@ -332,7 +332,7 @@ class PageTest(unittest.TestCase):
 
     def test_what_is_asked_first_comes_first(self):
         order = ["verdict", "warnings", "pump", "space", "key", "comparison", "assumptions", "validity", "budget", "published",
-                 "runs", "figures", "checks", "common", "case", "derived", "models", "versions"]
+                 "figures", "runs", "checks", "common", "case", "derived", "models", "versions"]
         for (name, width), page in self.measured.items():
             with self.subTest(name, width=width):
                 sections = page["walk"]["sections"]

@@ -60,7 +60,7 @@ const SECTIONS = [
   ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
   ["validity", "Validity over the turn", validity], ["timing", "Timing of the ports", timing],
   ["budget", "Torque, power and efficiency", budget], ["published", "Against the published numbers", published],
-  ["runs", "Runs", runs], ["figures", "Figures", figures],
+  ["figures", "Figures", figures], ["runs", "Runs", runs],
   ["checks", "Checks of each model", checks], ["common", "Common to both models", commonInputs],
   ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
   ["models", "How each model was obtained", models], ["versions", "Origin and versions", versions],
