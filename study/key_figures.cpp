@@ -61,7 +61,7 @@ Row peak_row(const Tables& tables, const Channel& channel, const std::vector<dou
   for (const ResultTable* table : tables) values.push_back(peak_of(*table, channel).value);
   const bool place = channel.unit == "mm";
   Row row = key_row(place ? channel.meaning + ", furthest from z2" : channel.meaning + ", peak",
-                    channel.group, channel.unit, std::move(values));
+                    place ? "xh, yh" : channel.group, channel.unit, std::move(values));
   if (const Peak first = peak_of(*tables.front(), channel); is_computed(first.value)) {
     row.at = at.at(first.row);
     if (first.piston > 0) row.note = "piston " + std::to_string(first.piston);
