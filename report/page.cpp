@@ -25,8 +25,10 @@ std::string script() {
       "that\n"
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
-  for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "curves.js",
-                             "bars.js", "drawing.js", "hand_out.js", "page.js"})
+  for (const char* module :
+       {"elements.js", "axes.js", "packed.js", "sections.js", "comparison.js", "cursor.js",
+        "curves.js", "bars.js", "drawing.js", "scene_state.js", "scene_shapes.js", "scene_view.js",
+        "scene_tables.js", "scene_panel.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
 }
@@ -70,7 +72,7 @@ std::string render_page(const Document& document, const Curves& curves) {
                                            {"@PICTURES@", pictures(document, curves)},
                                            {"@PICTURE@", document.picture},
                                            {"@SCENE@", scene_block(document)},
-                                           {"@CURVES_JSON@", script_safe(compact_json(curves))},
+                                           {"@CURVES_JSON@", script_safe(packed_json(curves))},
                                            {"@REPORT_JSON@", script_safe(compact_json(document))}});
 }
 

@@ -22,6 +22,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 import report_page_test as page_test
+from packed_curves import unpacked
 
 PROGRAM = REPO = None   # set in main
 SECONDS = 120           # no single command may take longer
@@ -147,7 +148,8 @@ class HandOnTest(unittest.TestCase):
     @staticmethod
     def embedded(page, block):
         text = page.read_text()
-        return json.loads(re.search(rf'<script type="application/json" id="{block}">(.*?)</script>', text, re.S).group(1))
+        found = json.loads(re.search(rf'<script type="application/json" id="{block}">(.*?)</script>', text, re.S).group(1))
+        return unpacked(found) if block == "curves" else found
 
     @classmethod
     def measure(cls, name, width, dark):
@@ -305,6 +307,21 @@ class HandOnTest(unittest.TestCase):
     def test_published_numbers_are_a_line(self):
         line = self.measured["compare", 1400, False]["published"]
         self.assertRegex(line, r"All \d+ rows: \d+ \w+")
+
+    def test_packed_curves_are_those_of_the_files(self):
+        curves = self.embedded(self.pages["compare"], "curves")
+        for table in curves["tables"]:
+            with open(self.pages["compare"].parent / f"{table['name']}.csv", encoding="utf-8") as text:
+                rows = list(csv.DictReader(text))
+            names = [name for name in rows[0] if name in table["columns"]]
+            self.assertGreater(len(names), 40)
+            for name in names:
+                theirs = [float(row[name]) if row[name] else None for row in rows]
+                peak = max((abs(v) for v in theirs if v is not None), default=0)
+                for mine, value in zip(table["columns"][name], theirs):
+                    self.assertEqual(mine is None, value is None, name)
+                    if value is not None:
+                        self.assertAlmostEqual(mine, value, delta=6e-9 * peak, msg=name)  # 8.3 digits at least
 
     # ---- Curves from elsewhere
 
