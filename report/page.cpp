@@ -47,7 +47,9 @@ std::string pictures(const Document& document, const Curves& curves) {
 std::string scene_block(const Document& document) {
   if (!document.scene) return {};
   return "<script type=\"application/json\" id=\"scene\">\n" +
-         script_safe(compact_json(*document.scene)) + "\n</script>\n";
+         script_safe(compact_json(*document.scene)) + "\n</script>\n<script>\n" +
+         page_parts().at("three.min.js") + "\n</script>\n<script>\n" +
+         page_parts().at("OrbitControls.js") + "</script>\n";
 }
 
 }  // namespace

@@ -13,29 +13,30 @@ function pumpInSpace(report, data, scene) {
   let tagged = null, length = 1;
 
   // ---- Groups, in the order in which the loads name them
-  const groups = [];
+  const groups = [], colours = [...COLOURS, ...EXTRA_COLOURS];
   for (const load of scene.loads.filter(l => !l.counterpart)) {
     let group = groups.find(g => g.name === load.group);
-    if (!group) groups.push(group = { name: load.group, loads: [], on: load.kind === "reaction", colour: COLOURS[groups.length % COLOURS.length] });
+    if (!group) groups.push(group = { name: load.group, loads: [], on: load.kind === "reaction", colour: colours[groups.length % colours.length] });
     group.loads.push(load);
   }
   if (!groups.some(g => g.on) && groups.length) groups[0].on = true;
   const groupOf = load => groups.find(g => g.name === load.group) || { colour: "#444c55" };
   const modelsShown = () => (mode === "both" ? [0, 1] : mode === "difference" ? [0] : [Number(mode)]);
   const loadsShown = () => (body ? scene.loads.filter(l => l.on === body) : groups.filter(g => g.on).flatMap(g => g.loads));
-  // Groups are scaled each by its own peak; a free body has one scale, so that its arrows can be compared.
-  const factor = () => {
-    const whole = Math.max(0, ...groups.map(g => ["force", "moment"].map(kind => {
-      const peak = state.peakOf(g.name, g.loads)[kind];
-      return peak > 0 ? state.peakOf("d " + g.name, g.loads, true)[kind] / peak : 0;
-    })).flat());
-    return whole > 0 ? 10 ** Math.floor(-Math.log10(whole)) : 1;
-  };
-  let magnified = 1;
+  // Groups are scaled each by its own peak; a free body has one scale, that of its largest load at the row, so that its arrows
+  // can be compared.
+  const scaleOf = load => (body ? ["on " + body, scene.loads.filter(l => l.on === body)] : [load.group, groupOf(load).loads || [load]]);
+  // A difference is magnified by the power of ten that brings its peak next below the peak of what it is a difference of.
+  function magnification(key, loads) {
+    const peak = state.peakOf(key, loads), gap = state.peakOf("difference of " + key, loads, true);
+    const share = Math.max(...["force", "moment"].map(kind => (peak[kind] > 0 ? gap[kind] / peak[kind] : 0)));
+    return share > 0 ? 10 ** Math.floor(-Math.log10(share)) : 1;
+  }
   const peakOf = (load, kind) => {
-    const peak = body ? state.peakOf("on " + body, scene.loads.filter(l => l.on === body))[kind]
-      : state.peakOf(load.group, groupOf(load).loads || [load])[kind];
-    return mode === "difference" ? peak / magnified : peak;
+    const [key, loads] = scaleOf(load);
+    const sizes = () => loads.flatMap(l => modelsShown().map(m => state.loadAt(l, row, m)[kind])).filter(Boolean).map(lengthOf);
+    const peak = body ? Math.max(0, ...sizes()) : state.peakOf(key, loads)[kind];
+    return mode === "difference" ? peak / magnification(key, loads) : peak;
   };
 
   // ---- Controls
@@ -57,7 +58,7 @@ function pumpInSpace(report, data, scene) {
   };
   const views = chooser("View", [["side", "side"], ["front", "front of the block"], ["free", "free"]], "free", v => view && view.setView(v));
   const modelChoice = chooser("Model", [...state.models.map((m, i) => [String(i), m]), ...(both ? [["both", "both"], ["difference", "difference"]] : [])],
-    mode, v => { mode = v; if (v === "difference") magnified = factor(); update(); });
+    mode, v => { mode = v; update(); });
   const check = (text, change) => {
     const box = el("input", { type: "checkbox" });
     box.addEventListener("change", () => change(box.checked));
@@ -100,13 +101,14 @@ function pumpInSpace(report, data, scene) {
     for (const { g, box, size } of legendRows) {
       const peak = state.peakOf(g.name, g.loads);
       size.textContent = [peak.force > 0 ? kilo(peak.force, "N") : null, peak.moment > 0 ? kilo(peak.moment, "Nm") : null].filter(Boolean).join(", ") || "0";
+      if (mode === "difference") size.textContent += `, \u00d7 ${number(magnification(g.name, g.loads))}`;
       box.disabled = !!body;
     }
-    scaleWords.textContent = (body ? "One scale for all loads on this body: the longest arrow is the largest of them over all rows."
+    scaleWords.textContent = (body ? "One scale for all forces on this body, one for all moments: the longest arrow is the largest of them at this place."
       : "The longest arrow of each kind is its peak over all rows, as given beside its name.")
       + (length !== 1 ? ` Times ${number(length, 3)}.` : "") + " Pale and hollow: drawn longer than it is, to be seen. A dot: zero."
       + (mode === "both" ? ` Wide and pale: ${state.models[0]}; narrow: ${state.models[1]}.` : "")
-      + (mode === "difference" ? ` ${state.models[1]} minus ${state.models[0]}, magnified ${number(magnified, 3)} times;`
+      + (mode === "difference" ? ` ${state.models[1]} minus ${state.models[0]}, magnified ${body ? number(magnification(...scaleOf({}))) + " times" : "as said beside each name"};`
         + " no arrow where the page's digits do not resolve it." : "");
     if (!playing) {
       words.textContent = `At ${placeText()}: ${largest()}`;
@@ -292,6 +294,7 @@ function pumpInSpace(report, data, scene) {
     cut: on => { open(); cutting.box.checked = on; if (view) view.cut(on); },
     state: () => { open(); return { row, ...(view ? view.asDrawn() : { bodies: [], arrows: [] }) }; },
     sumOf: name => state.models.map((_, m) => state.sumOf(name, row, m)),
+    still: (name, width, height) => { open(); return view && view.still(name, width, height); },
     frames: () => (view ? view.frames() : 0), drawNow: () => view && view.draw(),
   };
   return node;

@@ -84,7 +84,7 @@ function shapeObject(shape, planes) {
   const edges = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 35),
     new THREE.LineBasicMaterial({ color: "#2b3640", transparent: true, opacity: 0.45, clippingPlanes }));
   object.add(faces, inside, edges);
-  object.userData = { cut, faces, inside, edges, seeThrough: !!shape.see_through, tint: shape.tint };
+  object.userData = { look: shape.look, cut, faces, inside, edges, seeThrough: !!shape.see_through, tint: shape.tint };
   return object;
 }
 

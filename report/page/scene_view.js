@@ -38,6 +38,7 @@ function sceneView(state, canvas, look) {
   const thickness = 0.011 * scene.radius, longest = 0.75 * scene.radius;
   const centre = scene.centre || [0, 0, 0];
   const arrows = new Map();  // by load, model and part
+  let clear = [];  // looks that are seen through beside those that always are: the plate, before the block
   let row = 0, drawn = 0, asked = false, gone = false;
   let shown = { loads: [], models: [0], difference: false, body: null, length: 1 };
 
@@ -54,6 +55,8 @@ function sceneView(state, canvas, look) {
     camera.up.set(0, 1, 0);
     camera.position.set(...plus(centre, times(from, 4 * scene.radius / lengthOf(from))));
     if (Math.abs(inner(up, [0, 1, 0])) < 1e-6) camera.up.set(...up);
+    clear = name === "front" ? ["plate", "delivery", "suction"] : [];
+    dress();
     camera.zoom = 1;
     camera.near = 0.1 * scene.radius;
     camera.far = 8 * scene.radius;
@@ -145,15 +148,19 @@ function sceneView(state, canvas, look) {
     place();
     invalidate();
   }
-  function cut(on) {
-    planes.length = 0;
-    if (on) planes.push(new THREE.Plane(new THREE.Vector3(...frames[0].axes[0]), 0));
+  function dress() {
+    const on = planes.length > 0;
     bodies.forEach(b => b.userData.shapes.forEach(({ userData: u }) => {
       if (!u.faces) return;
       u.inside.visible = on && u.cut;
-      const clear = u.seeThrough && !on;
-      Object.assign(u.faces.material, { transparent: clear, opacity: clear ? 0.28 : 1, depthWrite: !clear, needsUpdate: true });
+      const through = u.seeThrough && !on || clear.includes(u.look);
+      Object.assign(u.faces.material, { transparent: through, opacity: through ? 0.28 : 1, depthWrite: !through, needsUpdate: true });
     }));
+  }
+  function cut(on) {
+    planes.length = 0;
+    if (on) planes.push(new THREE.Plane(new THREE.Vector3(...frames[0].axes[0]), 0));
+    dress();
     invalidate();
   }
 
