@@ -11,6 +11,7 @@
 
 #include "base64.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/report/picture.h"
 
 namespace bentaxis::report {
 namespace {
@@ -268,12 +269,9 @@ Json json_of(const DrawingFigure& figure) {
                 {"text", frame.text},
                 {"lines", list_of(frame.lines, line_of)},
                 {"arrows", list_of(frame.arrows, [](const DrawingFigure::Arrow& arrow) {
-                   return Json{{"panel", arrow.panel},
-                               {"look", arrow.look},
-                               {"x", rounded(arrow.x, kPlotDigits)},
-                               {"y", rounded(arrow.y, kPlotDigits)},
-                               {"dx", rounded(arrow.dx, kPlotDigits)},
-                               {"dy", rounded(arrow.dy, kPlotDigits)}};
+                   return Json{{"panel", arrow.panel},           {"look", arrow.look},
+                               {"x", number_or_null(arrow.x)},   {"y", number_or_null(arrow.y)},
+                               {"dx", number_or_null(arrow.dx)}, {"dy", number_or_null(arrow.dy)}};
                  })}};
   };
   Json json = {
@@ -345,6 +343,7 @@ Json json_of(const ParallelFigure& figure) {
 Json json_of(const Figure& figure) {
   Json json = std::visit([](const auto& content) { return json_of(content); }, figure.content);
   json["id"] = figure.id;
+  json["file"] = file_name_of(figure);
   json["title"] = figure.title;
   json["paper"] = figure.paper;
   json["note"] = figure.note;
