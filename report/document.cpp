@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base64.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/report/picture.h"
 
 namespace bentaxis::report {
 namespace {
@@ -264,12 +269,9 @@ Json json_of(const DrawingFigure& figure) {
                 {"text", frame.text},
                 {"lines", list_of(frame.lines, line_of)},
                 {"arrows", list_of(frame.arrows, [](const DrawingFigure::Arrow& arrow) {
-                   return Json{{"panel", arrow.panel},
-                               {"look", arrow.look},
-                               {"x", rounded(arrow.x, kPlotDigits)},
-                               {"y", rounded(arrow.y, kPlotDigits)},
-                               {"dx", rounded(arrow.dx, kPlotDigits)},
-                               {"dy", rounded(arrow.dy, kPlotDigits)}};
+                   return Json{{"panel", arrow.panel},           {"look", arrow.look},
+                               {"x", number_or_null(arrow.x)},   {"y", number_or_null(arrow.y)},
+                               {"dx", number_or_null(arrow.dx)}, {"dy", number_or_null(arrow.dy)}};
                  })}};
   };
   Json json = {
@@ -341,6 +343,7 @@ Json json_of(const ParallelFigure& figure) {
 Json json_of(const Figure& figure) {
   Json json = std::visit([](const auto& content) { return json_of(content); }, figure.content);
   json["id"] = figure.id;
+  json["file"] = file_name_of(figure);
   json["title"] = figure.title;
   json["paper"] = figure.paper;
   json["note"] = figure.note;
@@ -739,6 +742,78 @@ Json to_json(const Curves& curves) {
   return json;
 }
 
+// A column as whole numbers of 10^-decimals: [decimals, base64 of 32-bit integers], with as many
+// decimals as its largest number leaves room for. What was not computed is the least integer.
+constexpr double kLargestWord = 2147483647;
+constexpr std::int32_t kNotComputedWord = std::numeric_limits<std::int32_t>::min();
+
+struct Packed {
+  int decimals = 0;
+  std::vector<std::int32_t> numbers;
+};
+
+double power_of_ten(int exponent) { return std::pow(10.0, exponent); }
+
+Packed packed(const Values& values, std::optional<int> decimals = std::nullopt) {
+  double largest = 0;
+  for (const double value : values)
+    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+  Packed result;
+  // 10^300 and its inverse are numbers.
+  result.decimals = decimals       ? *decimals
+                    : largest == 0 ? 0
+                                   : static_cast<int>(std::clamp(
+                                         std::floor(std::log10(kLargestWord / largest)), -300.0,
+                                         300.0));
+  const double scale = power_of_ten(result.decimals);
+  for (const double value : values)
+    result.numbers.push_back(
+        std::isfinite(value)
+            ? static_cast<std::int32_t>(std::clamp(std::round(value * scale), -kLargestWord,
+                                                   kLargestWord))
+            : kNotComputedWord);
+  return result;
+}
+
+Json json_of(const Packed& column) {
+  std::vector<std::uint32_t> words;
+  for (const std::int32_t number : column.numbers)
+    words.push_back(static_cast<std::uint32_t>(number));
+  return Json::array({column.decimals, base64_of(words)});
+}
+
+// Whether the second table's column is, to what is kept of it, the first one's and the difference.
+bool follows(const Packed& first, const Values& second, const Values* difference) {
+  const Packed own = packed(second, first.decimals);
+  const double scale = power_of_ten(first.decimals);
+  for (std::size_t row = 0; row < own.numbers.size(); ++row) {
+    if ((own.numbers[row] == kNotComputedWord) != (first.numbers[row] == kNotComputedWord))
+      return false;
+    if (own.numbers[row] == kNotComputedWord) continue;
+    const double apart = difference != nullptr ? (*difference)[row] * scale : 0;
+    if (!(std::abs(first.numbers[row] + apart - own.numbers[row]) <= 1)) return false;
+  }
+  return true;
+}
+
+Json packed_tables(const Curves& curves) {
+  Json tables = Json::array();
+  for (std::size_t t = 0; t < curves.tables.size(); ++t) {
+    Json columns = Json::object();
+    for (const auto& [name, values] : curves.tables[t].columns) {
+      const Values* first = t == 1 ? find(curves.tables[0].columns, name) : nullptr;
+      const Values* difference = find(curves.difference, name);
+      if (first != nullptr && first->size() == values.size() &&
+          follows(packed(*first), values, difference))
+        columns[name] = true;
+      else
+        columns[name] = json_of(packed(values));
+    }
+    tables.push_back({{"name", curves.tables[t].name}, {"columns", std::move(columns)}});
+  }
+  return tables;
+}
+
 std::string dumped(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
@@ -752,6 +827,17 @@ ModelSection model_of(const ResultTable& table, const Lines& assumptions) {
 std::string json_text(const Document& document) { return dumped(to_json(document), 1) + "\n"; }
 std::string compact_json(const Document& document) { return dumped(to_json(document), -1); }
 std::string compact_json(const Curves& curves) { return dumped(to_json(curves), -1); }
+
+std::string packed_json(const Curves& curves) {
+  Curves rest = curves;
+  rest.tables.clear();
+  rest.difference.clear();
+  Json json = to_json(rest);
+  json["tables"] = packed_tables(curves);
+  for (const auto& [name, values] : curves.difference)
+    json["difference"][name] = json_of(packed(values));
+  return dumped(json, -1);
+}
 
 std::vector<std::string> files_of(const std::string& json_text) {
   std::vector<std::string> names;

@@ -25,8 +25,10 @@ std::string script() {
       "that\n"
       "// nothing in a case file can become markup.\n"
       "(() => {\n\"use strict\";\n";
-  for (const char* module : {"elements.js", "axes.js", "sections.js", "comparison.js", "curves.js",
-                             "bars.js", "drawing.js", "hand_out.js", "page.js"})
+  for (const char* module :
+       {"elements.js", "axes.js", "packed.js", "sections.js", "comparison.js", "cursor.js",
+        "curves.js", "bars.js", "drawing.js", "scene_state.js", "scene_shapes.js", "scene_view.js",
+        "scene_tables.js", "scene_panel.js", "hand_out.js", "page.js"})
     text += "\n" + page_parts().at(module);
   return text + "})();\n";
 }
@@ -45,7 +47,9 @@ std::string pictures(const Document& document, const Curves& curves) {
 std::string scene_block(const Document& document) {
   if (!document.scene) return {};
   return "<script type=\"application/json\" id=\"scene\">\n" +
-         script_safe(compact_json(*document.scene)) + "\n</script>\n";
+         script_safe(compact_json(*document.scene)) + "\n</script>\n<script>\n" +
+         page_parts().at("three.min.js") + "\n</script>\n<script>\n" +
+         page_parts().at("OrbitControls.js") + "</script>\n";
 }
 
 }  // namespace
@@ -70,7 +74,7 @@ std::string render_page(const Document& document, const Curves& curves) {
                                            {"@PICTURES@", pictures(document, curves)},
                                            {"@PICTURE@", document.picture},
                                            {"@SCENE@", scene_block(document)},
-                                           {"@CURVES_JSON@", script_safe(compact_json(curves))},
+                                           {"@CURVES_JSON@", script_safe(packed_json(curves))},
                                            {"@REPORT_JSON@", script_safe(compact_json(document))}});
 }
 

@@ -34,7 +34,7 @@ class Librsvg {
 }  // namespace
 
 std::string png_of(const std::string& svg) {
-  constexpr double kPixels = 2;  // per pixel of the SVG
+  constexpr double kPixels = 3;  // per pixel of the SVG
   static const Librsvg librsvg;
   static const auto read = BENTAXIS_OF_LIBRSVG(rsvg_handle_new_from_data);
   static const auto size_of = BENTAXIS_OF_LIBRSVG(rsvg_handle_get_intrinsic_size_in_pixels);

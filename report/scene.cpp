@@ -1,11 +1,13 @@
 #include "bentaxis/report/scene.h"
 
-#include <boost/archive/iterators/base64_from_binary.hpp>
-#include <boost/archive/iterators/transform_width.hpp>
+#include <fmt/format.h>
+
+#include <bit>
 #include <cstdint>
-#include <cstring>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "base64.h"
 #include "bentaxis/report/document.h"
 
 namespace bentaxis::report {
@@ -32,20 +34,10 @@ const char* to_string(Look look) {
 }
 
 std::string base64_floats(const Values& values) {
-  std::string bytes;
-  for (const double value : values) {
-    const auto single = static_cast<float>(value);  // what was not computed stays NaN
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &single, sizeof bits);
-    for (int i = 0; i < 4; ++i) bytes += static_cast<char>((bits >> (8 * i)) & 0xFF);
-  }
-  const std::size_t missing = (3 - bytes.size() % 3) % 3;
-  bytes.append(missing, '\0');
-  using namespace boost::archive::iterators;
-  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
-  std::string text(Digits(bytes.cbegin()), Digits(bytes.cend()));
-  text.replace(text.size() - missing, missing, missing, '=');
-  return text;
+  std::vector<std::uint32_t> words;
+  for (const double value : values)  // what was not computed stays NaN
+    words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
+  return base64_of(words);
 }
 
 Json json_of(const Scalar& scalar) {
@@ -78,20 +70,35 @@ Json per_model(const std::vector<Item>& items) {
   return alike ? Json::array({list.front()}) : list;
 }
 
+// Shapes are drawn in floats.
+Json drawn(double x) { return std::strtod(fmt::format("{:.7g}", x).c_str(), nullptr); }
+template <std::size_t size>
+Json drawn(const std::array<double, size>& numbers) {
+  Json list = Json::array();
+  for (const double x : numbers) list.push_back(drawn(x));
+  return list;
+}
+template <class Item>
+Json drawn(const std::vector<Item>& items) {
+  Json list = Json::array();
+  for (const Item& item : items) list.push_back(drawn(item));
+  return list;
+}
 Json flat(const std::vector<report::Point>& points) {
   Json list = Json::array();
   for (const report::Point& point : points)
-    for (const double x : point) list.push_back(x);
+    for (const double x : point) list.push_back(drawn(x));
   return list;
 }
 
-void put_form(Json& json, const Lathe& lathe) { json["lathe"] = lathe.profile; }
+void put_form(Json& json, const Lathe& lathe) { json["lathe"] = drawn(lathe.profile); }
 void put_form(Json& json, const Prism& prism) {
-  json["prism"] = {{"outline", prism.outline}, {"z", {prism.z_low, prism.z_high}}};
-  if (!prism.holes.empty()) json["prism"]["holes"] = prism.holes;
+  json["prism"] = {{"outline", drawn(prism.outline)},
+                   {"z", {drawn(prism.z_low), drawn(prism.z_high)}}};
+  if (!prism.holes.empty()) json["prism"]["holes"] = drawn(prism.holes);
 }
 void put_form(Json& json, const Ball& ball) {
-  json["ball"] = {{"centre", ball.centre}, {"radius", ball.radius}};
+  json["ball"] = {{"centre", drawn(ball.centre)}, {"radius", drawn(ball.radius)}};
 }
 void put_form(Json& json, const Mesh& mesh) {
   Json corners = Json::array();
@@ -159,7 +166,7 @@ std::string compact_json(const Scene& scene) {
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   // The curves in the format of their own block, behind the rest.
   if (scene.curves)
-    text.replace(text.size() - 1, 1, ",\"curves\":" + compact_json(*scene.curves) + "}");
+    text.replace(text.size() - 1, 1, ",\"curves\":" + packed_json(*scene.curves) + "}");
   return text;
 }
 

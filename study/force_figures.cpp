@@ -42,9 +42,14 @@ using report::Figure;
 using report::OwnFigure;
 using report::Values;
 
-Values column(const ResultTable& table, std::size_t at) {
+// Rows that curves are drawn of: a turn in degrees is smooth, a motion in time may not be.
+std::vector<std::size_t> curve_rows(const DiagramRun& run) {
+  return frame_rows(run.table.rows(), run.time_ms.empty() ? 360 : 1440);
+}
+
+Values column(const DiagramRun& run, std::size_t at) {
   Values values;
-  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.at(row, at));
+  for (const std::size_t row : curve_rows(run)) values.push_back(run.table.at(row, at));
   return values;
 }
 
@@ -55,8 +60,8 @@ bool any_computed(const Values& values) {
 // A figure over the axis of the run, without curves.
 OwnFigure over(const DiagramRun& run, const std::string& unit, const std::string& value) {
   const bool angle = run.time_ms.empty();
-  OwnFigure figure{unit, angle ? "shaft angle (deg)" : kTimeAxis, angle,
-                   angle ? run.table.theta_deg : run.time_ms};
+  OwnFigure figure{unit, angle ? "shaft angle (deg)" : kTimeAxis, angle, {}};
+  for (const std::size_t row : curve_rows(run)) figure.x.push_back(along(run, row));
   figure.value = value;
   return figure;
 }
@@ -64,28 +69,31 @@ OwnFigure over(const DiagramRun& run, const std::string& unit, const std::string
 // The way of a force's end across the shaft over the run; marks at quarters of a turn.
 Figure bearing_loci(const DiagramRun& run, const ChannelLayout& at) {
   constexpr double kQuarter = 90;  // deg
-  report::XyFigure figure{{"x1", "N"}, {"y1", "N"}, {}};
+  constexpr double kKilo = 1e-3;
+  report::XyFigure figure{{"x1", "kN"}, {"y1", "kN"}, {}};
   figure.equal = true;
   figure.points.push_back({"0", 0, 0});
   for (const auto& [name, x, y] : {std::tuple{"Rb1 (tapered, C1)", at.Rb1(0), at.Rb1(1)},
                                    {"Rb2 (cylindrical, C2)", at.Rb2(0), at.Rb2(1)}}) {
-    report::XySeries series{name, column(run.table, x), column(run.table, y)};
+    report::XySeries series{name, column(run, x), column(run, y)};
     if (!any_computed(series.x)) continue;
+    for (Values* values : {&series.x, &series.y})
+      for (double& value : *values) value = std::round(value) * kKilo;  // to a newton
     if (run.time_ms.empty())
       for (int quarter = 0; quarter < 4; ++quarter)
         for (std::size_t row = 0; row < run.table.rows(); ++row)
           if (std::abs(run.table.theta_deg[row] - kQuarter * quarter) < 1e-9)
-            figure.points.push_back(
-                {fmt::format("{:g} deg", kQuarter * quarter), series.x[row], series.y[row]});
+            figure.points.push_back({fmt::format("{:g} deg", kQuarter * quarter),
+                                     kKilo * run.table.at(row, x), kKilo * run.table.at(row, y)});
     // A turn ends where it began.
-    if (run.time_ms.empty() && run.table.rows() > 2) {
+    if (run.time_ms.empty() && series.x.size() > 2) {
       series.x.push_back(series.x.front());
       series.y.push_back(series.y.front());
     }
     figure.series.push_back(std::move(series));
   }
-  return {"bearing_loci", "Polar loci of the bearing forces on the shaft, across it, in S1",
-          "Fig. 15, 28, 29", std::move(figure),
+  return {"bearing_loci", "Polar loci of the bearing forces on the shaft, across it, in S1", "",
+          std::move(figure),
           "The line from 0 to the curve is the force across the shaft; one scale on both axes. By "
           "the " +
               run.table.name + " model."};
@@ -94,7 +102,7 @@ Figure bearing_loci(const DiagramRun& run, const ChannelLayout& at) {
 Figure tooth_flanks(const DiagramRun& run, const ChannelLayout& at) {
   OwnFigure figure = over(run, "N", "force");
   Values plus, minus;
-  for (std::size_t row = 0; row < run.table.rows(); ++row) {
+  for (const std::size_t row : curve_rows(run)) {
     const double force = std::abs(run.table.at(row, at.Rcs()));
     const bool drives = run.table.at(row, at.Tcs()) >= 0;
     const bool known = is_computed(run.table.at(row, at.Rcs()));
@@ -103,7 +111,7 @@ Figure tooth_flanks(const DiagramRun& run, const ChannelLayout& at) {
   }
   figure.series = {{"flank + (carries the block towards +psi)", plus},
                    {"flank - (holds it back)", minus}};
-  return {"tooth_flanks", "Tooth force by flank, at O4", "Fig. 32 top", std::move(figure),
+  return {"tooth_flanks", "Tooth force by flank, at O4", "", std::move(figure),
           run.the_case.pump.gear.flanks == Flanks::one &&
                   run.the_case.pump.gear.contact == ToothContact::rigid
               ? "The sign of the torque that carries the block says which flank it would be; with "
@@ -113,14 +121,14 @@ Figure tooth_flanks(const DiagramRun& run, const ChannelLayout& at) {
 
 Figure moment_shares(const DiagramRun& run, const ChannelLayout& at) {
   OwnFigure figure = over(run, "Nm", "torque");
-  Values sum(run.table.rows(), 0.0);
+  Values sum(figure.x.size(), 0.0);
   for (int k = 0; k < at.pistons(); ++k) {
-    figure.stack.push_back({fmt::format("piston {}", k + 1), column(run.table, at.Tc(k))});
+    figure.stack.push_back({fmt::format("piston {}", k + 1), column(run, at.Tc(k))});
     for (std::size_t row = 0; row < sum.size(); ++row) sum[row] += figure.stack.back().values[row];
   }
   figure.series = {{"sum", std::move(sum)}};
   return {
-      "moment_shares", "Pistons' torque on the block about z2, piston upon piston", "Fig. 31, 33",
+      "moment_shares", "Pistons' torque on the block about z2, piston upon piston", "",
       std::move(figure),
       "What drives the block upwards from 0, what holds it back downwards; the line is the sum. "
       "By the " +
@@ -131,13 +139,13 @@ Figure chamber(const DiagramRun& run, const ChannelLayout& at) {
   OwnFigure figure = over(run, "cm3", "volume above its least");
   const double bore = run.the_case.pump.geometry.bore_diameter;
   const double cm3_per_mm = kPi / 4 * bore * bore * 1e-3 * 1e6;
-  Values ring = column(run.table, at.zB(0));  // mm
+  Values ring = column(run, at.zB(0));  // mm
   const double deepest = *std::max_element(ring.begin(), ring.end());
   for (double& value : ring) value = cm3_per_mm * (deepest - value);
   figure.series = {{"volume of chamber 1", std::move(ring)}};
-  figure.right = OwnFigure::Right{
-      "pressure", "bar", {{"pressure of chamber 1", column(run.table, at.pressure(0))}}};
-  return {"chamber", "Volume and pressure of chamber 1", "Fig. 10", std::move(figure),
+  figure.right =
+      OwnFigure::Right{"pressure", "bar", {{"pressure of chamber 1", column(run, at.pressure(0))}}};
+  return {"chamber", "Volume and pressure of chamber 1", "", std::move(figure),
           "The volume is that swept by the piston's ring, from the deepest place that it reaches."};
 }
 
@@ -145,7 +153,7 @@ Figure chamber(const DiagramRun& run, const ChannelLayout& at) {
 
 std::vector<Figure> force_figures(const DiagramRun& run) {
   const ChannelLayout at(run.the_case.pump.geometry.pistons);
-  const auto has = [&](std::size_t channel) { return any_computed(column(run.table, channel)); };
+  const auto has = [&](std::size_t channel) { return any_computed(column(run, channel)); };
   std::vector<Figure> figures;
   if (run.table.rows() < 2) return figures;
   if (run.loads != nullptr && run.loads->rows() == run.table.rows()) {

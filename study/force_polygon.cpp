@@ -18,7 +18,7 @@ using Force = std::array<double, 3>;  // N, in S2
 constexpr double kNothing = 1e-9;  // of the largest force: what is less all the time is left out
 constexpr double kMargin = 0.05;   // of what is drawn, beside it
 constexpr double kWide = 622;      // px of a panel, with the next two the least and the greatest
-constexpr double kLow = 90, kHigh = 400;  // px of its height
+constexpr double kLow = 90, kHigh = 300;  // px of its height
 
 double size_of(const Force& force) { return std::hypot(force[0], force[1], force[2]); }
 
@@ -67,7 +67,7 @@ std::vector<Family> families_of(const BodyLoadTable& table, const std::string& b
   return families;
 }
 
-// The polygon at a row: each family's forces, one after the other.
+// The polygon at a row: of each family its reactions one after the other, or all else as one.
 struct Polygon {
   std::vector<std::vector<Force>> forces;  // by family
   double open = 0;                         // of the sum of magnitudes
@@ -79,11 +79,15 @@ Polygon polygon_at(const DiagramRun& run, const std::vector<Family>& families,
   Polygon polygon;
   for (const Family& family : families) {
     polygon.forces.emplace_back();
+    Force sum = {};
     for (const std::size_t load : family.loads) {
       const auto& f = run.loads->at(row, load).force;
-      polygon.forces.back().push_back({f[0], std::cos(tilt) * f[1] - std::sin(tilt) * f[2],
-                                       std::sin(tilt) * f[1] + std::cos(tilt) * f[2]});
+      const Force turned = {f[0], std::cos(tilt) * f[1] - std::sin(tilt) * f[2],
+                            std::sin(tilt) * f[1] + std::cos(tilt) * f[2]};
+      if (family.kind == ForceKind::reaction) polygon.forces.back().push_back(turned);
+      for (std::size_t i = 0; i < 3; ++i) sum[i] += turned[i];
     }
+    if (family.kind != ForceKind::reaction) polygon.forces.back().push_back(sum);
   }
   for (const BodySum& sum : sums_of(run.loads->row(row)))
     if (sum.body == body) polygon.open = sum.force_over_sum;
@@ -127,7 +131,9 @@ std::string said_of(const std::vector<Family>& families, const Polygon& polygon)
     Force sum = {};
     for (const Force& force : polygon.forces[f])
       for (std::size_t i = 0; i < 3; ++i) sum[i] += force[i];
-    text += fmt::format("{} {:.4g} N, ", families[f].symbol, size_of(sum));
+    const double size = size_of(sum);
+    text += size < 1000 ? fmt::format("{} {:.4g} N, ", families[f].symbol, size)
+                        : fmt::format("{} {:.0f} N, ", families[f].symbol, size);
   }
   return text + fmt::format("open by {:.1e} of all magnitudes", polygon.open);
 }
@@ -136,7 +142,7 @@ std::string said_of(const std::vector<Family>& families, const Polygon& polygon)
 
 report::Figure force_polygon(const DiagramRun& run, const std::string& body,
                              const std::vector<std::pair<int, int>>& planes, double shown_deg) {
-  constexpr std::size_t kMostFrames = 36;
+  constexpr std::size_t kMostFrames = 18;
   const std::vector<Family> families = families_of(*run.loads, body);
   DrawingFigure drawing;
   for (std::size_t f = 0; f < families.size(); ++f)
@@ -166,7 +172,8 @@ report::Figure force_polygon(const DiagramRun& run, const std::string& body,
           fmt::format("Force polygon of {}, tip to tail, in S2", piston ? body : "the block"),
           piston ? "Fig. 14b" : "", std::move(drawing),
           fmt::format("All forces on the body, by the {} model: what is given first, then the "
-                      "reactions, which close the polygon. What is never as much as {:g} of the "
+                      "reactions, which close the polygon; numbers are of all of a name together. "
+                      "What is never as much as {:g} of the "
                       "largest force is left out.",
                       run.table.name, kNothing)};
 }

@@ -19,7 +19,8 @@ enum Look { kPort, kChamber, kFilm, kPath };
 
 constexpr double kMillimetre = 1e3;     // of a metre
 constexpr double kDegreesPerPoint = 6;  // of an arc
-constexpr int kBorePoints = 24;
+constexpr int kDiscPoints = 16;
+constexpr std::size_t kPathPoints = 360;
 constexpr int kRings = 4;         // that a land is drawn as
 constexpr double kBeyond = 1.25;  // of the drawn radius: a film force further out is said only
 
@@ -65,17 +66,17 @@ void add_port(DrawingFigure& drawing, const PortPlate& plate, const PortArc& arc
 }  // namespace
 
 report::Figure plate_pressure(const DiagramRun& run) {
-  constexpr std::size_t kMostFrames = 24;
+  constexpr std::size_t kMostFrames = 18;
   const PumpParameters& pump = run.the_case.pump;
   const Geometry& g = pump.geometry;
   const ChannelLayout at(g.pistons);
   const ResultTable& table = run.table;
   DrawingFigure drawing;
   drawing.looks = {{"edges of the ports", 9, false},
-                   {"chambers", 6, false},
+                   {"chambers", 5, false},
                    {"film force Fh", 1, false},
                    {"its path over the run", 3, false}};
-  double radius = kMillimetre * (g.bore_circle_radius + g.bore_diameter / 2);
+  double radius = kMillimetre * (g.bore_circle_radius + g.bore_diameter / 4);
   const bool ports = pump.port_plate && run.constant_ports;
   if (ports) radius = std::max(radius, kMillimetre * pump.port_plate->r4);
   drawing.panels = {
@@ -103,9 +104,13 @@ report::Figure plate_pressure(const DiagramRun& run) {
     return std::hypot(table.at(row, at.xh()), table.at(row, at.yh())) < kBeyond * radius;
   };
   DrawingFigure::Line path{0, kPath, 1.2, {}, {}};
-  for (const std::size_t row : frame_rows(table.rows(), 240))
+  for (const std::size_t row : frame_rows(table.rows(), kPathPoints))
     if (near(row)) put(path, table.at(row, at.xh()), table.at(row, at.yh()));
 
+  if (!path.x.empty()) drawing.ground.push_back(path);
+
+  // As wide as the ports, so that these are seen.
+  const double disc = ports ? (pump.port_plate->r3 - pump.port_plate->r2) / 2 : g.bore_diameter / 4;
   const std::vector<std::size_t> rows = frame_rows(table.rows(), kMostFrames);
   for (const std::size_t row : rows) {
     DrawingFigure::Frame frame;
@@ -113,17 +118,14 @@ report::Figure plate_pressure(const DiagramRun& run) {
     const double block = run.block_deg.empty() ? table.theta_deg[row] : run.block_deg[row];
     for (int k = 0; k < g.pistons; ++k) {
       const double psi = radians(block - 360.0 * k / g.pistons);
-      DrawingFigure::Line bore{0, kChamber, 1.2, {}, {}};
-      bore.value = table.at(row, at.pressure(k));
-      for (int i = 0; i <= kBorePoints; ++i) {
-        const double turn = 2 * kPi * i / kBorePoints;
-        put(bore,
-            kMillimetre *
-                (-g.bore_circle_radius * std::sin(psi) + g.bore_diameter / 2 * std::cos(turn)),
-            kMillimetre *
-                (g.bore_circle_radius * std::cos(psi) + g.bore_diameter / 2 * std::sin(turn)));
+      DrawingFigure::Line edge{0, kChamber, 2, {}, {}};
+      edge.value = table.at(row, at.pressure(k));
+      for (int i = 0; i <= kDiscPoints; ++i) {
+        const double turn = 2 * kPi * i / kDiscPoints;
+        put(edge, kMillimetre * (-g.bore_circle_radius * std::sin(psi) + disc * std::cos(turn)),
+            kMillimetre * (g.bore_circle_radius * std::cos(psi) + disc * std::sin(turn)));
       }
-      frame.lines.push_back(std::move(bore));
+      frame.lines.push_back(std::move(edge));
     }
     const double force = table.at(row, at.Fh()), x = table.at(row, at.xh()),
                  y = table.at(row, at.yh());
@@ -131,7 +133,6 @@ report::Figure plate_pressure(const DiagramRun& run) {
       frame.text = fmt::format("Fh {:.4g} N at ({:.3g}, {:.3g}) mm", force, x, y);
       const double arm = 0.04 * radius;
       if (near(row)) {
-        if (!path.x.empty()) frame.lines.push_back(path);
         for (const auto& [dx, dy] : {std::pair{arm, 0.0}, {0.0, arm}}) {
           DrawingFigure::Line stroke{0, kFilm, 3, {}, {}};
           put(stroke, x - dx, y - dy);
@@ -147,8 +148,7 @@ report::Figure plate_pressure(const DiagramRun& run) {
   drawing.shown = nearest_frame(run, rows, 0);
   if (!run.time_ms.empty()) drawing.axis = kTimeAxis;
   std::string note =
-      "Seen from behind the plate, against z2. Chambers are drawn as the bores at the angle of the "
-      "block.";
+      "Seen from behind the plate, against z2. A disc is a chamber, at the angle of the block.";
   if (ports)
     note +=
         " Ports between r2 and r3 have the pressure of the port, lands fall linearly to 0 at r1 "

@@ -516,6 +516,8 @@ std::optional<report::Scene> analytic_scene(const Case& the_case) {
     return scene;
   } catch (const ComputationError&) {
     return std::nullopt;
+  } catch (const InputError&) {  // a pump whose base case is refused, of a study of others
+    return std::nullopt;
   }
 }
 

@@ -16,6 +16,7 @@
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/coupled/prescribed_oil.h"
 #include "bentaxis/coupled/simulation.h"
+#include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/mechanics.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/multibody/simulation.h"
@@ -179,12 +180,10 @@ TEST(AnalyticLoads, OfOneBodyOnAnotherAreOpposite) {
   });
 }
 
-// A load left out, doubled, or put a millimetre from its point leaves a sum.
-TEST(AnalyticLoads, OnesThatAreWrongAreNoticed) {
+// A load left out, turned round, or put a millimetre from its point leaves a sum.
+TEST(BodyLoads, ThatAreWrongAreNoticed) {
   for_each_pump(30, [](const Drawn& d) {
     const std::vector<BodyLoad> loads = d.loads();
-    std::map<std::string, std::array<double, 2>> scale;  // of forces and moments, by body
-    const auto sums = sums_of(loads);
     const auto left_on = [](const std::vector<BodyLoad>& all, const std::string& body) {
       for (const BodySum& sum : sums_of(all))
         if (sum.body == body) return left(sum);
@@ -331,7 +330,6 @@ TEST(MultibodyLoads, BalanceAndAgreeInEveryRowOfTheStoredCases) {
   }
 }
 
-// Where models make different assumptions, loads that only one has differ, and no others.
 TEST(MultibodyLoads, AnImposedBlockHasItsTorqueInsteadOfTheToothForce) {
   const Drawn d(7, false);
   Assumptions imposed = d.assumptions;
@@ -347,11 +345,48 @@ TEST(MultibodyLoads, AnImposedBlockHasItsTorqueInsteadOfTheToothForce) {
   std::vector<double> values(model.layout().size());
   model.evaluate(d.instant, values);
   expect_agreement(loads, model.body_loads());
-  const Assumptions mesh{true, d.assumptions.inertia, BlockDrive::mesh};
-  model = multibody::Model(d.pump, mesh, d.instant.shaft.speed);
-  EXPECT_FALSE(same_load(
-      loads[6 * d.pump.geometry.pistons + 3 * d.pump.geometry.pistons],
-      analytic::BodyLoads(d.pump, mesh).evaluate(d.instant)[9 * d.pump.geometry.pistons]));
+}
+
+TEST(MultibodyLoads, BalanceAndAgreeAtGivenStates) {
+  const auto folder =
+      std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "motion" / "free_block";
+  const study::ReadyCase ready = study::prepare(read_case(folder / "case.toml"));
+  const States states = read_states(folder / "states.csv", ready.the_case, ready.pressure);
+  study::RunOptions options;
+  options.assumptions = ready.the_case.analytic;
+  BodyLoadTable loads[2];
+  for (const study::Model model : study::kModels) {
+    options.model = model;
+    BodyLoadTable& found = loads[static_cast<int>(model)];
+    study::run_states(ready, states, options, study::silent(), nullptr, &found);
+    ASSERT_EQ(found.rows(), states.rows());
+    expect_balance(worst_sums(found), ready.the_case.pump.geometry.pistons + 2);
+  }
+  for (std::size_t row = 0; row < states.rows(); ++row)
+    expect_agreement(loads[0].row(row), loads[1].row(row));
+}
+
+// One run collects them, one that is integrated and a smaller scene find them beside.
+TEST(MultibodyLoads, AreThoseOfTheDrivenFullPumpWhateverIsRun) {
+  Case the_case = reference_case("bap63_rated");
+  the_case.operation.samples_per_revolution = 20;
+  the_case.operation.revolutions = 1;
+  const study::ReadyCase ready = study::prepare(the_case);
+  study::RunOptions options;
+  options.model = study::Model::multibody;
+  EXPECT_EQ(study::run(ready, options).loads.rows(), 0);
+  options.loads = true;
+  const BodyLoadTable driven = study::run(ready, options).loads;
+  ASSERT_EQ(driven.rows(), 20);
+  options.scene.scene = multibody::Scene::piston;
+  const BodyLoadTable of_one = study::run(ready, options).loads;
+  options.scene.scene = multibody::Scene::full;
+  options.way = study::Way::integrated;
+  const BodyLoadTable integrated = study::run(ready, options).loads;
+  for (const BodyLoadTable* other : {&of_one, &integrated}) {
+    ASSERT_EQ(other->rows(), 20);
+    for (std::size_t row = 0; row < 20; ++row) expect_agreement(driven.row(row), other->row(row));
+  }
 }
 
 // ---- simulations -------------------------------------------------------------------------------
@@ -405,7 +440,7 @@ TEST(SimulatedLoads, BalanceInEveryRowOfBothModels) {
 
 // Teeth in contact, and the rows of what is integrated with oil.
 TEST(SimulatedLoads, BalanceWhereTeethTouch) {
-  Case the_case = simulated_case("bap63_tooth_rattle", 2e-3, 40);
+  Case the_case = simulated_case("bap63_tooth_rattle", 0.01, 60);
   const Case toothed = simulated_case("bap63_teeth", 0, 0);
   the_case.pump.gear = toothed.pump.gear;
   const PressureTrace pressure(the_case.pressure);
@@ -423,6 +458,20 @@ TEST(SimulatedLoads, BalanceWhereTeethTouch) {
         coupled::simulate(to_string(model), *mechanics, *oil, *the_case.drive, options);
     expect_balanced_rows(the_case, run);
     expect_torque_of_rows(run);
+    // Some rows have pairs that carry: their forces are what the teeth do.
+    ASSERT_EQ(run.teeth.size(), run.loads.rows());
+    int carrying = 0;
+    for (std::size_t row = 0; row < run.loads.rows(); ++row) {
+      std::array<double, 3> sum = {};
+      for (const BodyLoad& load : run.loads.row(row)) {
+        if (load.symbol != "Rcs" || load.on != "block") continue;
+        for (int i = 0; i < 3; ++i) sum[i] += load.force[i];
+        if (norm(load.force) > 0) ++carrying;
+      }
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(sum[i], run.teeth[row].force[i], scaled(1e-12) * norm(run.teeth[row].force));
+    }
+    EXPECT_GT(carrying, 10);
     EXPECT_EQ(std::count_if(run.loads.loads.begin(), run.loads.loads.end(),
                             [](const BodyLoad& load) { return load.symbol == "Rcs"; }),
               2 * 2 * kPairsPerFlank);

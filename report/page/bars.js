@@ -45,7 +45,15 @@ function barsFigure(figure, data) {
     ], [...groups, { label: "sum", values: sums, total: true }],
     { fold: false, rowClass: g => (g.total ? "total" : "") }));
   }
-  slider.addEventListener("input", update);
+  slider.addEventListener("input", () => {
+    update();
+    data.cursor.set(data.theta[data.order[Number(slider.value)]], slider);
+  });
+  data.cursor.follow(chart, slider, x => {
+    if (x == null) return;
+    slider.value = nearestPlace(data.theta, data.order, x);
+    update();
+  });
   data.mounts.push(() => { update(); new ResizeObserver(update).observe(chart); });
   return [el("div.slide", {}, el("label", {}, "Shaft angle ", reading), slider, buttons.map(b => b.button)), total,
     el("div.split", {}, el("div", {}, key, chart), numbers)];

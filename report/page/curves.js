@@ -79,18 +79,22 @@ function plot(box, data, lines, bands, yLabel, { right, ends } = {}) {
   });
 }
 
-// Both plots of a figure show the same angles, and hovering one marks and reads out the other.
-function synchronise(graphs, firstRow, readOut) {
+// Both plots of a figure show the same angles, and hovering one marks and reads out the other, and whatever else follows
+// the cursor of their axis.
+function synchronise(graphs, data, readOut) {
+  const firstRow = data.low < data.theta[data.order[0]] ? 1 : 0;
   graphs.forEach((graph, which) => {
     const others = graphs.filter((_, i) => i !== which);
     graph.updateOptions({
       highlightCallback: (event, x, points, row) => {
         others.forEach(g => g.setSelection(row));
         readOut(row - firstRow);
+        data.cursor.set(x, graphs);
       },
       unhighlightCallback: () => {
         others.forEach(g => g.clearSelection());
         readOut(null);
+        data.cursor.set(null, graphs);
       },
       zoomCallback: (low, high) => others.forEach(g => {
         const [from, to] = g.xAxisRange();
@@ -98,6 +102,11 @@ function synchronise(graphs, firstRow, readOut) {
         else if (from !== low || to !== high) g.updateOptions({ dateWindow: [low, high] });
       }),
     }, true);  // nothing to be drawn anew
+  });
+  data.cursor.follow(graphs[0].graphDiv, graphs, x => {
+    const row = x == null ? null : nearestPlace(data.theta, data.order, x);
+    graphs.forEach(g => (row == null ? g.clearSelection() : g.setSelection(row + firstRow)));
+    readOut(row);
   });
 }
 
@@ -111,6 +120,7 @@ function lineOf(values, colour, t, alone) {
 // then drawn from these alone; `angle` says that the axis is one of shaft angles.
 const withOwnAxis = (figure, data) => (!figure.x ? data : {
   ...data, tables: [], difference: {}, reference: null, marks: [], axis: { label: figure.x.label, angle: !!figure.x.angle },
+  cursor: cursorOf(figure.x.label),
   ...orderOf(list(figure.x.values), !!figure.x.angle) });
 
 // What a curve may be that is held to another: around that curve, or around zero for the difference from it.
@@ -188,7 +198,7 @@ function curvesFigure(figure, page) {
   if (data.order.length < 2) return [readings.node, ...footer()];  // one angle makes no curve
   data.mounts.push(() => whenNear(plots[0].node, () => {
     const graphs = plots.map(p => plot(p.node, data, p.lines, p.bands, p.label + label, p.more));
-    synchronise(graphs, data.low < data.theta[data.order[0]] ? 1 : 0, readings.show);
+    synchronise(graphs, data, readings.show);
   }));
   return [readings.node, ...plots.flatMap(p => [p.title ? el("p.subplot", {}, p.title) : null, p.node]), ...footer()];
 }
@@ -212,7 +222,7 @@ function bandsFigure(figure, page) {
   const node = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves and bands over ${data.axis.label}` });
   data.mounts.push(() => whenNear(node, () => synchronise(
     [plot(node, data, [...edgesOf(bands), ...bands, ...lines], bands, axisName(figure.y))],
-    data.low < data.theta[data.order[0]] ? 1 : 0, readings.show)));
+    data, readings.show)));
   return [readings.node, node];
 }
 

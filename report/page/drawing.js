@@ -24,7 +24,16 @@ function drawingFigure(figure, data) {
     const width = chart.clientWidth || 600;
     chart.replaceChildren(...figure.panels.map((panel, p) => drawingPanel(width, panel, frame, p, figure, colour)));
   }
-  slider.addEventListener("input", update);
+  const angles = frames.map(f => f.theta_deg), places = angles.map((_, i) => i).sort((a, b) => angles[a] - angles[b]);
+  slider.addEventListener("input", () => {
+    update();
+    data.cursor.set(angles[Number(slider.value)], slider);
+  });
+  data.cursor.follow(chart, slider, x => {
+    if (x == null) return;
+    slider.value = places[nearestPlace(angles, places, x)];
+    update();
+  });
   data.mounts.push(() => { update(); new ResizeObserver(update).observe(chart); });
   return [el("div.slide", {}, el("label", {}, axis + " ", reading), slider), words, key, chart];
 }

@@ -63,7 +63,7 @@ function pixelsOf(text) {
     const image = new Image();
     image.onerror = () => fail(new Error("the picture cannot be drawn as PNG"));
     image.onload = () => {
-      const canvas = el("canvas", { width: 2 * image.width, height: 2 * image.height });
+      const canvas = el("canvas", { width: 3 * image.width, height: 3 * image.height });
       canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
       canvas.toBlob(done, "image/png");
     };
@@ -82,7 +82,7 @@ function handOut(figure, data, picture) {
   return el("span.hand-out", {}, Object.entries(files).map(([type, make]) => {
     const button = el("button.small", { type: "button", title: `Save this figure as ${type}`,
                                         "aria-label": `Save "${figure.title}" as ${type}` }, type);
-    button.addEventListener("click", async () => save(`${figure.id}.${type.toLowerCase()}`, await make()));
+    button.addEventListener("click", async () => save(`${figure.file}.${type.toLowerCase()}`, await make()));
     return button;
   }));
 }

@@ -36,7 +36,10 @@ function orderOf(theta, angle) {
   return { theta, order, step, low: turns(first, Math.floor), high: turns(last, Math.ceil) };
 }
 
-function prepare(report, curves) {
+const SHAFT_ANGLE = "shaft angle (deg)";
+
+function prepare(report, given) {
+  const curves = unpacked(given);
   const tables = list(curves.tables).map(t => ({ name: t.name, columns: t.columns || {} }));
   const channels = new Map(list(report.channels).map(c => [c.name, c]));
   const about = name => channels.get(name) || {};
@@ -44,7 +47,7 @@ function prepare(report, curves) {
   const pair = [0, 1].map(i => (tables[i] || list(report.models)[i] || {}).name || usual[i]);
   return {
     ...orderOf(list(curves.theta_deg), !curves.axis), marks: list(curves.marks),
-    axis: { label: curves.axis || "shaft angle (deg)", angle: !curves.axis }, tables, pair,
+    axis: { label: curves.axis || SHAFT_ANGLE, angle: !curves.axis }, cursor: cursorOf(curves.axis || SHAFT_ANGLE), tables, pair,
     difference: curves.difference || {}, reference: curves.reference || null, mounts: [],
     ofTable: (row, i) => row[pair[i]] ?? row[usual[i]] ?? null,
     meaning: name => phrases(about(name).meaning, about(name).on_body && "on " + about(name).on_body),
@@ -56,6 +59,7 @@ function prepare(report, curves) {
 // comes from.
 const SECTIONS = [
   ["verdict", "Verdict", verdictBanner], ["warnings", "Warnings", warnings], ["pump", "Pump", pumpHead],
+  ["space", "The pump in three dimensions", (report, data) => pumpInSpace(report, data, data.scene)],
   ["key", "Key figures", keyFigures], ["summary", "Summary", summary],
   ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
   ["validity", "Validity over the turn", validity], ["timing", "Timing of the ports", timing],
@@ -117,7 +121,9 @@ function contents(sections, report) {
 
 function render() {
   const read = id => JSON.parse(document.getElementById(id).textContent);
+  cursors = new Map();
   const report = read("report"), data = prepare(report, read("curves") || {});
+  data.scene = document.getElementById("scene") && read("scene");
   document.getElementById("head").replaceChildren(...header(report, data));
   const main = document.getElementById("main");
   main.replaceChildren();

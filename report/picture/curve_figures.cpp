@@ -52,21 +52,38 @@ Axis with_ends(Axis axis, const std::optional<Ends>& ends) {
   return axis;
 }
 
-// Areas upon each other: two for each of the parts, above and below 0.
+// The stretches of a band that are no line, with a place on either side.
+void add_stretches(std::vector<Band>& bands, const Band& all) {
+  const auto wide = [&](std::size_t i) { return i < all.x.size() && all.low[i] != all.high[i]; };
+  bool joined = false;
+  for (std::size_t i = 0; i < all.x.size(); ++i) {
+    const bool kept = wide(i) || wide(i + 1) || (i > 0 && wide(i - 1));
+    if (kept) {
+      if (!joined) bands.push_back({{}, {}, {}, all.colour, all.opacity});
+      Band& band = bands.back();
+      band.x.push_back(all.x[i]);
+      band.low.push_back(all.low[i]);
+      band.high.push_back(all.high[i]);
+    }
+    joined = kept;
+  }
+}
+
+// Areas upon each other, above and below 0.
 std::vector<Band> stacked(const Values& x, const std::vector<Series>& parts) {
   constexpr double kOpacity = 0.6;
   std::vector<Band> bands;
   Values above(x.size(), 0.0), below(x.size(), 0.0);
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    Band up{x, above, above, pick(kColours, k), kOpacity},
-        down{x, below, below, up.colour, kOpacity};
+    Band up{x, above, above, pick(kColours, k), kOpacity};
+    Band down{x, below, below, up.colour, kOpacity};
     for (std::size_t i = 0; i < x.size(); ++i) {
       const double value = parts[k].values[i];
       if (value > 0) above[i] = up.high[i] += value;
       if (value < 0) below[i] = down.low[i] += value;
     }
-    bands.push_back(std::move(up));
-    bands.push_back(std::move(down));
+    add_stretches(bands, up);
+    add_stretches(bands, down);
   }
   return bands;
 }
@@ -236,6 +253,10 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
   picture.legend = {keys};
   picture.panels.push_back(curve_panel(figure.x, figure.y, 250, lines));
   Panel& panel = picture.panels.back();
+  for (const NamedPoint& point : figure.points) {
+    panel.xs.include(point.x);
+    panel.ys.include(point.y);
+  }
   if (figure.equal) make_equal(panel);
   panel.draw = [=, names = figure.series, points = figure.points, curves = panel.draw](
                    pugi::xml_node root, const Scale& x, const Scale& y) {
@@ -248,10 +269,19 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
                     fmt::format("{}: {} at {}", names[s].label, short_number(line.y[i]),
                                 short_number(line.x[i])));
     }
+    std::vector<Pixel> named;
     for (const NamedPoint& point : points) {
       if (!x.shows(point.x) || !y.shows(point.y)) continue;
-      draw_mark(root, 0, x.place(point.x), y.place(point.y), "#000000", point.label);
-      add_text(root, x.place(point.x) + 7, y.place(point.y) - 5, point.label,
+      const Pixel at = {x.place(point.x), y.place(point.y)};
+      draw_mark(root, 0, at[0], at[1], "#000000", point.label);
+      // Where points crowd not every one has room for its name.
+      const double width = kLetter * static_cast<double>(point.label.size()) + 14;
+      if (std::any_of(named.begin(), named.end(), [&](const Pixel& other) {
+            return std::abs(other[0] - at[0]) < width && std::abs(other[1] - at[1]) < 12;
+          }))
+        continue;
+      named.push_back(at);
+      add_text(root, at[0] + 7, at[1] - 5, point.label,
                {{"class", "mark"},
                 {"font-size", "11"},
                 {"stroke", "#fff"},

@@ -140,7 +140,7 @@ struct Scene {
   std::string note = {};  ///< what is not to scale, or left out
 };
 
-/// For the page's block "scene" (docs/scene_json.md): series as base64 of little-endian 32-bit
+/// For the page's block "scene" (docs/report_json.md): series as base64 of little-endian 32-bit
 /// floats, what was not computed as NaN.
 std::string compact_json(const Scene& scene);
 

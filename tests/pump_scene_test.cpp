@@ -1,0 +1,397 @@
+// The pump in space as the page gets it: bodies stand and loads act where docs/theory.md has them,
+// read back from the page's own block.
+#include "bentaxis/study/pump_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/study/comparison.h"
+#include "bentaxis/study/comparison_document.h"
+#include "bentaxis/study/simulation.h"
+#include "bentaxis/study/simulation_document.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Json = nlohmann::json;
+
+// Channels and numbers are exact in the block, series are floats.
+constexpr double kExact = 1e-12;
+constexpr double kFloat = 1e-6;
+
+Vector3d vector(const Json& json) { return Vector3d(json[0].get<double>(), json[1].get<double>(), json[2].get<double>()); }
+
+std::vector<float> floats(const std::string& base64) {
+  static const std::string kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t held = 0;
+  int bits = 0;
+  for (const char digit : base64) {
+    if (digit == '=') break;
+    held = held << 6 | static_cast<std::uint32_t>(kDigits.find(digit));
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes.push_back(static_cast<std::uint8_t>(held >> bits));
+  }
+  std::vector<float> values;
+  for (std::size_t i = 0; i + 4 <= bytes.size(); i += 4)
+    values.push_back(std::bit_cast<float>(bytes[i] | std::uint32_t{bytes[i + 1]} << 8 |
+                                          std::uint32_t{bytes[i + 2]} << 16 |
+                                          std::uint32_t{bytes[i + 3]} << 24));
+  return values;
+}
+
+// The block as a program reads it that knows its format alone.
+class Reader {
+ public:
+  Reader(const report::Scene& scene, std::vector<const ResultTable*> tables,
+         std::vector<double> axis)
+      : json(Json::parse(report::compact_json(scene))),
+        tables_(std::move(tables)),
+        axis_(std::move(axis)) {
+    for (const Json& one : json["series"]) {
+      series_.push_back(floats(one));
+      EXPECT_EQ(series_.back().size(), json["rows"].get<std::size_t>());
+    }
+  }
+
+  double scalar(const Json& one, std::size_t row, std::size_t model) const {
+    if (one.is_number()) return one;
+    const Json& source = one[2];
+    double value = 0;
+    if (source.is_number())
+      value = series_.at(source.get<std::size_t>()).at(row);
+    else if (source == "theta_deg")
+      value = axis_.at(row);
+    else
+      value = tables_.at(model)->at(row, tables_[model]->find(source));
+    return one[0].get<double>() + one[1].get<double>() * value;
+  }
+  Vector3d sum(const Json& terms, std::size_t row, std::size_t model) const {
+    Vector3d whole = Vector3d::Zero();
+    for (const Json& term : terms) whole += scalar(term[3], row, model) * vector(term);
+    return whole;
+  }
+  Vector3d place(const Json& one, std::size_t row, std::size_t model) const {
+    const Vector3d at = sum(one["at"], row, model);
+    if (!one.contains("body")) return at;
+    const auto [origin, axes] = stand(one["body"], row);
+    return origin + axes * at;
+  }
+  // Where a body's origin is, and its axes, in S1.
+  std::pair<Vector3d, Matrix3d> stand(const std::string& name, std::size_t row) const {
+    for (const Json& body : json["bodies"]) {
+      if (body["name"] != name) continue;
+      Matrix3d axes;
+      for (int i = 0; i < 3; ++i) axes.col(i) = vector(body["axes"][i]);
+      if (body.contains("turns"))
+        return {vector(body["origin"]),
+                axes * Eigen::AngleAxisd(scalar(body["turns"], row, 0), Vector3d::UnitZ())};
+      if (!body.contains("from")) return {vector(body["origin"]), axes};
+      const Vector3d from = place(body["from"], row, 0);
+      const Vector3d to = place(body["to"], row, 0);
+      return {from, Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), to - from)
+                        .toRotationMatrix()};
+    }
+    ADD_FAILURE() << "no body " << name;
+    return {};
+  }
+  const Json& load(const std::string& id) const {
+    for (const Json& one : json["loads"])
+      if (one["id"] == id) return one;
+    ADD_FAILURE() << "no load " << id;
+    static const Json kNone;
+    return kNone;
+  }
+  // Of a load's list, one per model or one for all.
+  static const Json& of(const Json& list, std::size_t model) {
+    return list.size() == 1 ? list[0] : list[model];
+  }
+
+  Json json;
+
+ private:
+  std::vector<const ResultTable*> tables_;
+  std::vector<double> axis_;
+  std::vector<std::vector<float>> series_;
+};
+
+// Points and axes of docs/theory.md, section Kinematics, in S1.
+struct Theory {
+  Theory(const Geometry& geometry, double shaft, double block, int k) : g(geometry) {
+    const double theta = shaft - 2 * kPi * (k - 1) / g.pistons;
+    const double psi = block - 2 * kPi * (k - 1) / g.pistons;
+    const double c = std::cos(g.tilt), s = std::sin(g.tilt);
+    turn << 1, 0, 0, 0, c, s, 0, -s, c;
+    o2 = {0, 0, g.axis_offset};
+    a = {-g.joint_circle_radius * std::sin(theta), g.joint_circle_radius * std::cos(theta), 0};
+    const Vector3d a2 = turn.transpose() * (a - o2);
+    Vector3d b2(-g.bore_circle_radius * std::sin(psi), g.bore_circle_radius * std::cos(psi), 0);
+    const double u2 = std::pow(b2.x() - a2.x(), 2) + std::pow(b2.y() - a2.y(), 2);
+    b2.z() = a2.z() + std::sqrt(g.piston_length * g.piston_length - u2);
+    b = turn * b2 + o2;
+  }
+  const Geometry& g;
+  Matrix3d turn;  // from S2 to S1
+  Vector3d o2, a, b;
+};
+
+// All that stands and acts at a row against the tables; of a turn at constant speed.
+void expect_theory(const Reader& scene, const Case& the_case,
+                   const std::vector<const ResultTable*>& tables, std::size_t row) {
+  const PumpParameters& p = the_case.pump;
+  const double theta = radians(tables[0]->theta_deg[row]);
+  const double size = p.geometry.piston_length;
+  const auto near = [&](const Vector3d& found, const Vector3d& wanted, double scale,
+                        const std::string& what) {
+    EXPECT_LE((found - wanted).norm(), scaled(kExact) * scale)
+        << what << " at row " << row << ": " << found.transpose() << ", not "
+        << wanted.transpose();
+  };
+  for (std::size_t model = 0; model < tables.size(); ++model) {
+    const ResultTable& table = *tables[model];
+    const auto value = [&](const std::string& name) { return table.at(row, table.find(name)); };
+    const auto force = [&](const std::string& id) {
+      return scene.sum(Reader::of(scene.load(id)["force"], model), row, model);
+    };
+    const auto at = [&](const std::string& id) {
+      return scene.place(Reader::of(scene.load(id)["at"], model), row, model);
+    };
+    for (int k = 1; k <= p.geometry.pistons; ++k) {
+      const std::string n = std::to_string(k);
+      const Theory points(p.geometry, theta, theta, k);
+      const auto [origin, axes] = scene.stand("piston " + n, row);
+      near(origin, points.a, size, "A" + n);
+      near(axes.col(2), (points.b - points.a).normalized(), 1, "axis of piston " + n);
+      near(at("Rs_" + n), points.a, size, "place of Rs");
+      near(at("Rs_" + n + ".shaft"), points.a, size, "place of Rs on the shaft");
+      const double contact = p.piston.contact.value_or(size) / size;
+      near(at("Rc_" + n), points.a + contact * (points.b - points.a), size, "place of Rc");
+      const Vector3d rs = points.turn * Vector3d(value("Rs_" + n + "_x2_N"),
+                                                 value("Rs_" + n + "_y2_N"),
+                                                 value("Rs_" + n + "_z2_N"));
+      const Vector3d rc =
+          points.turn * Vector3d(value("Rc_" + n + "_x2_N"), value("Rc_" + n + "_y2_N"), 0);
+      near(force("Rs_" + n), rs, table.peak("Rs"), "Rs");
+      near(force("Rs_" + n + ".shaft"), -rs, table.peak("Rs"), "Rs on the shaft");
+      near(force("Rc_" + n), rc, table.peak("Rc"), "Rc");
+      near(force("Rc_" + n + ".block"), -rc, table.peak("Rc"), "Rc on the block");
+    }
+    const Theory points(p.geometry, theta, theta, 1);
+    const auto in_s2 = [&](double x, double y, double z) -> Vector3d {
+      return points.turn * Vector3d(x, y, z);
+    };
+    near(force("Fh"), in_s2(0, 0, value("Fh_z2_N")), table.peak("Fh"), "Fh");
+    near(force("Rcn"), in_s2(value("Rcn_x2_N"), value("Rcn_y2_N"), 0), table.peak("Rcn"), "Rcn");
+    near(at("Rcn"), points.o2 + in_s2(0, 0, p.block.pin_z), size, "place of Rcn");
+    near(force("Rb1"), {value("Rb1_x1_N"), value("Rb1_y1_N"), value("Rb1_z1_N")},
+         table.peak("Rb1"), "Rb1");
+    near(at("Rb1"), {0, 0, p.bearings.tapered_z}, size, "C1");
+    near(force("Rb2"), {value("Rb2_x1_N"), value("Rb2_y1_N"), 0}, table.peak("Rb2"), "Rb2");
+    near(at("Rb2"), {0, 0, p.bearings.cylindrical_z}, size, "C2");
+    near(scene.sum(Reader::of(scene.load("Td")["moment"], model), row, model),
+         {0, 0, value("Td_z1_Nm")}, table.peak("Td"), "Td");
+    if (p.gear.contact == ToothContact::rigid && p.gear.flanks == Flanks::one &&
+        the_case.analytic.gear == BlockDrive::mesh && table.peak("Rcs") > 0) {
+      const double half = p.geometry.tilt / 2, sign = the_case.operation.speed_rpm < 0 ? -1 : 1;
+      const double across = std::sin(p.gear.pressure_angle);
+      const Vector3d k4 = sign * Vector3d(-std::cos(p.gear.pressure_angle),
+                                          across * std::sin(half), across * std::cos(half));
+      near(force("Rcs"), value("Rcs_z4_N") * k4, table.peak("Rcs"), "Rcs");
+      near(force("Rcs.shaft"), -value("Rcs_z4_N") * k4, table.peak("Rcs"), "Rcs on the shaft");
+      near(at("Rcs"),
+           {0, p.gear.pitch_diameter / 2,
+            p.geometry.axis_offset - p.gear.pitch_diameter / 2 * std::tan(half)},
+           size, "O4");
+    }
+    // Where Fh acts, where it is shown: on its line.
+    const Vector3d off = points.turn.transpose() *
+                         (scene.place(scene.json["film_point"], row, model) - points.o2);
+    near({off.x(), off.y(), 0}, {value("xh_x2_mm") * 1e-3, value("yh_y2_mm") * 1e-3, 0}, size,
+         "film point");
+  }
+}
+
+// Forces and moments of all loads on each body, as the page adds them.
+void expect_balance(const Reader& scene, std::size_t models, std::size_t row) {
+  for (std::size_t model = 0; model < models; ++model) {
+    struct Sum {
+      Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
+      double forces = 0, moments = 0;
+    };
+    std::map<std::string, Sum> sums;
+    for (const Json& load : scene.json["loads"]) {
+      Sum& sum = sums[load["on"]];
+      const Vector3d at = scene.place(Reader::of(load["at"], model), row, model);
+      if (load.contains("force")) {
+        const Vector3d f = scene.sum(Reader::of(load["force"], model), row, model);
+        sum.force += f;
+        sum.moment += at.cross(f);
+        sum.forces += f.norm();
+        sum.moments += at.norm() * f.norm();
+      }
+      if (load.contains("moment")) {
+        const Vector3d m = scene.sum(Reader::of(load["moment"], model), row, model);
+        sum.moment += m;
+        sum.moments += m.norm();
+      }
+    }
+    for (const auto& [body, sum] : sums) {
+      EXPECT_LE(sum.force.norm(), scaled(kFloat) * sum.forces) << body << " at row " << row;
+      EXPECT_LE(sum.moment.norm(), scaled(kFloat) * sum.moments) << body << " at row " << row;
+    }
+  }
+}
+
+Case shipped_case(const std::string& name) {
+  return read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / (name + ".toml"));
+}
+
+void expect_scene_of(Case the_case) {
+  SCOPED_TRACE(the_case.name);
+  the_case.operation.samples_per_revolution = 45;
+  study::ComparisonOptions options;
+  options.loads = true;
+  const study::ComparisonResult r = study::compare_models(std::move(the_case), {}, options);
+  const report::Document document = study::comparison_document(r, {});
+  ASSERT_TRUE(document.scene);
+  const std::vector<const ResultTable*> tables = {&r.analytic, &r.multibody};
+  const Reader scene(*document.scene, tables, r.analytic.theta_deg);
+  EXPECT_EQ(scene.json["models"], Json({"analytic", "multibody"}));
+  EXPECT_EQ(scene.json["sums"].size(), r.first.the_case.pump.geometry.pistons + 2u);
+  std::set<std::string> ids;
+  for (const Json& load : scene.json["loads"])
+    EXPECT_TRUE(ids.insert(load["id"]).second) << load["id"] << " twice";
+  for (std::size_t row = 0; row < r.analytic.rows(); row += 4) {
+    expect_theory(scene, r.first.the_case, tables, row);
+    expect_balance(scene, 2, row);
+  }
+}
+
+TEST(PumpScene, StandsAndActsAsInTheTables) {
+  for (const char* name : {"bap63_rated", "bap63_as_compared_in_the_paper", "bap63_teeth"})
+    expect_scene_of(shipped_case(name));
+  for (const std::string& name : reference_cases()) expect_scene_of(reference_case(name));
+}
+
+TEST(PumpScene, LoadLeftOutShowsInTheSums) {
+  Case the_case = shipped_case("bap63_rated");
+  the_case.operation.samples_per_revolution = 12;
+  const Samples samples = one_turn(the_case);
+  const ResultTable table = analytic::run(the_case, the_case.analytic, samples);
+  BodyLoadTable loads = analytic::run_body_loads(the_case, the_case.analytic, samples);
+  for (std::size_t i = 0; i < loads.loads.size(); ++i)
+    if (loads.loads[i].symbol == "Fm" && loads.loads[i].on == "block")
+      for (std::size_t row = 0; row < loads.rows(); ++row)
+        loads.values[row * loads.loads.size() + i].force = {};
+  const report::Scene scene = study::pump_scene(the_case, {{table, loads}});
+  for (const report::SceneSum& sum : scene.sums)
+    EXPECT_EQ(sum.force_over_sum[0] > 1e-6, sum.body == "block") << sum.body;
+}
+
+// One that keeps its curves, whatever the document's are.
+TEST(PumpScene, AloneBringsItsCurves) {
+  const auto scene = study::analytic_scene(shipped_case("bap63_rated"));
+  ASSERT_TRUE(scene);
+  ASSERT_TRUE(scene->curves);
+  EXPECT_EQ(scene->rows, 120u);
+  EXPECT_EQ(scene->curves->theta_deg.size(), 120u);
+  EXPECT_EQ(scene->models, std::vector<std::string>{"analytic"});
+  const Json json = Json::parse(report::compact_json(*scene));
+  std::set<std::string> named;
+  for (const Json& load : json["loads"])
+    for (const Json& vector : load.value("force", Json::array()))
+      for (const Json& term : vector)
+        if (term[3].is_array() && term[3][2].is_string()) named.insert(term[3][2]);
+  EXPECT_GT(named.size(), 20u);
+  for (const std::string& name : named)
+    EXPECT_TRUE(json["curves"]["tables"][0]["columns"].contains(name)) << name;
+  // Not computed yet: no pressure, no scene.
+  EXPECT_FALSE(study::analytic_scene(shipped_case("bap63_rated_hydraulic")));
+}
+
+TEST(PumpScene, ShaftAndBlockStandAsSimulated) {
+  Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
+                            "motion" / "rattle" / "case.toml");
+  study::SimulationChoice choice;
+  choice.only = study::Model::analytic;
+  const study::SimulationResult r =
+      study::simulate(study::prepare_simulation(the_case, choice), choice);
+  const report::Document document = study::simulation_document(r, {});
+  ASSERT_TRUE(document.scene);
+  ASSERT_FALSE(document.scene->curves) << "choose a shorter case: this one is thinned";
+  const ResultTable& table = r.analytic->table.results;
+  const Reader scene(*document.scene, {&table}, {});
+  const Geometry& g = the_case.pump.geometry;
+  double apart = 0;
+  for (std::size_t row = 0; row < table.rows(); row += 7) {
+    const double theta = radians(r.analytic->table.state(row, 1));
+    const double psi = theta - r.analytic->lag[row];
+    apart = std::max(apart, std::abs(theta - psi));
+    for (int k = 1; k <= g.pistons; ++k) {
+      const Theory points(g, theta, psi, k);
+      const auto [origin, axes] = scene.stand("piston " + std::to_string(k), row);
+      EXPECT_LE((origin - points.a).norm(), scaled(kFloat) * g.piston_length);
+      EXPECT_LE((axes.col(2) - (points.b - points.a).normalized()).norm(), scaled(kFloat));
+    }
+    expect_balance(scene, 1, row);
+  }
+  EXPECT_GT(apart, 0);
+}
+
+TEST(PumpScene, ManyRowsAreThinned) {
+  Case the_case = shipped_case("bap63_rated");
+  the_case.operation.samples_per_revolution = 3 * 1440;
+  const Samples samples = one_turn(the_case);
+  const ResultTable table = analytic::run(the_case, the_case.analytic, samples);
+  const BodyLoadTable loads = analytic::run_body_loads(the_case, the_case.analytic, samples);
+  const report::Scene scene = study::pump_scene(the_case, {{table, loads}});
+  ASSERT_TRUE(scene.curves);
+  ASSERT_EQ(scene.rows, 1440u);
+  ASSERT_EQ(scene.curves->theta_deg.size(), 1440u);
+  EXPECT_EQ(scene.curves->theta_deg[7], table.theta_deg[21]);
+  const report::Values* pressure = report::find(scene.curves->tables[0].columns, "p_1_bar");
+  ASSERT_NE(pressure, nullptr);
+  EXPECT_EQ(pressure->at(700), table.at(2100, table.find("p_1_bar")));
+}
+
+// Shapes of any pump: finite, and meshes of corners that there are.
+TEST(PumpScene, ShapesOfOddPumps) {
+  for (const std::string name : {"pistons_1", "pistons_15", "pump_of_1_mm", "pump_of_1_m",
+                                  "tilt_89.9", "tilt_0", "offset_plus"}) {
+    SCOPED_TRACE(name);
+    const Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
+                                    "hard" / name / "case.toml");
+    const auto scene = study::analytic_scene(the_case);
+    ASSERT_TRUE(scene);
+    const std::string text = report::compact_json(*scene);
+    const Json json = Json::parse(text);
+    EXPECT_GT(json["radius"], 0);
+    for (const Json& body : json["bodies"])
+      for (const Json& shape : body["shapes"]) {
+        EXPECT_EQ(shape.dump().find("null"), std::string::npos) << shape.dump();
+        if (!shape.contains("mesh")) continue;
+        const std::size_t points = shape["mesh"]["points"].size() / 3;
+        for (const Json& corner : shape["mesh"]["triangles"])
+          EXPECT_LT(corner.get<std::size_t>(), points);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace bentaxis::test
