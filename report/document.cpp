@@ -760,18 +760,17 @@ Packed packed(const Values& values, std::optional<int> decimals = std::nullopt) 
     if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
   Packed result;
   // 10^300 and its inverse are numbers.
-  result.decimals = decimals       ? *decimals
-                    : largest == 0 ? 0
-                                   : static_cast<int>(std::clamp(
-                                         std::floor(std::log10(kLargestWord / largest)), -300.0,
-                                         300.0));
+  result.decimals = decimals ? *decimals
+                    : largest == 0
+                        ? 0
+                        : static_cast<int>(std::clamp(
+                              std::floor(std::log10(kLargestWord / largest)), -300.0, 300.0));
   const double scale = power_of_ten(result.decimals);
   for (const double value : values)
-    result.numbers.push_back(
-        std::isfinite(value)
-            ? static_cast<std::int32_t>(std::clamp(std::round(value * scale), -kLargestWord,
-                                                   kLargestWord))
-            : kNotComputedWord);
+    result.numbers.push_back(std::isfinite(value)
+                                 ? static_cast<std::int32_t>(std::clamp(
+                                       std::round(value * scale), -kLargestWord, kLargestWord))
+                                 : kNotComputedWord);
   return result;
 }
 

@@ -151,7 +151,8 @@ std::vector<Row> oil_figures(const hydraulics::Summary& s, std::size_t models) {
   Row least = row("chamber pressure, least", "bar", s.chamber_least / kPascalPerBar);
   Row greatest = row("chamber pressure, greatest", "bar", s.chamber_greatest / kPascalPerBar);
   for (Row* of_chamber : {&least, &greatest})
-    of_chamber->note += of_chamber->note.empty() ? "angle of the chamber" : "; angle of the chamber";
+    of_chamber->note +=
+        of_chamber->note.empty() ? "angle of the chamber" : "; angle of the chamber";
   least.at = s.chamber_least_deg;
   greatest.at = s.chamber_greatest_deg;
   return {row("flow to the load, mean", "l/min", s.flow / kLitrePerMinute),

@@ -523,10 +523,10 @@ TEST(Curves, PackedColumns) {
 
 TEST(Curves, SecondTableIsTheFirstWithTheDifference) {
   const auto second = [](double difference) {
-    report::Curves curves{{0, 1},
-                          {{"a", {{"X_N", {1, not_computed()}}}},
-                           {"b", {{"X_N", {1.5, not_computed()}}}}},
-                          {{"X_N", {difference, not_computed()}}}};
+    report::Curves curves{
+        {0, 1},
+        {{"a", {{"X_N", {1, not_computed()}}}}, {"b", {{"X_N", {1.5, not_computed()}}}}},
+        {{"X_N", {difference, not_computed()}}}};
     return nlohmann::json::parse(report::packed_json(curves))["tables"][1]["columns"]["X_N"];
   };
   EXPECT_EQ(second(0.5), true);

@@ -32,7 +32,9 @@ using Json = nlohmann::json;
 constexpr double kExact = 1e-12;
 constexpr double kFloat = 1e-6;
 
-Vector3d vector(const Json& json) { return Vector3d(json[0].get<double>(), json[1].get<double>(), json[2].get<double>()); }
+Vector3d vector(const Json& json) {
+  return Vector3d(json[0].get<double>(), json[1].get<double>(), json[2].get<double>());
+}
 
 std::vector<float> floats(const std::string& base64) {
   static const std::string kDigits =
@@ -105,8 +107,8 @@ class Reader {
       if (!body.contains("from")) return {vector(body["origin"]), axes};
       const Vector3d from = place(body["from"], row, 0);
       const Vector3d to = place(body["to"], row, 0);
-      return {from, Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), to - from)
-                        .toRotationMatrix()};
+      return {from,
+              Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), to - from).toRotationMatrix()};
     }
     ADD_FAILURE() << "no body " << name;
     return {};
@@ -160,8 +162,7 @@ void expect_theory(const Reader& scene, const Case& the_case,
   const auto near = [&](const Vector3d& found, const Vector3d& wanted, double scale,
                         const std::string& what) {
     EXPECT_LE((found - wanted).norm(), scaled(kExact) * scale)
-        << what << " at row " << row << ": " << found.transpose() << ", not "
-        << wanted.transpose();
+        << what << " at row " << row << ": " << found.transpose() << ", not " << wanted.transpose();
   };
   for (std::size_t model = 0; model < tables.size(); ++model) {
     const ResultTable& table = *tables[model];
@@ -182,9 +183,9 @@ void expect_theory(const Reader& scene, const Case& the_case,
       near(at("Rs_" + n + ".shaft"), points.a, size, "place of Rs on the shaft");
       const double contact = p.piston.contact.value_or(size) / size;
       near(at("Rc_" + n), points.a + contact * (points.b - points.a), size, "place of Rc");
-      const Vector3d rs = points.turn * Vector3d(value("Rs_" + n + "_x2_N"),
-                                                 value("Rs_" + n + "_y2_N"),
-                                                 value("Rs_" + n + "_z2_N"));
+      const Vector3d rs =
+          points.turn * Vector3d(value("Rs_" + n + "_x2_N"), value("Rs_" + n + "_y2_N"),
+                                 value("Rs_" + n + "_z2_N"));
       const Vector3d rc =
           points.turn * Vector3d(value("Rc_" + n + "_x2_N"), value("Rc_" + n + "_y2_N"), 0);
       near(force("Rs_" + n), rs, table.peak("Rs"), "Rs");
@@ -199,8 +200,8 @@ void expect_theory(const Reader& scene, const Case& the_case,
     near(force("Fh"), in_s2(0, 0, value("Fh_z2_N")), table.peak("Fh"), "Fh");
     near(force("Rcn"), in_s2(value("Rcn_x2_N"), value("Rcn_y2_N"), 0), table.peak("Rcn"), "Rcn");
     near(at("Rcn"), points.o2 + in_s2(0, 0, p.block.pin_z), size, "place of Rcn");
-    near(force("Rb1"), {value("Rb1_x1_N"), value("Rb1_y1_N"), value("Rb1_z1_N")},
-         table.peak("Rb1"), "Rb1");
+    near(force("Rb1"), {value("Rb1_x1_N"), value("Rb1_y1_N"), value("Rb1_z1_N")}, table.peak("Rb1"),
+         "Rb1");
     near(at("Rb1"), {0, 0, p.bearings.tapered_z}, size, "C1");
     near(force("Rb2"), {value("Rb2_x1_N"), value("Rb2_y1_N"), 0}, table.peak("Rb2"), "Rb2");
     near(at("Rb2"), {0, 0, p.bearings.cylindrical_z}, size, "C2");
@@ -210,8 +211,8 @@ void expect_theory(const Reader& scene, const Case& the_case,
         the_case.analytic.gear == BlockDrive::mesh && table.peak("Rcs") > 0) {
       const double half = p.geometry.tilt / 2, sign = the_case.operation.speed_rpm < 0 ? -1 : 1;
       const double across = std::sin(p.gear.pressure_angle);
-      const Vector3d k4 = sign * Vector3d(-std::cos(p.gear.pressure_angle),
-                                          across * std::sin(half), across * std::cos(half));
+      const Vector3d k4 = sign * Vector3d(-std::cos(p.gear.pressure_angle), across * std::sin(half),
+                                          across * std::cos(half));
       near(force("Rcs"), value("Rcs_z4_N") * k4, table.peak("Rcs"), "Rcs");
       near(force("Rcs.shaft"), -value("Rcs_z4_N") * k4, table.peak("Rcs"), "Rcs on the shaft");
       near(at("Rcs"),
@@ -220,8 +221,8 @@ void expect_theory(const Reader& scene, const Case& the_case,
            size, "O4");
     }
     // Where Fh acts, where it is shown: on its line.
-    const Vector3d off = points.turn.transpose() *
-                         (scene.place(scene.json["film_point"], row, model) - points.o2);
+    const Vector3d off =
+        points.turn.transpose() * (scene.place(scene.json["film_point"], row, model) - points.o2);
     near({off.x(), off.y(), 0}, {value("xh_x2_mm") * 1e-3, value("yh_y2_mm") * 1e-3, 0}, size,
          "film point");
   }
@@ -373,7 +374,7 @@ TEST(PumpScene, ManyRowsAreThinned) {
 // Shapes of any pump: finite, and meshes of corners that there are.
 TEST(PumpScene, ShapesOfOddPumps) {
   for (const std::string name : {"pistons_1", "pistons_15", "pump_of_1_mm", "pump_of_1_m",
-                                  "tilt_89.9", "tilt_0", "offset_plus"}) {
+                                 "tilt_89.9", "tilt_0", "offset_plus"}) {
     SCOPED_TRACE(name);
     const Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
                                     "hard" / name / "case.toml");
