@@ -66,10 +66,6 @@ class Maker {
     return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
            result_.options.channels.wants(layout.channels()[layout.Td()]);
   }
-  bool has_loads() const {
-    return result_.options.body_loads && !integrated() &&
-           result_.options.scene.scene == multibody::Scene::full;
-  }
 
   RunOptions multibody_run(double accuracy) const {
     RunOptions options;
@@ -119,11 +115,11 @@ void Maker::run_models() {
   RunOptions analytic_run;
   analytic_run.budget = has_budget();
   analytic_run.teeth = has_teeth();
-  analytic_run.body_loads = has_loads();
+  analytic_run.loads = o.loads;
   ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
   r.analytic = std::move(analytic.table);
-  analytic_budget_ = std::move(analytic.budget);
   r.analytic_loads = std::move(analytic.loads);
+  analytic_budget_ = std::move(analytic.budget);
   if (integrated()) {
     integrate_all();
     return;
@@ -131,11 +127,11 @@ void Maker::run_models() {
   RunOptions driven = multibody_run(0);
   driven.budget = has_budget();
   driven.teeth = has_teeth();
-  driven.body_loads = has_loads();
+  driven.loads = o.loads;
   ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
   r.multibody = std::move(multibody.table);
-  multibody_budget_ = std::move(multibody.budget);
   r.multibody_loads = std::move(multibody.loads);
+  multibody_budget_ = std::move(multibody.budget);
   if (analytic.teeth)
     r.teeth = compare_teeth(std::move(*analytic.teeth), std::move(*multibody.teeth), r.tolerance,
                             zero_scales_);
@@ -145,9 +141,11 @@ void Maker::run_models() {
 void Maker::integrate_all() {
   ComparisonResult& r = result_;
   for (const double accuracy : r.options.accuracies) {
-    const RunOptions options = multibody_run(accuracy);
+    RunOptions options = multibody_run(accuracy);
+    options.loads = r.options.loads && accuracy == r.options.accuracies.back();
     ModelRun run = study::run(r.second, multibody_samples_, options, progress_of_);
     r.multibody = std::move(run.table);
+    r.multibody_loads = std::move(run.loads);
     const auto comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
     const auto worst = [&](const std::string& group) { return worst_of_group(comparison, group); };
     r.integrations.push_back(

@@ -141,9 +141,12 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.title = the_case.name;
   document.program = program;
   std::optional<report::Scene> scene;
-  if (r.analytic_loads && r.multibody_loads)
+  // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
+  const bool all_loads = r.options.loads && r.options.way == Way::driven &&
+                         r.options.scene.scene == multibody::Scene::full;
+  if (all_loads)
     scene =
-        pump_scene(the_case, {{r.analytic, *r.analytic_loads}, {r.multibody, *r.multibody_loads}});
+        pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
   describe_case(document, the_case, std::move(scene));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
@@ -175,7 +178,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.figures = comparison_figures(r);
   if (r.options.channels.all())
     for (auto& figure :
-         force_figures({the_case, r.analytic, r.analytic_loads ? &*r.analytic_loads : nullptr}))
+         force_figures({the_case, r.analytic, all_loads ? &r.analytic_loads : nullptr}))
       document.figures->push_back(std::move(figure));
   if (r.first.hydraulics) {
     document.runs->push_back(hydraulic_section(the_case, *r.first.hydraulics));

@@ -27,7 +27,7 @@ void append(std::vector<Item>& list, std::vector<Item> more) {
 ShownPump show_pump(Case the_case, const PartProgress& progress_of) {
   ShownPump pump{prepare(std::move(the_case), progress_of), {}, {}};
   RunOptions options;
-  options.body_loads = true;
+  options.loads = true;
   const Samples samples = pump.ready.samples(Way::driven);
   pump.run = run(pump.ready, samples, options, progress_of);
   pump.limits = analytic::check_validity(pump.ready.the_case, pump.ready.the_case.analytic, samples,
@@ -41,14 +41,14 @@ report::Document pump_document(const ShownPump& pump, const report::Lines& progr
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  describe_case(document, the_case, pump_scene(the_case, {{table, *pump.run.loads}}));
+  describe_case(document, the_case, pump_scene(the_case, {{table, pump.run.loads}}));
   document.derived = derived_section(the_case);
   document.verdict = {std::nullopt, "The analytic model alone: nothing is compared.", "One model"};
   document.key_figures = {{table.name}, "deg", turn_figures({&table})};
   document.validity = validity_section(pump.limits);
   document.models = {report::model_of(table, in_words(the_case.analytic))};
   document.runs.emplace();
-  document.figures = force_figures({the_case, table, &*pump.run.loads});
+  document.figures = force_figures({the_case, table, &pump.run.loads});
   append(*document.figures, channel_figures({&table}));
   if (pump.ready.hydraulics) {
     const hydraulics::SteadyState& state = *pump.ready.hydraulics;

@@ -95,9 +95,20 @@ class SceneMaker {
     // What stays is a number.
     if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); }))
       return {values.front()};
+    // The opposite of a load has its numbers.
+    const auto negative = [&](const report::Values& one) {
+      return std::equal(one.begin(), one.end(), values.begin(),
+                        [](double a, double b) { return a == -b; });
+    };
+    const auto& all = scene_.series;
+    auto same = std::find(all.begin(), all.end(), values);
     Scalar scalar{0, 1};
-    scalar.series = scene_.series.size();
-    scene_.series.push_back(std::move(values));
+    if (same == all.end()) {
+      same = std::find_if(all.begin(), all.end(), negative);
+      scalar.factor = same == all.end() ? 1 : -1;
+    }
+    scalar.series = static_cast<std::size_t>(same - all.begin());
+    if (scalar.series == all.size()) scene_.series.push_back(std::move(values));
     return scalar;
   }
   Scalar channel(std::size_t column, double factor = 1) const {

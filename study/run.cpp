@@ -35,8 +35,6 @@ void check(const RunOptions& options) {
     throw InputError("a torque budget is of a driven run of the full pump");
   if (options.teeth && (integrated || options.scene.scene != multibody::Scene::full))
     throw InputError("what teeth do is of a driven run of the full pump");
-  if (options.body_loads && (integrated || options.scene.scene != multibody::Scene::full))
-    throw InputError("loads on all bodies are of a driven run of the full pump");
 }
 
 // Tables of a run, and what a comparison makes of them, lie in memory.
@@ -127,20 +125,21 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
   const Assumptions& assumptions =
       options.assumptions ? *options.assumptions : ready.assumptions(options.model);
   ModelRun result;
+  const bool collects =
+      options.loads && options.way == Way::driven && options.scene.scene == multibody::Scene::full;
   if (options.model == Model::analytic) {
     if (options.teeth) result.teeth.emplace();
     result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"),
                                  options.teeth ? &*result.teeth : nullptr);
     if (options.budget) result.budget = analytic::run_budget(the_case, assumptions, samples);
-    if (options.body_loads) result.loads = analytic::run_body_loads(the_case, assumptions, samples);
+    if (options.loads) result.loads = analytic::run_body_loads(the_case, assumptions, samples);
   } else if (options.way == Way::driven) {
     if (options.budget) result.budget.emplace();
     if (options.teeth) result.teeth.emplace();
-    if (options.body_loads) result.loads.emplace();
     result.table = multibody::run_driven(
         the_case, assumptions, samples, progress_of("multibody"), options.scene.scene,
         options.scene.method, options.budget ? &*result.budget : nullptr,
-        options.teeth ? &*result.teeth : nullptr, options.body_loads ? &*result.loads : nullptr);
+        options.teeth ? &*result.teeth : nullptr, collects ? &result.loads : nullptr);
   } else if (options.target) {
     const auto& among = options.target->integrators;
     VerifiedRun verified =
@@ -157,11 +156,14 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
     result.table = std::move(integrated.table);
     result.record = std::move(integrated.record);
   }
+  if (options.loads && options.model == Model::multibody && !collects)
+    multibody::run_driven(the_case, assumptions, samples, progress_of("loads on the bodies"),
+                          multibody::Scene::full, {}, nullptr, nullptr, &result.loads);
   return result;
 }
 
 MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
-                       const PartProgress& progress_of, ResultTable* teeth) {
+                       const PartProgress& progress_of, ResultTable* teeth, BodyLoadTable* loads) {
   check(options);
   if (options.way == Way::integrated)
     throw InputError("given states are not integrated: the motion is an input");
@@ -169,11 +171,13 @@ MotionTable run_states(const ReadyCase& ready, const States& states, const RunOp
     throw InputError("at given states the whole pump is evaluated, without a torque budget");
   const Assumptions& assumptions =
       options.assumptions ? *options.assumptions : ready.assumptions(options.model);
-  if (options.model == Model::analytic)
+  if (options.model == Model::analytic) {
+    if (loads != nullptr) *loads = analytic::run_body_loads(ready.the_case, assumptions, states);
     return analytic::run_states(ready.the_case, assumptions, states, progress_of("analytic"),
                                 teeth);
+  }
   return multibody::run_states(ready.the_case, assumptions, states, progress_of("multibody"),
-                               options.scene.method, teeth);
+                               options.scene.method, teeth, loads);
 }
 
 ResultTable run_turn(const ReadyCase& ready, Model model, const PartProgress& progress_of) {

@@ -37,7 +37,7 @@ struct ComparisonOptions {
   /// Printed numbers to hold the results to (reference_data/published); empty: none.
   std::filesystem::path published;
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
-  bool body_loads = false;     ///< all loads on all bodies too, of a driven run of the full pump
+  bool loads = false;          ///< all loads on the bodies too (RunOptions)
 };
 
 /// Assumptions in words: name and value.
@@ -53,15 +53,15 @@ struct IntegrationRow {
 
 /// Everything that a comparison came to.
 struct ComparisonResult {
-  ReadyCase first, second;          ///< of the analytic and of the multibody model
-  ComparisonOptions options;        ///< as used: with the integration that was chosen
-  double tolerance = 0;             ///< of differences over peak
-  ResultTable analytic, multibody;  ///< all channels
-  compare::Comparison comparison;   ///< of the channels asked for
+  ReadyCase first, second;                        ///< of the analytic and of the multibody model
+  ComparisonOptions options;                      ///< as used: with the integration that was chosen
+  double tolerance = 0;                           ///< of differences over peak
+  ResultTable analytic, multibody;                ///< all channels
+  BodyLoadTable analytic_loads, multibody_loads;  ///< where asked for, a row per row
+  compare::Comparison comparison;                 ///< of the channels asked for
   std::vector<compare::Check> checks;
-  std::optional<BudgetComparison> budget;  ///< of a driven run of full pumps whose Td is wanted
-  std::optional<TeethComparison> teeth;    ///< likewise, where the contact is that of teeth
-  std::optional<BodyLoadTable> analytic_loads, multibody_loads;  ///< where they were asked for
+  std::optional<BudgetComparison> budget;      ///< of a driven run of full pumps whose Td is wanted
+  std::optional<TeethComparison> teeth;        ///< likewise, where the contact is that of teeth
   std::vector<report::AssumptionRow> changes;  ///< where the models assume different things
   std::optional<compare::Split> split;         ///< then: the difference taken apart
   std::vector<IntegrationRow> integrations;  ///< integrated: one per accuracy, the last is compared

@@ -59,7 +59,8 @@ struct RunOptions {
   std::optional<Assumptions> assumptions;  ///< instead of the case's
   bool budget = false;  ///< torque by cause too; of a driven run of the full pump
   bool teeth = false;   ///< what the teeth do, too; likewise, where the contact is that of teeth
-  bool body_loads = false;  ///< all loads on all bodies, too; as the budget
+  bool loads = false;   ///< all loads on the bodies too: those of the driven full pump at the
+                        ///< samples also of a run that is integrated or of a smaller scene
   // Of the multibody model:
   Way way = Way::driven;
   multibody::SceneChoice scene;               ///< driven; an integrated run is of the full pump
@@ -71,7 +72,7 @@ struct ModelRun {
   ResultTable table;
   std::optional<ResultTable> budget;                   ///< where asked for (results/budget.h)
   std::optional<ResultTable> teeth;                    ///< likewise (results/teeth.h)
-  std::optional<BodyLoadTable> loads;                  ///< likewise (results/body_loads.h)
+  BodyLoadTable loads;                                 ///< likewise, a row per sample
   multibody::IntegrationOptions integration;           ///< of an integrated run: as it was run
   std::optional<multibody::IntegrationRecord> record;  ///< of an integrated run
   std::string choice;  ///< of a run to an error: what was chosen, and what it then did
@@ -93,8 +94,10 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
 /// options.scene.method of the multibody model. The pump is whole.
 /// @throws InputError where the options say something that has no effect on given states
 /// @param teeth  if given: what the teeth do there, table of results/teeth.h
+/// @param loads  if given: all loads on the bodies there
 MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
-                       const PartProgress& progress_of = silent(), ResultTable* teeth = nullptr);
+                       const PartProgress& progress_of = silent(), ResultTable* teeth = nullptr,
+                       BodyLoadTable* loads = nullptr);
 
 /// One turn by one model, driven, as the case assumes.
 ResultTable run_turn(const ReadyCase& ready, Model model,
