@@ -187,6 +187,8 @@ PROBE = r"""
       walked.push({ id: e.id, top: at.top, contents: [box.top, box.bottom],
                     says: document.querySelector("#contents .where").textContent });
     }
+    // Chromium shows no frames while it only dumps the page, so that nothing comes near: as for print, all are drawn.
+    dispatchEvent(new Event("beforeprint"));
     result.walk = { atFirst, atLast: canvases(), walked, sections: [...document.querySelectorAll("main > section")].map(e => e.id) };
     scrollTo({ top: 0, behavior: "instant" });
     await wait(100);

@@ -7,7 +7,7 @@ function cursorOf(label) {
   return cursors.get(label);
 }
 
-// `set` tells all followers but its source, once a frame, and those alone that are on the screen: the others hear of it when
+// `set` tells all followers but its source, at most once a frame, and those alone that are on the screen: the others hear of it when
 // they are scrolled to. null: nothing is pointed at any more.
 function makeCursor() {
   const followers = [];
@@ -25,7 +25,7 @@ function makeCursor() {
       }
   }
   function ask() {
-    if (!asked && last !== undefined) requestAnimationFrame(tell);
+    if (!asked && last !== undefined) setTimeout(tell, 15);
     asked = asked || last !== undefined;
   }
   addEventListener("scroll", ask, { passive: true });

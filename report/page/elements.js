@@ -58,14 +58,17 @@ let watched = null;
 function startDrawing() {
   if (watched) watched.stop();
   const draws = new Map(), near = new Set();
-  const next = () => {
-    const [box] = near;
-    if (!box) return;
+  const drawNow = box => {
     const draw = draws.get(box);
     near.delete(box);
     draws.delete(box);
     watcher.unobserve(box);
     draw();
+  };
+  const next = () => {
+    const [box] = near;
+    if (!box) return;
+    drawNow(box);
     requestAnimationFrame(next);
   };
   const watcher = new IntersectionObserver(entries => {
@@ -76,8 +79,9 @@ function startDrawing() {
     }
     if (idle) requestAnimationFrame(next);
   }, { rootMargin: "900px 0px" });
-  watched = { draws, watcher, stop: () => { near.clear(); watcher.disconnect(); } };
+  watched = { draws, watcher, drawAll: () => [...draws.keys()].forEach(drawNow), stop: () => { near.clear(); watcher.disconnect(); } };
 }
+addEventListener("beforeprint", () => watched && watched.drawAll());  // whatever a reader prints of them
 function whenNear(box, draw) {
   watched.draws.set(box, draw);
   watched.watcher.observe(box);

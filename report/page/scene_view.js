@@ -219,6 +219,7 @@ function sceneView(state, canvas, look) {
     const before = { position: camera.position.clone(), target: controls.target.clone(), zoom: camera.zoom, up: camera.up.clone() };
     const size = [canvas.clientWidth || width, canvas.clientHeight || height];
     setView(view);
+    renderer.setClearColor("#ffffff", 1);
     resize(width, height);
     draw();
     const copy = el("canvas", { width: canvas.width, height: canvas.height, role: "img", "aria-label": `The pump, ${view} view` });
@@ -227,6 +228,7 @@ function sceneView(state, canvas, look) {
     camera.up.copy(before.up);
     controls.target.copy(before.target);
     camera.zoom = before.zoom;
+    renderer.setClearColor("#000000", 0);
     resize(...size);
     controls.update();
     draw();
