@@ -155,7 +155,7 @@ PROBE = r"""
                l.box.left < box.left - 1 || l.box.right > box.right + 1 || l.box.bottom > box.bottom + 1)
                .map(l => l.text) };
   });
-  const bars = () => [...document.querySelectorAll(".bars svg")].map(e => {
+  const charts = selector => [...document.querySelectorAll(selector)].map(e => {
     const box = e.getBoundingClientRect();
     return { name: name(e), width: box.width, height: box.height, bars: e.querySelectorAll("rect").length,
              axes: labels(e, "text.axis").map(l => l.text), ticks: labels(e, "text:not(.axis)").length,
@@ -192,7 +192,8 @@ PROBE = r"""
     result.walk = { atFirst, atLast: canvases(), walked, sections: [...document.querySelectorAll("main > section")].map(e => e.id) };
     scrollTo({ top: 0, behavior: "instant" });
     await wait(100);
-    Object.assign(result, { first: measure(), plots: plots(), bars: bars(), groups: groups(), title: document.title,
+    Object.assign(result, { first: measure(), plots: plots(), bars: charts(".bars:not(.drawing) svg"),
+      drawings: charts(".drawing svg"), groups: groups(), title: document.title,
       heading: document.querySelector("h1") && document.querySelector("h1").textContent,
       figures: document.querySelectorAll("figure").length, word: spot(".banner .word"),
       headline: spot(".banner .headline"), images: document.images.length,
@@ -446,6 +447,16 @@ class PageTest(unittest.TestCase):
                     self.assertEqual(len(chart["axes"]), 2)
                     self.assertGreaterEqual(chart["ticks"], 3)
                     self.assertEqual(chart["overlaps"], [])
+
+    def test_drawings(self):
+        """Three panels of the piston's polygon, two of the block's, the plate; an integrated run has no polygons."""
+        for (name, width), page in self.measured.items():
+            with self.subTest(name, width=width):
+                self.assertEqual(len(page["drawings"]), 1 if name == "integrated" else 6)
+                for drawing in page["drawings"]:
+                    self.assertGreater(drawing["width"], 200)
+                    self.assertEqual(len(drawing["axes"]), 2)
+                    self.assertGreaterEqual(drawing["ticks"], 3)
 
     def test_text_of_the_case_stays_text(self):
         for width in WIDTHS:
