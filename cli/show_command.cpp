@@ -1,34 +1,69 @@
-// bentaxis show: the pump of a case, before anything is computed.
+// bentaxis show: the pump of a case, by its dimensions and by the analytic model alone.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/pump_document.h"
 #include "bentaxis/study/pump_picture.h"
 #include "commands.h"
+#include "console.h"
 #include "options.h"
+#include "report_files.h"
+#include "versions.h"
 
 namespace bentaxis::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Options {
   CaseOption the_case;
-  std::string out;
+  std::string out, figures;
+
+  bool picture_alone() const { return fs::path(out).extension() == ".svg"; }
+  bool report() const { return !out.empty() && !picture_alone(); }
 };
+
+void write_picture(const Case& the_case, const std::string& file) {
+  const fs::path path = fs::absolute(file);
+  OutputFolder folder(path.parent_path());
+  folder.add(path.filename(), study::pump_picture(the_case));
+  folder.commit();
+  std::printf("%s\n", file.c_str());
+}
 
 int show(const Options& options) {
   const Case the_case = options.the_case.read();
+  std::optional<ReportFolders> report;
+  std::optional<OutputFolder> figures;
+  if (options.report())
+    report.emplace(ReportPlace{options.out, options.figures});
+  else if (!options.figures.empty())
+    figures.emplace(options.figures);
+
   std::printf("%s\n", the_case.name.c_str());
   for (const auto& quantity : study::derived_section(the_case))
     std::printf("  %-22s %10.5g %s\n", quantity.name.c_str(), quantity.value,
                 quantity.unit.c_str());
-  if (options.out.empty()) return kDone;
-  const auto path = std::filesystem::absolute(options.out);
-  OutputFolder folder(path.parent_path());
-  folder.add(path.filename(), study::pump_picture(the_case));
-  folder.commit();
-  std::printf("%s\n", options.out.c_str());
+  if (options.picture_alone()) write_picture(the_case, options.out);
+  if (!report && !figures) return kDone;
+
+  const study::ShownPump pump = study::show_pump(the_case, progress_of);
+  const report::Document document = study::pump_document(pump, versions());
+  const report::Curves curves = study::pump_curves(pump);
+  if (figures) {
+    add_figure_files(*figures, document, curves);
+    std::printf("%s\n", commit_figures(*figures).c_str());
+    return kDone;
+  }
+  for (const fs::path& file :
+       report->write("report", document, curves, {{"analytic.csv", to_csv(pump.run.table)}}))
+    std::printf("%s\n", file.c_str());
   return kDone;
 }
 
@@ -37,9 +72,16 @@ int show(const Options& options) {
 Command add_show_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "show", "Say what pump a case describes and what of it is doubtful, and draw it to scale");
+      "show",
+      "Say what pump a case describes and what of it is doubtful, and draw it to scale; with its "
+      "forces by the analytic model alone");
   add_case(command, options->the_case);
-  command.option("--out", options->out, "write the picture").text("FILE.svg");
+  command
+      .option("--out", options->out,
+              "write the picture; or into a folder a report with forces and curves of the analytic "
+              "model alone")
+      .text("FILE.svg|DIR");
+  add_figures(command, options->figures);
   return {command, [options] { return show(*options); }};
 }
 

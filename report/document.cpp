@@ -81,6 +81,7 @@ Json json_of(const ModelSection&);
 Json json_of(const compare::Harmonic&);
 Json json_of(const compare::ChannelComparison&);
 Json json_of(const compare::Check&);
+Json json_of(const KeyFigures::Row&);
 Json json_of(const Budget::Torque&);
 Json json_of(const Budget::Quantity&);
 Json json_of(const Budget&);
@@ -521,6 +522,21 @@ Json json_of(const compare::Check& check) {
           {"verdict", check.holds() ? "holds" : "violated"}};
 }
 
+Json json_of(const KeyFigures::Row& row) {
+  return {{"quantity", row.quantity},
+          {"symbol", row.symbol},
+          {"unit", row.unit},
+          {"values", exact(row.values)},
+          {"difference", value_or_null(row.difference)},
+          {"over_value", value_or_null(row.over_value)},
+          {"at", value_or_null(row.at)},
+          {"note", row.note}};
+}
+
+Json json_of(const KeyFigures& key) {
+  return {{"models", key.models}, {"at_unit", key.at_unit}, {"rows", list_of(key.rows)}};
+}
+
 Json json_of(const Budget::Torque& line) {
   return {{"cause", line.cause},
           {"column", line.column},
@@ -667,6 +683,7 @@ Json to_json(const Document& document) {
   add(json, "derived", document.derived);
   add(json, "verdict", document.verdict);
   if (!document.meaning.empty()) json["meaning"] = document.meaning;
+  add(json, "key_figures", document.key_figures);
   add(json, "summary", document.summary);
   add(json, "warnings", document.warnings);
   add(json, "common", document.common);
@@ -844,15 +861,17 @@ const Values* find(const std::vector<std::pair<std::string, Values>>& columns,
   return nullptr;
 }
 
+Curves curves_of(const ResultTable& only) {
+  Curves::Table columns{only.name, {}};
+  for (const Channel& channel : only.channels)
+    if (channel.kind != ChannelKind::check)
+      columns.columns.emplace_back(channel.name, values_of(only, channel.name));
+  return {only.theta_deg, {std::move(columns)}, {}, {}};
+}
+
 Curves curves_of(const ResultTable& first, const ResultTable& second) {
-  Curves curves{first.theta_deg, {}, {}, {}};
-  for (const ResultTable* table : {&first, &second}) {
-    Curves::Table columns{table->name, {}};
-    for (const Channel& channel : table->channels)
-      if (channel.kind != ChannelKind::check)
-        columns.columns.emplace_back(channel.name, values_of(*table, channel.name));
-    curves.tables.push_back(std::move(columns));
-  }
+  Curves curves = curves_of(first);
+  curves.tables.push_back(std::move(curves_of(second).tables.front()));
   for (std::size_t a = 0; a < first.columns(); ++a) {
     const std::size_t b = second.find(first.channels[a].name);
     const ChannelKind kind = first.channels[a].kind;

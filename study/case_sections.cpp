@@ -119,6 +119,15 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
   return inputs;
 }
 
+std::vector<report::ValidityRow> validity_section(
+    const std::vector<analytic::ValidityLimit>& limits) {
+  std::vector<report::ValidityRow> rows;
+  for (const auto& limit : limits)
+    rows.push_back({limit.limit, limit.unit, limit.consequence, limit.applicable,
+                    limit.violated_share, limit.worst, limit.theta_deg});
+  return rows;
+}
+
 std::vector<report::DerivedQuantity> derived_section(const Case& the_case) {
   const Geometry& g = the_case.pump.geometry;
   const Gear& gear = the_case.pump.gear;

@@ -16,6 +16,7 @@
 #include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
 #include "hydraulic_sections.h"
+#include "key_figures.h"
 
 namespace bentaxis::study {
 namespace {
@@ -35,6 +36,20 @@ report::Verdict verdict_of(const ComparisonResult& r) {
     verdict.rest_tolerance = r.split->tolerance;
   }
   return verdict;
+}
+
+report::KeyFigures key_figures_of(const ComparisonResult& r, const report::Document& document) {
+  report::KeyFigures key{
+      {r.analytic.name, r.multibody.name}, "deg", turn_figures({&r.analytic, &r.multibody})};
+  const auto add = [&](report::KeyFigures::Row row) { key.rows.push_back(std::move(row)); };
+  if (document.budget)
+    for (const auto& line : document.budget->efficiency)
+      if (line.name == "hydraulic-mechanical" && is_computed(line.values.front()))
+        add(key_row(line.name + " efficiency", "", line.unit, line.values));
+  if (r.first.hydraulics)
+    for (auto& row : oil_figures(r.first.hydraulics->summary, key.models.size()))
+      add(std::move(row));
+  return key;
 }
 
 report::Section integration_section(const ComparisonResult& r) {
@@ -93,14 +108,6 @@ report::Section rounding_section(const std::vector<RoundingLine>& lines) {
   return section;
 }
 
-std::vector<report::ValidityRow> validity_of(const std::vector<analytic::ValidityLimit>& limits) {
-  std::vector<report::ValidityRow> rows;
-  for (const auto& limit : limits)
-    rows.push_back({limit.limit, limit.unit, limit.consequence, limit.applicable,
-                    limit.violated_share, limit.worst, limit.theta_deg});
-  return rows;
-}
-
 // The verdict on a reference, its source, and what it says of each figure's reactions.
 void add_reference(report::Document& document, const Outcome& outcome) {
   document.verdict->reference = {outcome.name, held_text(outcome),
@@ -135,8 +142,9 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.program = program;
   std::optional<report::Scene> scene;
   // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
-  if (r.options.loads && r.options.way == Way::driven &&
-      r.options.scene.scene == multibody::Scene::full)
+  const bool all_loads = r.options.loads && r.options.way == Way::driven &&
+                         r.options.scene.scene == multibody::Scene::full;
+  if (all_loads)
     scene =
         pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
   describe_case(document, the_case, std::move(scene));
@@ -148,7 +156,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
       "so is validation, and needs measurements.";
   document.warnings = r.warnings;
   document.common = common_inputs(the_case, false);
-  document.validity = validity_of(r.limits);
+  document.validity = validity_section(r.limits);
   if (r.first.hydraulics) document.timing = timing_rows(r.first.the_case, *r.first.hydraulics);
   document.models = {report::model_of(r.analytic, in_words(the_case.analytic)),
                      report::model_of(r.multibody, in_words(r.second.the_case.multibody))};
@@ -156,6 +164,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.checks = r.checks;
   if (r.budget)
     document.budget = budget_section(*r.budget, r.first, r.second, r.analytic, r.multibody);
+  document.key_figures = key_figures_of(r, document);
   if (r.split)
     document.assumptions = {
         "The models were asked to assume different things. Each assumption's contribution is its "
@@ -169,7 +178,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.figures = comparison_figures(r);
   if (r.options.channels.all())
     for (auto& figure :
-         force_figures({the_case, r.analytic, r.options.loads ? &r.analytic_loads : nullptr}))
+         force_figures({the_case, r.analytic, all_loads ? &r.analytic_loads : nullptr}))
       document.figures->push_back(std::move(figure));
   if (r.first.hydraulics) {
     document.runs->push_back(hydraulic_section(the_case, *r.first.hydraulics));

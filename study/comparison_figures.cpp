@@ -8,11 +8,9 @@
 #include "bentaxis/results/budget.h"
 
 namespace bentaxis::study {
-namespace {
 
-// Plots grouped as the paper's figures.
-std::vector<report::Figure> catalogue(const ResultTable& analytic, const ResultTable& multibody,
-                                      const std::vector<ResultTable>& without_viscous) {
+std::vector<report::Figure> channel_figures(const std::vector<const ResultTable*>& tables,
+                                            const std::vector<ResultTable>& without_viscous) {
   std::vector<report::Figure> figures;
   const auto add = [&](const std::string& id, const std::string& title, const std::string& paper,
                        const std::string& unit, std::vector<std::string> channels,
@@ -20,8 +18,10 @@ std::vector<report::Figure> catalogue(const ResultTable& analytic, const ResultT
     figures.push_back(
         {id, title, paper, report::ChannelFigure{unit, std::move(channels), std::move(extra)}});
   };
-  add("pressure", "Chamber pressure of piston 1 (given to both models)", "Fig. 10, 25", "bar",
-      {"p_1_bar"});
+  add("pressure",
+      tables.size() > 1 ? "Chamber pressure of piston 1 (given to both models)"
+                        : "Chamber pressure of piston 1",
+      "Fig. 10, 25", "bar", {"p_1_bar"});
   add("rs", "Joint force Rs on piston 1, by the shaft, at A, in S2", "Fig. 12", "N",
       {"Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N"});
   add("rs_xy", "Joint force Rs on piston 1: components across the block axis", "Fig. 26", "N",
@@ -38,7 +38,7 @@ std::vector<report::Figure> catalogue(const ResultTable& analytic, const ResultT
       {"Rb2_x1_N", "Rb2_y1_N"});
   add("td", "Drive torque Td", "Fig. 17, 30", "Nm", {"Td_z1_Nm"});
   std::string means;
-  for (const ResultTable* table : {&analytic, &multibody}) {
+  for (const ResultTable* table : tables) {
     double mean = 0;
     for (std::size_t row = 0; row < table->rows(); ++row)
       mean += table->at(row, table->find("Td_z1_Nm")) / static_cast<double>(table->rows());
@@ -60,13 +60,14 @@ std::vector<report::Figure> catalogue(const ResultTable& analytic, const ResultT
         list.push_back({table.name + ", Cc = 0", report::values_of(table, channel)});
     return list;
   };
-  if (has(analytic, "Rcs_z4_N") || has(multibody, "Rcs_z4_N"))
+  if (std::any_of(tables.begin(), tables.end(),
+                  [&](const ResultTable* table) { return has(*table, "Rcs_z4_N"); }))
     add("rcs", "Gear tooth force Rcs on the block, by the shaft, at O4, along z4", "Fig. 32 top",
         "N", {"Rcs_z4_N"}, extras("Rcs_z4_N"));
   add("tcs", "Torque that carries the block round, about z2", "Fig. 32 bottom", "Nm", {"Tcs_z2_Nm"},
       extras("Tcs_z2_Nm"));
   std::vector<std::string> shares;
-  for (const Channel& channel : analytic.channels)
+  for (const Channel& channel : tables.front()->channels)
     if (channel.quantity == "Tc") shares.push_back(channel.name);
   figures.push_back({"shares", "Each piston's share of the pistons' torque on the block, about z2",
                      "Fig. 31, 33", report::PistonBars{"Nm", shares, {0, 38}}});
@@ -76,6 +77,8 @@ std::vector<report::Figure> catalogue(const ResultTable& analytic, const ResultT
   add("pin", "Pin force Rcn on the block", "(54)", "N", {"Rcn_x2_N", "Rcn_y2_N"});
   return figures;
 }
+
+namespace {
 
 // What the drive torque is needed for over the turn: the causes that there are.
 report::Figure budget_figure(const BudgetComparison& budgets) {
@@ -106,7 +109,7 @@ bool shows(const report::Figure& figure, const std::vector<Channel>& channels) {
 std::vector<report::Figure> comparison_figures(const ComparisonResult& r) {
   const ChannelLayout layout(r.first.the_case.pump.geometry.pistons);
   const auto wanted = r.options.channels.of(layout);
-  auto figures = catalogue(r.analytic, r.multibody, r.without_viscous);
+  auto figures = channel_figures({&r.analytic, &r.multibody}, r.without_viscous);
   std::erase_if(figures, [&](const auto& figure) { return !shows(figure, wanted); });
   if (r.budget) figures.push_back(budget_figure(*r.budget));
   return figures;

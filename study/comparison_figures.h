@@ -8,6 +8,12 @@
 
 namespace bentaxis::study {
 
+/// Curves of channels, grouped as the paper's figures, but for Rcs where no table has it.
+/// @param tables           one or two, which the page's curves are made of
+/// @param without_viscous  the same without the block's viscous friction, for Rcs and Tcs
+std::vector<report::Figure> channel_figures(const std::vector<const ResultTable*>& tables,
+                                            const std::vector<ResultTable>& without_viscous = {});
+
 /// The figures that show a channel that was asked for.
 std::vector<report::Figure> comparison_figures(const ComparisonResult& result);
 

@@ -22,7 +22,7 @@ constexpr double kDegreesPerPoint = 6;  // of an arc
 constexpr int kDiscPoints = 16;
 constexpr std::size_t kPathPoints = 360;
 constexpr int kRings = 4;         // that a land is drawn as
-constexpr double kBeyond = 1.25;  // of the drawn radius: a film force further out is said only
+constexpr double kBeyond = 1.04;  // of the radius: a film force further out is said only
 
 // A point to a micrometre: more is not seen.
 void put(DrawingFigure::Line& line, double x, double y) {
@@ -103,11 +103,14 @@ report::Figure plate_pressure(const DiagramRun& run) {
   const auto near = [&](std::size_t row) {
     return std::hypot(table.at(row, at.xh()), table.at(row, at.yh())) < kBeyond * radius;
   };
-  DrawingFigure::Line path{0, kPath, 1.2, {}, {}};
-  for (const std::size_t row : frame_rows(table.rows(), kPathPoints))
-    if (near(row)) put(path, table.at(row, at.xh()), table.at(row, at.yh()));
-
-  if (!path.x.empty()) drawing.ground.push_back(path);
+  // The way of the film force, in pieces where it leaves the picture.
+  bool joined = false;
+  for (const std::size_t row : frame_rows(table.rows(), kPathPoints)) {
+    const bool shown = near(row);
+    if (shown && !joined) drawing.ground.push_back({0, kPath, 1.2, {}, {}});
+    if (shown) put(drawing.ground.back(), table.at(row, at.xh()), table.at(row, at.yh()));
+    joined = shown;
+  }
 
   // As wide as the ports, so that these are seen.
   const double disc = ports ? (pump.port_plate->r3 - pump.port_plate->r2) / 2 : g.bore_diameter / 4;

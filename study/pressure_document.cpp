@@ -13,6 +13,7 @@
 #include "bentaxis/study/published_section.h"
 #include "hydraulic_results.h"
 #include "hydraulic_sections.h"
+#include "key_figures.h"
 
 namespace bentaxis::study {
 namespace {
@@ -34,6 +35,7 @@ report::Document pressure_document(const OperatingPoint& point,
   document.program = program;
   describe_case(document, the_case);
   document.derived = derived_section(the_case);
+  document.key_figures = {{"hydraulic model"}, "deg", oil_figures(point.state().summary, 1)};
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
   document.runs = {hydraulic_section(the_case, point.state()),
                    power_section(the_case, point.state(), power),

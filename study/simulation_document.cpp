@@ -15,6 +15,7 @@
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth.h"
+#include "key_figures.h"
 
 namespace bentaxis::study {
 namespace {
@@ -444,6 +445,18 @@ std::optional<report::Scene> scene_of(const SimulationResult& r) {
   return pump_scene(r.ready.the_case, shown, &motion);
 }
 
+report::KeyFigures key_figures_of(const SimulationResult& r) {
+  report::KeyFigures key;
+  key.at_unit = "ms";
+  std::vector<const ResultTable*> tables;
+  for (const auto& [name, run] : runs_of(r)) {
+    key.models.push_back(name);
+    tables.push_back(&run->table.results);
+  }
+  key.rows = motion_figures(tables, times_of(*runs_of(r).front().second));
+  return key;
+}
+
 std::vector<report::Figure> diagrams_of(const SimulationResult& r) {
   const auto& [name, run] = runs_of(r).front();
   DiagramRun shown{r.ready.the_case, run->table.results, &run->loads};
@@ -484,6 +497,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
           : "Two derivations of the motion, each integrated by its own method, against each other "
             "in time. Agreement says that both follow the same description; whether a pump does "
             "is another question (docs/limits.md).";
+  document.key_figures = key_figures_of(r);
   document.warnings = warnings_of(r);
   if (!r.choice.only) document.common = common_inputs(the_case, true, r.oil_follows);
   document.checks = r.checks;

@@ -55,6 +55,7 @@ class SchemaTest(unittest.TestCase):
                                     REPO / "reference_data" / "hard"),
             "simulate": cls.report("report.json", "simulate", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                    "drive.duration_s=0.001", "--set", "drive.samples=10", "--error", "1e-4"),
+            "show": cls.report("report.json", "show", hydraulic),
             "teeth": cls.report("report.json", "compare", REPO / "cases" / "bap63_teeth.toml", "--set",
                                 "operation.samples_per_revolution=36"),
             "life": cls.report("life.json", "life", REPO / "cases" / "bap63_bearing_life.toml", "--set",

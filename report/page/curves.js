@@ -101,7 +101,7 @@ function synchronise(graphs, data, readOut) {
         if (!graph.isZoomed()) g.updateOptions({ dateWindow: null, valueRange: null });
         else if (from !== low || to !== high) g.updateOptions({ dateWindow: [low, high] });
       }),
-    });
+    }, true);  // nothing to be drawn anew
   });
   data.cursor.follow(graphs[0].graphDiv, graphs, x => {
     const row = x == null ? null : nearestPlace(data.theta, data.order, x);
@@ -196,10 +196,10 @@ function curvesFigure(figure, page) {
     plots.push({ node: box(".low", `difference from ${reference}`), lines: [...edgesOf(zeroBands), ...fromReference], bands: zeroBands,
                  label: "difference", title: `Difference: each model minus ${reference}; the band is what is allowed` });
   if (data.order.length < 2) return [readings.node, ...footer()];  // one angle makes no curve
-  data.mounts.push(() => {
+  data.mounts.push(() => whenNear(plots[0].node, () => {
     const graphs = plots.map(p => plot(p.node, data, p.lines, p.bands, p.label + label, p.more));
     synchronise(graphs, data, readings.show);
-  });
+  }));
   return [readings.node, ...plots.flatMap(p => [p.title ? el("p.subplot", {}, p.title) : null, p.node]), ...footer()];
 }
 
@@ -220,8 +220,9 @@ function bandsFigure(figure, page) {
   if (data.order.length < 2) return [el("p.empty", {}, "There is nothing to draw.")];
   const readings = readOutTable({ unit: figure.y.unit }, [], [...bands, ...lines], [], null, data);
   const node = el("div.plot", { role: "img", "aria-label": `${figure.title}: curves and bands over ${data.axis.label}` });
-  data.mounts.push(() => synchronise([plot(node, data, [...edgesOf(bands), ...bands, ...lines], bands, axisName(figure.y))],
-    data, readings.show));
+  data.mounts.push(() => whenNear(node, () => synchronise(
+    [plot(node, data, [...edgesOf(bands), ...bands, ...lines], bands, axisName(figure.y))],
+    data, readings.show)));
   return [readings.node, node];
 }
 

@@ -52,6 +52,41 @@ function svg(tag, attributes, text) {
   return node;
 }
 
+// Draws a box once, when it is near the screen, one in a frame: a reader of thousands of samples waits neither for
+// curves far below nor for those passed by.
+let watched = null;
+function startDrawing() {
+  if (watched) watched.stop();
+  const draws = new Map(), near = new Set();
+  const drawNow = box => {
+    const draw = draws.get(box);
+    near.delete(box);
+    draws.delete(box);
+    watcher.unobserve(box);
+    draw();
+  };
+  const next = () => {
+    const [box] = near;
+    if (!box) return;
+    drawNow(box);
+    requestAnimationFrame(next);
+  };
+  const watcher = new IntersectionObserver(entries => {
+    const idle = near.size === 0;
+    for (const { target, isIntersecting } of entries) {
+      if (isIntersecting && draws.has(target)) near.add(target);
+      else near.delete(target);
+    }
+    if (idle) requestAnimationFrame(next);
+  }, { rootMargin: "900px 0px" });
+  watched = { draws, watcher, drawAll: () => [...draws.keys()].forEach(drawNow), stop: () => { near.clear(); watcher.disconnect(); } };
+}
+addEventListener("beforeprint", () => watched && watched.drawAll());  // whatever a reader prints of them
+function whenNear(box, draw) {
+  watched.draws.set(box, draw);
+  watched.watcher.observe(box);
+}
+
 const list = value => (Array.isArray(value) ? value : []);
 const phrases = (...parts) => parts.filter(Boolean).join(", ");
 const chip = word => {

@@ -55,13 +55,18 @@ function prepare(report, given) {
   };
 }
 
+// What is found, what it is about, what an engineer asks first; then the numbers behind it, the curves, and where all
+// comes from.
 const SECTIONS = [
-  ["verdict", "Verdict", verdictBanner], ["pump", "Pump", pumpHead], ["space", "The pump in three dimensions", (report, data) => pumpInSpace(report, data, data.scene)], ["summary", "Summary", summary], ["warnings", "Warnings", warnings],
-  ["common", "Common to both models", commonInputs], ["validity", "Validity over the turn", validity], ["timing", "Timing of the ports", timing],
-  ["comparison", "Comparison", comparison], ["budget", "Torque, power and efficiency", budget], ["assumptions", "Assumptions", assumptionSplit],
-  ["runs", "Runs", runs], ["published", "Against the published numbers", published],
-  ["checks", "Checks of each model", checks],
-  ["figures", "Figures", figures], ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
+  ["verdict", "Verdict", verdictBanner], ["warnings", "Warnings", warnings], ["pump", "Pump", pumpHead],
+  ["space", "The pump in three dimensions", (report, data) => pumpInSpace(report, data, data.scene)],
+  ["key", "Key figures", keyFigures], ["summary", "Summary", summary],
+  ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
+  ["validity", "Validity over the turn", validity], ["timing", "Timing of the ports", timing],
+  ["budget", "Torque, power and efficiency", budget], ["published", "Against the published numbers", published],
+  ["figures", "Figures", figures], ["runs", "Runs", runs],
+  ["checks", "Checks of each model", checks], ["common", "Common to both models", commonInputs],
+  ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
   ["models", "How each model was obtained", models], ["versions", "Origin and versions", versions],
 ];
 
@@ -76,11 +81,19 @@ function header(report, data) {
           el("p", {}, parts.filter(Boolean).map(p => el("span", {}, p)))].filter(Boolean);
 }
 
-// Contents beside the report where there is room, folded above it where there is not.
+// Scrolls the contents alone: scrollIntoView would move the page too.
+function keepInSight(link, box) {
+  const at = link.getBoundingClientRect(), frame = box.getBoundingClientRect();
+  if (at.top < frame.top) box.scrollTop -= frame.top - at.top + 40;
+  if (at.bottom > frame.bottom) box.scrollTop += at.bottom - frame.bottom + 40;
+}
+
+// Contents that stay: beside the report where there is room, else a bar on top that says where the reader is and opens.
 function contents(sections, report) {
   const link = (id, text, inner) => el("li", {}, el("a", { href: "#" + id }, text), inner);
   const inner = () => el("ul", {}, report.figures.map(f => link("figure-" + f.id, f.title)));
-  const folding = el("details", {}, el("summary", {}, "Contents"),
+  const where = el("span.where");
+  const folding = el("details", {}, el("summary", {}, "Contents", where),
     el("ul", {}, sections.map(s => link(s.id, s.title, s.id === "figures" ? inner() : null))));
   const wide = matchMedia("(min-width: 1100px)");
   const fold = () => { folding.open = wide.matches; };
@@ -88,10 +101,20 @@ function contents(sections, report) {
   fold();
   const links = new Map([...folding.querySelectorAll("a")].map(a => [a.getAttribute("href").slice(1), a]));
   folding.addEventListener("click", e => { if (e.target.closest("a") && !wide.matches) folding.open = false; });
-  const watcher = new IntersectionObserver(entries => entries.forEach(e => {
-    const a = links.get(e.target.id);
-    if (e.isIntersecting) a.setAttribute("aria-current", "true"); else a.removeAttribute("aria-current");
-  }), { rootMargin: "-15% 0px -80% 0px" });
+  folding.addEventListener("keydown", e => {
+    if (e.key !== "Escape" || wide.matches || !folding.open) return;
+    folding.open = false;
+    folding.firstChild.focus();
+  });
+  const watcher = new IntersectionObserver(entries => {
+    entries.forEach(e => {
+      const a = links.get(e.target.id);
+      if (e.isIntersecting) a.setAttribute("aria-current", "true"); else a.removeAttribute("aria-current");
+    });
+    const here = [...links.values()].filter(a => a.hasAttribute("aria-current")).pop();
+    if (here) where.textContent = here.textContent;
+    if (here && wide.matches) keepInSight(here, folding.parentElement);
+  }, { rootMargin: "-15% 0px -80% 0px" });
   links.forEach((_, id) => watcher.observe(document.getElementById(id)));
   return folding;
 }
@@ -104,6 +127,7 @@ function render() {
   document.getElementById("head").replaceChildren(...header(report, data));
   const main = document.getElementById("main");
   main.replaceChildren();
+  startDrawing();
   const shown = [];
   for (const [id, title, build] of SECTIONS) {
     const body = build(report, data);

@@ -45,6 +45,21 @@ function pumpHead({ plausibility }) {
     picture);
 }
 
+// What is asked first, and how far the models are apart in it.
+function keyFigures({ key_figures: key }) {
+  if (!key || !list(key.rows).length) return null;
+  const apart = key.models.length > 1;
+  const quantity = r => el("span", {}, r.quantity, r.symbol ? [" ", el("code", {}, r.symbol)] : null,
+    r.note ? el("small", {}, r.note) : null);
+  return table([
+    { head: "Quantity", main: true, cell: quantity },
+    ...key.models.map((name, i) => ({ head: name, num: true, cell: r => unit(number(r.values[i]), r.unit) })),
+    ...(apart ? [{ head: "Difference", num: true, cell: r => unit(small(r.difference), r.unit) },
+                 { head: "of the value", num: true, cell: r => ratio(r.over_value) }] : []),
+    { head: "at", num: true, cell: r => unit(number(r.at, 6), key.at_unit) },
+  ], key.rows, { fold: false });
+}
+
 // What a report has to say in words: {text, groups: [{title, lines}]}.
 const summary = ({ summary }) => !summary ? null : el("div", {},
   summary.text ? el("p", {}, summary.text) : null,

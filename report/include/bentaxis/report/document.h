@@ -380,6 +380,21 @@ struct Budget {
   std::vector<Quantity> power, efficiency, block;
 };
 
+/// The numbers that are asked for first.
+struct KeyFigures {
+  struct Row {
+    std::string quantity, symbol, unit;
+    Values values;                                    ///< one per model
+    std::optional<double> difference = std::nullopt;  ///< of the models, second minus first
+    std::optional<double> over_value = std::nullopt;  ///< its size over that of the first
+    std::optional<double> at = std::nullopt;          ///< angle or time of the first
+    std::string note = {};
+  };
+  std::vector<std::string> models;
+  std::string at_unit = "deg";
+  std::vector<Row> rows;
+};
+
 /// What is to be said in words.
 struct Summary {
   struct Group {
@@ -434,6 +449,7 @@ struct Document {
   std::optional<std::vector<DerivedQuantity>> derived = std::nullopt;
   std::optional<Verdict> verdict = std::nullopt;
   std::string meaning = {};  ///< what the verdict says and what not, or ""
+  std::optional<KeyFigures> key_figures = std::nullopt;
   std::optional<Summary> summary = std::nullopt;
   std::optional<std::vector<Warning>> warnings = std::nullopt;
   std::optional<std::vector<CommonInput>> common = std::nullopt;
@@ -476,6 +492,9 @@ const Values* find(const std::vector<std::pair<std::string, Values>>& columns,
 /// Curves of both tables, but for their checks, and the difference of what was computed.
 /// Differences are taken before rounding.
 Curves curves_of(const ResultTable& first, const ResultTable& second);
+
+/// Of one table.
+Curves curves_of(const ResultTable& only);
 
 /// One channel's values.
 Values values_of(const ResultTable& table, const std::string& channel_name);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/report/document.h"
 
@@ -16,6 +17,10 @@ report::CaseSection case_section(const Case& the_case);
 /// @param oil_follows  in it the oil is simulated too
 std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion,
                                                bool oil_follows = false);
+
+/// Where a run leaves what was modelled.
+std::vector<report::ValidityRow> validity_section(
+    const std::vector<analytic::ValidityLimit>& limits);
 
 /// Displacement, stroke, ideal flow and torque, ..
 std::vector<report::DerivedQuantity> derived_section(const Case& the_case);
