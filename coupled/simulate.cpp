@@ -16,8 +16,12 @@ namespace {
 class Rows {
  public:
   Rows(Mechanics& mechanics, const Oil& oil, const System& system, const SystemState& start,
-       Trajectory& trajectory)
-      : mechanics_(mechanics), oil_(oil), system_(system), trajectory_(trajectory) {
+       Trajectory& trajectory, bool body_loads)
+      : mechanics_(mechanics),
+        oil_(oil),
+        system_(system),
+        trajectory_(trajectory),
+        body_loads_(body_loads) {
     kinetic_ = mechanics.kinetic_energy(0, start.motion);
     potential_ = mechanics.potential_energy(start.motion);
     work_of_loads_ = start.motion[kWorkOfLoads];
@@ -41,6 +45,8 @@ class Rows {
     trajectory_.lag.push_back(s.motion[kLag]);
     if (TeethAction action; mechanics_.teeth(time, s.motion, action))
       trajectory_.teeth.push_back(action);
+    if (body_loads_)
+      trajectory_.loads.append(mechanics_.body_loads(time, s.motion, loads_));
 
     TrajectoryRecord& record = trajectory_.record;
     record.work_of_loads = s.motion[kWorkOfLoads] - work_of_loads_;
@@ -90,6 +96,7 @@ class Rows {
   const Oil& oil_;
   const System& system_;
   Trajectory& trajectory_;
+  bool body_loads_;
   double kinetic_ = 0, potential_ = 0, work_of_loads_ = 0, work_of_drive_ = 0;
   double energy_ = 0, mass_ = 0;
   OilLoads loads_;
@@ -105,14 +112,16 @@ std::string method_text(double tolerance) {
 
 Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
                     const DriveSpec& drive, const SystemState& start,
-                    const std::vector<double>& times, double tolerance, const Progress& progress) {
+                    const std::vector<double>& times, const Options& options,
+                    const Progress& progress) {
+  const double tolerance = options.tolerance;
   const Stopwatch watch;
   Trajectory trajectory;
   trajectory.table = trajectory_table(name, mechanics.layout(), drive);
   Course course(name, mechanics, oil, tolerance, true);
   course.start(0, start);
   course.foresee(times.back());
-  Rows rows(mechanics, oil, course.system(), start, trajectory);
+  Rows rows(mechanics, oil, course.system(), start, trajectory, options.body_loads);
   SystemState at = start;
   std::vector<double> integrals;
   const double end = times.back();
@@ -153,7 +162,7 @@ Trajectory simulate(const std::string& name, Mechanics& mechanics, const Oil& oi
     for (std::size_t i = 0; i < of_oil.size(); ++i) start.oil[i] += options.disturbance * of_oil[i];
   }
   const std::vector<double> times = options.times.empty() ? trajectory_times(drive) : options.times;
-  return tabulate(name, mechanics, oil, drive, start, times, options.tolerance, progress);
+  return tabulate(name, mechanics, oil, drive, start, times, options, progress);
 }
 
 }  // namespace bentaxis::coupled

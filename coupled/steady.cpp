@@ -377,7 +377,7 @@ SteadyMotion steady(const std::string& name, Mechanics& mechanics, const Oil& oi
   const double turn = result.period_s * oil.pistons();
   std::vector<double> times;
   for (int i = 0; i <= drive.samples; ++i) times.push_back(turn * i / drive.samples);
-  result.turn = tabulate(name, mechanics, oil, drive, found, times, options.tolerance, {});
+  result.turn = tabulate(name, mechanics, oil, drive, found, times, options, {});
   return result;
 }
 

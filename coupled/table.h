@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/coupled/simulation.h"
 #include "bentaxis/results/mechanics.h"
 #include "bentaxis/results/oil.h"
 #include "bentaxis/results/result_table.h"
@@ -13,9 +14,11 @@
 namespace bentaxis::coupled {
 
 /// Integrates from a state at time 0 and reads rows at `times`, s, rising.
+/// @param options  its tolerance and whether loads are wanted
 Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
                     const DriveSpec& drive, const SystemState& start,
-                    const std::vector<double>& times, double tolerance, const Progress& progress);
+                    const std::vector<double>& times, const Options& options,
+                    const Progress& progress);
 
 /// "BDF of variable order ..", for records.
 std::string method_text(double tolerance);

@@ -49,7 +49,7 @@ bool one_stands_for_all(const Samples& samples) {
 
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress, Scene scene, std::optional<Method> method,
-                       ResultTable* budget, ResultTable* teeth) {
+                       ResultTable* budget, ResultTable* teeth, BodyLoadTable* loads) {
   validate(the_case);
   if (samples.pistons != the_case.pump.geometry.pistons)
     throw InputError("driven run: samples of " + std::to_string(samples.pistons) +
@@ -67,6 +67,7 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
     }
   }
   std::size_t next = 0;
+  if (loads != nullptr) *loads = {};
   if (budget != nullptr) *budget = budget_table("multibody", has_ring_off_b(the_case.pump));
   if (teeth != nullptr) {
     *teeth = teeth_table("multibody");
@@ -79,6 +80,7 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
       const double angle = samples.theta_deg[next++];
       if (budget != nullptr) append_budget(*budget, angle, model.budget());
       if (teeth != nullptr) append_teeth(*teeth, angle, the_case.pump.gear, model.teeth());
+      if (loads != nullptr) loads->append(model.body_loads());
       return;
     }
     for (int k = 0; k < at.pistons(); ++k) {

@@ -11,6 +11,7 @@
 #include "bentaxis/results/worst.h"
 #include "loads/friction.h"
 #include "placement/placement.h"
+#include "reactions/body_loads.h"
 #include "reactions/budget.h"
 #include "reactions/channels.h"
 #include "reactions/inverse_dynamics.h"
@@ -43,7 +44,8 @@ struct Model::Implementation {
         parameters(pump),
         system(built_pump(pump, the_scene), assumptions, omega_sign, drive_of(the_scene)),
         placement(system),
-        inverse_dynamics(system, placement) {
+        inverse_dynamics(system, placement),
+        load_reader(system) {
     system.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
       p = pressure;
     };
@@ -65,6 +67,7 @@ struct Model::Implementation {
   PumpSystem system;
   Placement placement;
   InverseDynamics inverse_dynamics;
+  BodyLoadReader load_reader;
   Reactions reactions;
   Reactions by_inverse_dynamics;  // what the multipliers are held to
   TeethAction teeth;
@@ -236,6 +239,23 @@ Budget Model::budget() {
   translate_simbody_errors(
       [&] { budget = budget_of(self.system, self.placement, self.reactions); });
   return budget;
+}
+
+std::vector<BodyLoad> Model::body_loads() {
+  Implementation& self = *implementation_;
+  if (self.scene != Scene::full) throw std::logic_error("body_loads() is of the full pump");
+  std::vector<BodyLoad> loads;
+  translate_simbody_errors([&] {
+    const SimTK::State& state = self.system.dynamics();
+    // Inverse dynamics leaves accelerations of its own; Simbody's are where it solved for them.
+    if (self.method == Method::multipliers)
+      self.accelerations = state.getUDot();
+    else
+      self.placement.constrained_accelerations(self.accelerations);
+    loads = self.load_reader.read(state, self.accelerations, self.reactions, self.pressure,
+                                  has_teeth() ? &self.teeth : nullptr);
+  });
+  return loads;
 }
 
 Provenance Model::provenance() const {

@@ -55,7 +55,8 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
   translate_simbody_errors([&] {
     const ChannelLayout layout(the_case.pump.geometry.pistons);
     trajectory.table = trajectory_table("multibody", layout, *the_case.drive);
-    MotionRun run(the_case, assumptions, pressure, integration, method.most_steps);
+    MotionRun run(the_case, assumptions, pressure, integration, method.most_steps,
+                  options.body_loads);
     run.run(trajectory, progress);
     trajectory.record.choice =
         integrator_names()[static_cast<std::size_t>(integration.integrator)] + ", accuracy " +

@@ -7,7 +7,8 @@
 namespace bentaxis::multibody {
 
 MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
-                       const Progress& progress, std::optional<Method> method, ResultTable* teeth) {
+                       const Progress& progress, std::optional<Method> method, ResultTable* teeth,
+                       BodyLoadTable* loads) {
   validate(the_case);
   if (states.pistons != the_case.pump.geometry.pistons)
     throw InputError("states of " + std::to_string(states.pistons) + " pistons for a pump with " +
@@ -18,6 +19,7 @@ MotionTable run_states(const Case& the_case, const Assumptions& assumptions, con
     *teeth = teeth_table("multibody");
     if (!model.has_teeth()) teeth = nullptr;
   }
+  if (loads != nullptr) *loads = {};
   std::size_t next = 0;
   MotionTable table = tabulate_states(
       "multibody", model.layout(), states,
@@ -25,6 +27,7 @@ MotionTable run_states(const Case& the_case, const Assumptions& assumptions, con
         model.evaluate(instant, row, &checks);
         const double angle = states.motion[next++].theta_deg;
         if (teeth != nullptr) append_teeth(*teeth, angle, the_case.pump.gear, model.teeth());
+        if (loads != nullptr) loads->append(model.body_loads());
       },
       progress);
   table.results.provenance = model.provenance();

@@ -131,6 +131,7 @@ Json json_of(const Record& record) {
 Json json_of(const Axis& axis) {
   Json json = {{"label", axis.label}, {"unit", axis.unit}, {"log", axis.log}};
   if (axis.from) json["from"] = *axis.from;
+  if (axis.to) json["to"] = *axis.to;
   return json;
 }
 
@@ -138,6 +139,14 @@ Json json_of(const Axis& axis, const Values& values) {
   Json json = json_of(axis);
   json["values"] = exact(values);
   return json;
+}
+
+Json json_of(const Ends& ends) { return {ends.low, ends.high}; }
+
+Json points_of(const std::vector<NamedPoint>& points) {
+  return list_of(points, [](const NamedPoint& p) {
+    return Json{{"label", p.label}, {"x", number_or_null(p.x)}, {"y", number_or_null(p.y)}};
+  });
 }
 
 Json series_of(const std::vector<Series>& series) {
@@ -152,6 +161,7 @@ Json json_of(const ChannelFigure& figure) {
                {"channels", figure.channels},
                {"extra", series_of(figure.extra)}};
   if (figure.curves) json["curves"] = to_json(*figure.curves);
+  if (figure.ends) json["ends"] = json_of(*figure.ends);
   return json;
 }
 
@@ -163,10 +173,19 @@ Json json_of(const PistonBars& figure) {
 }
 
 Json json_of(const OwnFigure& figure) {
-  return {{"kind", "own_axis"},
-          {"unit", figure.unit},
-          {"x", {{"label", figure.axis}, {"angle", figure.angle}, {"values", rounded(figure.x)}}},
-          {"series", series_of(figure.series)}};
+  Json json = {
+      {"kind", "own_axis"},
+      {"unit", figure.unit},
+      {"value", figure.value},
+      {"x", {{"label", figure.axis}, {"angle", figure.angle}, {"values", rounded(figure.x)}}},
+      {"series", series_of(figure.series)}};
+  if (!figure.stack.empty()) json["stack"] = series_of(figure.stack);
+  if (figure.right)
+    json["right"] = {{"value", figure.right->value},
+                     {"unit", figure.right->unit},
+                     {"series", series_of(figure.right->series)}};
+  if (figure.ends) json["ends"] = json_of(*figure.ends);
+  return json;
 }
 
 Json json_of(const XySeries& s) {
@@ -177,7 +196,9 @@ Json json_of(const XyFigure& figure) {
   return {{"kind", "xy"},
           {"x", json_of(figure.x)},
           {"y", json_of(figure.y)},
-          {"series", list_of(figure.series, [](const XySeries& s) { return json_of(s); })}};
+          {"series", list_of(figure.series, [](const XySeries& s) { return json_of(s); })},
+          {"equal", figure.equal},
+          {"points", points_of(figure.points)}};
 }
 
 Json json_of(const MapFigure& figure) {
@@ -187,9 +208,7 @@ Json json_of(const MapFigure& figure) {
                {"z", {{"label", figure.z.label}, {"unit", figure.z.unit}}},
                {"values", list_of(figure.values, [](const Values& row) { return exact(row); })},
                {"contours", figure.contours},
-               {"points", list_of(figure.points, [](const MapFigure::Point& p) {
-                  return Json{{"label", p.label}, {"x", p.x}, {"y", p.y}};
-                })}};
+               {"points", points_of(figure.points)}};
   if (!figure.classes.empty()) json["classes"] = figure.classes;
   if (figure.linear) json["linear"] = true;
   if (!figure.lines.empty())
@@ -235,11 +254,13 @@ Json json_of(const DrawingFigure& figure) {
                 {"text", frame.text},
                 {"lines", list_of(frame.lines,
                                   [](const DrawingFigure::Line& line) {
-                                    return Json{{"panel", line.panel},
-                                                {"look", line.look},
-                                                {"width", line.width},
-                                                {"x", drawn_values(line.x)},
-                                                {"y", drawn_values(line.y)}};
+                                    Json json = {{"panel", line.panel},
+                                                 {"look", line.look},
+                                                 {"width", line.width},
+                                                 {"x", drawn_values(line.x)},
+                                                 {"y", drawn_values(line.y)}};
+                                    if (line.value) json["value"] = number_or_null(*line.value);
+                                    return json;
                                   })},
                 {"arrows", list_of(frame.arrows, [](const DrawingFigure::Arrow& arrow) {
                    return Json{{"panel", arrow.panel},           {"look", arrow.look},
@@ -247,7 +268,7 @@ Json json_of(const DrawingFigure& figure) {
                                {"dx", number_or_null(arrow.dx)}, {"dy", number_or_null(arrow.dy)}};
                  })}};
   };
-  return {
+  Json json = {
       {"kind", "drawing"},
       {"looks",
        list_of(
@@ -258,6 +279,11 @@ Json json_of(const DrawingFigure& figure) {
       {"panels", list_of(figure.panels, panel_of)},
       {"frames", list_of(figure.frames, frame_of)},
       {"shown", figure.shown}};
+  if (figure.shades)
+    json["shades"] = {{"label", figure.shades->label},
+                      {"unit", figure.shades->unit},
+                      {"range", {figure.shades->low, figure.shades->high}}};
+  return json;
 }
 
 Json json_of(const BarsFigure& figure) {

@@ -73,7 +73,11 @@ std::string numbers(const PistonBars& figure, const Curves& page) {
 
 std::string numbers(const OwnFigure& figure, const Curves&) {
   std::vector<std::pair<std::string, const Values*>> columns = {{figure.axis, &figure.x}};
-  for (const Series& series : figure.series) columns.emplace_back(series.label, &series.values);
+  for (const auto* list : {&figure.series, &figure.stack})
+    for (const Series& series : *list) columns.emplace_back(series.label, &series.values);
+  if (figure.right)
+    for (const Series& series : figure.right->series)
+      columns.emplace_back(heading_of({series.label, figure.right->unit}), &series.values);
   return beside(columns);
 }
 

@@ -64,6 +64,13 @@ std::string pictures(const Document& document, const Curves& curves) {
   return text;
 }
 
+// What only a page with the pump in space needs.
+std::string scene_block(const Document& document) {
+  if (!document.scene) return {};
+  return "<script type=\"application/json\" id=\"scene\">\n" +
+         script_safe(compact_json(*document.scene)) + "\n</script>\n";
+}
+
 }  // namespace
 
 std::string render_page(const Document& document, const Curves& curves) {
@@ -78,6 +85,7 @@ std::string render_page(const Document& document, const Curves& curves) {
            {"@REPORT_JS@", script()},
            {"@PICTURES@", pictures(document, curves)},
            {"@PICTURE@", document.picture},
+           {"@SCENE@", scene_block(document)},
            {"@CURVES_JSON@", script_safe(compact_json(curves))},
            {"@REPORT_JSON@", script_safe(compact_json(document))}})
     replace_once(page, marker, value);

@@ -9,6 +9,7 @@
 
 #include "bentaxis/analytic/derived.h"
 #include "bentaxis/pump/units.h"
+#include "pump_outline.h"
 
 namespace bentaxis::study {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kNarrowest = 262;   // px, of a view with its words
 constexpr double kGap = 16;          // px, between views
 constexpr double kHead = 44;         // px, above the views
 constexpr double kFoot = 88;         // px, below them
-constexpr double kFar = 3.2;         // of the pump's size: what lies beyond is named at the edge
+constexpr double kFar = PumpOutline::kFar;
 
 constexpr const char* kStyle = R"(
 .bentaxis-pump { color: inherit; font-family: system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }
@@ -174,18 +175,11 @@ class Picture {
         p_(the_case.pump),
         g_(the_case.pump.geometry),
         derived_(analytic::derived_quantities(g_)),
-        sine_(std::sin(g_.tilt)),
-        cosine_(std::cos(g_.tilt)) {
-    // What the pump is seen by; what is far larger is named only.
-    size_ = std::max({g_.joint_circle_radius, g_.bore_circle_radius,
-                      std::min(g_.piston_length, 4 * g_.joint_circle_radius),
-                      std::min(g_.bore_diameter, 4 * g_.bore_circle_radius)});
-    near_ = piston_end(0);
-    far_ = piston_end(kPi);
-    block_from_ = std::min(near_, far_) - 0.5 * bore();
-    block_to_ = std::max(near_, far_) + 0.55 * bore();
-    block_radius_ = g_.bore_circle_radius + 0.72 * bore();
-  }
+        o_(p_),
+        size_(o_.size),
+        block_from_(o_.block_from),
+        block_to_(o_.block_to),
+        block_radius_(o_.block_radius) {}
 
   std::string svg() {
     make_room();
@@ -221,29 +215,21 @@ class Picture {
   }
 
  private:
-  double bore() const { return std::min(g_.bore_diameter, 2 * size_); }
-  double ball() const { return 0.28 * bore(); }
+  double bore() const { return o_.bore; }
+  double ball() const { return o_.ball; }
 
-  // z2 of B of a piston at chamber angle theta (11).
-  double piston_end(double theta) const {
-    const Point a = joint(theta);  // x2, y2
-    const double z = g_.joint_circle_radius * std::cos(theta) * sine_ - g_.axis_offset * cosine_;
-    const double dx = -g_.bore_circle_radius * std::sin(theta) - a.x;
-    const double dy = g_.bore_circle_radius * std::cos(theta) - a.y;
-    return z + std::sqrt(std::max(0.0, g_.piston_length * g_.piston_length - dx * dx - dy * dy));
-  }
   // Joint of a piston at chamber angle theta, seen along the block axis: x2, y2.
   Point joint(double theta) const {
-    return {-g_.joint_circle_radius * std::sin(theta),
-            g_.joint_circle_radius * std::cos(theta) * cosine_ + g_.axis_offset * sine_};
+    const auto [x, y] = o_.joint(theta);
+    return {x, y};
   }
   // A point of the plane of the tilt given in S2 (z2, y2), in S1 (z1, y1).
   Point from_block(double z, double y) const {
-    return {g_.axis_offset + cosine_ * z - sine_ * y, sine_ * z + cosine_ * y};
+    return {g_.axis_offset + o_.cosine * z - o_.sine * y, o_.sine * z + o_.cosine * y};
   }
-  bool is_far(double z) const { return std::abs(z) > kFar * size_; }
-  double gear_radius() const { return p_.gear.pitch_diameter / 2; }
-  bool gear_is_far() const { return gear_radius() > kFar * size_; }
+  bool is_far(double z) const { return o_.is_far(z); }
+  double gear_radius() const { return o_.gear_radius; }
+  bool gear_is_far() const { return o_.is_far(gear_radius()); }
 
   void make_room() {
     const double flange = flange_radius();
@@ -276,8 +262,8 @@ class Picture {
     view.room({-radius, -radius});
     view.room({radius, radius});
   }
-  double flange_radius() const { return g_.joint_circle_radius + 1.25 * ball(); }
-  double gear_z() const { return g_.axis_offset - gear_radius() * std::tan(g_.tilt / 2); }
+  double flange_radius() const { return o_.flange_radius; }
+  double gear_z() const { return o_.gear_z; }
 
   void draw_side();
   void draw_piston(double theta, double sign);
@@ -292,8 +278,8 @@ class Picture {
   const PumpParameters& p_;
   const Geometry& g_;
   analytic::DerivedQuantities derived_;
-  double sine_, cosine_;
-  double size_, near_, far_, block_from_, block_to_, block_radius_, bottom_ = 0;
+  PumpOutline o_;
+  double size_, block_from_, block_to_, block_radius_, bottom_ = 0;
   View side_, joints_, block_;
   std::string rule_;
 };
@@ -301,11 +287,9 @@ class Picture {
 // In section: z1 to the right, y1 upwards.
 void Picture::draw_side() {
   View& v = side_;
-  const double shaft = 0.42 * g_.joint_circle_radius;
-  const double reach = std::min(
-      std::max({-p_.bearings.tapered_z, -p_.bearings.cylindrical_z, 0.6 * size_}), kFar * size_);
-  const double shaft_end = -reach - 0.3 * size_;
-  const double flange = 0.22 * size_;
+  const double shaft = o_.shaft_radius;
+  const double shaft_end = o_.shaft_end;
+  const double flange = o_.flange;
   v.path("pale", {{0, flange_radius()},
                   {0, -flange_radius()},
                   {-flange, -flange_radius()},
@@ -332,8 +316,8 @@ void Picture::draw_side() {
                        from_block(block_to_ + depth, sign * outer),
                        from_block(block_to_ + depth, sign * inner)});
       };
-      stripe(plate.r1, plate.r4, "pale", 0.22 * bore());
-      stripe(plate.r2, plate.r3, "thin", 0.22 * bore());
+      stripe(plate.r1, plate.r4, "pale", o_.plate);
+      stripe(plate.r2, plate.r3, "thin", o_.plate);
     }
   }
   draw_bearing(p_.bearings.tapered_z, true);
@@ -356,15 +340,15 @@ void Picture::draw_side() {
   v.dimension(from_block(behind, 0), from_block(behind, -g_.bore_circle_radius), 0,
               "Rd " + mm_text(g_.bore_circle_radius), "", 8, 6);
   const Point a{0, g_.joint_circle_radius};
-  const Point b = from_block(near_, g_.bore_circle_radius);
+  const Point b = from_block(o_.near, g_.bore_circle_radius);
   v.dimension(a, b, 24, "b1 " + mm_text(g_.piston_length), "end", -8, -8);
   // Tilt, as an arc about O2.
   if (g_.tilt > 0.02) {
     const double r = 0.62 * size_;
     const double o = g_.axis_offset * 1e3;
     v.raw(fmt::format("<path class=\"dimension\" d=\"M{} 0A{} {} 0 0 1 {} {}\"/>\n",
-                      at(o + r * 1e3), at(r * 1e3), at(r * 1e3), at(o + r * cosine_ * 1e3),
-                      at(r * sine_ * 1e3)));
+                      at(o + r * 1e3), at(r * 1e3), at(r * 1e3), at(o + r * o_.cosine * 1e3),
+                      at(r * o_.sine * 1e3)));
     v.line("dimension", {g_.axis_offset, 0}, {g_.axis_offset + 1.15 * r, 0});
     v.words(fmt::format("{:.6g}\u00b0", g_.tilt / kRadPerDegree),
             {g_.axis_offset + r * std::cos(g_.tilt / 2), r * std::sin(g_.tilt / 2)}, 6, 6);
@@ -385,10 +369,10 @@ void Picture::draw_side() {
 void Picture::draw_piston(double theta, double sign) {
   View& v = side_;
   const double rd = sign * g_.bore_circle_radius, half = g_.bore_diameter / 2;
-  const double end = piston_end(theta);
+  const double end = o_.piston_end(theta);
   const Point a{0, sign * g_.joint_circle_radius}, b = from_block(end, rd);
   // Bore: from the block's face to behind the deepest piston.
-  const double bottom = std::max(near_, far_) + 0.3 * bore();
+  const double bottom = o_.bore_bottom;
   v.path("bore",
          {from_block(block_from_, rd + half), from_block(bottom, rd + half),
           from_block(bottom, rd - half), from_block(block_from_, rd - half)},
@@ -411,14 +395,14 @@ void Picture::draw_piston(double theta, double sign) {
 void Picture::draw_bearing(double z, bool tapered) {
   View& v = side_;
   const std::string name = tapered ? "C1 tapered" : "C2 cylindrical";
-  const double shaft = 0.42 * g_.joint_circle_radius, height = 0.34 * size_;
+  const double shaft = o_.shaft_radius, height = o_.bearing_height;
   if (is_far(z)) {
     const Point edge{std::copysign(kFar * size_, z), 0};
     v.words(fmt::format("{} at {} mm {}", name, mm_text(z), z < 0 ? "\u2190" : "\u2192"), edge, 0,
             tapered ? -34 : 44, z < 0 ? "" : "end");
     return;
   }
-  const double half = 0.13 * size_;
+  const double half = o_.bearing_half;
   for (const double sign : {-1.0, 1.0}) {
     const double low = sign * shaft, high = sign * (shaft + height);
     v.path("bearing", {{z - half, low}, {z + half, low}, {z + half, high}, {z - half, high}});
@@ -437,7 +421,7 @@ void Picture::draw_gear_cones() {
   if (gear_is_far()) return;
   const double r = gear_radius(), behind = r * std::tan(g_.tilt / 2);
   const Point apex = from_block(0, 0);
-  const double back = 0.72;  // the teeth are at the outer end of the cone
+  const double back = PumpOutline::kGearFace;  // the teeth are at the outer end of the cone
   for (const double sign : {-1.0, 1.0}) {
     const Point of_shaft{gear_z(), sign * r}, of_block = from_block(behind, sign * r);
     v.line("gear", apex + back * (of_shaft - apex), of_shaft);
@@ -506,8 +490,8 @@ void Picture::draw_block() {
   v.line("axis", {0, -arm}, {0, arm});
   v.circle("thin", {0, 0}, g_.bore_circle_radius);
   v.raw(fmt::format("<ellipse class=\"joints\" cx=\"0\" cy=\"{}\" rx=\"{}\" ry=\"{}\"/>\n",
-                    at(g_.axis_offset * sine_ * 1e3), mm_text(g_.joint_circle_radius),
-                    mm_text(g_.joint_circle_radius * cosine_)));
+                    at(g_.axis_offset * o_.sine * 1e3), mm_text(g_.joint_circle_radius),
+                    mm_text(g_.joint_circle_radius * o_.cosine)));
   for (int k = 0; k < g_.pistons; ++k) {
     const double theta = -2 * kPi * k / g_.pistons;
     const Point c{-g_.bore_circle_radius * std::sin(theta),

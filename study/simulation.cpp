@@ -235,12 +235,14 @@ class Study {
   Trajectory integrate(Model model, double tolerance, const std::string& part) const {
     coupled::Options options;
     options.tolerance = tolerance_ = tolerance;
+    options.body_loads = true;
     return pump_->simulate(model, options, progress_of_(to_string(model) + ", " + part));
   }
 
   void run_steady() {
     coupled::Options options;
     options.tolerance = std::max(kFinestStep, kSteadyShare * r_.choice.error);
+    options.body_loads = true;
     const auto find = [&](Model model) {
       if (r_.choice.only && *r_.choice.only != model) return std::optional<Trajectory>();
       coupled::SteadyMotion found =
@@ -301,7 +303,9 @@ class Study {
   void run_analytic() {
     analytic::SimulationOptions options;
     options.error = std::min(kAnalyticError, kAnalyticShare * r_.choice.error);
+    options.body_loads = true;
     r_.analytic = analytic(options, "analytic");
+    options.body_loads = false;
     peaks_ = peaks_of(*r_.analytic);
     analytic::SimulationOptions disturbed = options;
     r_.disturbance = disturbed.disturbance = kDisturbance;
@@ -326,6 +330,7 @@ class Study {
     SimulationOptions options;
     options.error = r_.choice.error;
     options.accuracy = accuracy;
+    options.body_loads = true;
     multibody::SimulationMethod method;
     method.integrator = r_.choice.integrator;
     return multibody::simulate(

@@ -8,6 +8,7 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/teeth.h"
 #include "bentaxis/study/teeth.h"
+#include "bevel_tooth.h"
 
 namespace bentaxis::study {
 namespace {
@@ -33,12 +34,9 @@ struct Wheel {
 class Mesh {
  public:
   explicit Mesh(const PumpParameters& pump)
-      : teeth_(*pump.gear.teeth), pitch_(2 * kPi / teeth_.count) {
+      : teeth_(*pump.gear.teeth), tooth_(pump), distance_(tooth_.distance()) {
     const double alpha = pump.geometry.tilt;
     const double radius = pump.gear.pitch_diameter / 2;
-    pitch_cone_ = kPi / 2 - alpha / 2;
-    distance_ = radius / std::sin(pitch_cone_);
-    base_cone_ = std::asin(std::sin(pitch_cone_) * std::cos(pump.gear.pressure_angle));
     const Vector3d shaft_axis(0, 0, 1), block_axis(0, std::sin(alpha), std::cos(alpha));
     towards_o4_ = Vector3d(0, radius, -radius * std::tan(alpha / 2)).normalized();
     wheels_[0] = wheel(-shaft_axis, shaft_axis, 0);
@@ -47,7 +45,7 @@ class Mesh {
     across_ = up_.cross(towards_o4_);
   }
 
-  double pitch_length() const { return 1e3 * distance_ * std::sin(pitch_cone_) * pitch_; }
+  double pitch_length() const { return 1e3 * distance_ * std::sin(tooth_.pitch_cone()) * tooth_.pitch(); }
   double distance() const { return 1e3 * distance_; }
   double face_width() const { return 1e3 * teeth_.face_width; }
   double depth() const { return 1e3 * (teeth_.addendum + teeth_.dedendum); }
@@ -57,10 +55,11 @@ class Mesh {
     DrawingFigure::Line line;
     line.look = gear == 0 ? kShaft : kBlock;
     const Wheel& w = wheels_[gear];
-    const double at = angle / pitch_ + w.offset;  // pitches that tooth 1 is beyond O4
+    const double pitch = tooth_.pitch();
+    const double at = angle / pitch + w.offset;  // pitches that tooth 1 is beyond O4
     const double nearest = at - std::round(at);
-    const double tip = pitch_cone_ + std::atan(teeth_.addendum / distance_);
-    const double root = pitch_cone_ - std::atan(teeth_.dedendum / distance_);
+    const double tip = tooth_.tip();
+    const double root = tooth_.root();
     const auto add = [&](double polar, double azimuth) {
       const Vector3d p =
           std::cos(polar) * w.axis +
@@ -69,20 +68,20 @@ class Mesh {
       line.y.push_back(1e3 * distance_ * p.dot(up_) / p.dot(towards_o4_));
     };
     for (int tooth = -3; tooth <= 3; ++tooth) {
-      const double middle = (nearest + tooth) * pitch_;
+      const double middle = (nearest + tooth) * pitch;
       for (int i = 0; i < kPoints; ++i) {
         const double polar = root + (tip - root) * i / (kPoints - 1);
-        add(polar, middle - half_angle(polar));
+        add(polar, middle - tooth_.half_angle(polar));
       }
       for (int i = kPoints; i-- > 0;) {
         const double polar = root + (tip - root) * i / (kPoints - 1);
-        add(polar, middle + half_angle(polar));
+        add(polar, middle + tooth_.half_angle(polar));
       }
     }
     // Its body closes the outline.
-    const double deep = root - 0.6 * (pitch_cone_ - root);
-    add(deep, (nearest + 3.4) * pitch_);
-    add(deep, (nearest - 3.4) * pitch_);
+    const double deep = root - 0.6 * (tooth_.pitch_cone() - root);
+    add(deep, (nearest + 3.4) * pitch);
+    add(deep, (nearest - 3.4) * pitch);
     line.x.push_back(line.x.front());
     line.y.push_back(line.y.front());
     return line;
@@ -97,21 +96,9 @@ class Mesh {
     const Vector3d meridian = (towards_o4_ - towards_o4_.dot(cone) * cone).normalized();
     return {cone, meridian, turn.cross(meridian).normalized(), offset};
   }
-  // Of a tooth at a polar angle, on either side of its middle.
-  double half_angle(double polar) const {
-    const double play =
-        teeth_.backlash / (4 * distance_ * std::sin(base_cone_));  // its part of the backlash
-    return pitch_ / 4 - play + involute(pitch_cone_) - involute(polar);
-  }
-  // How far a spherical involute has turned from where it leaves its base cone.
-  double involute(double polar) const {
-    if (polar <= base_cone_) return 0;
-    const double arc = std::acos(std::cos(polar) / std::cos(base_cone_));
-    return arc / std::sin(base_cone_) - std::atan2(std::tan(arc), std::sin(base_cone_));
-  }
-
   const ToothData& teeth_;
-  double pitch_, pitch_cone_ = 0, distance_ = 0, base_cone_ = 0;
+  BevelTooth tooth_;
+  double distance_;
   Vector3d towards_o4_, up_, across_;
   Wheel wheels_[2];
 };

@@ -45,6 +45,8 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
       model_(the_case.pump, assumptions),
       ideal_(with_ideal_rings(the_case.pump), assumptions),
       loads_(the_case.pump, assumptions),
+      pump_(the_case.pump),
+      assumptions_(assumptions),
       ring_off_(the_case.pump.piston.contact.has_value()),
       law_(closed_form::tooth_law(the_case.pump.gear)),
       arm_(the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle)),
@@ -373,6 +375,11 @@ void Equations::row(double time, const State& y, const Motion& m, std::vector<do
            m.shaft.speed / kRadPerSecondPerRpm, m.block.speed / kRadPerSecondPerRpm};
   if (drive_.kind == DriveKind::motor)
     state.push_back((m.shaft.speed + y[kTwistRate]) / kRadPerSecondPerRpm);
+}
+
+std::vector<BodyLoad> Equations::body_loads() {
+  if (!body_loads_) body_loads_.emplace(pump_, assumptions_);
+  return body_loads_->evaluate(instant_);
 }
 
 double Equations::kinetic_energy(double time, const State& y) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "bentaxis/analytic/body_loads.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/analytic/teeth.h"
@@ -81,6 +82,8 @@ class Equations {
   /// @param state  values of trajectory_columns() in their units
   void row(double time, const State& y, const Motion& m, std::vector<double>& state,
            std::vector<double>& row, MotionChecks& checks) const;
+  /// All loads on the bodies there.
+  std::vector<BodyLoad> body_loads();
   /// Pressures at the block's angle itself instead of those of the interval.
   void at_own_angle(double time, const State& y);
 
@@ -115,6 +118,9 @@ class Equations {
   // from the shaft beyond it is a torque of its own.
   std::optional<Model> at_o4_;
   Loads loads_;
+  const PumpParameters& pump_;
+  Assumptions assumptions_;
+  std::optional<BodyLoads> body_loads_;  // made where they are asked for
   bool ring_off_;  // rings act off B, and do work on the play of their pistons
   std::optional<closed_form::ToothLaw> law_;
   double arm_;

@@ -73,6 +73,12 @@ class ClosedForm : public Mechanics {
     const Motion m = equations_.motion_under_loads(time, y);
     equations_.row(time, y, m, state, row, checks);
   }
+  std::vector<BodyLoad> body_loads(double time, const MotionVector& y,
+                                   const OilLoads& loads) override {
+    equations_.set_loads(loads);
+    equations_.motion_under_loads(time, y);
+    return equations_.body_loads();
+  }
   double kinetic_energy(double time, const MotionVector& y) override {
     return equations_.kinetic_energy(time, y);
   }

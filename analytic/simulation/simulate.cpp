@@ -421,6 +421,7 @@ class Simulation {
     std::vector<double> state;
     equations_.row(time_, y_, m, state, row_, checks);
     append_trajectory_row(trajectory.table, state, row_, checks);
+    if (options_.body_loads) trajectory.loads.append(equations_.body_loads());
     trajectory.lag.push_back(y_[kLag]);
 
     record_.work_of_loads = y_[kWorkOfLoads];

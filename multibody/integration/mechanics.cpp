@@ -14,6 +14,7 @@
 #include "integration/free_motion.h"
 #include "loads/friction.h"
 #include "placement/placement.h"
+#include "reactions/body_loads.h"
 #include "reactions/channels.h"
 #include "reactions/solver_guard.h"
 
@@ -46,6 +47,7 @@ class MultibodyMechanics : public Mechanics {
         system_(pump_, assumptions, drive_.in_time()),
         placement_(system_),
         free_motion_(system_, placement_),
+        load_reader_(system_),
         layout_(pump_.geometry.pistons),
         arm_(system_.gear().arm()) {
     system_.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
@@ -110,6 +112,21 @@ class MultibodyMechanics : public Mechanics {
            std::vector<double>& row, MotionChecks& checks) override {
     translate_simbody_errors([&] { find_row(posture(time, y), loads, state, row, checks); });
   }
+  std::vector<BodyLoad> body_loads(double time, const MotionVector& y,
+                                   const OilLoads& loads) override {
+    std::vector<BodyLoad> found;
+    translate_simbody_errors([&] {
+      TeethAction action;
+      const bool touching = teeth(time, y, action);
+      realize(posture(time, y), loads, [&](const State& state, const AxisMotions&) {
+        Reactions reactions;
+        reactions_from_multipliers(system_, state, reactions);
+        found = load_reader_.read(state, state.getUDot(), reactions, loads.chamber_pressure,
+                                  touching ? &action : nullptr);
+      });
+    });
+    return found;
+  }
   double kinetic_energy(double time, const MotionVector& y) override {
     double energy = 0;
     translate_simbody_errors([&] { energy = kinetic_energy_in(posture(time, y)); });
@@ -155,6 +172,8 @@ class MultibodyMechanics : public Mechanics {
   void find_rates(const Posture& now, const MotionVector& y, const OilLoads& loads,
                   MotionVector& dy);
   void add_work_rates(const Posture& now, const MotionVector& y, MotionVector& dy) const;
+  template <class Use>
+  void realize(const Posture& now, const OilLoads& loads, const Use& use);
   void find_row(const Posture& now, const OilLoads& loads, std::vector<double>& state,
                 std::vector<double>& row, MotionChecks& checks);
   double kinetic_energy_in(const Posture& now);
@@ -165,6 +184,7 @@ class MultibodyMechanics : public Mechanics {
   PumpSystem system_;
   Placement placement_;
   FreeMotion free_motion_;
+  BodyLoadReader load_reader_;
   ChannelLayout layout_;
   double arm_;  // m, of the teeth's line of action about the block's axis
   OilLoads loads_;
@@ -257,9 +277,9 @@ void MultibodyMechanics::add_work_rates(const Posture& now, const MotionVector& 
   dy[kWorkOfDrive] = drive;
 }
 
-void MultibodyMechanics::find_row(const Posture& now, const OilLoads& loads,
-                                  std::vector<double>& state, std::vector<double>& row,
-                                  MotionChecks& checks) {
+// Calls use(state, motion) where accelerations and reactions are found.
+template <class Use>
+void MultibodyMechanics::realize(const Posture& now, const OilLoads& loads, const Use& use) {
   load(loads);
   place(now);
   State& dynamics = system_.dynamics();
@@ -279,11 +299,19 @@ void MultibodyMechanics::find_row(const Posture& now, const OilLoads& loads,
   AxisMotion block = now.block;
   shaft.acceleration = system_.bodies().shaft.getOneUDot(dynamics, 2);
   block.acceleration = system_.bodies().block.getOneUDot(dynamics, 0);
-  row.assign(layout_.size(), not_computed());
-  read_motion_row(system_, dynamics, {shaft, block}, loads.chamber_pressure, layout_, row, checks);
+  use(dynamics, AxisMotions{shaft, block});
+}
+
+void MultibodyMechanics::find_row(const Posture& now, const OilLoads& loads,
+                                  std::vector<double>& state, std::vector<double>& row,
+                                  MotionChecks& checks) {
+  realize(now, loads, [&](const State& dynamics, const AxisMotions& motion) {
+    row.assign(layout_.size(), not_computed());
+    read_motion_row(system_, dynamics, motion, loads.chamber_pressure, layout_, row, checks);
+  });
   const auto rpm = [](double speed) { return speed / kRadPerSecondPerRpm; };
-  state = {now.time, shaft.angle / kRadPerDegree, block.angle / kRadPerDegree, rpm(shaft.speed),
-           rpm(block.speed)};
+  state = {now.time, now.shaft.angle / kRadPerDegree, now.block.angle / kRadPerDegree,
+           rpm(now.shaft.speed), rpm(now.block.speed)};
   if (has_motor()) state.push_back(rpm(now.rotor_speed));
 }
 

@@ -64,13 +64,15 @@ ComputationError stopped(double time, const std::string& why) {
 
 MotionRun::MotionRun(const Case& the_case, const Assumptions& assumptions,
                      const PressureTrace& pressure, const IntegrationOptions& options,
-                     long most_steps)
+                     long most_steps, bool body_loads)
     : case_(the_case),
       drive_(the_case),
       spec_(drive_.spec()),
       pressure_(pressure),
       system_(the_case.pump, assumptions, drive_.in_time()),
       stepper_(system_.system(), options, most_steps),
+      body_loads_(body_loads),
+      load_reader_(system_),
       edges_(pressure_edges(pressure, the_case.pump.geometry.pistons)),
       accuracy_(options.accuracy) {
   if (!has_equation_of_motion(the_case.pump, assumptions.inertia))
@@ -352,6 +354,11 @@ void MotionRun::read(double time, Trajectory& trajectory) {
                          udot[system_.bodies().block.getFirstUIndex(state)]};
   MotionChecks checks{};
   read_motion_row(system_, state, {shaft, block}, pressure, layout, values, checks);
+  if (body_loads_) {
+    Reactions reactions;
+    reactions_from_multipliers(system_, state, reactions);
+    trajectory.loads.append(load_reader_.read(state, udot, reactions, pressure, nullptr));
+  }
   if (system_.has_rigid_gear()) system_.gear().setting().negative = false;
 
   std::vector<double> columns = {time, theta, psi_deg(state), rpm(shaft_speed(state)),

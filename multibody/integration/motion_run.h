@@ -10,6 +10,7 @@
 #include "integration/case_drive.h"
 #include "integration/event_stepper.h"
 #include "placement/placement.h"
+#include "reactions/body_loads.h"
 #include "scene/pump_system.h"
 
 namespace bentaxis::multibody {
@@ -20,7 +21,7 @@ class MotionRun {
  public:
   /// @param the_case, pressure  outlive the run
   MotionRun(const Case& the_case, const Assumptions& assumptions, const PressureTrace& pressure,
-            const IntegrationOptions& options, long most_steps);
+            const IntegrationOptions& options, long most_steps, bool body_loads);
 
   /// Fills rows and record.
   void run(Trajectory& trajectory, const Progress& progress);
@@ -60,6 +61,8 @@ class MotionRun {
   const PressureTrace& pressure_;
   PumpSystem system_;
   EventStepper stepper_;
+  bool body_loads_;
+  BodyLoadReader load_reader_;
   // Block angles in [0, 360) at which a chamber's pressure has an edge, and the present segment
   // between two of them, degrees that do not wrap.
   std::vector<double> edges_;

@@ -30,8 +30,9 @@ function valueAxisTicks(low, high, pixels, options, graph) {
   return valueTicks(low, high, pixels, options, graph).filter(t => t.v >= low && t.v <= high);
 }
 
-// One dygraph. lines: {values, colour, width, dash, silent}; bands {low, high, colour} are filled behind the curves.
-function plot(box, data, lines, bands, yLabel) {
+// One dygraph. lines: {values, colour, width, dash, silent, right}; bands {low, high, colour, alpha} are filled behind the
+// curves. `right` names the axis of those lines that have one of their own, `ends` fixes that of the others.
+function plot(box, data, lines, bands, yLabel, { right, ends } = {}) {
   const names = lines.map((_, i) => String(i));
   const rows = data.order.map(i => [data.theta[i], ...lines.map(l => l.values[i] ?? null)]);
   // Empty rows at the whole turns: the axis then ends at 360 although the last sample does not.
@@ -42,15 +43,17 @@ function plot(box, data, lines, bands, yLabel) {
   lines.forEach((l, i) => {
     series[i] = { color: l.colour, strokeWidth: l.width, strokePattern: l.dash || null, pointSize: 2.5,
                   drawPoints: rows.length < 20 && !l.silent, highlightCircleSize: l.silent ? 0 : 4,
-                  connectSeparatedPoints: !!l.sparse };  // of a reference at fewer angles
+                  connectSeparatedPoints: !!l.sparse,  // of a reference at fewer angles
+                  axis: l.right ? "y2" : "y" };
   });
   // Without the touch handlers a finger on a plot still scrolls the page.
   const { touchstart, touchmove, touchend, ...mouse } = Dygraph.defaultInteractionModel;
   return new Dygraph(box, rows, {
     labels: ["theta", ...names], series, legend: "never", interactionModel: mouse,
-    xlabel: data.axis.label, ylabel: yLabel, labelsDiv: el("div"),
+    xlabel: data.axis.label, ylabel: yLabel, y2label: right || null, labelsDiv: el("div"),
     axes: { x: { ticker: data.axis.angle ? angleTicks : valueAxisTicks, axisLabelWidth: 44 },
-            y: { ticker: valueTicks, axisLabelWidth: 74, pixelsPerLabel: 26 } },
+            y: { ticker: valueTicks, axisLabelWidth: 74, pixelsPerLabel: 26, valueRange: ends || null },
+            y2: { ticker: valueTicks, axisLabelWidth: 54, pixelsPerLabel: 26, independentTicks: true, drawGrid: false } },
     axisLabelFontSize: 13, xLabelHeight: 20, yLabelWidth: 22, rightGap: 22, yRangePad: 8,
     gridLineColor: variable("--grid"), gridLineWidth: 1, axisLineColor: variable("--axis"),
     underlayCallback(canvas, area, graph) {
@@ -63,7 +66,7 @@ function plot(box, data, lines, bands, yLabel) {
           .map(i => [graph.toDomXCoord(data.theta[i]), graph.toDomYCoord(values[i])]);
         canvas.beginPath();
         for (const [x, y] of [...edge(band.low), ...edge(band.high).reverse()]) canvas.lineTo(x, y);
-        canvas.fillStyle = band.colour + "2e";
+        canvas.fillStyle = band.colour + (band.alpha || "2e");
         canvas.fill();
       }
       canvas.fillStyle = variable("--axis");
@@ -118,6 +121,16 @@ function allowedBand(held, colour, aroundZero) {
 const edgesOf = bands => bands.flatMap(b => [b.low, b.high].map(values => (
   { values, colour: b.colour + "66", width: 0.7, dash: null, silent: true, sparse: true })));
 
+// Areas upon each other: two for each of the parts, above and below 0.
+function stacked(parts) {
+  const above = [], below = [];
+  return parts.flatMap(part => [[above, v => v > 0], [below, v => v < 0]].map(([sum, counts]) => {
+    const low = part.values.map((_, i) => sum[i] || 0);
+    part.values.forEach((v, i) => { sum[i] = (sum[i] || 0) + (counts(v) ? v : 0); });
+    return { low, high: [...sum], colour: part.colour, alpha: "99" };
+  }));
+}
+
 function curvesFigure(figure, page) {
   const data = withOwnAxis(figure, page);
   const heldOf = name => (data.reference && data.reference.held[name]) || null;
@@ -143,8 +156,17 @@ function curvesFigure(figure, page) {
   });
   const extras = list(figure.extra).filter(e => hasNumbers(e.values)).map((e, i) => ({
     ...e, colour: onGround(EXTRA_COLOURS[i % EXTRA_COLOURS.length]), width: 1.6, dash: [10, 4, 2, 4] }));
+  const parts = list(figure.stack).map((e, i) => ({ ...e, colour: onGround(COLOURS[i % COLOURS.length]), width: 8, dash: null, area: true }));
+  const palette = parts.length ? EXTRA_COLOURS : COLOURS;
   list(figure.series).filter(e => hasNumbers(e.values)).forEach((e, i) => extras.push({
-    ...e, colour: onGround(COLOURS[i % COLOURS.length]), width: 1.9, dash: null }));
+    ...e, colour: onGround(palette[i % palette.length]), width: 1.9, dash: null }));
+  const right = figure.right && axisName({ label: figure.right.value, unit: figure.right.unit });
+  list(figure.right && figure.right.series).filter(e => hasNumbers(e.values)).forEach((e, i) => extras.push({
+    ...e, label: e.label + " (right)", unit: figure.right.unit, right: true, width: 1.9, dash: DASHES[1],
+    colour: onGround(COLOURS[(list(figure.series).length + i) % COLOURS.length]) }));
+  bands.push(...stacked(parts));
+  const edges = edgesOf(bands);
+  extras.unshift(...parts);
   const notes = missing.length ? ["Not computed: " + missing.join(", ") + "."] : [];
   const footer = () => notes.map(n => el("p.note", {}, n));
   if (!drawn.length && !extras.length)
@@ -154,7 +176,8 @@ function curvesFigure(figure, page) {
   const label = figure.unit ? ` (${figure.unit})` : "";
   const box = (style, what) => el("div.plot" + style, { role: "img", "aria-label": `${figure.title}: ${what}` });
   const exact = differences.length > 0 && differences.every(d => d.values.every(v => !v));
-  const plots = [{ node: box("", `curves over ${data.axis.label}`), lines: [...edgesOf(bands), ...lines, ...extras], bands, label: "value" }];
+  const plots = [{ node: box("", `curves over ${data.axis.label}`), lines: [...edges, ...lines, ...extras.filter(e => !e.area)], bands,
+                   label: figure.value || "value", more: { right, ends: figure.ends } }];
   if (differences.length && !exact)
     plots.push({ node: box(".low", `difference over ${data.axis.label}`), lines: differences, bands: [], label: "difference",
                  title: `Difference: ${data.pair[1]} minus ${data.pair[0]}` });
@@ -164,7 +187,7 @@ function curvesFigure(figure, page) {
                  label: "difference", title: `Difference: each model minus ${reference}; the band is what is allowed` });
   if (data.order.length < 2) return [readings.node, ...footer()];  // one angle makes no curve
   data.mounts.push(() => {
-    const graphs = plots.map(p => plot(p.node, data, p.lines, p.bands, p.label + label));
+    const graphs = plots.map(p => plot(p.node, data, p.lines, p.bands, p.label + label, p.more));
     synchronise(graphs, data.low < data.theta[data.order[0]] ? 1 : 0, readings.show);
   });
   return [readings.node, ...plots.flatMap(p => [p.title ? el("p.subplot", {}, p.title) : null, p.node]), ...footer()];
@@ -224,13 +247,13 @@ function readOutTable(figure, drawn, extras, tables, reference, data) {
     const why = row != null ? "" : largest > 0 ? " (largest difference)" : data.axis.angle ? " (first angle)" : "";
     angle.textContent = (data.axis.angle ? degrees(data.theta[i])
       : `${data.axis.label}: ${number(data.theta[i])}`) + why;
-    const value = v => unit(number(v, 6), figure.unit);
+    const value = (v, name = figure.unit) => unit(number(v, 6), name);
     for (const r of rows) {
       r.columns.forEach((c, t) => { r.cells[t].textContent = value(c && c[i]); });
       if (r.gap) r.gap.textContent = unit(small(gapAt(r, i)), figure.unit);
     }
     for (const e of more)
-      e.cell.textContent = value(e.values[i]) + (e.low && e.low[i] != null ? ` (${number(e.low[i], 6)} to ${value(e.high[i])})` : "");
+      e.cell.textContent = value(e.values[i], e.unit) + (e.low && e.low[i] != null ? ` (${number(e.low[i], 6)} to ${value(e.high[i])})` : "");
   }
   show(null);
   return { node, show };

@@ -10,6 +10,12 @@ function drawingFigure(figure, data) {
   const colour = look => onGround(COLOURS[figure.looks[look].colour % COLOURS.length]);
   const key = el("p.key", {}, figure.looks.map((look, k) => el("span", {}, swatch(colour(k), look.filled ? 6 : 2.6), look.label)));
 
+  if (figure.shades) {
+    const { label, unit: name, range: [low, high] } = figure.shades;
+    key.append(...[0, 0.25, 0.5, 0.75, 1].map((t, k) => el("span", {}, swatch(shade(t), 10),
+      (k ? "" : label + ": ") + unit(number(low + t * (high - low), 3), name))));
+  }
+
   function update() {
     const frame = frames[Number(slider.value)];
     reading.textContent = degrees(frame.theta_deg);
@@ -37,9 +43,11 @@ function drawingPanel(width, panel, frame, p, figure, colour) {
   const inside = (v, low, high) => Math.min(high, Math.max(low, v));
   for (const line of frame.lines.filter(l => l.panel === p)) {
     const points = line.x.map((v, i) => `${inside(x.place(v), left, right).toFixed(1)},${inside(y.place(line.y[i]), top, bottom).toFixed(1)}`).join(" ");
-    const filled = figure.looks[line.look].filled;
+    const filled = figure.looks[line.look].filled, shaded = figure.shades && line.value != null;
+    const [low, high] = shaded ? figure.shades.range : [];
     root.append(svg("polyline", { points, stroke: colour(line.look), "stroke-width": line.width,
-                                  fill: filled ? colour(line.look) : "none", "fill-opacity": filled ? 0.18 : 0 }));
+      fill: shaded ? shade((line.value - low) / (high - low)) : filled ? colour(line.look) : "none",
+      "fill-opacity": shaded ? 1 : filled ? 0.18 : 0 }));
   }
   for (const arrow of frame.arrows.filter(a => a.panel === p)) {
     const ax = x.place(arrow.x), ay = y.place(arrow.y), bx = x.place(arrow.x + arrow.dx), by = y.place(arrow.y + arrow.dy);

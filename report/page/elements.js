@@ -2,7 +2,7 @@
 
 const DARK = matchMedia("screen and (prefers-color-scheme: dark)");
 // Okabe-Ito without its yellow (too pale on white), then four dark colours for pumps with many pistons; the same
-// in report/picture.cpp. On a dark ground the dark ones are lighter.
+// in report/picture/elements.h. On a dark ground the dark ones are lighter.
 const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000",
                  "#7f3b08", "#542788", "#5f6b75"];
 const EXTRA_COLOURS = ["#444c55", "#8a5a00", "#7a3b8f"];
@@ -14,6 +14,13 @@ const DASHES = [null, [8, 5], [2, 4]];  // by table; the first is solid
 const DASH = "\u2013";                  // stands for "not computed", never for zero
 const GOOD = ["agrees", "holds", "explained", "inside"];
 const BAD = ["incomplete", "differs", "violated", "beyond", "unexplained", "not explained", "outside"];
+
+// Light to dark, as report/picture/elements.cpp has it; t from 0 to 1.
+const SHADES = [[247, 250, 252], [190, 214, 235], [107, 164, 207], [33, 103, 166], [8, 40, 88]];
+function shade(t) {
+  const at = Math.min(1, Math.max(0, t)) * (SHADES.length - 1), k = Math.min(Math.floor(at), SHADES.length - 2);
+  return `rgb(${SHADES[k].map((v, i) => Math.round(v + (at - k) * (SHADES[k + 1][i] - v))).join(" ")})`;
+}
 
 // ---- Elements
 

@@ -6,7 +6,8 @@ const axisName = axis => axis.label + (axis.unit ? ` (${axis.unit})` : "");
 // Columns of equal length: [name, values].
 function columnsOf(figure, data) {
   if (figure.kind === "own_axis")
-    return [[figure.x.label, figure.x.values], ...figure.series.map(s => [s.label, s.values])];
+    return [[figure.x.label, figure.x.values], ...[...figure.series, ...list(figure.stack)].map(s => [s.label, s.values]),
+      ...list(figure.right && figure.right.series).map(s => [axisName({ label: s.label, unit: figure.right.unit }), s.values])];
   const columns = [[data.axis.angle ? "theta_deg" : data.axis.label, data.theta]];
   for (const name of figure.channels) {
     for (const t of data.tables) if (t.columns[name]) columns.push([`${name} ${t.name}`, t.columns[name]]);

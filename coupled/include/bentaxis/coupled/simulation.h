@@ -18,6 +18,7 @@ struct Options {
   std::vector<double> times;  ///< of the rows, s, rising; empty: those of [drive]
   /// Moves the start by this share of each state's scale.
   double disturbance = 0;
+  bool body_loads = false;  ///< Trajectory::loads too
 };
 
 /// Integrates states of motion and of the oil together, by variable-order BDF (CVODE) with Newton's

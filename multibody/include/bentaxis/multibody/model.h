@@ -10,6 +10,7 @@
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/parameters.h"
+#include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/budget.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/instant.h"
@@ -51,6 +52,12 @@ class Model {
   /// full pump.
   Budget budget();
 
+  /// All loads on pistons, block and shaft at the instant of the last evaluate(), named and ordered
+  /// as analytic::BodyLoads has them; of the full pump. Reactions are those that evaluate() found,
+  /// oil, friction and film what the force element applies, weight Simbody's; inertia is Simbody's
+  /// masses and inertias times the accelerations of its bodies.
+  std::vector<BodyLoad> body_loads();
+
   /// Whether bevel teeth turn the block: of the full pump with [gear] contact = "teeth".
   bool has_teeth() const;
   /// What they do to each other at the instant of the last evaluate(); where there are any.
@@ -91,16 +98,18 @@ SceneSize scene_size(const PumpParameters& pump, const Assumptions& assumptions,
 /// @param teeth   if not null, becomes the teeth_table() of the run, without rows where the full
 /// pump's
 ///                block is not turned by bevel teeth
+/// @param loads   if not null, becomes those of Model::body_loads(), a row per sample; of the full
+///                pump
 ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress = {}, Scene scene = Scene::full,
                        std::optional<Method> method = {}, ResultTable* budget = nullptr,
-                       ResultTable* teeth = nullptr);
+                       ResultTable* teeth = nullptr, BodyLoadTable* loads = nullptr);
 
 /// Reactions at given states of shaft and block, with the torque that their motion needs.
-/// @param teeth  as of run_driven()
+/// @param teeth, loads  as of run_driven()
 /// @throws InputError, ComputationError
 MotionTable run_states(const Case& the_case, const Assumptions& assumptions, const States& states,
                        const Progress& progress = {}, std::optional<Method> method = {},
-                       ResultTable* teeth = nullptr);
+                       ResultTable* teeth = nullptr, BodyLoadTable* loads = nullptr);
 
 }  // namespace bentaxis::multibody

@@ -47,12 +47,19 @@ struct Series {
   Values values;
 };
 
+/// Ends of an axis that stand, whatever is drawn. A curve that leaves them is cut, and marked
+/// there.
+struct Ends {
+  double low, high;
+};
+
 /// Curves of the page by their names, one colour each; both models and their difference.
 struct ChannelFigure {
   std::string unit;
   std::vector<std::string> channels;
   std::vector<Series> extra = {};               ///< over the same angles
   std::optional<Curves> curves = std::nullopt;  ///< instead of the page's, at angles of their own
+  std::optional<Ends> ends = std::nullopt;      ///< of the values
 };
 
 /// Each piston's share at one angle that can be chosen; buttons lead to `angles` (deg).
@@ -68,13 +75,26 @@ struct OwnFigure {
   bool angle = false;  ///< the axis is one of shaft angles, deg
   Values x;
   std::vector<Series> series = {};
+  /// Areas upon each other, what is positive upwards from 0, what is negative downwards; `series`
+  /// are lines over them.
+  std::vector<Series> stack = {};
+  /// Curves with an axis of their own on the right.
+  struct Right {
+    std::string value, unit;  ///< what is drawn against it
+    std::vector<Series> series;
+  };
+  std::optional<Right> right = std::nullopt;
+  std::string value = "value";              ///< what is drawn against the axis on the left
+  std::optional<Ends> ends = std::nullopt;  ///< of the axis on the left
 };
 
-/// An axis of a plane figure. `from` fixes its lower end.
+/// An axis of a plane figure. `from` fixes its lower end, `to` its upper one: a curve that leaves
+/// it is cut, and marked there.
 struct Axis {
   std::string label, unit = {};
   bool log = false;
   std::optional<double> from = std::nullopt;
+  std::optional<double> to = std::nullopt;
 };
 
 struct XySeries {
@@ -82,23 +102,27 @@ struct XySeries {
   Values x, y;
 };
 
+/// A place in a plane, by name.
+struct NamedPoint {
+  std::string label;
+  double x, y;
+};
+
 /// Any quantity over any other.
 struct XyFigure {
   Axis x, y;
   std::vector<XySeries> series;
+  bool equal = false;  ///< a unit is as long across as up: either axis shows more where it has room
+  std::vector<NamedPoint> points = {};  ///< drawn over the series
 };
 
 /// A quantity, or one of a few classes, over two others: values[i][j] at y_values[i], x_values[j].
 struct MapFigure {
-  struct Point {
-    std::string label;
-    double x, y;
-  };
   Axis x, y, z;
   Values x_values, y_values;
   std::vector<Values> values;
   std::vector<double> contours;
-  std::vector<Point> points;
+  std::vector<NamedPoint> points;
   /// What the values 0, 1, .. stand for, drawn light to dark. None: shades go by the quantity's
   /// logarithm, or from 0 (from z.from, where that is set) by itself where `linear`.
   std::vector<std::string> classes = {};
@@ -140,6 +164,7 @@ struct DrawingFigure {
     int panel = 0, look = 0;
     double width = 1;  ///< of the line, px
     Values x, y;
+    std::optional<double> value = std::nullopt;  ///< shades its inside, as `shades` says
   };
   struct Arrow {
     int panel = 0, look = 0;
@@ -155,10 +180,16 @@ struct DrawingFigure {
     std::vector<Line> lines;
     std::vector<Arrow> arrows;
   };
+  /// What the values of lines mean: light at `low`, dark at `high`.
+  struct Shades {
+    std::string label, unit;
+    double low = 0, high = 1;
+  };
   std::vector<Look> looks;
   std::vector<Panel> panels;
   std::vector<Frame> frames;
   std::size_t shown = 0;  ///< the frame that a still picture shows, and a page at first
+  std::optional<Shades> shades = std::nullopt;
 };
 
 /// Bars lying one below the other, in the order given: each from 0 to `low` and from 0 to `high`.

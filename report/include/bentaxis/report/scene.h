@@ -17,7 +17,8 @@ namespace bentaxis::report {
 
 using Point = std::array<double, 3>;  ///< m or N, in S1 unless a body's frame is named
 
-/// constant + factor * (a channel of the curves | a series of the scene), at a row.
+/// constant + factor * (a channel of the curves | a series of the scene), at a row. The channel
+/// is that of the model whose load is shown; of how bodies stand, the first model's.
 struct Scalar {
   double constant = 0;
   double factor = 0;
@@ -26,7 +27,7 @@ struct Scalar {
   std::optional<std::size_t> series = std::nullopt;  ///< index into Scene::series, instead
 };
 
-/// A sum of terms, each a fixed axis times a number.
+/// A sum of terms, each a fixed axis times a number. Without terms: the model has no such load.
 struct Vector {
   struct Term {
     Point axis;
@@ -109,8 +110,8 @@ struct SceneLoad {
   std::string on, by, point;
   std::string frame;              ///< in which its components are read out: "S2", or "": S1
   std::vector<std::string> axes;  ///< names of the components in that frame, "x2", ..
-  Place at;
-  std::vector<Vector> force;   ///< N, in S1, one per model; empty: a moment alone
+  std::vector<Place> at;       ///< one per model
+  std::vector<Vector> force;   ///< N, in S1, likewise; empty: a moment alone
   std::vector<Vector> moment;  ///< Nm, likewise; empty: none
   /// The opposite of a load of another body: shown in the free-body diagram of its own alone.
   bool counterpart = false;
@@ -124,6 +125,7 @@ struct SceneSum {
 
 struct Scene {
   std::vector<std::string> models;              ///< names of the curves' tables
+  std::size_t rows = 0;                         ///< of the curves and of every series
   std::optional<Curves> curves = std::nullopt;  ///< instead of the page's
   std::vector<Values> series;                   ///< one value per row; the page has them as floats
   std::vector<SceneBody> bodies;
@@ -138,8 +140,8 @@ struct Scene {
   std::string note = {};  ///< what is not to scale, or left out
 };
 
-/// For the page's block "scene": series as base64 of little-endian 32-bit floats, what was not
-/// computed as NaN.
+/// For the page's block "scene" (docs/scene_json.md): series as base64 of little-endian 32-bit
+/// floats, what was not computed as NaN.
 std::string compact_json(const Scene& scene);
 
 }  // namespace bentaxis::report

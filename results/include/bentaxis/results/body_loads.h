@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ enum class ForceKind {
   inertia,   ///< minus mass times acceleration, minus the rate of angular momentum
 };
 
-/// A force, with what it acts on; components in S1.
+/// A force, with what it acts on; components in S1. Symbols are those of docs/notation.md.
 struct BodyLoad {
   std::string on;      ///< "piston 1", "block", "shaft"
   std::string by;      ///< "shaft", "oil", "gravity"; of inertia: the body itself
@@ -24,6 +25,25 @@ struct BodyLoad {
   std::array<double, 3> at = {};      ///< m, from O1
   std::array<double, 3> force = {};   ///< N
   std::array<double, 3> moment = {};  ///< Nm, beside that of the force at its point
+};
+
+/// Loads of all rows of a run. Every row has the same ones in the same order: a load that is 0 at an
+/// instant is there with 0.
+struct BodyLoadTable {
+  struct Row {
+    std::array<double, 3> at, force, moment;  ///< as in BodyLoad
+  };
+  std::vector<BodyLoad> loads;  ///< of the first row
+  std::vector<Row> values;      ///< row-major, rows() x loads.size()
+
+  std::size_t rows() const { return loads.empty() ? 0 : values.size() / loads.size(); }
+  const Row& at(std::size_t row, std::size_t load) const {
+    return values[row * loads.size() + load];
+  }
+  /// Adds a row. @throws ComputationError where it has not the loads of the first one
+  void append(const std::vector<BodyLoad>& row);
+  /// The loads of a row with their names.
+  std::vector<BodyLoad> row(std::size_t row) const;
 };
 
 /// What is left of all loads on a body.
@@ -36,6 +56,14 @@ struct BodySum {
 };
 
 /// One for each body, in the order in which bodies first appear.
+/// Of a body whose loads are all 0 they are 0.
 std::vector<BodySum> sums_of(const std::vector<BodyLoad>& loads);
+
+/// Of every body the largest of force_over_sum and of moment_over_sum in any row; force and moment
+/// are those of the row whose force_over_sum, moment_over_sum it is.
+std::vector<BodySum> worst_sums(const BodyLoadTable& table);
+
+/// Whether two loads are the same but for their numbers.
+bool same_load(const BodyLoad& a, const BodyLoad& b);
 
 }  // namespace bentaxis

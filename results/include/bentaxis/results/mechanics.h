@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/oil.h"
@@ -68,6 +69,12 @@ class Mechanics {
   /// @param state  values of trajectory_columns() in their units
   virtual void row(double time, const MotionVector& y, const OilLoads& loads,
                    std::vector<double>& state, std::vector<double>& row, MotionChecks& checks) = 0;
+  /// All loads on pistons, block and shaft there, with the accelerations of the motion; none where
+  /// the model does not tell them.
+  virtual std::vector<BodyLoad> body_loads(double /*time*/, const MotionVector& /*y*/,
+                                           const OilLoads& /*loads*/) {
+    return {};
+  }
   /// Of all bodies and of the rotor, J; of the teeth and the coupling, J.
   virtual double kinetic_energy(double time, const MotionVector& y) = 0;
   virtual double potential_energy(const MotionVector& y) const = 0;

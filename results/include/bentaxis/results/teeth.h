@@ -27,6 +27,10 @@ struct PairContact {
 /// Most pairs of a flank that are looked at: those of the shaft's tooth nearest to O4, of the one
 /// before and of the one after it.
 inline constexpr int kPairsPerFlank = 3;
+/// The pairs of TeethAction, in words.
+inline constexpr std::array<const char*, 2 * kPairsPerFlank> kPairNames = {
+    "flank +1, pair at O4", "flank +1, pair before", "flank +1, pair after",
+    "flank -1, pair at O4", "flank -1, pair before", "flank -1, pair after"};
 /// Contact ratios above it are refused: more pairs than kPairsPerFlank might carry.
 inline constexpr double kLargestContactRatio = 2.5;
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bentaxis/pump/case.h"
+#include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/oil.h"
@@ -20,6 +21,7 @@ struct SimulationOptions {
   double error = 1e-8;
   /// Relative error per step instead of the one chosen for `error`.
   std::optional<double> accuracy;
+  bool body_loads = false;  ///< Trajectory::loads too
 };
 
 /// A flank of the teeth that touches or leaves.
@@ -86,6 +88,7 @@ struct Trajectory {
   TrajectoryRecord record;
   std::optional<OilHistory> oil;   ///< where oil is simulated too
   std::vector<TeethAction> teeth;  ///< per row, where the contact is that of teeth
+  BodyLoadTable loads;             ///< on all bodies, a row per row, where they were asked for
 };
 
 /// time_s, theta_deg, psi_deg, shaft_rpm, block_rpm, and motor_rpm where a motor drives.

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "picture/figures.h"
+
+namespace bentaxis::report::picture {
+
+// The frame that is shown; a length is as long across as up.
+Picture picture_of(const DrawingFigure& figure, const Curves&) {
+  Picture picture;
+  if (figure.frames.empty()) return picture;
+  const DrawingFigure::Frame& frame =
+      figure.frames[std::min(figure.shown, figure.frames.size() - 1)];
+  picture.legend.resize(2);
+  picture.legend[0].push_back(
+      {fmt::format("At {:g} deg{}{}", frame.theta_deg, frame.text.empty() ? "" : ": ", frame.text),
+       [](pugi::xml_node, double, double) {}});
+  for (const DrawingFigure::Look& look : figure.looks)
+    picture.legend[1].push_back(line_key(
+        look.label, pick(kColours, static_cast<std::size_t>(look.colour)), look.filled ? 6 : 2.5));
+  if (figure.shades) {
+    picture.legend.emplace_back();
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0})
+      picture.legend[2].push_back(shade_key(
+          with_unit(
+              short_number(figure.shades->low + t * (figure.shades->high - figure.shades->low)),
+              figure.shades->unit),
+          shade(t)));
+    picture.legend[2][0].label = figure.shades->label + ": " + picture.legend[2][0].label;
+  }
+  for (std::size_t p = 0; p < figure.panels.size(); ++p) {
+    const DrawingFigure::Panel& from = figure.panels[p];
+    const double scale = (kRight - kLeft) / (from.x_high - from.x_low);
+    Panel panel{from.x,
+                from.y,
+                scale * (from.y_high - from.y_low),
+                {from.x_low, from.x_high},
+                {from.y_low, from.y_high}};
+    panel.y_margin = Margin::none;
+    panel.draw = [=, looks = figure.looks, shades = figure.shades](pugi::xml_node root,
+                                                                   const Scale& x, const Scale& y) {
+      const auto colour = [&](int look) {
+        return std::string(
+            pick(kColours, static_cast<std::size_t>(looks[static_cast<std::size_t>(look)].colour)));
+      };
+      for (const DrawingFigure::Line& line : frame.lines) {
+        if (line.panel != static_cast<int>(p)) continue;
+        std::string path;
+        for (std::size_t i = 0; i < line.x.size(); ++i)
+          if (std::isfinite(line.x[i]) && std::isfinite(line.y[i]))
+            path += fmt::format("{}{} {}", path.empty() ? "M" : "L",
+                                px(std::clamp(x.place(line.x[i]), kLeft, kRight)),
+                                px(std::clamp(y.place(line.y[i]), y.last, y.first)));
+        const bool shaded = shades && line.value && std::isfinite(*line.value);
+        const bool filled = looks[static_cast<std::size_t>(line.look)].filled;
+        add(root, "path",
+            {{"d", path},
+             {"fill", shaded   ? shade((*line.value - shades->low) / (shades->high - shades->low))
+                      : filled ? colour(line.look)
+                               : "none"},
+             {"fill-opacity", shaded   ? "1"
+                              : filled ? "0.18"
+                                       : "0"},
+             {"stroke", colour(line.look)},
+             {"stroke-width", px(line.width)}});
+      }
+      for (const DrawingFigure::Arrow& arrow : frame.arrows) {
+        const double length = std::hypot(arrow.dx, arrow.dy);
+        if (arrow.panel != static_cast<int>(p) || !(length > 0)) continue;
+        const double x1 = x.place(arrow.x), y1 = y.place(arrow.y);
+        const double x2 = x.place(arrow.x + arrow.dx), y2 = y.place(arrow.y + arrow.dy);
+        const double ux = (x2 - x1) / std::hypot(x2 - x1, y2 - y1);
+        const double uy = (y2 - y1) / std::hypot(x2 - x1, y2 - y1);
+        add_line(root, x1, y1, x2, y2, {{"stroke", colour(arrow.look)}, {"stroke-width", "2.2"}});
+        add(root, "path",
+            {{"d", fmt::format("M{} {}L{} {}L{} {}Z", px(x2 + 3 * ux), px(y2 + 3 * uy),
+                               px(x2 - 7 * ux - 4 * uy), px(y2 - 7 * uy + 4 * ux),
+                               px(x2 - 7 * ux + 4 * uy), px(y2 - 7 * uy - 4 * ux))},
+             {"fill", colour(arrow.look)}});
+      }
+    };
+    picture.panels.push_back(std::move(panel));
+  }
+  return picture;
+}
+
+}  // namespace bentaxis::report::picture

@@ -1,0 +1,176 @@
+#include "bentaxis/report/scene.h"
+
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "bentaxis/report/document.h"
+
+namespace bentaxis::report {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* to_string(ForceKind kind) {
+  switch (kind) {
+    case ForceKind::reaction:
+      return "reaction";
+    case ForceKind::applied:
+      return "applied";
+    case ForceKind::inertia:
+      break;
+  }
+  return "inertia";
+}
+
+const char* to_string(Look look) {
+  static constexpr const char* kNames[] = {"shaft",   "piston", "block",   "plate", "delivery",
+                                           "suction", "gear",   "bearing", "pin",   "axis"};
+  return kNames[static_cast<std::size_t>(look)];
+}
+
+std::string base64_floats(const Values& values) {
+  std::string bytes;
+  for (const double value : values) {
+    const auto single = static_cast<float>(value);  // what was not computed stays NaN
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &single, sizeof bits);
+    for (int i = 0; i < 4; ++i) bytes += static_cast<char>((bits >> (8 * i)) & 0xFF);
+  }
+  const std::size_t missing = (3 - bytes.size() % 3) % 3;
+  bytes.append(missing, '\0');
+  using namespace boost::archive::iterators;
+  using Digits = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
+  std::string text(Digits(bytes.cbegin()), Digits(bytes.cend()));
+  text.replace(text.size() - missing, missing, missing, '=');
+  return text;
+}
+
+Json json_of(const Scalar& scalar) {
+  if (scalar.factor == 0) return scalar.constant;
+  Json source = scalar.channel;
+  if (scalar.series) source = *scalar.series;
+  return Json::array({scalar.constant, scalar.factor, source});
+}
+
+Json json_of(const Vector& vector) {
+  Json terms = Json::array();
+  for (const auto& [axis, by] : vector.terms)
+    terms.push_back(Json::array({axis[0], axis[1], axis[2], json_of(by)}));
+  return terms;
+}
+
+Json json_of(const Place& place) {
+  Json json = {{"at", json_of(place.at)}};
+  if (!place.body.empty()) json["body"] = place.body;
+  return json;
+}
+
+// One alone stands for all models.
+template <class Item>
+Json per_model(const std::vector<Item>& items) {
+  Json list = Json::array();
+  for (const Item& item : items) list.push_back(json_of(item));
+  bool alike = !list.empty();
+  for (const Json& one : list) alike = alike && one == list.front();
+  return alike ? Json::array({list.front()}) : list;
+}
+
+Json flat(const std::vector<report::Point>& points) {
+  Json list = Json::array();
+  for (const report::Point& point : points)
+    for (const double x : point) list.push_back(x);
+  return list;
+}
+
+void put_form(Json& json, const Lathe& lathe) { json["lathe"] = lathe.profile; }
+void put_form(Json& json, const Prism& prism) {
+  json["prism"] = {{"outline", prism.outline}, {"z", {prism.z_low, prism.z_high}}};
+  if (!prism.holes.empty()) json["prism"]["holes"] = prism.holes;
+}
+void put_form(Json& json, const Ball& ball) {
+  json["ball"] = {{"centre", ball.centre}, {"radius", ball.radius}};
+}
+void put_form(Json& json, const Mesh& mesh) {
+  Json corners = Json::array();
+  for (const auto& triangle : mesh.triangles)
+    for (const std::size_t corner : triangle) corners.push_back(corner);
+  json["mesh"] = {{"points", flat(mesh.points)}, {"triangles", std::move(corners)}};
+}
+void put_form(Json& json, const Wire& wire) {
+  json["wire"] = {{"points", flat(wire.points)}};
+  if (wire.closed) json["wire"]["closed"] = true;
+}
+
+Json json_of(const Shape& shape) {
+  Json json = {{"look", to_string(shape.look)}};
+  if (shape.see_through) json["see_through"] = true;
+  if (shape.tint) json["tint"] = json_of(*shape.tint);
+  std::visit([&](const auto& form) { put_form(json, form); }, shape.form);
+  return json;
+}
+
+void put_motion(Json&, const Standing&) {}
+void put_motion(Json& json, const Turning& turning) { json["turns"] = json_of(turning.angle); }
+void put_motion(Json& json, const Between& between) {
+  json["from"] = json_of(between.from);
+  json["to"] = json_of(between.to);
+}
+
+Json json_of(const SceneBody& body) {
+  Json json = {{"name", body.name}, {"origin", body.origin}, {"axes", body.axes}};
+  std::visit([&](const auto& motion) { put_motion(json, motion); }, body.motion);
+  json["shapes"] = Json::array();
+  for (const Shape& shape : body.shapes) json["shapes"].push_back(json_of(shape));
+  return json;
+}
+
+Json json_of(const SceneLoad& load) {
+  Json json = {{"id", load.id},
+               {"label", load.label},
+               {"group", load.group},
+               {"kind", to_string(load.kind)},
+               {"on", load.on},
+               {"by", load.by},
+               {"point", load.point},
+               {"at", per_model(load.at)}};
+  if (!load.frame.empty()) json["frame"] = load.frame;
+  if (!load.axes.empty()) json["axes"] = load.axes;
+  if (!load.force.empty()) json["force"] = per_model(load.force);
+  if (!load.moment.empty()) json["moment"] = per_model(load.moment);
+  if (load.counterpart) json["counterpart"] = true;
+  return json;
+}
+
+}  // namespace
+
+std::string compact_json(const Scene& scene) {
+  Json json = {{"models", scene.models},
+               {"rows", scene.rows},
+               {"series", Json::array()},
+               {"bodies", Json::array()},
+               {"loads", Json::array()},
+               {"sums", Json::array()},
+               {"frames", Json::array()},
+               {"centre", scene.centre},
+               {"radius", scene.radius},
+               {"note", scene.note}};
+  for (const Values& series : scene.series) json["series"].push_back(base64_floats(series));
+  for (const SceneBody& body : scene.bodies) json["bodies"].push_back(json_of(body));
+  for (const SceneLoad& load : scene.loads) json["loads"].push_back(json_of(load));
+  for (const SceneSum& sum : scene.sums)
+    json["sums"].push_back({{"body", sum.body},
+                            {"force_over_sum", sum.force_over_sum},
+                            {"moment_over_sum", sum.moment_over_sum}});
+  for (const auto& [name, axes] : scene.frames)
+    json["frames"].push_back({{"name", name}, {"axes", axes}});
+  if (scene.film_point) json["film_point"] = json_of(*scene.film_point);
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // The curves in the format of their own block, behind the rest.
+  if (scene.curves) text.replace(text.size() - 1, 1, ",\"curves\":" + compact_json(*scene.curves) + "}");
+  return text;
+}
+
+}  // namespace bentaxis::report

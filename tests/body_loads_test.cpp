@@ -1,0 +1,242 @@
+// All loads on every body: they balance, they have their opposites, and what is left out or put
+// elsewhere shows.
+#include "bentaxis/results/body_loads.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/study/run.h"
+#include "free_bodies.h"
+#include "support.h"
+
+namespace bentaxis::test {
+namespace {
+
+// What is left of all loads on a body, of the sum of their magnitudes.
+constexpr double kSum = 1e-12;
+
+std::vector<std::filesystem::path> stored_cases() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& name : reference_cases())
+    files.push_back(reference_folder() / name / "case.toml");
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases"))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string name_of(const BodyLoad& load) {
+  return load.symbol + " on " + load.on + " by " + load.by + " at " + load.point;
+}
+
+double norm(const std::array<double, 3>& v) { return std::hypot(v[0], v[1], v[2]); }
+
+// Of the two sums of a body the larger.
+double left(const BodySum& sum) { return std::max(sum.force_over_sum, sum.moment_over_sum); }
+
+void expect_balance(const std::vector<BodySum>& sums, std::size_t bodies) {
+  ASSERT_EQ(sums.size(), bodies);
+  for (const BodySum& sum : sums) {
+    EXPECT_LE(sum.force_over_sum, scaled(kSum)) << sum.body;
+    EXPECT_LE(sum.moment_over_sum, scaled(kSum)) << sum.body;
+  }
+}
+
+// A random pump at a random instant.
+struct Drawn {
+  explicit Drawn(unsigned seed, bool on_its_own)
+      : random(seed),
+        pump(random.free(random.pump())),
+        assumptions(random.assumptions(pump)),
+        instant(on_its_own ? random.free_instant(pump, 0.1) : random.instant(pump, seed % 2 == 0)) {
+    if (!on_its_own && seed % 3 == 0) assumptions.gear = BlockDrive::imposed;
+  }
+  std::vector<BodyLoad> loads() const {
+    return analytic::BodyLoads(pump, assumptions).evaluate(instant);
+  }
+  RandomPump random;
+  PumpParameters pump;
+  Assumptions assumptions;
+  Instant instant;
+};
+
+void for_each_pump(unsigned count, const std::function<void(const Drawn&)>& look) {
+  for (unsigned seed = 0; seed < count; ++seed)
+    for (const bool on_its_own : {false, true}) {
+      SCOPED_TRACE("pump " + std::to_string(seed) + (on_its_own ? ", free" : ", locked"));
+      look(Drawn(seed, on_its_own));
+      if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+// ---- sums --------------------------------------------------------------------------------------
+
+BodyLoad load_on(const std::string& body, std::array<double, 3> at, std::array<double, 3> force,
+                 std::array<double, 3> moment = {}) {
+  BodyLoad load;
+  load.on = body;
+  load.at = at;
+  load.force = force;
+  load.moment = moment;
+  return load;
+}
+
+TEST(BodySums, AreForcesAndMomentsAboutTheFirstLoadsPoint) {
+  // A lever of 2 m with 3 N at its end, a force against it at the middle, and a moment.
+  const auto sums = sums_of({load_on("a", {1, 0, 0}, {0, -4, 0}), load_on("b", {0, 0, 0}, {}),
+                             load_on("a", {3, 0, 0}, {0, 3, 0}, {0, 0, -5})});
+  ASSERT_EQ(sums.size(), 2);
+  EXPECT_EQ(sums[0].body, "a");
+  EXPECT_EQ(sums[0].force, (std::array<double, 3>{0, -1, 0}));
+  EXPECT_EQ(sums[0].moment, (std::array<double, 3>{0, 0, 1}));
+  EXPECT_DOUBLE_EQ(sums[0].force_over_sum, 1.0 / 7);
+  EXPECT_DOUBLE_EQ(sums[0].moment_over_sum, 1.0 / 11);
+  EXPECT_EQ(sums[1].body, "b");
+  EXPECT_EQ(sums[1].force_over_sum, 0);
+  EXPECT_EQ(sums[1].moment_over_sum, 0);
+}
+
+TEST(BodySums, OfManyRowsAreTheWorst) {
+  BodyLoadTable table;
+  for (const double force : {1.0, 3.0, 2.0})
+    table.append({load_on("a", {}, {force, 0, 0}), load_on("a", {0, 1, 0}, {-1, 0, 0})});
+  EXPECT_EQ(table.rows(), 3);
+  EXPECT_EQ(table.row(1)[0].force[0], 3);
+  const auto worst = worst_sums(table);
+  ASSERT_EQ(worst.size(), 1);
+  EXPECT_DOUBLE_EQ(worst[0].force_over_sum, 0.5);  // of the second row: (3 - 1) / (3 + 1)
+  EXPECT_EQ(worst[0].force[0], 2);
+  EXPECT_DOUBLE_EQ(worst[0].moment_over_sum, 1);  // of every row: nothing holds it
+  table.append({load_on("a", {}, {std::nan(""), 0, 0}), load_on("a", {}, {})});
+  EXPECT_TRUE(std::isnan(worst_sums(table)[0].force_over_sum));
+}
+
+TEST(BodyLoadTable, RefusesARowWithOtherLoads) {
+  BodyLoadTable table;
+  table.append({load_on("a", {}, {})});
+  EXPECT_THROW(table.append({load_on("b", {}, {})}), ComputationError);
+  EXPECT_THROW(table.append({}), ComputationError);
+  EXPECT_EQ(table.rows(), 1);
+}
+
+// ---- the closed form ---------------------------------------------------------------------------
+
+TEST(AnalyticLoads, BalanceOnRandomPumps) {
+  for_each_pump(300, [](const Drawn& d) {
+    expect_balance(sums_of(d.loads()), d.pump.geometry.pistons + 2);
+  });
+}
+
+TEST(AnalyticLoads, BalanceInEveryRowOfTheStoredCases) {
+  for (const auto& file : stored_cases()) {
+    SCOPED_TRACE(file);
+    const study::ReadyCase ready = study::prepare(read_case(file));
+    const Samples samples = ready.samples(study::Way::driven);
+    const BodyLoadTable table =
+        analytic::run_body_loads(ready.the_case, ready.the_case.analytic, samples);
+    ASSERT_EQ(table.rows(), samples.theta_deg.size());
+    expect_balance(worst_sums(table), ready.the_case.pump.geometry.pistons + 2);
+  }
+}
+
+// What a body does to another, that one does to it.
+TEST(AnalyticLoads, OfOneBodyOnAnotherAreOpposite) {
+  for_each_pump(50, [](const Drawn& d) {
+    const std::vector<BodyLoad> loads = d.loads();
+    int pairs = 0;
+    for (const BodyLoad& load : loads) {
+      const bool other = std::any_of(loads.begin(), loads.end(),
+                                     [&](const BodyLoad& l) { return l.on == load.by; });
+      if (!other || load.kind == ForceKind::inertia) continue;
+      const auto back = std::find_if(loads.begin(), loads.end(), [&](const BodyLoad& l) {
+        return l.on == load.by && l.by == load.on && l.symbol == load.symbol;
+      });
+      ASSERT_NE(back, loads.end()) << name_of(load);
+      EXPECT_EQ(back->point, load.point);
+      EXPECT_EQ(back->at, load.at) << name_of(load);
+      for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(back->force[i], -load.force[i], scaled(1e-15) * norm(load.force))
+            << name_of(load);
+      ++pairs;
+    }
+    const int gear = d.assumptions.gear == BlockDrive::mesh ? 1 : 0;
+    EXPECT_EQ(pairs, 2 * (3 * d.pump.geometry.pistons + gear + 1));
+  });
+}
+
+// A load left out, doubled, or put a millimetre from its point leaves a sum.
+TEST(AnalyticLoads, OnesThatAreWrongAreNoticed) {
+  for_each_pump(30, [](const Drawn& d) {
+    const std::vector<BodyLoad> loads = d.loads();
+    std::map<std::string, std::array<double, 2>> scale;  // of forces and moments, by body
+    const auto sums = sums_of(loads);
+    const auto left_on = [](const std::vector<BodyLoad>& all, const std::string& body) {
+      for (const BodySum& sum : sums_of(all))
+        if (sum.body == body) return left(sum);
+      return 0.0;
+    };
+    int tried = 0;
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      double largest = 0;
+      for (const BodyLoad& load : loads)
+        if (load.on == loads[i].on)
+          largest = std::max(largest, norm(load.force) + norm(load.moment));
+      // Whose own share of the body's loads is far above round-off.
+      const double share = (norm(loads[i].force) + norm(loads[i].moment)) / largest;
+      if (share < 1e-6) continue;
+      ++tried;
+      std::vector<BodyLoad> wrong = loads;
+      wrong.erase(wrong.begin() + static_cast<std::ptrdiff_t>(i));
+      EXPECT_GT(left_on(wrong, loads[i].on), 100 * kSum) << "without " << name_of(loads[i]);
+      wrong = loads;
+      for (double& x : wrong[i].force) x = -x;
+      for (double& x : wrong[i].moment) x = -x;
+      EXPECT_GT(left_on(wrong, loads[i].on), 100 * kSum) << "turned round " << name_of(loads[i]);
+      if (norm(loads[i].force) / largest < 1e-6) continue;
+      // Across the force: along it a point is free.
+      wrong = loads;
+      const auto& f = loads[i].force;
+      const std::array<double, 3> across = std::abs(f[0]) < std::abs(f[2])
+                                               ? std::array<double, 3>{0, f[2], -f[1]}
+                                               : std::array<double, 3>{-f[1], f[0], 0};
+      for (int axis = 0; axis < 3; ++axis) wrong[i].at[axis] += 1e-3 * across[axis] / norm(across);
+      EXPECT_GT(left_on(wrong, loads[i].on), 100 * kSum) << "moved " << name_of(loads[i]);
+    }
+    EXPECT_GT(tried, 5 * d.pump.geometry.pistons);
+  });
+}
+
+// The row that balances here does so by the free bodies written out from its columns too.
+TEST(AnalyticLoads, AreThoseOfTheFreeBodiesWrittenOut) {
+  for_each_pump(100, [](const Drawn& d) {
+    if (d.assumptions.gear == BlockDrive::imposed) return;
+    const analytic::Model model(d.pump, d.assumptions);
+    std::vector<double> values(model.layout().size());
+    model.evaluate(d.instant, values);
+    ASSERT_LE(free_body_residual(d.pump, d.assumptions, d.instant, values), scaled(kSum));
+    // A reaction that is off unbalances both alike: they read the same columns.
+    for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
+      std::vector<double> off = values;
+      off[c] += 1e-3 * (1 + std::abs(off[c]));
+      double worst = 0;
+      for (const BodySum& sum : sums_of(analytic::BodyLoads(d.pump, d.assumptions)
+                                            .of_row(d.instant, off, TeethAction())))
+        worst = std::max(worst, left(sum));
+      EXPECT_GT(worst, 100 * kSum) << model.layout().channels()[c].name;
+      EXPECT_GT(free_body_residual(d.pump, d.assumptions, d.instant, off), 100 * kSum)
+          << model.layout().channels()[c].name;
+    }
+  });
+}
+
+}  // namespace
+}  // namespace bentaxis::test
