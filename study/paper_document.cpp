@@ -93,10 +93,10 @@ std::string headline(const PaperStudy& s) {
     worst = std::max(worst, other_model(p).value_or(0));
   }
   return fmt::format(
-      "{} of {} panels with a known axis hold our curves{}; {} axes are unknown; {} drawings have "
+      "{} of {} panels with a known axis hold our curves{}; {} axes are unknown; drawings have "
       "none. At the same assumptions the models differ by up to {:.1e} of peak.",
       c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown,
-      s.drawings.size(), worst);
+      worst);
 }
 
 // ---- Tables
@@ -216,7 +216,7 @@ report::Document paper_document(const PaperStudy& s, const report::Lines& progra
     for (const DrawnPanel& p : s.panels)
       if (p.figure.id() == figure.id()) document.figures->push_back(figure_of(s, p));
     for (const report::Figure& drawing : s.drawings)
-      if (drawing.id == figure.id()) document.figures->push_back(drawing);
+      if (drawing.paper == figure.name()) document.figures->push_back(drawing);
   }
   return document;
 }
@@ -245,7 +245,8 @@ std::string paper_text(const PaperStudy& s) {
     if (p.known() && !p.inside()) text += fmt::format("{:<18} {}\n", "", leaving(p));
   }
   for (const report::Figure& drawing : s.drawings)
-    text += fmt::format("{:<18} {}\n", drawing.paper, "drawn");
+    if (std::holds_alternative<report::DrawingFigure>(drawing.content))
+      text += fmt::format("{:<18} {}\n", drawing.paper, "drawn");
   return text;
 }
 

@@ -113,25 +113,35 @@ DrawingFigure block_from_the_front(const PumpParameters& pump, const ResultTable
     DrawingFigure::Frame frame;
     frame.theta_deg = angle;
     frame.lines.push_back(circle(0, 0, bores + 1.25 * bore, 0, 2));
-    std::string shares;
     double sum = 0;
     for (int k = 1; k <= g.pistons; ++k) {
       const Triple b = ring(g, piston_angle(pump, k, angle), 0);
       const double fx = -at(turn, fmt::format("Rc_{}_x2_N", k), angle);
       const double fy = -at(turn, fmt::format("Rc_{}_y2_N", k), angle);
-      const double torque = at(turn, fmt::format("Tc_{}_z2_Nm", k), angle);
       frame.lines.push_back(circle(b[0], b[1], bore, 1, 1));
       frame.arrows.push_back({0, 2, b[0], b[1], scale * fx, scale * fy});
-      shares += fmt::format("; piston {}: {:.0f} N, {:+.2f} Nm", k, std::hypot(fx, fy), torque);
-      sum += torque;
+      sum += at(turn, fmt::format("Tc_{}_z2_Nm", k), angle);
     }
     // Turning with the pump is turning from x2 to y2, which is counter-clockwise to this eye.
-    frame.text = fmt::format("{:g} deg: all pistons {:+.2f} Nm about z2 ({}){}", angle, sum,
-                             sum < 0 ? "clockwise" : "counter-clockwise", shares);
+    frame.text = fmt::format("all pistons {:+.2f} Nm about z2, {}", sum,
+                             sum < 0 ? "clockwise" : "counter-clockwise");
     drawing.frames.push_back(std::move(frame));
   }
   fit(drawing);
   return drawing;
+}
+
+report::BarsFigure pistons_shares(const PumpParameters& pump, const ResultTable& turn,
+                                  double angle) {
+  report::BarsFigure bars{{"torque on the block about z2", "Nm"}, {}};
+  for (int k = 1; k <= pump.geometry.pistons; ++k) {
+    const double torque = at(turn, fmt::format("Tc_{}_z2_Nm", k), angle);
+    const double force = std::hypot(at(turn, fmt::format("Rc_{}_x2_N", k), angle),
+                                    at(turn, fmt::format("Rc_{}_y2_N", k), angle));
+    bars.bars.push_back({fmt::format("piston {}", k), std::min(0.0, torque), std::max(0.0, torque),
+                         fmt::format("{:.1f} N, {:+.3f} Nm", force, torque)});
+  }
+  return bars;
 }
 
 DrawingFigure force_triangle(const PumpParameters& pump, const ResultTable& turn,
@@ -155,9 +165,8 @@ DrawingFigure force_triangle(const PumpParameters& pump, const ResultTable& turn
       y += forces[i][1];
     }
     frame.text = fmt::format(
-        "{:g} deg: Fp {:.0f} N along z2, Rs {:.0f} N along z2 and {:.1f} N along x2, Rc {:.1f} N "
-        "along x2; their sum {:.1e} N",
-        angle, forces[0][0], forces[1][0], forces[1][1], forces[2][1], std::hypot(x, y));
+        "Fp {:.0f} N; Rs {:.0f} N (z2), {:.1f} N (x2); Rc {:.1f} N (x2); sum {:.1e} N",
+        forces[0][0], forces[1][0], forces[1][1], forces[2][1], std::hypot(x, y));
     drawing.frames.push_back(std::move(frame));
   }
   fit(drawing);
@@ -171,7 +180,7 @@ DrawingFigure piston_in_two_planes(const PumpParameters& pump, const ResultTable
   drawing.looks = {{"axis of the block, z2", 4, false},
                    {"piston from A to B", 5, false},
                    {"Rs, shaft on piston, at A", 1, false}};
-  drawing.panels = {{{"x2", "mm"}, {"z2", "mm"}}, {{"y2", "mm"}, {"z2", "mm"}}};
+  drawing.panels = {{{"z2", "mm"}, {"x2", "mm"}}, {{"z2", "mm"}, {"y2", "mm"}}};
   double largest = 0;
   for (const double angle : angles) largest = std::max(largest, at(turn, "Rs_1_z2_N", angle));
   for (const double angle : angles) {
@@ -184,14 +193,14 @@ DrawingFigure piston_in_two_planes(const PumpParameters& pump, const ResultTable
     const double scale = largest > 0 ? 2 * kForceArrow / largest : 0;
     for (int p = 0; p < 2; ++p) {
       const auto across = static_cast<std::size_t>(p);
-      frame.lines.push_back({p, 0, 1, {0, 0}, {std::min(0.0, a[2]), b[2]}});
-      frame.lines.push_back({p, 1, 3, {a[across], b[across]}, {a[2], b[2]}});
+      frame.lines.push_back({p, 0, 1, {std::min(0.0, a[2]), b[2]}, {0, 0}});
+      frame.lines.push_back({p, 1, 3, {a[2], b[2]}, {a[across], b[across]}});
       // It pushes towards A: drawn with its head there, beside the piston that it holds up.
-      frame.arrows.push_back({p, 2, a[across] - scale * rs[across], a[2] - scale * rs[2],
-                              scale * rs[across], scale * rs[2]});
+      frame.arrows.push_back({p, 2, a[2] - scale * rs[2], a[across] - scale * rs[across],
+                              scale * rs[2], scale * rs[across]});
     }
-    frame.text = fmt::format("{:g} deg: Rs {:.0f} N along x2, {:.0f} N along y2, {:.0f} N along z2",
-                             angle, rs[0], rs[1], rs[2]);
+    frame.text =
+        fmt::format("Rs {:.0f} N (x2), {:.0f} N (y2), {:.0f} N (z2)", rs[0], rs[1], rs[2]);
     drawing.frames.push_back(std::move(frame));
   }
   fit(drawing);

@@ -9,10 +9,14 @@
 
 namespace bentaxis::study {
 
-/// The block from the front (z2 towards the eye): the pistons' forces on it, each with its torque
-/// about z2, at angles (deg) between samples too.
+/// The block from the front (z2 towards the eye): the pistons' forces on it, with their torque about
+/// z2, at angles (deg) between samples too.
 report::DrawingFigure block_from_the_front(const PumpParameters& pump, const ResultTable& turn,
                                            const std::vector<double>& angles);
+
+/// Each piston's share of that torque at an angle (deg).
+report::BarsFigure pistons_shares(const PumpParameters& pump, const ResultTable& turn,
+                                  double angle);
 
 /// Fp, Rs and Rc on piston 1 tip to tail in the plane x2-z2.
 /// @param turn  without inertia and friction of the piston, and without weight: they close then

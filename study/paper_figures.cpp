@@ -138,6 +138,12 @@ class PaperRun {
       }
       case PaperKind::block_from_the_front:
         add_drawing(figure, block_from_the_front(pump(figure), *turn(figure).table, figure.angles));
+        for (const double angle : figure.angles)
+          s_.drawings.push_back({fmt::format("{}_shares_at_{:g}_deg", figure.id(), angle),
+                                 fmt::format("{}: each piston's share of the torque at {:g} deg",
+                                             figure.name(), angle),
+                                 figure.name(),
+                                 pistons_shares(pump(figure), *turn(figure).table, angle)});
         break;
       case PaperKind::force_triangle:
         add_drawing(figure, force_triangle(pump(figure), massless(figure), figure.angles));
