@@ -170,7 +170,7 @@ report::Figure figure_of(const PaperStudy& s, const DrawnPanel& p) {
   };
   fix(content.x, p.panel.x.range);
   fix(content.y, p.panel.y.range);
-  for (const DrawnCurve& curve : p.curves) content.series.push_back({curve.label, curve.x, curve.y});
+  for (const DrawnCurve& curve : p.curves) content.series.push_back({curve.label, curve.x, curve.y, curve.dashed});
   // A curve that leaves the axis stays in sight; where the axis ends is drawn.
   const auto end = [&](double by, double at, std::optional<double>& edge, double to) {
     if (by == 0) return;

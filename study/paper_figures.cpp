@@ -131,7 +131,7 @@ class PaperRun {
           add_panel(figure, panel, [&](const PaperCurve& curve) {
             const bool analytic = curve.model == Model::analytic;
             const auto& own = analytic ? torque.analytic : torque.multibody;
-            return DrawnCurve{curve.label, torque.bar, own, true,
+            return DrawnCurve{curve.label, torque.bar, own, true, curve.dashed,
                               over_peak(own, analytic ? torque.multibody : torque.analytic)};
           });
         break;
@@ -220,6 +220,7 @@ class PaperRun {
     DrawnCurve drawn;
     drawn.label = curve.label;
     drawn.judged = !curve.leaves;
+    drawn.dashed = curve.dashed;
     std::vector<double> theta, one;
     if (curve.compliant_teeth) {
       Fig34Point law = adams_by_default();

@@ -67,6 +67,7 @@ PaperCurve read_curve(TableReader in, const PaperFigures& list) {
     curve.compliant_teeth = true;
   }
   curve.leaves = in.flag("leaves", false);
+  curve.dashed = in.flag("dashed", false);
   in.finish();
   return curve;
 }

@@ -33,9 +33,9 @@ PROBE = r"""
     const place = document.getElementById("figure-" + figure.id);
     if (place) place.scrollIntoView();
     // What is drawn when it comes near the screen is drawn by then.
-    for (let i = 0; i < 40 && place && !place.querySelector("svg, img, canvas"); ++i) await wait(20);
-    const shown = place && place.querySelector("svg, img, canvas");
-    if (!shown || shown.getBoundingClientRect().height < 50 || !place.textContent.includes(figure.title)) missing.push(figure.id);
+    const drawn = () => place && [...place.querySelectorAll("svg, img, canvas")].some(e => e.getBoundingClientRect().height > 50);
+    for (let i = 0; i < 40 && place && !drawn(); ++i) await wait(20);
+    if (!drawn() || !place.textContent.includes(figure.title)) missing.push(figure.id);
   }
   const result = { errors: window.probeErrors, missing, count: report.figures.length,
                    rows: document.querySelectorAll("#runs table tbody tr, #runs table tr").length,

@@ -37,6 +37,7 @@ struct PaperCurve {
   std::string times, over;       ///< facts that the curve is multiplied and divided by, or ""
   bool compliant_teeth = false;  ///< the tooth force of a compliant contact in motion instead
   bool leaves = false;           ///< the axis by what it is: not judged
+  bool dashed = false;           ///< as it is printed
 };
 
 struct PaperPanel {
@@ -93,7 +94,7 @@ PaperFigures read_paper_figures(const std::filesystem::path& file);
 struct DrawnCurve {
   std::string label;
   std::vector<double> x, y;
-  bool judged = true;
+  bool judged = true, dashed = false;
   std::optional<double> other_model;  ///< largest difference of the other model, over peak
 };
 
