@@ -68,11 +68,10 @@ int run_program(int argc, char** argv) {
       add_blocktorque_command(program), add_completion_command(program),
       add_manual_command(program),      add_show_command(program),
       add_simulate_command(program),    add_rattle_command(program),
-      add_paper_command(program),
-      add_fig34_command(program),       add_sweep_command(program),
-      add_merge_command(program),       add_uncertainty_command(program),
-      add_sensitivity_command(program), add_life_command(program),
-      add_identify_command(program)};
+      add_paper_command(program),       add_fig34_command(program),
+      add_sweep_command(program),       add_merge_command(program),
+      add_uncertainty_command(program), add_sensitivity_command(program),
+      add_life_command(program),        add_identify_command(program)};
   return guarded([&]() -> int {
     if (!parser.parse(argc, argv)) return kDone;
     watch_for_interruption();

@@ -17,7 +17,7 @@ using report::Cell;
 std::string unit_after(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
 
 std::string range_text(const DrawnPanel& p) {
-  return fmt::format("{:.4g} to {:.4g}{}", p.least.y, p.greatest.y, unit_after(p.panel.y.unit));
+  return fmt::format("{:.5g} to {:.5g}{}", p.least.y, p.greatest.y, unit_after(p.panel.y.unit));
 }
 
 // By how much the curves leave the axis, where; "" where they do not.
@@ -28,9 +28,8 @@ std::string leaving(const DrawnPanel& p) {
   const auto add = [&](double by, const DrawnPanel::End& end, const char* where) {
     if (by == 0) return;
     text += fmt::format("{}{} {} the axis by {:.3g}{}, {:.2g} % of its length, at {:.4g}{}",
-                        text.empty() ? "" : "; ", end.curve, where, by,
-                        unit_after(p.panel.y.unit), 100 * by / span, end.x,
-                        unit_after(p.panel.x.unit));
+                        text.empty() ? "" : "; ", end.curve, where, by, unit_after(p.panel.y.unit),
+                        100 * by / span, end.x, unit_after(p.panel.x.unit));
   };
   add(p.below(), p.least, "is below");
   add(p.above(), p.greatest, "is above");
@@ -52,6 +51,14 @@ std::string conditions_of(const PaperFigures& list, const DrawnPanel& p) {
     for (const auto& condition : list.numbers.conditions)
       if (condition.name == curve.condition) add(condition.text);
   for (const PaperCurve& curve : p.panel.curves) add(list.numbers.variant(curve.variant).text);
+  return text;
+}
+
+std::string names_of_conditions(const DrawnPanel& p) {
+  std::string text;
+  for (const PaperCurve& curve : p.panel.curves)
+    if (text.find(curve.condition) == std::string::npos)
+      text += (text.empty() ? "" : "; ") + curve.condition;
   return text;
 }
 
@@ -88,42 +95,36 @@ std::string headline(const PaperStudy& s) {
   std::string outside;
   double worst = 0;
   for (const DrawnPanel& p : s.panels) {
-    if (p.known() && !p.inside())
-      outside += (outside.empty() ? "" : "; ") + p.figure.name(p.panel);
+    if (p.known() && !p.inside()) outside += (outside.empty() ? "" : "; ") + p.figure.name(p.panel);
     worst = std::max(worst, other_model(p).value_or(0));
   }
   return fmt::format(
       "{} of {} panels with a known axis hold our curves{}; {} axes are unknown; drawings have "
       "none. At the same assumptions the models differ by up to {:.1e} of peak.",
-      c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown,
-      worst);
+      c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown, worst);
 }
 
 // ---- Tables
 
 report::Section figures_section(const PaperStudy& s) {
-  report::Table table{{"figure", "shows", "condition", "case", "printed axis of the values", "ours",
-                       "verdict", "where not inside", "other model, of peak"},
+  report::Table table{{"figure", "shows", "condition", "printed axis", "ours", "verdict",
+                       "other model, of peak", "remarks"},
                       {}};
   for (const PaperFigure& figure : s.list.figures) {
     for (const DrawnPanel& p : s.panels) {
       if (p.figure.id() != figure.id()) continue;
-      std::string why = leaving(p);
-      if (!why.empty() && !p.panel.outside.empty()) why += ": " + p.panel.outside;
+      std::string remarks = leaving(p);
+      if (!remarks.empty() && !p.panel.outside.empty()) remarks += ": " + p.panel.outside;
+      if (!p.panel.y.why.empty()) remarks += (remarks.empty() ? "" : "; ") + p.panel.y.why;
       const auto differs = other_model(p);
-      table.rows.push_back({figure.name(p.panel), figure.shows, conditions_of(s.list, p),
-                            cases_of(s.list, p), p.panel.y.text(), range_text(p), verdict(p), why,
-                            differs ? Cell(*differs) : Cell()});
+      table.rows.push_back({figure.name(p.panel), figure.shows, names_of_conditions(p),
+                            p.panel.y.short_text(), range_text(p), verdict(p),
+                            differs ? Cell(*differs) : Cell(), remarks});
     }
     for (const report::Figure& drawing : s.drawings)
-      if (drawing.id == figure.id()) {
-        std::string at;
-        for (const auto& condition : s.list.numbers.conditions)
-          if (condition.name == figure.condition) at = condition.text;
-        table.rows.push_back({figure.name(), figure.shows, at,
-                              s.list.case_of(figure.condition).file, "none: a drawing", Cell(),
-                              "drawn", "", Cell()});
-      }
+      if (drawing.id == figure.id())
+        table.rows.push_back({figure.name(), figure.shows, figure.condition, "none: a drawing",
+                              Cell(), "drawn", Cell(), figure.note});
   }
   report::Section section{
       "The figures",
@@ -133,6 +134,9 @@ report::Section figures_section(const PaperStudy& s) {
       "(docs/limits.md).",
       {},
       std::move(table)};
+  for (const auto& of : s.list.cases)
+    section.facts.emplace_back(of.condition,
+                               of.inertia_alone_at_rpm ? of.file + ", inertia alone" : of.file);
   for (const auto& [figures, reason] : s.list.left_out)
     section.facts.emplace_back("left out: Fig. " + figures, reason);
   return section;
@@ -160,9 +164,8 @@ report::Section numbers_section(const PaperStudy& s) {
 // ---- Figures
 
 report::Figure figure_of(const PaperStudy& s, const DrawnPanel& p) {
-  report::XyFigure content{{p.panel.x.quantity, p.panel.x.unit},
-                           {p.panel.y.quantity, p.panel.y.unit},
-                           {}};
+  report::XyFigure content{
+      {p.panel.x.quantity, p.panel.x.unit}, {p.panel.y.quantity, p.panel.y.unit}, {}};
   const auto fix = [](report::Axis& axis, const std::optional<std::pair<double, double>>& range) {
     if (!range) return;
     axis.from = range->first;
@@ -170,7 +173,8 @@ report::Figure figure_of(const PaperStudy& s, const DrawnPanel& p) {
   };
   fix(content.x, p.panel.x.range);
   fix(content.y, p.panel.y.range);
-  for (const DrawnCurve& curve : p.curves) content.series.push_back({curve.label, curve.x, curve.y, curve.dashed});
+  for (const DrawnCurve& curve : p.curves)
+    content.series.push_back({curve.label, curve.x, curve.y, curve.dashed});
   // A curve that leaves the axis stays in sight; where the axis ends is drawn.
   const auto end = [&](double by, double at, std::optional<double>& edge, double to) {
     if (by == 0) return;
@@ -183,11 +187,10 @@ report::Figure figure_of(const PaperStudy& s, const DrawnPanel& p) {
     end(p.below(), p.panel.y.range->first, content.y.from, p.least.y - room);
     end(p.above(), p.panel.y.range->second, content.y.to, p.greatest.y + room);
   }
-  std::string note = fmt::format("{}, by {}. Axis of the values: {}; {} axis: {}.",
-                                 conditions_of(s.list, p), cases_of(s.list, p), p.panel.y.text(),
-                                 p.panel.x.quantity, p.panel.x.text());
-  if (p.known())
-    note += p.inside() ? " Our curves are inside." : " Outside: " + leaving(p) + ".";
+  std::string note =
+      fmt::format("{}, by {}. Axis of the values: {}; {} axis: {}.", conditions_of(s.list, p),
+                  cases_of(s.list, p), p.panel.y.text(), p.panel.x.quantity, p.panel.x.text());
+  if (p.known()) note += p.inside() ? " Our curves are inside." : " Outside: " + leaving(p) + ".";
   if (!p.panel.outside.empty() && p.known() && !p.inside()) note += " " + p.panel.outside + ".";
   if (!p.panel.differs.empty()) note += " numbers.toml: " + p.panel.differs + ".";
   if (!p.figure.note.empty()) note += " " + p.figure.note;

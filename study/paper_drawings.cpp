@@ -26,8 +26,7 @@ double at(const ResultTable& turn, const std::string& channel, double angle_deg)
   while (after < rows && turn.theta_deg[after] <= angle_deg) ++after;
   const std::size_t before = after - 1;
   const double end = after < rows ? turn.theta_deg[after] : 360;
-  const double share =
-      (angle_deg - turn.theta_deg[before]) / (end - turn.theta_deg[before]);
+  const double share = (angle_deg - turn.theta_deg[before]) / (end - turn.theta_deg[before]);
   const double first = turn.at(before, column);
   return first + share * (turn.at(after % rows, column) - first);
 }
@@ -99,9 +98,8 @@ DrawingFigure block_from_the_front(const PumpParameters& pump, const ResultTable
   const double bore = g.bore_diameter / 2 / kMillimetre;
   const double bores = g.bore_circle_radius / kMillimetre;
   DrawingFigure drawing;
-  drawing.looks = {{"block", 4, false},
-                   {"bore", 5, true},
-                   {"force of a piston on the block, -Rc", 1, false}};
+  drawing.looks = {
+      {"block", 4, false}, {"bore", 5, true}, {"force of a piston on the block, -Rc", 1, false}};
   drawing.panels = {{{"x2", "mm"}, {"y2", "mm"}}};
   double largest = 0;
   for (const double angle : angles)
@@ -154,19 +152,18 @@ DrawingFigure force_triangle(const PumpParameters& pump, const ResultTable& turn
     DrawingFigure::Frame frame;
     frame.theta_deg = angle;
     const double fp = -area * at(turn, "p_1_bar", angle) * kPascalPerBar;
-    const double forces[3][2] = {
-        {fp, 0},
-        {at(turn, "Rs_1_z2_N", angle), at(turn, "Rs_1_x2_N", angle)},
-        {0, at(turn, "Rc_1_x2_N", angle)}};
+    const double forces[3][2] = {{fp, 0},
+                                 {at(turn, "Rs_1_z2_N", angle), at(turn, "Rs_1_x2_N", angle)},
+                                 {0, at(turn, "Rc_1_x2_N", angle)}};
     double x = 0, y = 0;
     for (int i = 0; i < 3; ++i) {
       frame.arrows.push_back({0, i, x, y, forces[i][0], forces[i][1]});
       x += forces[i][0];
       y += forces[i][1];
     }
-    frame.text = fmt::format(
-        "Fp {:.0f} N; Rs {:.0f} N (z2), {:.1f} N (x2); Rc {:.1f} N (x2); sum {:.1e} N",
-        forces[0][0], forces[1][0], forces[1][1], forces[2][1], std::hypot(x, y));
+    frame.text =
+        fmt::format("Fp {:.0f} N; Rs {:.0f} N (z2), {:.1f} N (x2); Rc {:.1f} N (x2); sum {:.1e} N",
+                    forces[0][0], forces[1][0], forces[1][1], forces[2][1], std::hypot(x, y));
     drawing.frames.push_back(std::move(frame));
   }
   fit(drawing);
@@ -199,8 +196,7 @@ DrawingFigure piston_in_two_planes(const PumpParameters& pump, const ResultTable
       frame.arrows.push_back({p, 2, a[2] - scale * rs[2], a[across] - scale * rs[across],
                               scale * rs[2], scale * rs[across]});
     }
-    frame.text =
-        fmt::format("Rs {:.0f} N (x2), {:.0f} N (y2), {:.0f} N (z2)", rs[0], rs[1], rs[2]);
+    frame.text = fmt::format("Rs {:.0f} N (x2), {:.0f} N (y2), {:.0f} N (z2)", rs[0], rs[1], rs[2]);
     drawing.frames.push_back(std::move(frame));
   }
   fit(drawing);

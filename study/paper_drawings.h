@@ -9,8 +9,8 @@
 
 namespace bentaxis::study {
 
-/// The block from the front (z2 towards the eye): the pistons' forces on it, with their torque about
-/// z2, at angles (deg) between samples too.
+/// The block from the front (z2 towards the eye): the pistons' forces on it, with their torque
+/// about z2, at angles (deg) between samples too.
 report::DrawingFigure block_from_the_front(const PumpParameters& pump, const ResultTable& turn,
                                            const std::vector<double>& angles);
 

@@ -28,7 +28,7 @@ Model the_other(Model model) {
 class AtCondition {
  public:
   AtCondition(const PaperFigures& list, const PaperFigures::CaseOfCondition& of,
-            const std::filesystem::path& cases, const PartProgress& progress_of)
+              const std::filesystem::path& cases, const PartProgress& progress_of)
       : list_(list), as_read_(read_case(cases / of.file)) {
     if (of.inertia_alone_at_rpm) {
       as_read_ = without_loads(at_speed(as_read_, *of.inertia_alone_at_rpm));
@@ -40,7 +40,8 @@ class AtCondition {
       const compare::Facts facts = facts_of(ready_.the_case, assumptions);
       std::string mismatch = list.numbers.mismatch(facts);
       for (const auto& condition : list.numbers.conditions)
-        if (condition.name == of.condition && mismatch.empty()) mismatch = condition.mismatch(facts);
+        if (condition.name == of.condition && mismatch.empty())
+          mismatch = condition.mismatch(facts);
       if (!mismatch.empty())
         throw InputError(as_read_.file.string() + ": does not meet the condition \"" +
                          of.condition + "\" of " + list.file.string() + ": " + mismatch);
@@ -96,7 +97,8 @@ double fact_of(const compare::PublishedRun& run, const std::string& name,
 }
 
 // Largest difference over the largest magnitude; nothing where either was not computed.
-std::optional<double> over_peak(const std::vector<double>& values, const std::vector<double>& from) {
+std::optional<double> over_peak(const std::vector<double>& values,
+                                const std::vector<double>& from) {
   double difference = 0, peak = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!is_computed(values[i]) || !is_computed(from[i])) return std::nullopt;
@@ -124,15 +126,16 @@ class PaperRun {
           add_panel(figure, panel, [&](const PaperCurve& curve) { return turns(panel, curve); });
         break;
       case PaperKind::operating_points: {
-        const TorqueCurve torque =
-            torque_curve(at(figure.condition).as_read(), figure.delivery_bar,
-                         progress_of_("torque over pressure"));
+        const TorqueCurve torque = torque_curve(at(figure.condition).as_read(), figure.delivery_bar,
+                                                progress_of_("torque over pressure"));
         for (const PaperPanel& panel : figure.panels)
           add_panel(figure, panel, [&](const PaperCurve& curve) {
             const bool analytic = curve.model == Model::analytic;
             const auto& own = analytic ? torque.analytic : torque.multibody;
-            return DrawnCurve{curve.label, torque.bar, own, true, curve.dashed,
-                              over_peak(own, analytic ? torque.multibody : torque.analytic)};
+            return DrawnCurve{
+                curve.label,  torque.bar,
+                own,          true,
+                curve.dashed, over_peak(own, analytic ? torque.multibody : torque.analytic)};
           });
         break;
       }
@@ -166,8 +169,7 @@ class PaperRun {
           },
           "inertia");
       for (const compare::PublishedRow& row : section.rows) {
-        if (row.number.condition != of.condition ||
-            row.number.measure == compare::Measure::range ||
+        if (row.number.condition != of.condition || row.number.measure == compare::Measure::range ||
             row.verdict == compare::PublishedVerdict::not_comparable)
           continue;
         const std::string figures = figures_in(row.number.where);
@@ -225,8 +227,7 @@ class PaperRun {
     if (curve.compliant_teeth) {
       Fig34Point law = adams_by_default();
       law.drag = curve.variant.empty();
-      const Fig34Curve force =
-          fig34_curve(at(curve.condition).as_read(), law, {}, progress_of_);
+      const Fig34Curve force = fig34_curve(at(curve.condition).as_read(), law, {}, progress_of_);
       if (!force.done()) throw ComputationError("compliant teeth: " + force.failure);
       // Its samples are at the ends of intervals.
       theta = force.theta_deg;

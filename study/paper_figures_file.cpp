@@ -44,8 +44,8 @@ template <class Item>
 std::string read_name(TableReader& in, const std::string& key, const std::vector<Item>& items,
                       bool needed) {
   std::string name = needed ? in.text(key) : in.text(key, "");
-  if (!name.empty() && std::none_of(items.begin(), items.end(),
-                                    [&](const Item& item) { return item.name == name; }))
+  if (!name.empty() &&
+      std::none_of(items.begin(), items.end(), [&](const Item& item) { return item.name == name; }))
     in.fail(key, "is not in the file of printed numbers");
   return name;
 }
@@ -53,8 +53,8 @@ std::string read_name(TableReader& in, const std::string& key, const std::vector
 PaperCurve read_curve(TableReader in, const PaperFigures& list) {
   PaperCurve curve;
   curve.label = in.text("label");
-  curve.model = in.choice("model", {"analytic", "multibody"}) == 0 ? Model::analytic
-                                                                   : Model::multibody;
+  curve.model =
+      in.choice("model", {"analytic", "multibody"}) == 0 ? Model::analytic : Model::multibody;
   curve.condition = read_name(in, "condition", list.numbers.conditions, true);
   curve.variant = read_name(in, "variant", list.numbers.variants, false);
   curve.channels = in.texts("channels");
@@ -115,7 +115,8 @@ PaperFigure read_figure(TableReader in, const PaperFigures& list) {
     for (int i = 0; spaced[0] + i * spaced[1] <= spaced[2] * (1 + 1e-12); ++i)
       figure.delivery_bar.push_back(spaced[0] + i * spaced[1]);
   }
-  for (TableReader& item : in.tables("panel")) figure.panels.push_back(read_panel(std::move(item), list));
+  for (TableReader& item : in.tables("panel"))
+    figure.panels.push_back(read_panel(std::move(item), list));
   if (figure.panels.empty() != drawing)
     in.fail("panel", drawing ? "a drawing has none" : "at least one [[figure.panel]] is needed");
   in.finish();
@@ -124,14 +125,19 @@ PaperFigure read_figure(TableReader in, const PaperFigures& list) {
 
 }  // namespace
 
+std::string PaperAxis::short_text() const {
+  if (!range) return "unknown";
+  return fmt::format("{:g} to {:g}{}{}", range->first, range->second, unit.empty() ? "" : " ",
+                     unit);
+}
+
 std::string PaperAxis::text() const {
-  if (!range) return "unknown: " + why;
-  std::string text = fmt::format("{:g} to {:g}", range->first, range->second);
-  if (!unit.empty()) text += " " + unit;
+  std::string text = short_text();
+  if (!range) return text + ": " + why;
   if (why.empty()) return text;
-  return labels.empty() ? fmt::format("{} ({})", text, why)
-                        : fmt::format("{} (labels {:g} to {:g}; {})", text, labels[0], labels[2],
-                                      why);
+  return labels.empty()
+             ? fmt::format("{} ({})", text, why)
+             : fmt::format("{} (labels {:g} to {:g}; {})", text, labels[0], labels[2], why);
 }
 
 std::string PaperFigure::id(const PaperPanel& panel) const {
@@ -173,8 +179,7 @@ PaperFigures read_paper_figures(const std::filesystem::path& file) {
     const std::string id = list.figures.back().id();
     for (std::size_t i = 0; i + 1 < list.figures.size(); ++i)
       if (list.figures[i].id() == id)
-        throw InputError(
-            fmt::format("{}:{}: figure {} is there twice", file.string(), line, id));
+        throw InputError(fmt::format("{}:{}: figure {} is there twice", file.string(), line, id));
   }
   if (list.figures.empty()) in.fail("figure", "at least one [[figure]] is needed");
   for (TableReader& item : in.tables("left_out")) {

@@ -117,6 +117,14 @@ class PaperFiguresTest(ProgramTest):
         for figure in drawings:
             self.assertEqual(self.figures[figure]["kind"], "drawing")
 
+    def test_curves_are_dashed_as_the_list_says(self):
+        for name, (_, panel) in self.panels.items():
+            dashed = {c["label"] for c in panel["curve"] if c.get("dashed")}
+            self.assertEqual({s["label"] for s in self.figures[name]["series"] if s.get("dashed")}, dashed, name)
+            svg = (self.place / f"pictures/{name}.svg").read_text()
+            dashes = set(re.findall(r'stroke-dasharray="([^"]*)"', svg)) - {"none"}
+            self.assertEqual(bool(dashes), bool(dashed), name)
+
     def test_axes_are_those_of_the_list(self):
         """Ends stand where they are known and our curves are inside; where a curve leaves, its end is drawn."""
         table = {row["figure"]: row for row in read(self.place / "out/paper.csv")}

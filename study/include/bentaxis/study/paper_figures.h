@@ -26,12 +26,14 @@ struct PaperAxis {
 
   /// "0 to 360 (labels 0 to 350; one turn)", or "unknown: ..".
   std::string text() const;
+  /// "0 to 360 deg", or "unknown".
+  std::string short_text() const;
 };
 
 struct PaperCurve {
   std::string label;
-  Model model = Model::analytic;   ///< that the paper shows; the other one is held against it
-  std::string condition, variant;  ///< names in the file of printed numbers
+  Model model = Model::analytic;      ///< that the paper shows; the other one is held against it
+  std::string condition, variant;     ///< names in the file of printed numbers
   std::vector<std::string> channels;  ///< several: the magnitude of the vector
   double factor = 1;
   std::string times, over;       ///< facts that the curve is multiplied and divided by, or ""
