@@ -103,9 +103,8 @@ Inertia BodyLoads::Implementation::piston_inertia(const Vector& axis, const Vect
   const PistonMass::Real& real = *pump.piston.real;
   if (inertia == PistonInertia::dynamically_equivalent) {
     // Both outer masses have their common centre at the piston's own.
-    const double outer = real.transverse_inertia > 0
-                             ? real.transverse_inertia / (centre * (length - centre))
-                             : 0;
+    const double outer =
+        real.transverse_inertia > 0 ? real.transverse_inertia / (centre * (length - centre)) : 0;
     hold(outer * (length - centre) / length, 0);
     hold(mass - outer, centre);
     hold(outer * centre / length, length);
@@ -113,9 +112,8 @@ Inertia BodyLoads::Implementation::piston_inertia(const Vector& axis, const Vect
   }
   hold(mass, centre);
   // H = It e x e' + Ia w_s e (appendix).
-  held.moment =
-      -real.transverse_inertia / (length * length) * cross(axis, axis_acceleration) -
-      real.axial_inertia * real.spin / length * axis_rate;
+  held.moment = -real.transverse_inertia / (length * length) * cross(axis, axis_acceleration) -
+                real.axial_inertia * real.spin / length * axis_rate;
   return held;
 }
 
@@ -134,8 +132,8 @@ void BodyLoads::Implementation::add_pistons(const Instant& instant, const State&
         p.frame, p.piston, state,
         state.sine * prepared.phase_cos[k] - state.cosine * prepared.phase_sin[k],
         state.cosine * prepared.phase_cos[k] + state.sine * prepared.phase_sin[k]);
-    const double friction = closed_form::friction_force(
-        prepared.friction, p.friction, m.ring_velocity(state.rate()), state.omega);
+    const double friction = closed_form::friction_force(prepared.friction, p.friction,
+                                                        m.ring_velocity(state.rate()), state.omega);
     const double rate = state.rate();
     const Inertia held =
         piston_inertia(m.axis, rate * m.axis_first,
@@ -189,8 +187,7 @@ void BodyLoads::Implementation::add_gear(const Instant& instant, const std::vect
     add(shaft, "shaft", "block", "Rcs", point, ForceKind::reaction, there, on_shaft);
   };
   if (!model.has_teeth()) {
-    const double tooth =
-        closed_form::Math<double>::direction(instant.shaft.speed) * row[at.Rcs()];
+    const double tooth = closed_form::Math<double>::direction(instant.shaft.speed) * row[at.Rcs()];
     put("O4", o4, turned(closed_form::tooth_on_block(gear, tooth).force),
         closed_form::tooth_on_shaft(gear, tooth).force);
     return;
@@ -271,9 +268,8 @@ std::vector<BodyLoad> BodyLoads::Implementation::all(const Instant& instant,
   std::vector<BodyLoad> loads;
   std::vector<BodyLoad> block;
   std::vector<BodyLoad> shaft;
-  with_state<double>(instant, [&](const auto& state) {
-    add_pistons(instant, state, row, loads, block, shaft);
-  });
+  with_state<double>(
+      instant, [&](const auto& state) { add_pistons(instant, state, row, loads, block, shaft); });
   // The gear's stand behind those of the pistons on either body.
   add_gear(instant, row, acting, block, shaft);
   add_block(instant, row, block);

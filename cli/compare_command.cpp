@@ -57,6 +57,7 @@ int compare(const Options& options) {
   if (!options.choice.accuracies.empty()) how.accuracies = options.choice.accuracies;
   how.target = options.choice.target();
   how.with = options.with;
+  how.body_loads = true;
   if (const auto data = shipped_reference_data()) how.published = *data / "published";
   const study::ComparisonResult result =
       study::compare_models(std::move(first), std::move(second), how, progress_of);

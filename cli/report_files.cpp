@@ -9,15 +9,22 @@ namespace bentaxis::cli {
 namespace {
 
 constexpr const char* kFigureList = "figures.csv";
-constexpr const char* kFigureListHead = "figure,title\n";
+constexpr const char* kFigureListHead = "file,figure,paper,title\n";
+constexpr const char* kFormerHead = "figure,title\n";  // of a list by an earlier version
+
+std::string quoted(std::string text) {
+  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
+    text.insert(at, "\"");
+  return "\"" + text + "\"";
+}
 
 // The files that a list of figures names.
 std::vector<std::string> files_of_list(const std::string& list) {
   std::vector<std::string> names;
-  if (!list.starts_with(kFigureListHead)) return names;
+  if (!list.starts_with(kFigureListHead) && !list.starts_with(kFormerHead)) return names;
   for (std::size_t at = list.find('\n') + 1; at < list.size(); at = list.find('\n', at) + 1) {
-    const std::string id = list.substr(at, list.find(',', at) - at);
-    for (const char* type : {".svg", ".png", ".csv"}) names.push_back(id + type);
+    const std::string file = list.substr(at, list.find(',', at) - at);
+    for (const char* type : {".svg", ".png", ".csv"}) names.push_back(file + type);
     if (list.find('\n', at) == std::string::npos) break;
   }
   return names;
@@ -65,13 +72,11 @@ void add_figure_files(OutputFolder& folder, const report::Document& document,
   std::string list = kFigureListHead;
   for (const report::Figure& figure : document.figures.value_or(std::vector<report::Figure>())) {
     const std::string svg = report::svg_of(figure, curves);
-    folder.add(figure.id + ".svg", svg);
-    folder.add(figure.id + ".png", report::png_of(svg));
-    folder.add(figure.id + ".csv", report::csv_of(figure, curves));
-    std::string title = figure.title;
-    for (std::size_t at = 0; (at = title.find('"', at)) != std::string::npos; at += 2)
-      title.insert(at, "\"");
-    list += figure.id + ",\"" + title + "\"\n";
+    const std::string file = report::file_name_of(figure);
+    folder.add(file + ".svg", svg);
+    folder.add(file + ".png", report::png_of(svg));
+    folder.add(file + ".csv", report::csv_of(figure, curves));
+    list += file + "," + figure.id + "," + quoted(figure.paper) + "," + quoted(figure.title) + "\n";
   }
   folder.add(kFigureList, list);
 }

@@ -45,8 +45,7 @@ class Rows {
     trajectory_.lag.push_back(s.motion[kLag]);
     if (TeethAction action; mechanics_.teeth(time, s.motion, action))
       trajectory_.teeth.push_back(action);
-    if (body_loads_)
-      trajectory_.loads.append(mechanics_.body_loads(time, s.motion, loads_));
+    if (body_loads_) trajectory_.loads.append(mechanics_.body_loads(time, s.motion, loads_));
 
     TrajectoryRecord& record = trajectory_.record;
     record.work_of_loads = s.motion[kWorkOfLoads] - work_of_loads_;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/report/picture.h"
 
 namespace bentaxis::report {
 namespace {
@@ -251,23 +252,26 @@ Json json_of(const DrawingFigure& figure) {
     json["y_range"] = {panel.y_low, panel.y_high};
     return json;
   };
-  const auto frame_of = [](const DrawingFigure::Frame& frame) {
+  const auto line_of = [](const DrawingFigure::Line& line) {
+    Json json = {{"panel", line.panel},
+                 {"look", line.look},
+                 {"width", line.width},
+                 {"x", drawn_values(line.x)},
+                 {"y", drawn_values(line.y)}};
+    if (line.value) json["value"] = number_or_null(*line.value);
+    return json;
+  };
+  const auto frame_of = [&](const DrawingFigure::Frame& frame) {
     return Json{{"theta_deg", frame.theta_deg},
                 {"text", frame.text},
-                {"lines", list_of(frame.lines,
-                                  [](const DrawingFigure::Line& line) {
-                                    Json json = {{"panel", line.panel},
-                                                 {"look", line.look},
-                                                 {"width", line.width},
-                                                 {"x", drawn_values(line.x)},
-                                                 {"y", drawn_values(line.y)}};
-                                    if (line.value) json["value"] = number_or_null(*line.value);
-                                    return json;
-                                  })},
+                {"lines", list_of(frame.lines, line_of)},
                 {"arrows", list_of(frame.arrows, [](const DrawingFigure::Arrow& arrow) {
-                   return Json{{"panel", arrow.panel},           {"look", arrow.look},
-                               {"x", number_or_null(arrow.x)},   {"y", number_or_null(arrow.y)},
-                               {"dx", number_or_null(arrow.dx)}, {"dy", number_or_null(arrow.dy)}};
+                   return Json{{"panel", arrow.panel},
+                               {"look", arrow.look},
+                               {"x", rounded(arrow.x, kPlotDigits)},
+                               {"y", rounded(arrow.y, kPlotDigits)},
+                               {"dx", rounded(arrow.dx, kPlotDigits)},
+                               {"dy", rounded(arrow.dy, kPlotDigits)}};
                  })}};
   };
   Json json = {
@@ -285,6 +289,8 @@ Json json_of(const DrawingFigure& figure) {
     json["shades"] = {{"label", figure.shades->label},
                       {"unit", figure.shades->unit},
                       {"range", {figure.shades->low, figure.shades->high}}};
+  if (!figure.ground.empty()) json["ground"] = list_of(figure.ground, line_of);
+  if (!figure.axis.empty()) json["axis"] = figure.axis;
   return json;
 }
 
@@ -337,6 +343,7 @@ Json json_of(const ParallelFigure& figure) {
 Json json_of(const Figure& figure) {
   Json json = std::visit([](const auto& content) { return json_of(content); }, figure.content);
   json["id"] = figure.id;
+  json["file"] = file_name_of(figure);
   json["title"] = figure.title;
   json["paper"] = figure.paper;
   json["note"] = figure.note;

@@ -116,17 +116,21 @@ std::string numbers(const ScatterFigure& figure, const Curves&) {
 
 std::string numbers(const DrawingFigure& figure, const Curves&) {
   std::string csv;
-  line(csv, std::string("theta_deg"), std::string("panel"), std::string("look"),
-       std::string("shape"), std::string("x"), std::string("y"));
+  line(csv, figure.axis.empty() ? "theta_deg" : figure.axis, std::string("panel"),
+       std::string("look"), std::string("shape"), std::string("x"), std::string("y"));
   const auto name = [&](int look) { return figure.looks[static_cast<std::size_t>(look)].label; };
-  for (const DrawingFigure::Frame& frame : figure.frames) {
-    double shape = 0;
-    for (const DrawingFigure::Line& drawn : frame.lines) {
+  double shape = 0;
+  const auto put = [&](const std::vector<DrawingFigure::Line>& lines, double theta_deg) {
+    for (const DrawingFigure::Line& drawn : lines) {
       ++shape;
       for (std::size_t i = 0; i < drawn.x.size(); ++i)
-        line(csv, frame.theta_deg, drawn.panel + 1.0, name(drawn.look), shape, drawn.x[i],
-             drawn.y[i]);
+        line(csv, theta_deg, drawn.panel + 1.0, name(drawn.look), shape, drawn.x[i], drawn.y[i]);
     }
+  };
+  put(figure.ground, not_computed());
+  for (const DrawingFigure::Frame& frame : figure.frames) {
+    shape = 0;
+    put(frame.lines, frame.theta_deg);
     for (const DrawingFigure::Arrow& arrow : frame.arrows) {
       ++shape;
       line(csv, frame.theta_deg, arrow.panel + 1.0, name(arrow.look), shape, arrow.x, arrow.y);

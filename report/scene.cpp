@@ -128,14 +128,9 @@ Json json_of(const SceneBody& body) {
 }
 
 Json json_of(const SceneLoad& load) {
-  Json json = {{"id", load.id},
-               {"label", load.label},
-               {"group", load.group},
-               {"kind", to_string(load.kind)},
-               {"on", load.on},
-               {"by", load.by},
-               {"point", load.point},
-               {"at", per_model(load.at)}};
+  Json json = {
+      {"id", load.id}, {"label", load.label}, {"group", load.group}, {"kind", to_string(load.kind)},
+      {"on", load.on}, {"by", load.by},       {"point", load.point}, {"at", per_model(load.at)}};
   if (!load.frame.empty()) json["frame"] = load.frame;
   if (!load.axes.empty()) json["axes"] = load.axes;
   if (!load.force.empty()) json["force"] = per_model(load.force);
@@ -147,15 +142,9 @@ Json json_of(const SceneLoad& load) {
 }  // namespace
 
 std::string compact_json(const Scene& scene) {
-  Json json = {{"models", scene.models},
-               {"rows", scene.rows},
-               {"series", Json::array()},
-               {"bodies", Json::array()},
-               {"loads", Json::array()},
-               {"sums", Json::array()},
-               {"frames", Json::array()},
-               {"centre", scene.centre},
-               {"radius", scene.radius},
+  Json json = {{"models", scene.models},  {"rows", scene.rows},     {"series", Json::array()},
+               {"bodies", Json::array()}, {"loads", Json::array()}, {"sums", Json::array()},
+               {"frames", Json::array()}, {"centre", scene.centre}, {"radius", scene.radius},
                {"note", scene.note}};
   for (const Values& series : scene.series) json["series"].push_back(base64_floats(series));
   for (const SceneBody& body : scene.bodies) json["bodies"].push_back(json_of(body));
@@ -169,7 +158,8 @@ std::string compact_json(const Scene& scene) {
   if (scene.film_point) json["film_point"] = json_of(*scene.film_point);
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   // The curves in the format of their own block, behind the rest.
-  if (scene.curves) text.replace(text.size() - 1, 1, ",\"curves\":" + compact_json(*scene.curves) + "}");
+  if (scene.curves)
+    text.replace(text.size() - 1, 1, ",\"curves\":" + compact_json(*scene.curves) + "}");
   return text;
 }
 

@@ -98,8 +98,8 @@ std::vector<BodySum> worst_sums(const BodyLoadTable& table) {
   std::vector<BodySum> sums;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     sum_up(
-        table.loads,
-        [&](std::size_t i) -> const BodyLoadTable::Row& { return table.at(row, i); }, sums);
+        table.loads, [&](std::size_t i) -> const BodyLoadTable::Row& { return table.at(row, i); },
+        sums);
     if (row == 0) worst = sums;
     for (std::size_t i = 0; i < sums.size(); ++i) {
       if (beyond(sums[i].force_over_sum, worst[i].force_over_sum)) {

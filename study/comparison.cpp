@@ -66,6 +66,10 @@ class Maker {
     return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
            result_.options.channels.wants(layout.channels()[layout.Td()]);
   }
+  bool has_loads() const {
+    return result_.options.body_loads && !integrated() &&
+           result_.options.scene.scene == multibody::Scene::full;
+  }
 
   RunOptions multibody_run(double accuracy) const {
     RunOptions options;
@@ -115,9 +119,11 @@ void Maker::run_models() {
   RunOptions analytic_run;
   analytic_run.budget = has_budget();
   analytic_run.teeth = has_teeth();
+  analytic_run.body_loads = has_loads();
   ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
   r.analytic = std::move(analytic.table);
   analytic_budget_ = std::move(analytic.budget);
+  r.analytic_loads = std::move(analytic.loads);
   if (integrated()) {
     integrate_all();
     return;
@@ -125,9 +131,11 @@ void Maker::run_models() {
   RunOptions driven = multibody_run(0);
   driven.budget = has_budget();
   driven.teeth = has_teeth();
+  driven.body_loads = has_loads();
   ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
   r.multibody = std::move(multibody.table);
   multibody_budget_ = std::move(multibody.budget);
+  r.multibody_loads = std::move(multibody.loads);
   if (analytic.teeth)
     r.teeth = compare_teeth(std::move(*analytic.teeth), std::move(*multibody.teeth), r.tolerance,
                             zero_scales_);

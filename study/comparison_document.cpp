@@ -9,7 +9,9 @@
 #include "bentaxis/report/text.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/regression_document.h"
 #include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
@@ -131,7 +133,11 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  describe_case(document, the_case);
+  std::optional<report::Scene> scene;
+  if (r.analytic_loads && r.multibody_loads)
+    scene =
+        pump_scene(the_case, {{r.analytic, *r.analytic_loads}, {r.multibody, *r.multibody_loads}});
+  describe_case(document, the_case, std::move(scene));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =
@@ -159,6 +165,10 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.runs.emplace();
   if (!r.integrations.empty()) document.runs->push_back(integration_section(r));
   document.figures = comparison_figures(r);
+  if (r.options.channels.all())
+    for (auto& figure :
+         force_figures({the_case, r.analytic, r.analytic_loads ? &*r.analytic_loads : nullptr}))
+      document.figures->push_back(std::move(figure));
   if (r.first.hydraulics) {
     document.runs->push_back(hydraulic_section(the_case, *r.first.hydraulics));
     for (auto& figure : hydraulic_figures(the_case, *r.first.hydraulics))

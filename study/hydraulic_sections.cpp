@@ -87,8 +87,12 @@ std::vector<report::Figure> hydraulic_figures(const Case& the_case,
       s.chamber_greatest / kPascalPerBar, s.chamber_greatest_deg, s.chamber_least / kPascalPerBar,
       s.chamber_least_deg, s.delivery_least / kPascalPerBar, s.delivery_greatest / kPascalPerBar,
       s.delivery_mean / kPascalPerBar);
-  add("openings", "Openings of chamber 1", "Fig. 10", "mm2",
+  add("openings", "Openings of chamber 1, and its pressure", "Fig. 10", "mm2",
       {{"to the suction port", "as_1_mm2"}, {"to the delivery port", "ad_1_mm2"}});
+  auto& openings = std::get<report::OwnFigure>(figures.back().content);
+  openings.value = "area";
+  openings.right = report::OwnFigure::Right{
+      "pressure", "bar", {{"pressure of chamber 1", report::values_of(state.table, "p_1_bar")}}};
 
   // The curve itself, over two turns.
   const PressureTrace curve(the_case.pressure);

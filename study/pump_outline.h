@@ -40,7 +40,7 @@ struct PumpOutline {
         bearing_half(0.13 * size),
         bearing_height(0.34 * size) {}
 
-  static constexpr double kFar = 3.2;  ///< of the pump's size: what lies beyond is named only
+  static constexpr double kFar = 3.2;        ///< of the pump's size: what lies beyond is named only
   static constexpr double kGearFace = 0.72;  ///< of the pitch cone: there its teeth begin
 
   bool is_far(double length) const { return std::abs(length) > kFar * size; }

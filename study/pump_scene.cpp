@@ -6,15 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/report/document.h"
 #include "bentaxis/results/channels.h"
+#include "bentaxis/results/samples.h"
 #include "pump_shapes.h"
 
 namespace bentaxis::study {
@@ -59,17 +64,12 @@ class SceneMaker {
     axes_["S4"] = tooth_axes(the_case.operation.speed_rpm < 0 ? -1 : 1);
   }
 
-  report::Scene scene(const SceneAngles* angles) {
-    for (const SceneRun& run : runs_) {
-      scene_.models.push_back(run.table.name);
-      if (run.table.rows() != runs_[0].table.rows() || run.loads.rows() != run.table.rows())
-        throw ComputationError("the pump in space: runs of different rows");
-    }
+  report::Scene scene(const SceneMotion* motion) {
+    for (const SceneRun& run : runs_) scene_.models.push_back(run.table.name);
     scene_.rows = runs_[0].table.rows();
     for (const char* frame : {"S1", "S2", "S4"}) scene_.frames.emplace_back(frame, axes_[frame]);
-    add_bodies(angles);
+    add_bodies(motion);
     add_loads();
-    add_sums();
     scene_.note = shapes_.note;
     return std::move(scene_);
   }
@@ -85,16 +85,15 @@ class SceneMaker {
     const double radius = p_.gear.pitch_diameter / 2, half = std::tan(g_.tilt / 2);
     const Vector3d i4 = Vector3d(0, -radius, radius * half).normalized();
     const double across = std::sin(p_.gear.pressure_angle);
-    const Vector3d k4 = direction * Vector3d(-std::cos(p_.gear.pressure_angle),
-                                             across * std::sin(g_.tilt / 2),
-                                             across * std::cos(g_.tilt / 2));
+    const Vector3d k4 =
+        direction * Vector3d(-std::cos(p_.gear.pressure_angle), across * std::sin(g_.tilt / 2),
+                             across * std::cos(g_.tilt / 2));
     return {point(i4), point(k4.cross(i4)), point(k4)};
   }
 
   Scalar add_series(report::Values values) {
     // What stays is a number.
-    if (std::all_of(values.begin(), values.end(),
-                    [&](double v) { return v == values.front(); }))
+    if (std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); }))
       return {values.front()};
     Scalar scalar{0, 1};
     scalar.series = scene_.series.size();
@@ -105,10 +104,9 @@ class SceneMaker {
     return {0, factor, layout_.channels()[column].name};
   }
 
-  void add_bodies(const SceneAngles* angles);
+  void add_bodies(const SceneMotion* motion);
   void add_pistons();
   void add_loads();
-  void add_sums();
   report::SceneLoad described(const BodyLoad& load);
   Place place_of(const BodyLoad& load, const SceneRun& run, std::size_t index);
   Terms force_of(const BodyLoad& load, const SceneRun& run, std::size_t index, double sign);
@@ -132,18 +130,17 @@ class SceneMaker {
 
 // ---- Bodies
 
-void SceneMaker::add_bodies(const SceneAngles* angles) {
-  const auto turning = [&](const std::vector<double> SceneAngles::*of) {
-    if (angles == nullptr) return report::Turning{{0, kRadPerDegree, "theta_deg"}};
+void SceneMaker::add_bodies(const SceneMotion* motion) {
+  const auto turning = [&](const std::vector<double> SceneMotion::*of) {
+    if (motion == nullptr) return report::Turning{{0, kRadPerDegree, "theta_deg"}};
     report::Values turn;
-    for (const double angle : angles->*of) turn.push_back(std::remainder(angle, 2 * kPi));
+    for (const double angle : motion->*of) turn.push_back(std::remainder(angle, 2 * kPi));
     return report::Turning{add_series(std::move(turn))};
   };
-  scene_.bodies.push_back(
-      {"shaft", {}, axes_["S1"], turning(&SceneAngles::shaft), shapes_.shaft});
+  scene_.bodies.push_back({"shaft", {}, axes_["S1"], turning(&SceneMotion::shaft), shapes_.shaft});
   add_pistons();
   scene_.bodies.push_back(
-      {"block", point(o2()), axes_["S2"], turning(&SceneAngles::block), shapes_.block});
+      {"block", point(o2()), axes_["S2"], turning(&SceneMotion::block), shapes_.block});
   scene_.bodies.push_back({"plate", point(o2() + turned(0, 0, outline_.block_to)), axes_["S2"],
                            report::Standing{}, shapes_.plate});
   scene_.bodies.push_back({"housing", {}, axes_["S1"], report::Standing{}, shapes_.housing});
@@ -218,8 +215,8 @@ Place SceneMaker::place_of(const BodyLoad& load, const SceneRun& run, std::size_
   if (starts(load.on, "piston") && load.point == "centre of mass")
     for (const BodyLoad& joint : run.loads.row(0))
       if (joint.on == load.on && joint.symbol == "Rs")
-        return {load.on, constant({0, 0,
-                                   (vector(run.loads.at(0, index).at) - vector(joint.at)).norm()})};
+        return {load.on,
+                constant({0, 0, (vector(run.loads.at(0, index).at) - vector(joint.at)).norm()})};
   if (load.symbol == "Fh" && at_film_point_)
     return {"plate",
             {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
@@ -366,17 +363,16 @@ report::SceneLoad SceneMaker::described(const BodyLoad& load) {
 
 void SceneMaker::add_loads() {
   at_film_point_ = film_point_is_near();
-  scene_.film_point = Place{
-      "plate",
-      {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
+  scene_.film_point =
+      Place{"plate",
+            {{{{1, 0, 0}, channel(layout_.xh(), 1e-3)}, {{0, 1, 0}, channel(layout_.yh(), 1e-3)}}}};
   // Loads of all models, each behind those before it where a model first has it.
   std::vector<BodyLoad> loads;
   for (const SceneRun& run : runs_) {
     auto next = loads.begin();
     for (const BodyLoad& load : run.loads.loads) {
-      const auto same = std::find_if(loads.begin(), loads.end(), [&](const BodyLoad& one) {
-        return same_load(one, load);
-      });
+      const auto same = std::find_if(loads.begin(), loads.end(),
+                                     [&](const BodyLoad& one) { return same_load(one, load); });
       next = (same != loads.end() ? same : loads.insert(next, load)) + 1;
     }
   }
@@ -412,22 +408,115 @@ void SceneMaker::add_loads() {
   }
 }
 
-void SceneMaker::add_sums() {
-  for (const SceneRun& run : runs_) {
+std::vector<report::SceneSum> sums_of(const std::vector<SceneRun>& runs) {
+  std::vector<report::SceneSum> sums;
+  for (const SceneRun& run : runs) {
     const std::vector<BodySum> worst = worst_sums(run.loads);
     for (std::size_t i = 0; i < worst.size(); ++i) {
-      if (scene_.sums.size() <= i) scene_.sums.push_back({worst[i].body, {}, {}});
-      scene_.sums[i].force_over_sum.push_back(worst[i].force_over_sum);
-      scene_.sums[i].moment_over_sum.push_back(worst[i].moment_over_sum);
+      if (sums.size() <= i) sums.push_back({worst[i].body, {}, {}});
+      sums[i].force_over_sum.push_back(worst[i].force_over_sum);
+      sums[i].moment_over_sum.push_back(worst[i].moment_over_sum);
     }
   }
+  return sums;
+}
+
+}  // namespace
+
+namespace {
+
+// Of what a scene names.
+report::Curves curves_of(const std::vector<SceneRun>& runs, const SceneMotion* motion) {
+  report::Curves curves;
+  curves.theta_deg = motion != nullptr ? motion->time_ms : runs[0].table.theta_deg;
+  if (motion != nullptr) curves.axis = "time (ms)";
+  for (const SceneRun& run : runs) {
+    report::Curves::Table columns{run.table.name, {}};
+    for (const Channel& channel : run.table.channels)
+      if (channel.kind != ChannelKind::check && channel.frame != "S3" && channel.quantity != "Tc")
+        columns.columns.emplace_back(channel.name, report::values_of(run.table, channel.name));
+    curves.tables.push_back(std::move(columns));
+  }
+  return curves;
+}
+
+std::vector<double> every(std::size_t step, const std::vector<double>& values,
+                          std::size_t columns = 1) {
+  std::vector<double> thin;
+  for (std::size_t at = 0; at < values.size(); at += step * columns)
+    thin.insert(thin.end(), values.begin() + at, values.begin() + at + columns);
+  return thin;
+}
+
+ResultTable every(std::size_t step, const ResultTable& table) {
+  ResultTable thin{table.name,
+                   table.channels,
+                   every(step, table.theta_deg),
+                   every(step, table.values, table.columns()),
+                   {}};
+  return thin;
+}
+
+BodyLoadTable every(std::size_t step, const BodyLoadTable& table) {
+  BodyLoadTable thin{table.loads, {}};
+  for (std::size_t row = 0; row < table.rows(); row += step)
+    for (std::size_t load = 0; load < table.loads.size(); ++load)
+      thin.values.push_back(table.at(row, load));
+  return thin;
 }
 
 }  // namespace
 
 report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs,
-                         const SceneAngles* angles) {
-  return SceneMaker(the_case, runs).scene(angles);
+                         const SceneMotion* motion) {
+  const std::size_t rows = runs.at(0).table.rows();
+  for (const SceneRun& run : runs)
+    if (run.table.rows() != rows || run.loads.rows() != rows)
+      throw ComputationError("the pump in space: runs of different rows");
+  std::vector<report::SceneSum> sums = sums_of(runs);
+  const std::size_t step = (rows + kMostSceneRows - 1) / kMostSceneRows;
+  if (step <= 1) {
+    report::Scene scene = SceneMaker(the_case, runs).scene(motion);
+    scene.sums = std::move(sums);
+    return scene;
+  }
+  std::deque<std::pair<ResultTable, BodyLoadTable>> thin;
+  std::vector<SceneRun> thinned;
+  for (const SceneRun& run : runs) {
+    thin.emplace_back(every(step, run.table), every(step, run.loads));
+    thinned.push_back({thin.back().first, thin.back().second});
+  }
+  SceneMotion some;
+  if (motion != nullptr)
+    some = {every(step, motion->time_ms), every(step, motion->shaft), every(step, motion->block)};
+  const SceneMotion* const of_some = motion != nullptr ? &some : nullptr;
+  report::Scene scene = SceneMaker(the_case, thinned).scene(of_some);
+  scene.curves = curves_of(thinned, of_some);
+  scene.sums = std::move(sums);
+  scene.note += fmt::format(" Shown: one of {} rows.", step);
+  return scene;
+}
+
+std::optional<report::Scene> analytic_scene(const Case& the_case) {
+  constexpr int kMostSamples = 120;
+  const PressureSpec& pressure = the_case.pressure;
+  if (pressure.kind == PressureKind::hydraulic && !pressure.computed &&
+      pressure.curve.theta_deg.empty())
+    return std::nullopt;
+  Case turn = the_case;
+  turn.operation.samples_per_revolution =
+      std::min(turn.operation.samples_per_revolution, kMostSamples);
+  try {
+    const Samples samples = sample_case(turn, PressureTrace(pressure));
+    const ResultTable table = analytic::run(turn, turn.analytic, samples);
+    const BodyLoadTable loads = analytic::run_body_loads(turn, turn.analytic, samples);
+    const std::vector<SceneRun> runs = {{table, loads}};
+    report::Scene scene = pump_scene(turn, runs);
+    if (!scene.curves) scene.curves = curves_of(runs, nullptr);
+    return scene;
+  } catch (const ComputationError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace bentaxis::study

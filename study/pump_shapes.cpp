@@ -31,7 +31,8 @@ Line circle(double radius, int points, Corner centre = {0, 0}) {
 
 // Between two radii from one angle to another, as those of a port.
 Line sector(double inner, double outer, double from_deg, double to_deg) {
-  const int pieces = std::max(2, static_cast<int>(std::ceil((to_deg - from_deg) / kDegreesPerPoint)));
+  const int pieces =
+      std::max(2, static_cast<int>(std::ceil((to_deg - from_deg) / kDegreesPerPoint)));
   Line line;
   const auto add = [&](double radius, int i) {
     const double psi = radians(from_deg + (to_deg - from_deg) * i / pieces);
@@ -110,8 +111,7 @@ void Shapes::shaft() {
     const Corner centre = {-g_.joint_circle_radius * std::sin(phi),
                            g_.joint_circle_radius * std::cos(phi)};
     const bool apart =
-        g_.pistons == 1 ||
-        2 * g_.joint_circle_radius * std::sin(kPi / g_.pistons) > 2.5 * o_.ball;
+        g_.pistons == 1 || 2 * g_.joint_circle_radius * std::sin(kPi / g_.pistons) > 2.5 * o_.ball;
     if (apart)
       shapes_.shaft.push_back({report::Prism{circle(1.22 * o_.ball, kBorePoints, centre),
                                              {circle(o_.ball, kBorePoints, centre)},
@@ -141,9 +141,9 @@ void Shapes::block() {
   std::vector<Line> bores;
   for (int k = 0; k < g_.pistons; ++k) {
     const double phi = -2 * kPi * k / g_.pistons;
-    bores.push_back(circle(o_.bore / 2, kBorePoints,
-                           {-g_.bore_circle_radius * std::sin(phi),
-                            g_.bore_circle_radius * std::cos(phi)}));
+    bores.push_back(
+        circle(o_.bore / 2, kBorePoints,
+               {-g_.bore_circle_radius * std::sin(phi), g_.bore_circle_radius * std::cos(phi)}));
   }
   // Bores that cut each other leave no block to draw.
   const bool apart =
@@ -166,11 +166,10 @@ void Shapes::block() {
 void Shapes::port(const PortArc& arc, Look look) {
   const PortPlate& plate = *p_.port_plate;
   const double end = std::min(arc.to_deg, arc.from_deg + 359.9);
-  shapes_.plate.push_back({report::Prism{sector(plate.r2, plate.r3, arc.from_deg, end),
-                                         {},
-                                         0.5 * o_.plate,
-                                         0.9 * o_.plate},
-                           look});
+  shapes_.plate.push_back(
+      {report::Prism{
+           sector(plate.r2, plate.r3, arc.from_deg, end), {}, 0.5 * o_.plate, 0.9 * o_.plate},
+       look});
   shapes_.plate.push_back({wire(sector(plate.r2, plate.r3, arc.from_deg, end), 0), look});
   // Both lands beside it.
   shapes_.plate.push_back({wire(sector(plate.r1, plate.r4, arc.from_deg, end), 0), look});
@@ -186,34 +185,34 @@ void Shapes::notches(const PlatePort& port, Look look) {
     const auto at = [&](double r, double angle) {
       return report::Point{-r * std::sin(angle), r * std::cos(angle), 0};
     };
-    shapes_.plate.push_back({report::Wire{{at(middle - 0.3 * half, psi), at(middle, tip),
-                                           at(middle + 0.3 * half, psi)},
-                                          false},
-                             look});
+    shapes_.plate.push_back(
+        {report::Wire{{at(middle - 0.3 * half, psi), at(middle, tip), at(middle + 0.3 * half, psi)},
+                      false},
+         look});
   };
   notch(port.arc.from_deg, -port.notch.length_deg);
   notch(port.arc.to_deg, port.trailing_notch.length_deg);
   if (port.groove.area > 0)
-    shapes_.plate.push_back({wire(sector(middle - port.groove.width / 2,
-                                         middle + port.groove.width / 2, port.groove.from_deg,
-                                         port.groove.to_deg),
-                                  0),
-                             look});
+    shapes_.plate.push_back(
+        {wire(sector(middle - port.groove.width / 2, middle + port.groove.width / 2,
+                     port.groove.from_deg, port.groove.to_deg),
+              0),
+         look});
   for (const PlateHole& hole : port.holes)
     if (hole.diameter > 0) {
       const double psi = radians(hole.angle_deg);
-      shapes_.plate.push_back(
-          {wire(circle(hole.diameter / 2, kBorePoints,
-                       {-g_.bore_circle_radius * std::sin(psi),
-                        g_.bore_circle_radius * std::cos(psi)}),
-                0),
-           look});
+      shapes_.plate.push_back({wire(circle(hole.diameter / 2, kBorePoints,
+                                           {-g_.bore_circle_radius * std::sin(psi),
+                                            g_.bore_circle_radius * std::cos(psi)}),
+                                    0),
+                               look});
     }
 }
 
 void Shapes::plate() {
   const bool fits = p_.port_plate && !o_.is_far(p_.port_plate->r4);
-  const double radius = fits ? std::max(o_.block_radius, 1.06 * p_.port_plate->r4) : o_.block_radius;
+  const double radius =
+      fits ? std::max(o_.block_radius, 1.06 * p_.port_plate->r4) : o_.block_radius;
   std::vector<Line> holes;
   if (fits)
     for (const PortArc& arc : {p_.port_plate->delivery, p_.port_plate->suction})
@@ -253,8 +252,7 @@ void Shapes::bearings() {
                                               {high, z + half},
                                               {low, z + half},
                                               {low, z - half}}},
-                               Look::bearing,
-                               true});
+                               Look::bearing, true});
   }
 }
 
@@ -282,8 +280,7 @@ report::Mesh teeth(const BevelTooth& tooth, double apex_z, double up, double ahe
       for (int j = 0; j < 2 * kPoints; ++j) {
         const int step = j < kPoints ? j : 2 * kPoints - 1 - j;
         const double polar = tooth.root() + (tooth.tip() - tooth.root()) * step / (kPoints - 1);
-        const double azimuth =
-            middle + (j < kPoints ? 1 : -1) * tooth.half_angle(polar);
+        const double azimuth = middle + (j < kPoints ? 1 : -1) * tooth.half_angle(polar);
         mesh.points.push_back({-distance * std::sin(polar) * std::sin(azimuth),
                                distance * std::sin(polar) * std::cos(azimuth),
                                apex_z + up * distance * std::cos(polar)});
@@ -353,7 +350,8 @@ void Shapes::pin() {
     return report::Point{0, z * o_.sine, g_.axis_offset + z * o_.cosine};
   };
   shapes_.housing.push_back({report::Ball{on_axis(p_.block.pin_z), 0.1 * o_.size}, Look::pin});
-  shapes_.housing.push_back({report::Wire{{on_axis(0), on_axis(p_.block.pin_z)}, false}, Look::pin});
+  shapes_.housing.push_back(
+      {report::Wire{{on_axis(0), on_axis(p_.block.pin_z)}, false}, Look::pin});
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bentaxis/analytic/body_loads.h"
 #include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/teeth.h"
@@ -34,6 +35,8 @@ void check(const RunOptions& options) {
     throw InputError("a torque budget is of a driven run of the full pump");
   if (options.teeth && (integrated || options.scene.scene != multibody::Scene::full))
     throw InputError("what teeth do is of a driven run of the full pump");
+  if (options.body_loads && (integrated || options.scene.scene != multibody::Scene::full))
+    throw InputError("loads on all bodies are of a driven run of the full pump");
 }
 
 // Tables of a run, and what a comparison makes of them, lie in memory.
@@ -129,13 +132,15 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
     result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"),
                                  options.teeth ? &*result.teeth : nullptr);
     if (options.budget) result.budget = analytic::run_budget(the_case, assumptions, samples);
+    if (options.body_loads) result.loads = analytic::run_body_loads(the_case, assumptions, samples);
   } else if (options.way == Way::driven) {
     if (options.budget) result.budget.emplace();
     if (options.teeth) result.teeth.emplace();
-    result.table = multibody::run_driven(the_case, assumptions, samples, progress_of("multibody"),
-                                         options.scene.scene, options.scene.method,
-                                         options.budget ? &*result.budget : nullptr,
-                                         options.teeth ? &*result.teeth : nullptr);
+    if (options.body_loads) result.loads.emplace();
+    result.table = multibody::run_driven(
+        the_case, assumptions, samples, progress_of("multibody"), options.scene.scene,
+        options.scene.method, options.budget ? &*result.budget : nullptr,
+        options.teeth ? &*result.teeth : nullptr, options.body_loads ? &*result.loads : nullptr);
   } else if (options.target) {
     const auto& among = options.target->integrators;
     VerifiedRun verified =

@@ -11,7 +11,9 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/comparison.h"
+#include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth.h"
 
 namespace bentaxis::study {
@@ -426,6 +428,32 @@ std::vector<report::Warning> warnings_of(const SimulationResult& r) {
   return warnings;
 }
 
+std::optional<report::Scene> scene_of(const SimulationResult& r) {
+  std::vector<SceneRun> shown;
+  SceneMotion motion;
+  for (const auto& [name, run] : runs_of(r)) {
+    if (run->loads.rows() != run->lag.size()) return std::nullopt;
+    shown.push_back({run->table.results, run->loads});
+  }
+  const Trajectory& first = *runs_of(r).front().second;
+  motion.time_ms = times_of(first);
+  for (std::size_t row = 0; row < first.lag.size(); ++row) {
+    motion.shaft.push_back(radians(first.table.state(row, 1)));
+    motion.block.push_back(motion.shaft.back() - first.lag[row]);
+  }
+  return pump_scene(r.ready.the_case, shown, &motion);
+}
+
+std::vector<report::Figure> diagrams_of(const SimulationResult& r) {
+  const auto& [name, run] = runs_of(r).front();
+  DiagramRun shown{r.ready.the_case, run->table.results, &run->loads};
+  shown.time_ms = times_of(*run);
+  for (std::size_t row = 0; row < run->lag.size(); ++row)
+    shown.block_deg.push_back(run->table.state(row, 1) - run->lag[row] / kRadPerDegree);
+  shown.constant_ports = !r.oil_follows;
+  return force_figures(shown);
+}
+
 report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
@@ -440,7 +468,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  describe_case(document, the_case);
+  describe_case(document, the_case, scene_of(r));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =
@@ -480,6 +508,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
     document.models->push_back(std::move(model));
   }
   document.figures = figures_of(r);
+  for (auto& figure : diagrams_of(r)) document.figures->push_back(std::move(figure));
   if (r.has_teeth() && r.analytic)
     document.figures->push_back(teeth_picture(
         r.ready.the_case.pump, teeth_table_of(*r.analytic, r.ready.the_case.pump.gear).results));

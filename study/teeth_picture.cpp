@@ -45,7 +45,9 @@ class Mesh {
     across_ = up_.cross(towards_o4_);
   }
 
-  double pitch_length() const { return 1e3 * distance_ * std::sin(tooth_.pitch_cone()) * tooth_.pitch(); }
+  double pitch_length() const {
+    return 1e3 * distance_ * std::sin(tooth_.pitch_cone()) * tooth_.pitch();
+  }
   double distance() const { return 1e3 * distance_; }
   double face_width() const { return 1e3 * teeth_.face_width; }
   double depth() const { return 1e3 * (teeth_.addendum + teeth_.dedendum); }

@@ -12,6 +12,13 @@
 #include <vector>
 
 #include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/analytic/mechanics.h"
+#include "bentaxis/analytic/simulation.h"
+#include "bentaxis/coupled/prescribed_oil.h"
+#include "bentaxis/coupled/simulation.h"
+#include "bentaxis/multibody/mechanics.h"
+#include "bentaxis/multibody/model.h"
+#include "bentaxis/multibody/simulation.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/run.h"
 #include "free_bodies.h"
@@ -131,9 +138,8 @@ TEST(BodyLoadTable, RefusesARowWithOtherLoads) {
 // ---- the closed form ---------------------------------------------------------------------------
 
 TEST(AnalyticLoads, BalanceOnRandomPumps) {
-  for_each_pump(300, [](const Drawn& d) {
-    expect_balance(sums_of(d.loads()), d.pump.geometry.pistons + 2);
-  });
+  for_each_pump(
+      300, [](const Drawn& d) { expect_balance(sums_of(d.loads()), d.pump.geometry.pistons + 2); });
 }
 
 TEST(AnalyticLoads, BalanceInEveryRowOfTheStoredCases) {
@@ -228,14 +234,199 @@ TEST(AnalyticLoads, AreThoseOfTheFreeBodiesWrittenOut) {
       std::vector<double> off = values;
       off[c] += 1e-3 * (1 + std::abs(off[c]));
       double worst = 0;
-      for (const BodySum& sum : sums_of(analytic::BodyLoads(d.pump, d.assumptions)
-                                            .of_row(d.instant, off, TeethAction())))
+      for (const BodySum& sum : sums_of(
+               analytic::BodyLoads(d.pump, d.assumptions).of_row(d.instant, off, TeethAction())))
         worst = std::max(worst, left(sum));
       EXPECT_GT(worst, 100 * kSum) << model.layout().channels()[c].name;
       EXPECT_GT(free_body_residual(d.pump, d.assumptions, d.instant, off), 100 * kSum)
           << model.layout().channels()[c].name;
     }
   });
+}
+
+// ---- the multibody model -----------------------------------------------------------------------
+
+// Of a body's largest load: what both models may differ by.
+constexpr double kAgreement = 1e-9;
+
+// Largest force on a body, and largest moment about its first load's point.
+struct Largest {
+  double force = 0, moment = 0;
+};
+
+std::array<double, 3> moment_about(const BodyLoad& load, const std::array<double, 3>& point) {
+  std::array<double, 3> r = {};
+  for (int i = 0; i < 3; ++i) r[i] = load.at[i] - point[i];
+  const auto& f = load.force;
+  return {load.moment[0] + r[1] * f[2] - r[2] * f[1], load.moment[1] + r[2] * f[0] - r[0] * f[2],
+          load.moment[2] + r[0] * f[1] - r[1] * f[0]};
+}
+
+void expect_agreement(const std::vector<BodyLoad>& first, const std::vector<BodyLoad>& second) {
+  ASSERT_EQ(first.size(), second.size());
+  std::map<std::string, Largest> largest;
+  std::map<std::string, std::array<double, 3>> about;
+  for (const BodyLoad& load : first) {
+    about.emplace(load.on, load.at);
+    Largest& on = largest[load.on];
+    on.force = std::max(on.force, norm(load.force));
+    on.moment = std::max(on.moment, norm(moment_about(load, about[load.on])));
+  }
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const BodyLoad& a = first[i];
+    const BodyLoad& b = second[i];
+    ASSERT_TRUE(same_load(a, b)) << name_of(a) << ", but " << name_of(b);
+    const Largest& on = largest[a.on];
+    const auto moment_a = moment_about(a, about[a.on]);
+    const auto moment_b = moment_about(b, about[a.on]);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(a.at[axis], b.at[axis], scaled(1e-10)) << name_of(a);
+      EXPECT_NEAR(a.force[axis], b.force[axis], scaled(kAgreement) * on.force) << name_of(a);
+      EXPECT_NEAR(moment_a[axis], moment_b[axis], scaled(kAgreement) * on.moment) << name_of(a);
+    }
+  }
+}
+
+TEST(MultibodyLoads, BalanceAndAgreeWithTheClosedFormOnRandomPumps) {
+  for_each_pump(40, [](const Drawn& d) {
+    multibody::Model model(d.pump, d.assumptions, d.instant.shaft.speed);
+    std::vector<double> values(model.layout().size());
+    model.evaluate(d.instant, values);
+    const std::vector<BodyLoad> loads = model.body_loads();
+    expect_balance(sums_of(loads), d.pump.geometry.pistons + 2);
+    expect_agreement(d.loads(), loads);
+  });
+}
+
+TEST(MultibodyLoads, BalanceByEitherMethod) {
+  for_each_pump(20, [](const Drawn& d) {
+    if (d.pump.piston.contact) return;
+    for (const auto method : {multibody::Method::multipliers, multibody::Method::residual}) {
+      multibody::Model model(d.pump, d.assumptions, d.instant.shaft.speed, multibody::Scene::full,
+                             method);
+      std::vector<double> values(model.layout().size());
+      model.evaluate(d.instant, values);
+      expect_balance(sums_of(model.body_loads()), d.pump.geometry.pistons + 2);
+    }
+  });
+}
+
+TEST(MultibodyLoads, BalanceAndAgreeInEveryRowOfTheStoredCases) {
+  for (const auto& file : stored_cases()) {
+    SCOPED_TRACE(file);
+    study::ReadyCase ready = study::prepare(read_case(file));
+    const Case& the_case = ready.the_case;
+    const Samples samples = ready.samples(study::Way::driven);
+    BodyLoadTable loads;
+    multibody::run_driven(the_case, the_case.analytic, samples, {}, multibody::Scene::full, {},
+                          nullptr, nullptr, &loads);
+    const BodyLoadTable analytic = analytic::run_body_loads(the_case, the_case.analytic, samples);
+    ASSERT_EQ(loads.rows(), samples.theta_deg.size());
+    expect_balance(worst_sums(loads), the_case.pump.geometry.pistons + 2);
+    for (std::size_t row = 0; row < loads.rows(); row += 5) {
+      SCOPED_TRACE("row " + std::to_string(row));
+      expect_agreement(analytic.row(row), loads.row(row));
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+}
+
+// Where models make different assumptions, loads that only one has differ, and no others.
+TEST(MultibodyLoads, AnImposedBlockHasItsTorqueInsteadOfTheToothForce) {
+  const Drawn d(7, false);
+  Assumptions imposed = d.assumptions;
+  imposed.gear = BlockDrive::imposed;
+  const auto loads = analytic::BodyLoads(d.pump, imposed).evaluate(d.instant);
+  const auto count = [&](const std::string& symbol) {
+    return std::count_if(loads.begin(), loads.end(),
+                         [&](const BodyLoad& load) { return load.symbol == symbol; });
+  };
+  EXPECT_EQ(count("Rcs"), 0);
+  EXPECT_EQ(count("Tcs"), 1);
+  multibody::Model model(d.pump, imposed, d.instant.shaft.speed);
+  std::vector<double> values(model.layout().size());
+  model.evaluate(d.instant, values);
+  expect_agreement(loads, model.body_loads());
+  const Assumptions mesh{true, d.assumptions.inertia, BlockDrive::mesh};
+  model = multibody::Model(d.pump, mesh, d.instant.shaft.speed);
+  EXPECT_FALSE(same_load(
+      loads[6 * d.pump.geometry.pistons + 3 * d.pump.geometry.pistons],
+      analytic::BodyLoads(d.pump, mesh).evaluate(d.instant)[9 * d.pump.geometry.pistons]));
+}
+
+// ---- simulations -------------------------------------------------------------------------------
+
+Case simulated_case(const std::string& name, double duration, int samples) {
+  Case the_case =
+      read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / (name + ".toml"));
+  the_case.drive->duration = duration;
+  the_case.drive->samples = samples;
+  return the_case;
+}
+
+void expect_balanced_rows(const Case& the_case, const Trajectory& run) {
+  ASSERT_EQ(run.loads.rows(), run.lag.size());
+  expect_balance(worst_sums(run.loads), the_case.pump.geometry.pistons + 2);
+}
+
+// Td of the rows is that of the loads.
+void expect_torque_of_rows(const Trajectory& run) {
+  std::size_t drive = 0;
+  while (run.loads.loads[drive].symbol != "Td") ++drive;
+  const ResultTable& table = run.table.results;
+  const double peak = table.peak("Td");
+  for (std::size_t row = 0; row < run.loads.rows(); ++row)
+    EXPECT_NEAR(run.loads.at(row, drive).moment[2], table.at(row, table.find("Td_z1_Nm")),
+                scaled(1e-12) * peak);
+}
+
+TEST(SimulatedLoads, BalanceInEveryRowOfBothModels) {
+  for (const std::string name : {"bap63_motor_start", "bap63_tooth_rattle"}) {
+    SCOPED_TRACE(name);
+    const Case the_case = simulated_case(name, 0.01, 60);
+    const PressureTrace pressure(the_case.pressure);
+    analytic::SimulationOptions options;
+    options.body_loads = true;
+    const Trajectory a = analytic::simulate(the_case, the_case.analytic, pressure, options);
+    expect_balanced_rows(the_case, a);
+    expect_torque_of_rows(a);
+    SimulationOptions coarse;
+    coarse.accuracy = 1e-6;
+    coarse.body_loads = true;
+    const Trajectory m = multibody::simulate(the_case, the_case.analytic, pressure, coarse);
+    expect_balanced_rows(the_case, m);
+    expect_torque_of_rows(m);
+    EXPECT_TRUE(std::equal(a.loads.loads.begin(), a.loads.loads.end(), m.loads.loads.begin(),
+                           m.loads.loads.end(), same_load));
+    coarse.body_loads = false;
+    EXPECT_EQ(multibody::simulate(the_case, the_case.analytic, pressure, coarse).loads.rows(), 0);
+  }
+}
+
+// Teeth in contact, and the rows of what is integrated with oil.
+TEST(SimulatedLoads, BalanceWhereTeethTouch) {
+  Case the_case = simulated_case("bap63_tooth_rattle", 2e-3, 40);
+  const Case toothed = simulated_case("bap63_teeth", 0, 0);
+  the_case.pump.gear = toothed.pump.gear;
+  const PressureTrace pressure(the_case.pressure);
+  coupled::Options options;
+  options.tolerance = 1e-7;
+  options.body_loads = true;
+  for (const study::Model model : study::kModels) {
+    SCOPED_TRACE(to_string(model));
+    const auto oil =
+        coupled::prescribed_oil(the_case.pump.geometry.pistons, pressure, the_case.pressure.ports);
+    const auto mechanics = model == study::Model::analytic
+                               ? analytic::mechanics(the_case, the_case.analytic)
+                               : multibody::mechanics(the_case, the_case.analytic);
+    const Trajectory run =
+        coupled::simulate(to_string(model), *mechanics, *oil, *the_case.drive, options);
+    expect_balanced_rows(the_case, run);
+    expect_torque_of_rows(run);
+    EXPECT_EQ(std::count_if(run.loads.loads.begin(), run.loads.loads.end(),
+                            [](const BodyLoad& load) { return load.symbol == "Rcs"; }),
+              2 * 2 * kPairsPerFlank);
+  }
 }
 
 }  // namespace

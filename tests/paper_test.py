@@ -242,7 +242,7 @@ class HandOnTest(unittest.TestCase):
         for (name, width, dark), page in self.measured.items():
             with self.subTest(name, width=width):
                 self.assertEqual(page["errors"], [])
-                ids = [f["id"] for f in self.reports[name].get("figures", [])]
+                ids = [f["file"] for f in self.reports[name].get("figures", [])]
                 self.assertEqual(page["buttons"], 3 * len(ids))
                 self.assertEqual(set(page["files"]), {f"{i}.{t}" for i in ids for t in ("svg", "png", "csv")})
                 for figure in ids:
@@ -273,10 +273,10 @@ class HandOnTest(unittest.TestCase):
     def test_files_hold_the_curves(self):
         with open(self.folder / "compare" / "analytic.csv") as file:
             model = [float(row["Td_z1_Nm"]) for row in csv.DictReader(file)]
-        with open(self.folder / "compare" / "figures" / "td.csv") as file:
+        with open(self.folder / "compare" / "figures" / "fig17_30_td.csv") as file:
             figure = [float(row["Td_z1_Nm analytic"]) for row in csv.DictReader(file)]
         self.assertEqual(model, figure)
-        svg = ElementTree.parse(self.folder / "compare" / "figures" / "td.svg").getroot()
+        svg = ElementTree.parse(self.folder / "compare" / "figures" / "fig17_30_td.svg").getroot()
         self.assertIn("Drive torque Td", "".join(svg.itertext()))
 
     def test_figures_of_an_earlier_run_go(self):
@@ -285,8 +285,8 @@ class HandOnTest(unittest.TestCase):
         (self.folder / "again" / "figures" / "mine.txt").write_text("keep")
         run(self.folder, "compare", "case.toml", "--channels", "Td", "--out", "again", "--figures", "again/figures")
         after = {f.name for f in (self.folder / "again" / "figures").iterdir()}
-        self.assertIn("rs.png", before)
-        self.assertEqual(after, {"figures.csv", "mine.txt"} | {f"{figure}.{kind}" for figure in ("td", "torque_budget")
+        self.assertIn("fig12_rs.png", before)
+        self.assertEqual(after, {"figures.csv", "mine.txt"} | {f"{figure}.{kind}" for figure in ("fig17_30_td", "torque_budget")
                                                            for kind in ("svg", "png", "csv")})
 
     # ---- Screen
@@ -320,10 +320,10 @@ class HandOnTest(unittest.TestCase):
         self.assertEqual(self.measured["compare", 1400, False]["words"], ["Agrees", "rig: agrees"])
         note = next(f["note"] for f in self.reports["compare"]["figures"] if f["id"] == "td")
         self.assertRegex(note, r"rig: Td agrees: 0\.\d+ % of peak .* 1 % allowed; Td_z1_Nm at [\d.]+ deg")
-        svg = (self.folder / "compare" / "figures" / "td.svg").read_text()
+        svg = (self.folder / "compare" / "figures" / "fig17_30_td.svg").read_text()
         self.assertIn("each model minus rig", svg)
         self.assertIn('class="band"', svg)
-        self.assertNotIn('class="band"', (self.folder / "compare" / "figures" / "rs.svg").read_text())
+        self.assertNotIn('class="band"', (self.folder / "compare" / "figures" / "fig12_rs.svg").read_text())
 
     def test_a_reference_that_differs_decides(self):
         done = run(self.folder, "compare", "case.toml", "--with", "bad_rig", "--out", "bad", status=1)

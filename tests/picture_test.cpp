@@ -323,6 +323,175 @@ TEST(Picture, DrawingShowsOneFrameToScaleAndHandsOutAll) {
             "38,1,force,2,2,2\n38,1,force,2,2,3\n");
 }
 
+// Places of the curve's ends and marks are counted in pixels: 622 across from 82, 185 or 230 up.
+TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
+  Curves curves = curves_of({{"R", {0, 4, 0, -4, 0}}}, 90);
+  ChannelFigure content{"N", {"R"}};
+  const auto heights = [&] {
+    double top = 1e9, bottom = -1e9;
+    for (const auto& curve : drawn(svg_of({"id", "t", "", content}, curves)))
+      for (const auto& point : curve) {
+        top = std::min(top, point[1]);
+        bottom = std::max(bottom, point[1]);
+      }
+    return std::pair{top, bottom};
+  };
+  const auto marks = [&] {
+    const auto document = read(svg_of({"id", "t", "", content}, curves));
+    std::vector<std::string> texts;
+    for (const auto& found : document.select_nodes("//path[@class='beyond']/title"))
+      texts.emplace_back(found.node().text().get());
+    return texts;
+  };
+  EXPECT_TRUE(marks().empty());
+  content.ends = Ends{-5, 5};
+  const auto [wide_top, wide_bottom] = heights();
+  EXPECT_NEAR(wide_bottom - wide_top, 185 * 8.0 / 10, 0.02);  // the axis has no margin beyond them
+  EXPECT_TRUE(marks().empty());
+  content.ends = Ends{-2, 5};
+  const auto [top, bottom] = heights();
+  EXPECT_NEAR(bottom - top, 185 * 6.0 / 7, 0.13);  // 4 above 0, 2 below; cut within a hair
+  EXPECT_THAT(marks(), testing::ElementsAre("beyond the axis: -4 at 270"));
+  content.ends = Ends{-2, 3};
+  EXPECT_THAT(marks(),
+              testing::ElementsAre("beyond the axis: 4 at 90", "beyond the axis: -4 at 270"));
+  // Cut where it crosses: half way between 180 and 270 deg it is at -2.
+  content.ends = Ends{-2, 5};
+  const auto pieces = drawn(svg_of({"id", "t", "", content}, curves))[0];
+  double lowest = -1e9, at = 0;
+  for (const auto& point : pieces)
+    if (point[1] > lowest + 1e-9) {
+      lowest = point[1];
+      at = point[0];
+    }
+  EXPECT_NEAR(at, 82 + 622 * 225.0 / 360, 0.3);
+}
+
+TEST(Picture, AnAxisOfAPlaneEndsWhereItIsTold) {
+  XyFigure content{
+      {"a", "m", false, 0.0, 10.0}, {"b", "N", false, 0.0, 4.0}, {{"s", {0, 10}, {0, 4}}}};
+  const auto curve = drawn(svg_of({"id", "t", "", content})).at(0);
+  EXPECT_NEAR(curve[0][0], 82, 0.06);
+  EXPECT_NEAR(curve[1][0], 704, 0.06);
+  EXPECT_NEAR(curve[0][1] - curve[1][1], 250, 0.06);
+}
+
+TEST(Picture, EqualAxesDrawACircleRound) {
+  XyFigure content{{"x", "N"}, {"y", "N"}, {{"circle", {}, {}}}};
+  for (int i = 0; i <= 360; ++i) {
+    content.series[0].x.push_back(3 * std::cos(i * 3.14159265358979 / 180));
+    content.series[0].y.push_back(3 * std::sin(i * 3.14159265358979 / 180));
+  }
+  content.points = {{"start", 3, 0}, {"further", 9, 0}};
+  const auto span = [&] {
+    std::array<double, 4> box = {1e9, -1e9, 1e9, -1e9};
+    const auto curve = drawn(svg_of({"id", "t", "", content})).at(0);
+    for (const auto& point : curve) {
+      box = {std::min(box[0], point[0]), std::max(box[1], point[0]), std::min(box[2], point[1]),
+             std::max(box[3], point[1])};
+    }
+    return std::pair{box[1] - box[0], box[3] - box[2]};
+  };
+  EXPECT_GT(span().first, 1.2 * span().second);
+  content.equal = true;
+  EXPECT_NEAR(span().first, span().second, 0.3);
+  const std::string svg = svg_of({"id", "t", "", content});
+  EXPECT_THAT(svg, HasSubstr(">start<"));
+  // A point belongs to what is seen: 9 N right of 0 is within the frame.
+  const auto document = read(svg);
+  double rightmost = 0;
+  for (const auto& found : document.select_nodes("//circle"))
+    rightmost = std::max(rightmost, found.node().attribute("cx").as_double());
+  EXPECT_LT(rightmost, 704);
+  EXPECT_GT(rightmost, 82 + span().first);
+}
+
+TEST(Picture, CurvesOnTheRightHaveTheirOwnAxis) {
+  OwnFigure content{"cm3", "time (ms)", false, {0, 1, 2}, {{"volume", {0, 6, 12}}}};
+  content.value = "volume";
+  content.right = OwnFigure::Right{"pressure", "bar", {{"chamber", {250, 125, 0}}}};
+  const Figure figure{"id", "t", "", content};
+  const std::string svg = svg_of(figure);
+  const auto curves = drawn(svg);
+  ASSERT_EQ(curves.size(), 2U);
+  // Each fills its own axis: they cross in the middle of the panel, at both ends they are apart.
+  EXPECT_NEAR(curves[0].front()[1], curves[1].back()[1], 0.02);
+  EXPECT_NEAR(curves[0].back()[1], curves[1].front()[1], 0.02);
+  EXPECT_GT(curves[0].front()[1] - curves[0].back()[1], 190);
+  for (const char* text :
+       {">volume (cm3)<", ">pressure (bar)<", ">chamber (right)<", ">250<", ">12<"})
+    EXPECT_THAT(svg, HasSubstr(text));
+  EXPECT_EQ(csv_of(figure), "time (ms),volume,chamber (bar)\n0,0,250\n1,6,125\n2,12,0\n");
+}
+
+TEST(Picture, StackedAreasLieUponEachOtherByTheirSign) {
+  OwnFigure content{"Nm", "time (ms)", false, {0, 1}, {{"sum", {3, -1}}}};
+  content.stack = {{"a", {1, 2}}, {"b", {2, -4}}, {"c", {0, 1}}};
+  const Figure figure{"id", "t", "", content};
+  const auto document = read(svg_of(figure));
+  std::vector<std::vector<double>> heights;  // of the corners, lower edge there and upper edge back
+  for (const auto& found : document.select_nodes("//polygon[@class='band']")) {
+    std::string text = found.node().attribute("points").value();
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream in(text);
+    heights.emplace_back();
+    for (double x = 0, y = 0; in >> x >> y;) heights.back().push_back(y);
+  }
+  ASSERT_EQ(heights.size(), 6U);  // above and below 0 of each
+  const double zero = heights[0][0];
+  const double unit = zero - heights[0][3];  // a at 0 is 1
+  const auto value = [&](std::size_t band, std::size_t corner) {
+    return (zero - heights[band][corner]) / unit;
+  };
+  const std::vector<std::array<double, 4>> expected = {
+      {0, 0, 2, 1}, {0, 0, 0, 0},   // a: low at 0, low at 1, high at 1, high at 0
+      {1, 2, 2, 3}, {0, -4, 0, 0},  // b: 2 upon a; then 4 below 0
+      {3, 2, 3, 3}, {0, -4, -4, 0}};
+  for (std::size_t band = 0; band < expected.size(); ++band)
+    for (std::size_t corner = 0; corner < 4; ++corner)
+      EXPECT_NEAR(value(band, corner), expected[band][corner], 0.01) << band << " " << corner;
+  EXPECT_EQ(csv_of(figure), "time (ms),sum,a,b,c\n0,3,1,2,0\n1,-1,2,-4,1\n");
+}
+
+TEST(Picture, AShadeOfADrawingSaysItsValue) {
+  DrawingFigure drawing{
+      {{"port", 9}}, {{{"x", "mm"}, {"y", "mm"}, 0, 10, 0, 5}}, {{4, "", {}, {}}}};
+  drawing.shades = DrawingFigure::Shades{"pressure", "bar", 0, 200};
+  drawing.axis = "time (ms)";
+  const auto box = [](double from, double value) {
+    return DrawingFigure::Line{0, 0, 1, {from, from + 1, from + 1, from}, {1, 1, 2, 1}, value};
+  };
+  drawing.ground = {box(1, 0)};
+  drawing.frames[0].lines = {box(3, 200), box(5, 100)};
+  const Figure figure{"id", "t", "", drawing};
+  const std::string svg = svg_of(figure);
+  const auto document = read(svg);
+  std::vector<std::string> fills, keys;
+  for (const auto& found : document.select_nodes("//path[@fill-opacity='1']"))
+    fills.emplace_back(found.node().attribute("fill").value());
+  for (const auto& found : document.select_nodes("//rect[not(@class)]"))
+    keys.emplace_back(found.node().attribute("fill").value());
+  ASSERT_EQ(keys.size(), 5U);                                           // 0, 50, 100, 150, 200 bar
+  EXPECT_THAT(fills, testing::ElementsAre(keys[0], keys[4], keys[2]));  // the ground lies below
+  EXPECT_THAT(svg, HasSubstr("pressure: 0 bar"));
+  EXPECT_THAT(svg, HasSubstr("time (ms) 4"));
+  EXPECT_THAT(csv_of(figure),
+              testing::StartsWith("time (ms),panel,look,shape,x,y\n,1,port,1,1,1\n"));
+}
+
+TEST(Picture, FilesAreNamedAfterTheFiguresOfThePaper) {
+  const auto name = [](const char* id, const char* paper) {
+    return file_name_of({id, "t", paper, OwnFigure{}});
+  };
+  EXPECT_EQ(name("rs", "Fig. 12"), "fig12_rs");
+  EXPECT_EQ(name("pressure", "Fig. 10, 25"), "fig10_25_pressure");
+  EXPECT_EQ(name("rcs", "Fig. 32 top"), "fig32_top_rcs");
+  EXPECT_EQ(name("polygon", "Fig. 14b"), "fig14b_polygon");
+  EXPECT_EQ(name("film", "(51)"), "film");
+  EXPECT_EQ(name("budget", ""), "budget");
+  EXPECT_EQ(name("fig34_laws", "Fig. 34"), "fig34_laws");
+}
+
 // A class has one colour in legend and cells, darker than the one before: it reads in grey. Lines
 // lie over the cells with a pale ground, and break where they have no place.
 TEST(Picture, MapOfClasses) {

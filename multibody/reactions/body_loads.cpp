@@ -97,8 +97,8 @@ void BodyLoadReader::read_pistons(Looked& at, const std::vector<double>& pressur
     const Vec3 along(on.place.z());
     const Vec3 b = a + p.geometry.piston_length * along;
     const Vec3 c = a + pump_.contact_length() * along;
-    const double velocity = dot(
-        z2, body.findStationVelocityInGround(at.state, Vec3(0, 0, p.geometry.piston_length)));
+    const double velocity =
+        dot(z2, body.findStationVelocityInGround(at.state, Vec3(0, 0, p.geometry.piston_length)));
     const AxialLoad axial =
         axial_load(p, pump_.assumptions(), pressure[k], velocity, inputs.rest_speed,
                    inputs.held_direction.empty() ? 0 : inputs.held_direction[k]);

@@ -2,8 +2,8 @@
 
 function drawingFigure(figure, data) {
   const frames = figure.frames;
-  const slider = el("input", { type: "range", min: 0, max: frames.length - 1, value: figure.shown,
-                               "aria-label": "Shaft angle" });
+  const axis = figure.axis || "Shaft angle";
+  const slider = el("input", { type: "range", min: 0, max: frames.length - 1, value: figure.shown, "aria-label": axis });
   slider.value = figure.shown;
   const reading = el("output.angle"), words = el("p.total", { "aria-live": "polite" });
   const chart = el("div.bars.drawing");
@@ -18,7 +18,7 @@ function drawingFigure(figure, data) {
 
   function update() {
     const frame = frames[Number(slider.value)];
-    reading.textContent = degrees(frame.theta_deg);
+    reading.textContent = figure.axis ? number(frame.theta_deg, 6) : degrees(frame.theta_deg);
     slider.setAttribute("aria-valuetext", reading.textContent);
     words.textContent = frame.text;
     const width = chart.clientWidth || 600;
@@ -26,7 +26,7 @@ function drawingFigure(figure, data) {
   }
   slider.addEventListener("input", update);
   data.mounts.push(() => { update(); new ResizeObserver(update).observe(chart); });
-  return [el("div.slide", {}, el("label", {}, "Shaft angle ", reading), slider), words, key, chart];
+  return [el("div.slide", {}, el("label", {}, axis + " ", reading), slider), words, key, chart];
 }
 
 // A length is as long across as up.
@@ -41,7 +41,7 @@ function drawingPanel(width, panel, frame, p, figure, colour) {
                             "aria-label": `${figure.title}: ${name(panel.y)} over ${name(panel.x)}; ${frame.text}` });
   drawAxes(root, x, y, [left, right, top, bottom]);
   const inside = (v, low, high) => Math.min(high, Math.max(low, v));
-  for (const line of frame.lines.filter(l => l.panel === p)) {
+  for (const line of [...list(figure.ground), ...frame.lines].filter(l => l.panel === p)) {
     const points = line.x.map((v, i) => `${inside(x.place(v), left, right).toFixed(1)},${inside(y.place(line.y[i]), top, bottom).toFixed(1)}`).join(" ");
     const filled = figure.looks[line.look].filled, shaded = figure.shades && line.value != null;
     const [low, high] = shaded ? figure.shades.range : [];
@@ -53,7 +53,8 @@ function drawingPanel(width, panel, frame, p, figure, colour) {
     const ax = x.place(arrow.x), ay = y.place(arrow.y), bx = x.place(arrow.x + arrow.dx), by = y.place(arrow.y + arrow.dy);
     const length = Math.hypot(bx - ax, by - ay);
     if (!(length > 0)) continue;
-    const ux = (bx - ax) / length, uy = (by - ay) / length;
+    const size = Math.min(1, length / 18);  // the head of a short one is small too
+    const ux = size * (bx - ax) / length, uy = size * (by - ay) / length;
     root.append(svg("line", { x1: ax, y1: ay, x2: bx, y2: by, stroke: colour(arrow.look), "stroke-width": 2.2 }));
     root.append(svg("polygon", { fill: colour(arrow.look), points: [[3, 0], [-7, 4], [-7, -4]]
       .map(([a, b]) => `${bx + a * ux - b * uy},${by + a * uy + b * ux}`).join(" ") }));

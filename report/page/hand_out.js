@@ -25,7 +25,8 @@ const POINTS = {
   xy: f => [["series", axisName(f.x), axisName(f.y)], ...f.series.flatMap(s => s.x.map((x, i) => [s.label, x, s.y[i]]))],
   scatter: f => [["series", axisName(f.x), axisName(f.y), "note"],
     ...f.series.flatMap(s => s.points.map(p => [s.name, p.x, p.y, p.note]))],
-  drawing: f => [["theta_deg", "panel", "look", "shape", "x", "y"], ...f.frames.flatMap(frame => [
+  drawing: f => [[f.axis || "theta_deg", "panel", "look", "shape", "x", "y"],
+    ...[{ theta_deg: null, lines: list(f.ground), arrows: [] }, ...f.frames].flatMap(frame => [
     ...frame.lines.map(l => [l, l.x.map((x, i) => [x, l.y[i]])]),
     ...frame.arrows.map(a => [a, [[a.x, a.y], [a.x + a.dx, a.y + a.dy]]])].flatMap(([shape, points], k) =>
     points.map(([x, y]) => [frame.theta_deg, shape.panel + 1, f.looks[shape.look].label, k + 1, x, y])))],
@@ -81,7 +82,7 @@ function handOut(figure, data, picture) {
   return el("span.hand-out", {}, Object.entries(files).map(([type, make]) => {
     const button = el("button.small", { type: "button", title: `Save this figure as ${type}`,
                                         "aria-label": `Save "${figure.title}" as ${type}` }, type);
-    button.addEventListener("click", async () => save(`${figure.id}.${type.toLowerCase()}`, await make()));
+    button.addEventListener("click", async () => save(`${figure.file}.${type.toLowerCase()}`, await make()));
     return button;
   }));
 }

@@ -236,6 +236,10 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
   picture.legend = {keys};
   picture.panels.push_back(curve_panel(figure.x, figure.y, 250, lines));
   Panel& panel = picture.panels.back();
+  for (const NamedPoint& point : figure.points) {
+    panel.xs.include(point.x);
+    panel.ys.include(point.y);
+  }
   if (figure.equal) make_equal(panel);
   panel.draw = [=, names = figure.series, points = figure.points, curves = panel.draw](
                    pugi::xml_node root, const Scale& x, const Scale& y) {
@@ -248,10 +252,19 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
                     fmt::format("{}: {} at {}", names[s].label, short_number(line.y[i]),
                                 short_number(line.x[i])));
     }
+    std::vector<Pixel> named;
     for (const NamedPoint& point : points) {
       if (!x.shows(point.x) || !y.shows(point.y)) continue;
-      draw_mark(root, 0, x.place(point.x), y.place(point.y), "#000000", point.label);
-      add_text(root, x.place(point.x) + 7, y.place(point.y) - 5, point.label,
+      const Pixel at = {x.place(point.x), y.place(point.y)};
+      draw_mark(root, 0, at[0], at[1], "#000000", point.label);
+      // Where points crowd not every one has room for its name.
+      const double width = kLetter * static_cast<double>(point.label.size()) + 14;
+      if (std::any_of(named.begin(), named.end(), [&](const Pixel& other) {
+            return std::abs(other[0] - at[0]) < width && std::abs(other[1] - at[1]) < 12;
+          }))
+        continue;
+      named.push_back(at);
+      add_text(root, at[0] + 7, at[1] - 5, point.label,
                {{"class", "mark"},
                 {"font-size", "11"},
                 {"stroke", "#fff"},

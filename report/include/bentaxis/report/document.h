@@ -176,8 +176,8 @@ struct DrawingFigure {
     double x_low = 0, x_high = 1, y_low = 0, y_high = 1;
   };
   struct Frame {
-    double theta_deg = 0;
-    std::string text;  ///< what there is to say of it
+    double theta_deg = 0;  ///< or what `axis` names
+    std::string text;      ///< what there is to say of it
     std::vector<Line> lines;
     std::vector<Arrow> arrows;
   };
@@ -191,6 +191,8 @@ struct DrawingFigure {
   std::vector<Frame> frames;
   std::size_t shown = 0;  ///< the frame that a still picture shows, and a page at first
   std::optional<Shades> shades = std::nullopt;
+  std::vector<Line> ground = {};  ///< below the lines of every frame
+  std::string axis = {};          ///< of the frames, where it is no shaft angle: "time (ms)"
 };
 
 /// Bars lying one below the other, in the order given: each from 0 to `low` and from 0 to `high`.

@@ -12,6 +12,10 @@ namespace bentaxis::report {
 /// @param curves  those of the page, which the figure may name
 std::string svg_of(const Figure& figure, const Curves& curves = {});
 
+/// Name of its files, without ending: its id, behind the figures of the paper that it answers:
+/// "fig12_rs", "fig10_25_pressure".
+std::string file_name_of(const Figure& figure);
+
 /// Its numbers as CSV, all digits. Curves: a column each over the angle. Points and maps: a row
 /// each. What was not computed is an empty field.
 std::string csv_of(const Figure& figure, const Curves& curves = {});

@@ -110,9 +110,9 @@ struct SceneLoad {
   std::string on, by, point;
   std::string frame;              ///< in which its components are read out: "S2", or "": S1
   std::vector<std::string> axes;  ///< names of the components in that frame, "x2", ..
-  std::vector<Place> at;       ///< one per model
-  std::vector<Vector> force;   ///< N, in S1, likewise; empty: a moment alone
-  std::vector<Vector> moment;  ///< Nm, likewise; empty: none
+  std::vector<Place> at;          ///< one per model
+  std::vector<Vector> force;      ///< N, in S1, likewise; empty: a moment alone
+  std::vector<Vector> moment;     ///< Nm, likewise; empty: none
   /// The opposite of a load of another body: shown in the free-body diagram of its own alone.
   bool counterpart = false;
 };

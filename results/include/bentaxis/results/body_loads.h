@@ -27,8 +27,8 @@ struct BodyLoad {
   std::array<double, 3> moment = {};  ///< Nm, beside that of the force at its point
 };
 
-/// Loads of all rows of a run. Every row has the same ones in the same order: a load that is 0 at an
-/// instant is there with 0.
+/// Loads of all rows of a run. Every row has the same ones in the same order: a load that is 0 at
+/// an instant is there with 0.
 struct BodyLoadTable {
   struct Row {
     std::array<double, 3> at, force, moment;  ///< as in BodyLoad

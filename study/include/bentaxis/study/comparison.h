@@ -37,6 +37,7 @@ struct ComparisonOptions {
   /// Printed numbers to hold the results to (reference_data/published); empty: none.
   std::filesystem::path published;
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
+  bool body_loads = false;     ///< all loads on all bodies too, of a driven run of the full pump
 };
 
 /// Assumptions in words: name and value.
@@ -58,8 +59,9 @@ struct ComparisonResult {
   ResultTable analytic, multibody;  ///< all channels
   compare::Comparison comparison;   ///< of the channels asked for
   std::vector<compare::Check> checks;
-  std::optional<BudgetComparison> budget;      ///< of a driven run of full pumps whose Td is wanted
-  std::optional<TeethComparison> teeth;        ///< likewise, where the contact is that of teeth
+  std::optional<BudgetComparison> budget;  ///< of a driven run of full pumps whose Td is wanted
+  std::optional<TeethComparison> teeth;    ///< likewise, where the contact is that of teeth
+  std::optional<BodyLoadTable> analytic_loads, multibody_loads;  ///< where they were asked for
   std::vector<report::AssumptionRow> changes;  ///< where the models assume different things
   std::optional<compare::Split> split;         ///< then: the difference taken apart
   std::vector<IntegrationRow> integrations;  ///< integrated: one per accuracy, the last is compared

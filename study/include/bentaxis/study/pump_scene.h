@@ -1,7 +1,7 @@
 // The pump in space, from its own dimensions and the loads that the models find.
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "bentaxis/pump/case.h"
@@ -17,21 +17,26 @@ struct SceneRun {
   const BodyLoadTable& loads;
 };
 
-/// How shaft and block stand at each row, rad.
-struct SceneAngles {
-  std::vector<double> shaft, block;
+/// Rows of a simulation: when they are, and how shaft and block stand.
+struct SceneMotion {
+  std::vector<double> time_ms;
+  std::vector<double> shaft, block;  ///< rad
 };
+
+/// Of more rows than this a scene shows every second, third, .. with curves of its own.
+inline constexpr std::size_t kMostSceneRows = 1440;
 
 /// @param runs    as many rows each as the curves that the scene is shown with, whose tables have
 ///                the channels of these
-/// @param angles  if given; otherwise both turn by the angle that is the curves' axis
+/// @param motion  of a simulation; otherwise shaft and block turn by the tables' angle, which is
+///                the axis of the curves
 /// @throws ComputationError where runs differ in their rows
 report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs,
-                         const SceneAngles* angles = nullptr);
+                         const SceneMotion* motion = nullptr);
 
-/// By the analytic model alone, over one turn of at most 120 samples, with curves of its own.
-/// @param the_case  whose chamber pressure is there (study::prepare)
-/// @throws InputError, ComputationError as the model does
-report::Scene analytic_scene(const Case& the_case);
+/// By the analytic model alone, over one turn of at most 120 samples, with curves of its own. None
+/// where the model has no answer, and where the chamber pressure has not been computed
+/// (study::prepare).
+std::optional<report::Scene> analytic_scene(const Case& the_case);
 
 }  // namespace bentaxis::study

@@ -11,6 +11,7 @@
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/study/progress.h"
@@ -58,6 +59,7 @@ struct RunOptions {
   std::optional<Assumptions> assumptions;  ///< instead of the case's
   bool budget = false;  ///< torque by cause too; of a driven run of the full pump
   bool teeth = false;   ///< what the teeth do, too; likewise, where the contact is that of teeth
+  bool body_loads = false;  ///< all loads on all bodies, too; as the budget
   // Of the multibody model:
   Way way = Way::driven;
   multibody::SceneChoice scene;               ///< driven; an integrated run is of the full pump
@@ -69,6 +71,7 @@ struct ModelRun {
   ResultTable table;
   std::optional<ResultTable> budget;                   ///< where asked for (results/budget.h)
   std::optional<ResultTable> teeth;                    ///< likewise (results/teeth.h)
+  std::optional<BodyLoadTable> loads;                  ///< likewise (results/body_loads.h)
   multibody::IntegrationOptions integration;           ///< of an integrated run: as it was run
   std::optional<multibody::IntegrationRecord> record;  ///< of an integrated run
   std::string choice;  ///< of a run to an error: what was chosen, and what it then did

@@ -1,0 +1,179 @@
+#include "bentaxis/study/force_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/channels.h"
+#include "bentaxis/study/run.h"
+#include "force_figures_pieces.h"
+
+namespace bentaxis::study {
+
+double along(const DiagramRun& run, std::size_t row) {
+  return run.time_ms.empty() ? run.table.theta_deg[row] : run.time_ms[row];
+}
+
+std::vector<std::size_t> frame_rows(std::size_t rows, std::size_t most) {
+  const std::size_t frames = std::min(rows, most);
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < frames; ++i) chosen.push_back(i * rows / frames);
+  return chosen;
+}
+
+std::size_t nearest_frame(const DiagramRun& run, const std::vector<std::size_t>& rows,
+                          double theta_deg) {
+  const auto off = [&](std::size_t row) {
+    return std::abs(std::remainder(run.table.theta_deg[row] - theta_deg, 360));
+  };
+  const auto nearest = std::min_element(
+      rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return off(a) < off(b); });
+  return nearest == rows.end() ? 0 : static_cast<std::size_t>(nearest - rows.begin());
+}
+
+namespace {
+
+using report::Figure;
+using report::OwnFigure;
+using report::Values;
+
+// Rows that curves are drawn of: a turn in degrees is smooth, a motion in time may not be.
+std::vector<std::size_t> curve_rows(const DiagramRun& run) {
+  return frame_rows(run.table.rows(), run.time_ms.empty() ? 360 : 1440);
+}
+
+Values column(const DiagramRun& run, std::size_t at) {
+  Values values;
+  for (const std::size_t row : curve_rows(run)) values.push_back(run.table.at(row, at));
+  return values;
+}
+
+bool any_computed(const Values& values) {
+  return std::any_of(values.begin(), values.end(), is_computed);
+}
+
+// A figure over the axis of the run, without curves.
+OwnFigure over(const DiagramRun& run, const std::string& unit, const std::string& value) {
+  const bool angle = run.time_ms.empty();
+  OwnFigure figure{unit, angle ? "shaft angle (deg)" : kTimeAxis, angle, {}};
+  for (const std::size_t row : curve_rows(run)) figure.x.push_back(along(run, row));
+  figure.value = value;
+  return figure;
+}
+
+// The way of a force's end across the shaft over the run; marks at quarters of a turn.
+Figure bearing_loci(const DiagramRun& run, const ChannelLayout& at) {
+  constexpr double kQuarter = 90;  // deg
+  constexpr double kKilo = 1e-3;
+  report::XyFigure figure{{"x1", "kN"}, {"y1", "kN"}, {}};
+  figure.equal = true;
+  figure.points.push_back({"0", 0, 0});
+  for (const auto& [name, x, y] : {std::tuple{"Rb1 (tapered, C1)", at.Rb1(0), at.Rb1(1)},
+                                   {"Rb2 (cylindrical, C2)", at.Rb2(0), at.Rb2(1)}}) {
+    report::XySeries series{name, column(run, x), column(run, y)};
+    if (!any_computed(series.x)) continue;
+    for (Values* values : {&series.x, &series.y})
+      for (double& value : *values) value = std::round(value) * kKilo;  // to a newton
+    if (run.time_ms.empty())
+      for (int quarter = 0; quarter < 4; ++quarter)
+        for (std::size_t row = 0; row < run.table.rows(); ++row)
+          if (std::abs(run.table.theta_deg[row] - kQuarter * quarter) < 1e-9)
+            figure.points.push_back({fmt::format("{:g} deg", kQuarter * quarter),
+                                     kKilo * run.table.at(row, x), kKilo * run.table.at(row, y)});
+    // A turn ends where it began.
+    if (run.time_ms.empty() && series.x.size() > 2) {
+      series.x.push_back(series.x.front());
+      series.y.push_back(series.y.front());
+    }
+    figure.series.push_back(std::move(series));
+  }
+  return {"bearing_loci", "Polar loci of the bearing forces on the shaft, across it, in S1", "",
+          std::move(figure),
+          "The line from 0 to the curve is the force across the shaft; one scale on both axes. By "
+          "the " +
+              run.table.name + " model."};
+}
+
+Figure tooth_flanks(const DiagramRun& run, const ChannelLayout& at) {
+  OwnFigure figure = over(run, "N", "force");
+  Values plus, minus;
+  for (const std::size_t row : curve_rows(run)) {
+    const double force = std::abs(run.table.at(row, at.Rcs()));
+    const bool drives = run.table.at(row, at.Tcs()) >= 0;
+    const bool known = is_computed(run.table.at(row, at.Rcs()));
+    plus.push_back(!known ? not_computed() : drives ? force : 0);
+    minus.push_back(!known ? not_computed() : drives ? 0 : force);
+  }
+  figure.series = {{"flank + (carries the block towards +psi)", plus},
+                   {"flank - (holds it back)", minus}};
+  return {"tooth_flanks", "Tooth force by flank, at O4", "", std::move(figure),
+          run.the_case.pump.gear.flanks == Flanks::one &&
+                  run.the_case.pump.gear.contact == ToothContact::rigid
+              ? "The sign of the torque that carries the block says which flank it would be; with "
+                "flanks = \"one\" the models take one line of action for both."
+              : ""};
+}
+
+Figure moment_shares(const DiagramRun& run, const ChannelLayout& at) {
+  OwnFigure figure = over(run, "Nm", "torque");
+  Values sum(figure.x.size(), 0.0);
+  for (int k = 0; k < at.pistons(); ++k) {
+    figure.stack.push_back({fmt::format("piston {}", k + 1), column(run, at.Tc(k))});
+    for (std::size_t row = 0; row < sum.size(); ++row) sum[row] += figure.stack.back().values[row];
+  }
+  figure.series = {{"sum", std::move(sum)}};
+  return {
+      "moment_shares", "Pistons' torque on the block about z2, piston upon piston", "",
+      std::move(figure),
+      "What drives the block upwards from 0, what holds it back downwards; the line is the sum. "
+      "By the " +
+          run.table.name + " model."};
+}
+
+Figure chamber(const DiagramRun& run, const ChannelLayout& at) {
+  OwnFigure figure = over(run, "cm3", "volume above its least");
+  const double bore = run.the_case.pump.geometry.bore_diameter;
+  const double cm3_per_mm = kPi / 4 * bore * bore * 1e-3 * 1e6;
+  Values ring = column(run, at.zB(0));  // mm
+  const double deepest = *std::max_element(ring.begin(), ring.end());
+  for (double& value : ring) value = cm3_per_mm * (deepest - value);
+  figure.series = {{"volume of chamber 1", std::move(ring)}};
+  figure.right =
+      OwnFigure::Right{"pressure", "bar", {{"pressure of chamber 1", column(run, at.pressure(0))}}};
+  return {"chamber", "Volume and pressure of chamber 1", "", std::move(figure),
+          "The volume is that swept by the piston's ring, from the deepest place that it reaches."};
+}
+
+}  // namespace
+
+std::vector<Figure> force_figures(const DiagramRun& run) {
+  const ChannelLayout at(run.the_case.pump.geometry.pistons);
+  const auto has = [&](std::size_t channel) { return any_computed(column(run, channel)); };
+  std::vector<Figure> figures;
+  if (run.table.rows() < 2) return figures;
+  if (run.loads != nullptr && run.loads->rows() == run.table.rows()) {
+    figures.push_back(force_polygon(run, "piston 1", {{2, 0}, {2, 1}, {0, 1}}, 280));
+    figures.push_back(force_polygon(run, "block", {{2, 1}, {0, 1}}, 280));
+  }
+  if (has(at.Rb1(0)) || has(at.Rb2(0))) figures.push_back(bearing_loci(run, at));
+  if (has(at.Rcs()) && run.the_case.pump.gear.contact != ToothContact::teeth)
+    figures.push_back(tooth_flanks(run, at));
+  if (has(at.pressure(0))) figures.push_back(plate_pressure(run));
+  if (has(at.Tc(0))) figures.push_back(moment_shares(run, at));
+  if (has(at.zB(0)) && has(at.pressure(0))) figures.push_back(chamber(run, at));
+  return figures;
+}
+
+std::vector<Figure> analytic_force_figures(const Case& the_case) {
+  const Samples samples = sample_case(the_case, PressureTrace(the_case.pressure));
+  const ResultTable table = analytic::run(the_case, the_case.analytic, samples);
+  const BodyLoadTable loads = analytic::run_body_loads(the_case, the_case.analytic, samples);
+  return force_figures({the_case, table, &loads});
+}
+
+}  // namespace bentaxis::study
