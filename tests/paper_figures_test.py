@@ -230,6 +230,7 @@ class PaperFiguresTest(ProgramTest):
             self.assertAlmostEqual(drawn["y"][at], float(row["mean_Td_analytic_Nm"]), 9)
 
     def test_drawings(self):
+        """Coordinates of drawings have 9 digits in the JSON, as those of curves in the page."""
         geometry = tomllib.loads((program.REPO / "cases/bap63_rated_hydraulic.toml").read_text())["pump"]
         free = self.run_case("analytic", "friction.block_viscous_Nm_per_rpm=0.0")
         for figure, angle in (("fig31", 0), ("fig33", 38)):
@@ -240,28 +241,30 @@ class PaperFiguresTest(ProgramTest):
             for k, arrow in enumerate(frame["arrows"]):
                 at = math.radians(angle - 72 * k)
                 radius = geometry["bore_circle_radius_mm"]
-                self.assertAlmostEqual(arrow["x"], -radius * math.sin(at), 9)
-                self.assertAlmostEqual(arrow["y"], radius * math.cos(at), 9)
+                self.assertAlmostEqual(arrow["x"], -radius * math.sin(at), 7)
+                self.assertAlmostEqual(arrow["y"], radius * math.cos(at), 7)
                 force = [-float(row[f"Rc_{k + 1}_{axis}2_N"]) for axis in "xy"]
                 scales.append(math.hypot(arrow["dx"], arrow["dy"]) / math.hypot(*force))
-                self.assertAlmostEqual(arrow["dx"] * force[1], arrow["dy"] * force[0], 6)
+                self.assertAlmostEqual(arrow["dx"] * force[1] / math.hypot(*force), arrow["dy"] * force[0] / math.hypot(*force), 7)
                 torque += 1e-3 * (arrow["x"] * arrow["dy"] - arrow["y"] * arrow["dx"]) / scales[-1]
             self.assertEqual(len(scales), 5)
-            self.assertAlmostEqual(min(scales), max(scales), 12)
+            self.assertAlmostEqual(min(scales) / max(scales), 1, 7)
             # What balances them is the torque that carries the block round.
-            self.assertAlmostEqual(torque, -float(row["Tcs_z2_Nm"]), 9)
+            self.assertAlmostEqual(torque, -float(row["Tcs_z2_Nm"]), 6)
             self.assertIn(f"{torque:+.2f} Nm", frame["text"])
             self.assertIn("counter-clockwise" if angle else "2, clockwise", frame["text"])
             shares = self.figures[f"{figure}_shares_at_{angle}_deg"]["bars"]
-            self.assertAlmostEqual(sum(bar["low"] + bar["high"] for bar in shares), torque, 9)
+            self.assertAlmostEqual(sum(bar["low"] + bar["high"] for bar in shares), -float(row["Tcs_z2_Nm"]), 9)
         (frame,) = self.figures["fig14b"]["frames"]
         self.assertEqual(frame["theta_deg"], 280)
         x = y = 0
         for arrow in frame["arrows"]:  # tip to tail, closed
-            self.assertAlmostEqual(arrow["x"], x, 9)
-            self.assertAlmostEqual(arrow["y"], y, 9)
+            self.assertAlmostEqual(arrow["x"], x, 4)
+            self.assertAlmostEqual(arrow["y"], y, 4)
             x, y = x + arrow["dx"], y + arrow["dy"]
-        self.assertLess(math.hypot(x, y), 1e-11 * abs(frame["arrows"][0]["dx"]))
+        self.assertLess(math.hypot(x, y), 1e-8 * abs(frame["arrows"][0]["dx"]))
+        # What is said of their sum is not rounded before.
+        self.assertLess(float(re.search(r"sum (\S+) N", frame["text"])[1]), 1e-11 * abs(frame["arrows"][0]["dx"]))
         # Fig. 13: x2 negative in delivery, y2 negative up to 270 deg and positive from there.
         r1, r2 = self.figures["fig13"]["frames"]
         signs = [[math.copysign(1, arrow["dy"]) for arrow in frame["arrows"]] for frame in (r1, r2)]
