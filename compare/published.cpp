@@ -169,6 +169,10 @@ std::optional<double> value_at(double at_deg, const std::vector<double>& theta_d
 
 }  // namespace
 
+std::string PublishedCondition::mismatch(const Facts& of_case) const {
+  return unmet(facts, of_case);
+}
+
 std::string Published::mismatch(const Facts& facts) const { return unmet(identity, facts); }
 
 Published read_published(const std::filesystem::path& file) {

@@ -195,7 +195,9 @@ Json json_of(const OwnFigure& figure) {
 }
 
 Json json_of(const XySeries& s) {
-  return {{"label", s.label}, {"x", exact(s.x)}, {"y", exact(s.y)}};
+  Json json = {{"label", s.label}, {"x", exact(s.x)}, {"y", exact(s.y)}};
+  if (s.dashed) json["dashed"] = true;
+  return json;
 }
 
 Json json_of(const XyFigure& figure) {

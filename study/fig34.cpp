@@ -166,6 +166,20 @@ std::vector<Fig34Point> grid(const Fig34Options& options, bool with_drag) {
   return points;
 }
 
+// The case as every contact law starts from it, with its pressure.
+ReadyCase with_rigid_teeth(Case the_case, const PartProgress& progress_of) {
+  if (the_case.operation.speed_rpm == 0)
+    throw InputError(the_case.file.string() +
+                     ": [operation] speed_rpm = 0: teeth lose contact in motion only");
+  Gear& gear = the_case.pump.gear;
+  gear.flanks = Flanks::two;
+  gear.contact = ToothContact::rigid;
+  gear.compliance.reset();
+  gear.teeth.reset();
+  the_case.drive.reset();
+  return prepare(std::move(the_case), progress_of);
+}
+
 double interpolated(const Fig34Curve& curve, double angle_deg) {
   const auto above = std::lower_bound(curve.theta_deg.begin(), curve.theta_deg.end(), angle_deg);
   if (above == curve.theta_deg.begin()) return curve.force.front();
@@ -251,7 +265,7 @@ void add_pictured(const Study& study, Fig34Study& result) {
     result.pictured.emplace_back(name, study.simulate(point, true));
   };
   result.pictured = {{"rigid, no Cc", result.rigid}, {"rigid, with Cc", result.rigid_with_drag}};
-  add("as ADAMS by default, c 5 s/m", {2.2, adams_approach(), 0, 5, inertia, false});
+  add("as ADAMS by default, c 5 s/m", adams_by_default());
   add("the same, 50 um of backlash", {2.2, adams_approach(), 50e-6, 5, inertia, false});
   add("stiff, no backlash, c 50 s/m", {1, kStiff, 0, 50, inertia, false});
   add("stiff, 20 um of backlash, c 0.5 s/m", {1, kStiff, 20e-6, 0.5, inertia, false});
@@ -261,6 +275,8 @@ void add_pictured(const Study& study, Fig34Study& result) {
 }  // namespace
 
 double adams_approach() { return 1e-3 * std::pow(kFig34Force / 1e5, 1 / 2.2); }
+
+Fig34Point adams_by_default() { return {2.2, adams_approach(), 0, 5, kInertias[1], false}; }
 
 double Fig34Curve::largest() const { return std::max(std::abs(least), std::abs(greatest)); }
 
@@ -273,23 +289,18 @@ bool Fig34Study::as_expected() const {
                      [](const Fig34Expectation& e) { return e.holds(); });
 }
 
+Fig34Curve fig34_curve(const Case& as_read, const Fig34Point& point, const Fig34Options& options,
+                       const PartProgress& progress_of) {
+  return Study(with_rigid_teeth(as_read, progress_of), options).simulate(point, true);
+}
+
 Fig34Study run_fig34_study(const Case& as_read, const Fig34Options& options,
                            const PartProgress& progress_of) {
-  if (as_read.operation.speed_rpm == 0)
-    throw InputError(as_read.file.string() +
-                     ": [operation] speed_rpm = 0: teeth lose contact in motion only");
   Fig34Study result;
   result.options = options;
   if (result.options.approaches.empty())
     result.options.approaches = {kStiff, 5e-6, adams_approach()};
-  Case the_case = as_read;
-  Gear& gear = the_case.pump.gear;
-  gear.flanks = Flanks::two;
-  gear.contact = ToothContact::rigid;
-  gear.compliance.reset();
-  gear.teeth.reset();
-  the_case.drive.reset();
-  ReadyCase ready = prepare(std::move(the_case), progress_of);
+  ReadyCase ready = with_rigid_teeth(as_read, progress_of);
   result.the_case = ready.the_case;
   const bool drag = result.the_case.pump.friction.block_viscous > 0;
   const Study study(std::move(ready), result.options);

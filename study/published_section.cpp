@@ -19,10 +19,12 @@ void apply_variant(const compare::PublishedVariant& variant, Case& the_case,
       assumptions.piston_friction = value != 0;
     else if (name == "gear_imposed")
       assumptions.gear = value != 0 ? BlockDrive::imposed : BlockDrive::mesh;
+    else if (name == "real_pistons")
+      assumptions.inertia = value != 0 ? PistonInertia::real : PistonInertia::lumped;
     else
       throw InputError("published variant \"" + variant.name + "\": " + name +
                        " cannot be set; allowed: block_viscous_Nm_per_rpm, piston_friction, "
-                       "gear_imposed");
+                       "gear_imposed, real_pistons");
   }
 }
 

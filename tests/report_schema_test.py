@@ -51,6 +51,7 @@ class SchemaTest(unittest.TestCase):
             "tradeoff": cls.report("tradeoff.json", "tradeoff", rated, "--integrators", "rk-merson", "--accuracies", "1e-3"),
             "fig34": cls.report("fig34.json", "fig34", rated, "--exponents", "1", "--approaches-um", "5", "--backlashes-um", "0",
                                 "--dissipations", "5", "--block-inertias-kg-mm2", "1500"),
+            "paper": cls.report("paper.json", "paper"),
             "hardcases": cls.report("hardcases.json", "hardcases", "--filter", "speed", "--catalogue",
                                     REPO / "reference_data" / "hard"),
             "simulate": cls.report("report.json", "simulate", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",

@@ -246,8 +246,8 @@ Picture picture_of(const XyFigure& figure, const Curves&) {
   Keys keys;
   for (std::size_t i = 0; i < figure.series.size(); ++i) {
     const XySeries& series = figure.series[i];
-    lines.push_back(
-        {series.x, series.y, pick(kColours, i), 1.9, 1, pick(kDashes, i / kColours.size())});
+    lines.push_back({series.x, series.y, pick(kColours, i), 1.9, 1,
+                     series.dashed ? pick(kDashes, 1) : pick(kDashes, i / kColours.size())});
     keys.push_back(line_key(series.label, pick(kColours, i), 3, lines.back().dash));
   }
   picture.legend = {keys};

@@ -24,6 +24,9 @@ using FactRanges = std::map<std::string, std::pair<double, double>>;
 struct PublishedCondition {
   std::string name, text;
   FactRanges facts;
+
+  /// What a case differs in from this condition, in words; "" where it meets it.
+  std::string mismatch(const Facts& of_case) const;
 };
 
 /// A change of the case that the publication itself makes ("without viscous torque").

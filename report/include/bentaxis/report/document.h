@@ -100,6 +100,7 @@ struct Axis {
 struct XySeries {
   std::string label;
   Values x, y;
+  bool dashed = false;
 };
 
 /// A place in a plane, by name.

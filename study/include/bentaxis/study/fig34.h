@@ -31,6 +31,8 @@ struct Fig34Point {
 inline constexpr double kFig34Force = 100;
 /// The contact defaults of ADAMS: 1e5 N at 1 mm with the exponent 2.2.
 double adams_approach();
+/// They, without backlash and drag on the block; c = 5 s/m, which no default corresponds to.
+Fig34Point adams_by_default();
 
 /// The force along x2 over the turns that count, N, and what it shows.
 struct Fig34Curve {
@@ -91,6 +93,11 @@ struct Fig34Study {
 /// @throws InputError at standstill; what cannot be simulated becomes a failure of its curve
 Fig34Study run_fig34_study(const Case& as_read, const Fig34Options& options,
                            const PartProgress& progress_of);
+
+/// The force along x2 by one contact law, in the first of the turns that count.
+/// @throws InputError at standstill
+Fig34Curve fig34_curve(const Case& as_read, const Fig34Point& point, const Fig34Options& options,
+                       const PartProgress& progress_of);
 
 report::Document fig34_document(const Fig34Study& study, const report::Lines& program);
 /// A row per point.

@@ -1,0 +1,256 @@
+// The paper's figures as a report, as CSV and as text.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/paper_figures.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::study {
+namespace {
+
+using report::Cell;
+
+std::string unit_after(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
+
+std::string range_text(const DrawnPanel& p) {
+  return fmt::format("{:.5g} to {:.5g}{}", p.least.y, p.greatest.y, unit_after(p.panel.y.unit));
+}
+
+// By how much the curves leave the axis, where; "" where they do not.
+std::string leaving(const DrawnPanel& p) {
+  std::string text;
+  if (!p.known()) return text;
+  const double span = p.panel.y.range->second - p.panel.y.range->first;
+  const auto add = [&](double by, const DrawnPanel::End& end, const char* where) {
+    if (by == 0) return;
+    text += fmt::format("{}{} {} the axis by {:.3g}{}, {:.2g} % of its length, at {:.4g}{}",
+                        text.empty() ? "" : "; ", end.curve, where, by, unit_after(p.panel.y.unit),
+                        100 * by / span, end.x, unit_after(p.panel.x.unit));
+  };
+  add(p.below(), p.least, "is below");
+  add(p.above(), p.greatest, "is above");
+  return text;
+}
+
+std::string verdict(const DrawnPanel& p) {
+  return !p.known() ? "axis unknown" : p.inside() ? "inside" : "outside";
+}
+
+// Condition of each curve of a panel, once.
+std::string conditions_of(const PaperFigures& list, const DrawnPanel& p) {
+  std::string text;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty() && text.find(part) == std::string::npos)
+      text += (text.empty() ? "" : "; ") + part;
+  };
+  for (const PaperCurve& curve : p.panel.curves)
+    for (const auto& condition : list.numbers.conditions)
+      if (condition.name == curve.condition) add(condition.text);
+  for (const PaperCurve& curve : p.panel.curves) add(list.numbers.variant(curve.variant).text);
+  return text;
+}
+
+std::string names_of_conditions(const DrawnPanel& p) {
+  std::string text;
+  for (const PaperCurve& curve : p.panel.curves)
+    if (text.find(curve.condition) == std::string::npos)
+      text += (text.empty() ? "" : "; ") + curve.condition;
+  return text;
+}
+
+std::string cases_of(const PaperFigures& list, const DrawnPanel& p) {
+  std::string text;
+  for (const PaperCurve& curve : p.panel.curves) {
+    const std::string& file = list.case_of(curve.condition).file;
+    if (text.find(file) == std::string::npos) text += (text.empty() ? "" : ", ") + file;
+  }
+  return text;
+}
+
+std::optional<double> other_model(const DrawnPanel& p) {
+  std::optional<double> worst;
+  for (const DrawnCurve& curve : p.curves)
+    if (curve.other_model) worst = std::max(worst.value_or(0), *curve.other_model);
+  return worst;
+}
+
+struct PanelCount {
+  int known = 0, inside = 0, unknown = 0;
+};
+PanelCount count(const PaperStudy& s) {
+  PanelCount c;
+  for (const DrawnPanel& p : s.panels) {
+    ++(p.known() ? c.known : c.unknown);
+    c.inside += p.inside();
+  }
+  return c;
+}
+
+std::string headline(const PaperStudy& s) {
+  const PanelCount c = count(s);
+  std::string outside;
+  double worst = 0;
+  for (const DrawnPanel& p : s.panels) {
+    if (p.known() && !p.inside()) outside += (outside.empty() ? "" : "; ") + p.figure.name(p.panel);
+    worst = std::max(worst, other_model(p).value_or(0));
+  }
+  return fmt::format(
+      "{} of {} panels with a known axis hold our curves{}; {} axes are unknown; drawings have "
+      "none. At the same assumptions the models differ by up to {:.1e} of peak.",
+      c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown, worst);
+}
+
+// ---- Tables
+
+report::Section figures_section(const PaperStudy& s) {
+  report::Table table{{"figure", "shows", "condition", "printed axis", "ours", "verdict",
+                       "other model, of peak", "remarks"},
+                      {}};
+  for (const PaperFigure& figure : s.list.figures) {
+    for (const DrawnPanel& p : s.panels) {
+      if (p.figure.id() != figure.id()) continue;
+      std::string remarks = leaving(p);
+      if (!remarks.empty() && !p.panel.outside.empty()) remarks += ": " + p.panel.outside;
+      if (!p.panel.y.why.empty()) remarks += (remarks.empty() ? "" : "; ") + p.panel.y.why;
+      const auto differs = other_model(p);
+      table.rows.push_back({figure.name(p.panel), figure.shows, names_of_conditions(p),
+                            p.panel.y.short_text(), range_text(p), verdict(p),
+                            differs ? Cell(*differs) : Cell(), remarks});
+    }
+    for (const report::Figure& drawing : s.drawings)
+      if (drawing.id == figure.id())
+        table.rows.push_back({figure.name(), figure.shows, figure.condition, "none: a drawing",
+                              Cell(), "drawn", Cell(), figure.note});
+  }
+  report::Section section{
+      "The figures",
+      "The curves are not available: an axis is a window that a curve must not leave, and what is "
+      "inside need not be the curve. Most axes of reactions at rated pressure were used to infer "
+      "the geometry of this pump, which is not published: being inside them is no evidence "
+      "(docs/limits.md).",
+      {},
+      std::move(table)};
+  for (const auto& of : s.list.cases)
+    section.facts.emplace_back(of.condition,
+                               of.inertia_alone_at_rpm ? of.file + ", inertia alone" : of.file);
+  for (const auto& [figures, reason] : s.list.left_out)
+    section.facts.emplace_back("left out: Fig. " + figures, reason);
+  return section;
+}
+
+report::Section numbers_section(const PaperStudy& s) {
+  report::Table table{
+      {"figure", "quantity", "printed", "condition", "analytic", "multibody", "verdict", "status"},
+      {}};
+  for (const PaperNumber& number : s.numbers) {
+    const compare::PublishedRow& row = number.row;
+    const auto value = [&](std::size_t model) {
+      return row.values[model] ? Cell(compare::text_of(*row.values[model])) : Cell();
+    };
+    table.rows.push_back({number.figures, row.number.quantity, row.printed, row.at, value(0),
+                          value(1), compare::to_string(row.verdict), row.number.status});
+  }
+  return {"Numbers printed with them",
+          "What the paper says in numbers about these figures, by the same cases. Only predicted "
+          "rows say something about the models.",
+          {},
+          std::move(table)};
+}
+
+// ---- Figures
+
+report::Figure figure_of(const PaperStudy& s, const DrawnPanel& p) {
+  report::XyFigure content{
+      {p.panel.x.quantity, p.panel.x.unit}, {p.panel.y.quantity, p.panel.y.unit}, {}};
+  const auto fix = [](report::Axis& axis, const std::optional<std::pair<double, double>>& range) {
+    if (!range) return;
+    axis.from = range->first;
+    axis.to = range->second;
+  };
+  fix(content.x, p.panel.x.range);
+  fix(content.y, p.panel.y.range);
+  for (const DrawnCurve& curve : p.curves)
+    content.series.push_back({curve.label, curve.x, curve.y, curve.dashed});
+  // A curve that leaves the axis stays in sight; where the axis ends is drawn.
+  const auto end = [&](double by, double at, std::optional<double>& edge, double to) {
+    if (by == 0) return;
+    edge = to;
+    const double right = p.panel.x.range ? p.panel.x.range->second : 360.0 * p.panel.turns;
+    content.series.push_back({fmt::format("printed axis ends at {:g}", at), {0, right}, {at, at}});
+  };
+  if (p.known()) {
+    const double room = 0.03 * (p.panel.y.range->second - p.panel.y.range->first);
+    end(p.below(), p.panel.y.range->first, content.y.from, p.least.y - room);
+    end(p.above(), p.panel.y.range->second, content.y.to, p.greatest.y + room);
+  }
+  std::string note =
+      fmt::format("{}, by {}. Axis of the values: {}; {} axis: {}.", conditions_of(s.list, p),
+                  cases_of(s.list, p), p.panel.y.text(), p.panel.x.quantity, p.panel.x.text());
+  if (p.known()) note += p.inside() ? " Our curves are inside." : " Outside: " + leaving(p) + ".";
+  if (!p.panel.outside.empty() && p.known() && !p.inside()) note += " " + p.panel.outside + ".";
+  if (!p.panel.differs.empty()) note += " numbers.toml: " + p.panel.differs + ".";
+  if (!p.figure.note.empty()) note += " " + p.figure.note;
+  return {p.figure.id(p.panel), p.figure.name(p.panel) + ": " + p.panel.title, p.figure.name(),
+          std::move(content), std::move(note)};
+}
+
+std::string quoted(std::string text) {
+  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
+    text.insert(at, "\"");
+  return '"' + text + '"';
+}
+
+}  // namespace
+
+report::Document paper_document(const PaperStudy& s, const report::Lines& program) {
+  report::Document document;
+  document.title = "The paper's figures: " + s.list.numbers.name;
+  document.program = program;
+  describe_case(document, s.cases.front());
+  document.derived = derived_section(s.cases.front());
+  document.verdict = report::Verdict{std::nullopt, headline(s)};
+  document.runs = {figures_section(s), numbers_section(s)};
+  document.figures.emplace();
+  for (const PaperFigure& figure : s.list.figures) {
+    for (const DrawnPanel& p : s.panels)
+      if (p.figure.id() == figure.id()) document.figures->push_back(figure_of(s, p));
+    for (const report::Figure& drawing : s.drawings)
+      if (drawing.paper == figure.name()) document.figures->push_back(drawing);
+  }
+  return document;
+}
+
+std::string paper_csv(const PaperStudy& s) {
+  std::string text = "figure,title,axis_from,axis_to,axis_known,least,greatest,unit,verdict\n";
+  for (const DrawnPanel& p : s.panels) {
+    text += p.figure.id(p.panel) + "," + quoted(p.panel.title) + ",";
+    if (p.known()) append_number(text, p.panel.y.range->first);
+    text += ',';
+    if (p.known()) append_number(text, p.panel.y.range->second);
+    text += "," + quoted(p.panel.y.text()) + ",";
+    append_number(text, p.least.y);
+    text += ',';
+    append_number(text, p.greatest.y);
+    text += "," + p.panel.y.unit + "," + verdict(p) + "\n";
+  }
+  return text;
+}
+
+std::string paper_text(const PaperStudy& s) {
+  std::string text = headline(s) + "\n\n";
+  for (const DrawnPanel& p : s.panels) {
+    text += fmt::format("{:<18} {:<13} ours {:<26} axis {}\n", p.figure.name(p.panel), verdict(p),
+                        range_text(p), p.panel.y.text());
+    if (p.known() && !p.inside()) text += fmt::format("{:<18} {}\n", "", leaving(p));
+  }
+  for (const report::Figure& drawing : s.drawings)
+    if (std::holds_alternative<report::DrawingFigure>(drawing.content))
+      text += fmt::format("{:<18} {}\n", drawing.paper, "drawn");
+  return text;
+}
+
+}  // namespace bentaxis::study
