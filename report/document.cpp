@@ -763,8 +763,7 @@ std::string packed_json(const Curves& curves) {
   rest.difference.clear();
   Json json = to_json(rest);
   json["tables"] = packed_tables(curves);
-  for (const auto& [name, values] : curves.difference)
-    json["difference"][name] = packed(values);
+  for (const auto& [name, values] : curves.difference) json["difference"][name] = packed(values);
   return dumped(json, -1);
 }
 
