@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base64.h"
@@ -744,55 +743,34 @@ Json to_json(const Curves& curves) {
   return json;
 }
 
-// A column as whole numbers of 10^-decimals: [decimals, base64 of 32-bit integers], with as many
-// decimals as its largest number leaves room for. What was not computed is the least integer.
-constexpr double kLargestWord = 2147483647;
-constexpr std::int32_t kNotComputedWord = std::numeric_limits<std::int32_t>::min();
+// A column as the upper five bytes of each number, little-endian: 9 digits. What was not computed
+// is NaN.
+constexpr int kDroppedBits = 24;
 
-struct Packed {
-  int decimals = 0;
-  std::vector<std::int32_t> numbers;
-};
+std::uint64_t kept_bits(double value) {
+  if (!std::isfinite(value)) return std::uint64_t{0x7FF8} << (48 - kDroppedBits);
+  return (std::bit_cast<std::uint64_t>(value) + (std::uint64_t{1} << (kDroppedBits - 1))) >>
+         kDroppedBits;
+}
+double kept(double value) { return std::bit_cast<double>(kept_bits(value) << kDroppedBits); }
 
-double power_of_ten(int exponent) { return std::pow(10.0, exponent); }
-
-Packed packed(const Values& values, std::optional<int> decimals = std::nullopt) {
-  double largest = 0;
+std::string packed(const Values& values) {
+  std::string bytes;
   for (const double value : values)
-    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
-  Packed result;
-  // 10^300 and its inverse are numbers.
-  result.decimals = decimals ? *decimals
-                    : largest == 0
-                        ? 0
-                        : static_cast<int>(std::clamp(
-                              std::floor(std::log10(kLargestWord / largest)), -300.0, 300.0));
-  const double scale = power_of_ten(result.decimals);
-  for (const double value : values)
-    result.numbers.push_back(std::isfinite(value)
-                                 ? static_cast<std::int32_t>(std::clamp(
-                                       std::round(value * scale), -kLargestWord, kLargestWord))
-                                 : kNotComputedWord);
-  return result;
+    for (int byte = 0; byte < 5; ++byte)
+      bytes += static_cast<char>((kept_bits(value) >> (8 * byte)) & 0xFF);
+  return base64_of(bytes);
 }
 
-Json json_of(const Packed& column) {
-  std::vector<std::uint32_t> words;
-  for (const std::int32_t number : column.numbers)
-    words.push_back(static_cast<std::uint32_t>(number));
-  return Json::array({column.decimals, base64_of(words)});
-}
-
-// Whether the second table's column is, to what is kept of it, the first one's and the difference.
-bool follows(const Packed& first, const Values& second, const Values* difference) {
-  const Packed own = packed(second, first.decimals);
-  const double scale = power_of_ten(first.decimals);
-  for (std::size_t row = 0; row < own.numbers.size(); ++row) {
-    if ((own.numbers[row] == kNotComputedWord) != (first.numbers[row] == kNotComputedWord))
-      return false;
-    if (own.numbers[row] == kNotComputedWord) continue;
-    const double apart = difference != nullptr ? (*difference)[row] * scale : 0;
-    if (!(std::abs(first.numbers[row] + apart - own.numbers[row]) <= 1)) return false;
+// Whether the second table's column is, to the digits kept, the first one's and the difference.
+bool follows(const Values& first, const Values& second, const Values* difference) {
+  constexpr double kLastDigit = 5e-9;
+  if (first.size() != second.size()) return false;
+  for (std::size_t row = 0; row < first.size(); ++row) {
+    if (std::isfinite(first[row]) != std::isfinite(second[row])) return false;
+    if (!std::isfinite(first[row])) continue;
+    const double found = kept(first[row]) + (difference != nullptr ? kept((*difference)[row]) : 0);
+    if (!(std::abs(found - second[row]) <= kLastDigit * std::abs(second[row]))) return false;
   }
   return true;
 }
@@ -804,11 +782,10 @@ Json packed_tables(const Curves& curves) {
     for (const auto& [name, values] : curves.tables[t].columns) {
       const Values* first = t == 1 ? find(curves.tables[0].columns, name) : nullptr;
       const Values* difference = find(curves.difference, name);
-      if (first != nullptr && first->size() == values.size() &&
-          follows(packed(*first), values, difference))
+      if (first != nullptr && follows(*first, values, difference))
         columns[name] = true;
       else
-        columns[name] = json_of(packed(values));
+        columns[name] = packed(values);
     }
     tables.push_back({{"name", curves.tables[t].name}, {"columns", std::move(columns)}});
   }
@@ -835,8 +812,7 @@ std::string packed_json(const Curves& curves) {
   rest.difference.clear();
   Json json = to_json(rest);
   json["tables"] = packed_tables(curves);
-  for (const auto& [name, values] : curves.difference)
-    json["difference"][name] = json_of(packed(values));
+  for (const auto& [name, values] : curves.difference) json["difference"][name] = packed(values);
   return dumped(json, -1);
 }
 

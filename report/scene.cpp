@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base64.h"
 #include "bentaxis/report/document.h"
@@ -34,10 +35,12 @@ const char* to_string(Look look) {
 }
 
 std::string base64_floats(const Values& values) {
-  std::vector<std::uint32_t> words;
-  for (const double value : values)  // what was not computed stays NaN
-    words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(value)));
-  return base64_of(words);
+  std::string bytes;
+  for (const double value : values) {  // what was not computed stays NaN
+    const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+    for (int byte = 0; byte < 4; ++byte) bytes += static_cast<char>((bits >> (8 * byte)) & 0xFF);
+  }
+  return base64_of(std::move(bytes));
 }
 
 Json json_of(const Scalar& scalar) {

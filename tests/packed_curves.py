@@ -1,12 +1,13 @@
 """Curves of a page's block, as docs/report_json.md has them: every column as a list of numbers."""
 import base64
+import math
 import struct
 
 
 def numbers(column):
-    decimals, text = column
-    packed = base64.b64decode(text)
-    return [None if n == -2**31 else float(f"{n}e{-decimals}") for n in struct.unpack(f"<{len(packed) // 4}i", packed)]
+    packed = base64.b64decode(column)
+    values = (struct.unpack("<d", bytes(3) + packed[i:i + 5])[0] for i in range(0, len(packed), 5))
+    return [None if math.isnan(value) else value for value in values]
 
 
 def unpacked(curves):

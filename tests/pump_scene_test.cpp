@@ -90,7 +90,7 @@ class Reader {
     return whole;
   }
   Vector3d place(const Json& one, std::size_t row, std::size_t model) const {
-    const Vector3d at = sum(one["at"], row, model);
+    Vector3d at = sum(one["at"], row, model);
     if (!one.contains("body")) return at;
     const auto [origin, axes] = stand(one["body"], row);
     return origin + axes * at;

@@ -9,9 +9,11 @@ function columnsOf(figure, data) {
     return [[figure.x.label, figure.x.values], ...[...figure.series, ...list(figure.stack)].map(s => [s.label, s.values]),
       ...list(figure.right && figure.right.series).map(s => [axisName({ label: s.label, unit: figure.right.unit }), s.values])];
   const columns = [[data.axis.angle ? "theta_deg" : data.axis.label, data.theta]];
+  // To the digits that the page has.
+  const rounded = (values, digits) => values.map(v => (v == null ? v : Number(v.toPrecision(digits))));
   for (const name of figure.channels) {
-    for (const t of data.tables) if (t.columns[name]) columns.push([`${name} ${t.name}`, t.columns[name]]);
-    if (data.difference[name]) columns.push([`${name} ${data.pair[1]} minus ${data.pair[0]}`, data.difference[name]]);
+    for (const t of data.tables) if (t.columns[name]) columns.push([`${name} ${t.name}`, rounded(t.columns[name], 9)]);
+    if (data.difference[name]) columns.push([`${name} ${data.pair[1]} minus ${data.pair[0]}`, rounded(data.difference[name], 4)]);
     const held = data.reference && data.reference.held[name];
     if (!held) continue;
     columns.push([`${name} ${data.reference.name}`, held.values]);

@@ -481,9 +481,9 @@ std::vector<std::string> files_of(const std::string& json_text);
 std::string compact_json(const Document& document);
 std::string compact_json(const Curves& curves);
 
-/// For the page: as compact_json(), but columns and differences as [decimals, base64 of
-/// little-endian 32-bit integers], each a whole number of 10^-decimals, the least integer where not
-/// computed; a column of the second table that is the first one's with the difference is `true`.
+/// For the page: as compact_json(), but columns and differences as base64 of the upper five bytes
+/// of each number (9 digits), little-endian, NaN where not computed; a column of the second table
+/// that is the first one's with the difference, to these digits, is `true`.
 std::string packed_json(const Curves& curves);
 
 /// A column by its name; nullptr where there is none.
