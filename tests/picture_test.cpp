@@ -323,6 +323,17 @@ TEST(Picture, DrawingShowsOneFrameToScaleAndHandsOutAll) {
             "38,1,force,2,2,2\n38,1,force,2,2,3\n");
 }
 
+// A force that is round-off has a length, but is no step on paper.
+TEST(Picture, AnArrowOfRoundOffIsNotDrawn) {
+  DrawingFigure drawing{
+      {{"force", 0}}, {{{"z2", "N"}, {"x2", "N"}, 0, 1e4, 0, 5e3}}, {{0, "", {}, {}}}, 0};
+  drawing.frames[0].arrows = {{0, 0, 9e3, 1e3, 0, 9e-13}, {0, 0, 9e3, 1e3, 0, 1e3}};
+  const std::string svg = svg_of({"polygon", "t", "", drawing});
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  const std::regex head(R"(<path d="M\S+ \S+L\S+ \S+L\S+ \S+Z)");
+  EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), head), {}), 1);
+}
+
 // Places of the curve's ends and marks are counted in pixels: 622 across from 82, 185 or 230 up.
 TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
   Curves curves = curves_of({{"R", {0, 4, 0, -4, 0}}}, 90);

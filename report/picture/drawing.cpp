@@ -89,11 +89,11 @@ Picture picture_of(const DrawingFigure& figure, const Curves&) {
       for (const DrawingFigure::Line& line : ground) draw(line);
       for (const DrawingFigure::Line& line : frame.lines) draw(line);
       for (const DrawingFigure::Arrow& arrow : frame.arrows) {
-        const double length = std::hypot(arrow.dx, arrow.dy);
-        if (arrow.panel != static_cast<int>(p) || !(length > 0)) continue;
+        if (arrow.panel != static_cast<int>(p)) continue;
         const double x1 = x.place(arrow.x), y1 = y.place(arrow.y);
         const double x2 = x.place(arrow.x + arrow.dx), y2 = y.place(arrow.y + arrow.dy);
         const double drawn_length = std::hypot(x2 - x1, y2 - y1);
+        if (!(drawn_length >= 0.05)) continue;  // less than the digits of a place: round-off
         // The head of a short one is small too.
         const double size = std::min(1.0, drawn_length / kShortArrow);
         const double ux = size * (x2 - x1) / drawn_length, uy = size * (y2 - y1) / drawn_length;
