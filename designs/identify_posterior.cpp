@@ -5,6 +5,7 @@
 
 #include "bentaxis/designs/identify.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/in_threads.h"
 
@@ -29,23 +30,75 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// Coordinates in which products and ratios of unknowns are straight lines, and the density there.
+// Where an unknown goes in the sampler, so that what the data know well is straight: products and
+// ratios of what is positive, the stroke with the sine of the tilt, the arm of the teeth with the
+// cosine of the pressure angle.
+enum class Coordinate { own, logarithm, logarithm_of_sine, logarithm_of_cosine };
+
+Coordinate coordinate_of(const Unknown& u) {
+  const bool acute = u.low > 0 && u.high < 90;
+  if (acute && u.variable.name() == "pump.tilt_deg") return Coordinate::logarithm_of_sine;
+  if (acute && u.variable.name() == "gear.pressure_angle_deg")
+    return Coordinate::logarithm_of_cosine;
+  return u.low > 0 ? Coordinate::logarithm : Coordinate::own;
+}
+
+double inner_of(Coordinate coordinate, double x) {
+  switch (coordinate) {
+    case Coordinate::own:
+      break;
+    case Coordinate::logarithm:
+      return std::log(x);
+    case Coordinate::logarithm_of_sine:
+      return std::log(std::sin(x * kRadPerDegree));
+    case Coordinate::logarithm_of_cosine:
+      return std::log(std::cos(x * kRadPerDegree));
+  }
+  return x;
+}
+double outer_of(Coordinate coordinate, double y) {
+  switch (coordinate) {
+    case Coordinate::own:
+      break;
+    case Coordinate::logarithm:
+      return std::exp(y);
+    case Coordinate::logarithm_of_sine:
+      return std::asin(std::exp(y)) / kRadPerDegree;
+    case Coordinate::logarithm_of_cosine:
+      return std::acos(std::exp(y)) / kRadPerDegree;
+  }
+  return y;
+}
+// Logarithm of |dx/dy| at x, but for a constant.
+double stretch_of(Coordinate coordinate, double x) {
+  switch (coordinate) {
+    case Coordinate::own:
+      break;
+    case Coordinate::logarithm:
+      return std::log(x);
+    case Coordinate::logarithm_of_sine:
+      return std::log(std::tan(x * kRadPerDegree));
+    case Coordinate::logarithm_of_cosine:
+      return -std::log(std::tan(x * kRadPerDegree));
+  }
+  return 0;
+}
+
+// The density in these coordinates.
 class Density {
  public:
   explicit Density(const DataModel& model) : model_(model), problem_(model.problem()) {
-    for (const Unknown& u : model.data().unknowns) logarithmic_.push_back(u.low > 0);
+    for (const Unknown& u : model.data().unknowns) coordinates_.push_back(coordinate_of(u));
   }
 
   Vector inner(std::span<const double> x) const {
     Vector y(x.begin(), x.end());
-    for (std::size_t i = 0; i < y.size(); ++i)
-      if (logarithmic_[i]) y[i] = std::log(y[i]);
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = inner_of(coordinates_[i], x[i]);
     return y;
   }
   Vector outer(const Vector& y) const {
     Vector x = y;
-    for (std::size_t i = 0; i < x.size(); ++i)
-      if (logarithmic_[i]) x[i] = std::exp(x[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = outer_of(coordinates_[i], y[i]);
     return x;
   }
   /// Logarithm of the posterior density of y, but for a constant.
@@ -54,7 +107,7 @@ class Density {
     double sum = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (!(x[i] >= problem_.low[i] && x[i] <= problem_.high[i])) return -HUGE_VAL;
-      if (logarithmic_[i]) sum += y[i];
+      sum += stretch_of(coordinates_[i], x[i]);
       const auto& prior = model_.data().unknowns[i].prior;
       // Of a lognormal prior the residual is that of the logarithm.
       if (prior && prior->shape == Shape::lognormal) sum -= std::log(x[i]);
@@ -69,7 +122,7 @@ class Density {
  private:
   const DataModel& model_;
   LeastSquaresProblem problem_;
-  std::vector<bool> logarithmic_;
+  std::vector<Coordinate> coordinates_;  // by unknown
 };
 
 // A place that data with errors of their own, and any start, could have led to: where the data

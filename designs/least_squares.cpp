@@ -22,11 +22,14 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 // Of the longest column: what is shorter is the error of derivatives by differences.
 constexpr double kRank = 1e-9;
 
-double scale_of(const LeastSquaresProblem& problem, std::size_t i) {
-  if (!problem.scales.empty()) return problem.scales[i];
+// What a change of a parameter at x is small or large against: its value, but where that is hardly
+// more than 0 (rounding leaves it a hair off) a share of the bounds' width.
+double size_of(const LeastSquaresProblem& problem, std::size_t i, double x) {
+  constexpr double kHardlyMore = 0.01;
+  const double own = std::abs(x);
   if (!problem.low.empty() && std::isfinite(problem.high[i] - problem.low[i]))
-    return problem.high[i] - problem.low[i];
-  return 1;
+    return std::max(own, kHardlyMore * (problem.high[i] - problem.low[i]));
+  return own > 0 ? own : 1;
 }
 
 // One column of the derivatives, by differences of second order.
@@ -38,8 +41,7 @@ class Differences {
   bool column(std::size_t i, std::span<double> jacobian) {
     // Where the errors of rounding and of the cut-off series meet.
     const double share = std::cbrt(std::numeric_limits<double>::epsilon());
-    const double size = x_[i] != 0 ? std::abs(x_[i]) : scale_of(problem_, i);
-    const double step = share * size;
+    const double step = share * size_of(problem_, i, x_[i]);
     const auto ahead = at(i, step), behind = at(i, -step);
     const std::size_t n = problem_.parameters;
     if (ahead && behind) {
@@ -230,7 +232,7 @@ LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<cons
     throw ComputationError("least squares: nothing can be computed at the start");
   std::vector<double> units(n), u(n);
   for (std::size_t i = 0; i < n; ++i) {
-    units[i] = fit.x[i] != 0 ? std::abs(fit.x[i]) : scale_of(problem, i);
+    units[i] = size_of(problem, i, fit.x[i]);
     u[i] = fit.x[i] / units[i];
   }
   ceres::Problem ceres_problem;

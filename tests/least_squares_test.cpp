@@ -141,6 +141,25 @@ TEST(LeastSquares, ABoundIsKeptAndItsDerivativesAreOneSided) {
   EXPECT_NEAR(fit.jacobian[0], 2, 1e-9);
 }
 
+// Rounding leaves a parameter a hair off 0: a step of its own size would move nothing.
+TEST(LeastSquares, AParameterThatIsAlmostZeroHasItsDerivatives) {
+  LeastSquaresProblem problem;
+  problem.parameters = problem.residuals = 1;
+  problem.low = {-1};
+  problem.high = {300};
+  problem.evaluate = [](std::span<const double> x, std::span<double> r) {
+    r[0] = 10 * (275 - x[0]);
+    return true;
+  };
+  for (const double x : {0.0, 1e-300, 1e-14, -3e-12, 1e-6}) {
+    Numbers slope(1);
+    ASSERT_TRUE(derivatives_of(problem, Numbers{x}, slope));
+    EXPECT_NEAR(slope[0], -10, 1e-6) << "at " << x;
+    if (least_squares_library().empty()) continue;
+    EXPECT_NEAR(least_squares(problem, Numbers{x}).x[0], 275, 1e-9) << "from " << x;
+  }
+}
+
 TEST(LeastSquares, WhatTheDataDoNotDetermineHasNoCovariance) {
   LeastSquaresFit fit;
   fit.x = {1, 2};

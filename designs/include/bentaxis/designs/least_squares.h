@@ -21,8 +21,6 @@ struct LeastSquaresProblem {
   /// differences of `evaluate`.
   std::function<bool(std::span<const double> x, std::span<double> jacobian)> differentiate = {};
   std::vector<double> low = {}, high = {};  ///< bounds, one per parameter; empty: none
-  /// Change of a parameter that matters where it is 0; empty: width of the bounds, or 1.
-  std::vector<double> scales = {};
 };
 
 struct LeastSquaresFit {
