@@ -58,7 +58,7 @@ class IdentifyTest(ProgramTest):
         tables = {run["title"]: run["table"]["rows"] for run in report["runs"]}
         self.assertEqual(len(tables["Data that unknowns are fitted to"]), 2)
         [predicted] = tables["Data that are predicted"]
-        self.assertIn(predicted[-1], ("yes", "no"))
+        self.assertEqual(predicted[-1], "no")  # the pump fitted to 292.5 Nm takes about 114 Nm at 100 bar, not 120
         with open(self.folder / "out" / "unknowns.csv", newline="") as file:
             [row] = csv.DictReader(file)
         self.assertEqual(row["unknown"], "pump.bore_diameter_mm")
