@@ -203,7 +203,7 @@ Section predicted_section(const DataModel& model, const Identification& result) 
       const double from = datum.value ? *datum.value - 2 * datum.uncertainty : datum.low;
       const double to = datum.value ? *datum.value + 2 * datum.uncertainty : datum.high;
       const bool meets = datum.size() == 2 ? low >= from && high <= to : low <= to && high >= from;
-      row.insert(row.end(), {low, high, meets});
+      row.insert(row.end(), {low, high, meets ? "yes" : "no"});
     }
     section.table.rows.push_back(std::move(row));
   }

@@ -19,11 +19,18 @@ using report::Section;
 constexpr std::size_t kBars = 20;       // of a figure, at most,
 constexpr double kShortestBar = 1e-3;   // of the longest
 constexpr double kNoInfluence = 1e-12;  // of the output's scale: round-off
+constexpr double kRoundOff = 1e-9;      // error of an exact derivative over it: no kink
 constexpr std::size_t kTextLines = 8;   // of an output
 
 // What one percent of a variable changes in an output.
 double effect(const Sensitivities& s, std::size_t o, std::size_t v) {
   return s.derivatives[o][v].value * s.at[v] / 100;
+}
+
+// Whether all that there is of a derivative is round-off.
+bool no_influence(const Sensitivities& s, std::size_t o, std::size_t v) {
+  const double size = s.at[v] == 0 ? 1 : std::abs(s.at[v]);
+  return std::abs(s.derivatives[o][v].value) * size <= kNoInfluence * s.scales[o];
 }
 
 // Variables by what one percent of them changes, most first; what has no derivative last.
@@ -66,17 +73,17 @@ Section derivatives_section(const Sensitivities& s, std::size_t o) {
   for (const std::size_t v : by_effect(s, o)) {
     const Derivative& d = s.derivatives[o][v];
     const Variable& variable = s.variables[v];
-    const double size = s.at[v] == 0 ? 1 : std::abs(s.at[v]);
-    if (std::abs(d.value) * size <= kNoInfluence * s.scales[o]) {
-      none += (none.empty() ? "" : ", ") + variable.name();
+    if (no_influence(s, o, v)) {
+      none += (none.empty() ? "No influence: " : ", ") + variable.name();
       continue;
     }
     section.table.rows.push_back(
         {variable.name(), s.at[v], variable.unit(), d.value, per(output.unit, variable.unit()),
          effect(s, o, v), s.elasticity(o, v), d.reason.empty() ? to_string(d.way) : d.reason,
-         d.way == Way::exact && d.error == 0 ? Cell("round-off") : Cell(d.error)});
+         d.way == Way::exact && d.error <= kRoundOff * std::abs(d.value) ? Cell("round-off")
+                                                                         : Cell(d.error)});
   }
-  if (!none.empty()) section.facts = {{"no influence", none}};
+  if (!none.empty()) section.text = none + ".";
   return section;
 }
 
@@ -210,9 +217,9 @@ std::string sensitivity_text(const Sensitivities& found,
                              const std::optional<SensitivityCheck>& check) {
   std::string text = found.base.name + "\n" + headline(found, check) + "\n";
   for (std::size_t o = 0; o < found.outputs.size(); ++o) {
-    text += fmt::format("\n{} = {:.7g} {}\n{:<34}{:>12}{:>14}{:>12}  {}\n", found.outputs[o].name,
-                        found.values[o], found.outputs[o].unit, "parameter", "value", "derivative",
-                        "%/%", "found by");
+    text += fmt::format("\n{} = {:.7g} {}\n{:<34} {:>12} {:>13} {:>12}  {}\n",
+                        found.outputs[o].name, found.values[o], found.outputs[o].unit, "parameter",
+                        "value", "derivative", "%/%", "found by");
     const auto order = by_effect(found, o);
     for (std::size_t i = 0; i < std::min(kTextLines, order.size()); ++i) {
       const std::size_t v = order[i];
@@ -220,8 +227,10 @@ std::string sensitivity_text(const Sensitivities& found,
       const auto number = [](double value) {
         return is_computed(value) ? fmt::format("{:.6g}", value) : std::string("-");
       };
-      text += fmt::format("{:<34}{:>12.6g}{:>14}{:>12}  {}\n", found.variables[v].name(),
-                          found.at[v], number(d.value), number(found.elasticity(o, v)),
+      const bool none = no_influence(found, o, v);
+      text += fmt::format("{:<34} {:>12} {:>13} {:>12}  {}\n", found.variables[v].name(),
+                          number(found.at[v]), none ? "0" : number(d.value),
+                          none ? "-" : number(found.elasticity(o, v)),
                           d.reason.empty() ? to_string(d.way) : d.reason);
     }
     if (order.size() > kTextLines)

@@ -151,13 +151,18 @@ Section infeasible_section(const SweepResult& result, const SweepView& view) {
   return section;
 }
 
+// Name and unit of an axis.
+std::string heading(const report::Axis& axis) {
+  return axis.unit.empty() ? axis.label : axis.label + ", " + axis.unit;
+}
+
 // Rows of designs: their values and results.
 void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
                  report::Table& table) {
   table.columns = {"design"};
-  for (std::size_t k = 0; k < view.variables(); ++k)
-    table.columns.push_back(view.variable(k).name());
-  for (std::size_t k = 0; k < view.outputs(); ++k) table.columns.push_back(view.output(k).name);
+  for (std::size_t k = 0; k < view.variables(); ++k) table.columns.push_back(heading(view.axis(k)));
+  for (std::size_t k = 0; k < view.outputs(); ++k)
+    table.columns.push_back(heading(view.output_axis(k)));
   for (const std::size_t design : designs) {
     std::vector<Cell> row = {static_cast<long>(view.number(design))};
     for (std::size_t k = 0; k < view.variables(); ++k) {
@@ -263,9 +268,9 @@ Section differing_section(const SweepResult& result) {
 }  // namespace
 
 std::string headline(const SweepResult& result) {
-  std::string text =
-      fmt::format("{} designs in {} parameter{}", result.plan.size(), result.plan.varied.size(),
-                  result.plan.varied.size() == 1 ? "" : "s");
+  std::string text = fmt::format("{} design{} in {} parameter{}", result.plan.size(),
+                                 result.plan.size() == 1 ? "" : "s", result.plan.varied.size(),
+                                 result.plan.varied.size() == 1 ? "" : "s");
   text += result.all_infeasible == 0 ? ", all feasible"
                                      : fmt::format(", {} infeasible", result.all_infeasible);
   if (!result.checks.empty())

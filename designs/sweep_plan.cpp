@@ -63,6 +63,10 @@ Varied varied(const std::string& name, const std::string& values, Sampling sampl
   if (sampling == Sampling::grid) {
     if (is_distribution(values))
       throw InputError(what + ": a grid has no distributions; --sampling lhs, sobol or random has");
+    if (v.variable.words().empty() && values.find_first_of(",(") == std::string::npos &&
+        std::count(values.begin(), values.end(), ':') == 1)
+      throw InputError(what + ": must be FROM:TO:STEP or FROM:TO:#N of a grid; --sampling lhs, " +
+                       "sobol or random takes a range without steps");
     v.levels = levels_of(values, v.variable);
     return v;
   }

@@ -42,7 +42,9 @@ std::string digits(double value, double interval) {
   if (!(interval > 0) || value == 0) return fmt::format("{:.6g}", value);
   const double size = std::max(std::abs(value), interval);
   const int count = static_cast<int>(std::ceil(std::log10(size / interval))) + 2;
-  return fmt::format("{:.{}g}", value, std::clamp(count, 2, 15));
+  // No fewer than stand before the point, up to a million: 16190 rather than 1.619e+04.
+  const int whole = size < 1e6 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 0;
+  return fmt::format("{:.{}g}", value, std::clamp(std::max(count, whole), 2, 15));
 }
 std::string with_error(double value, double error) {
   return digits(value, error) + fmt::format(" +- {:.2g}", error);

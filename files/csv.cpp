@@ -43,6 +43,8 @@ std::vector<std::string_view> split(std::string_view line) {
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty) {
   if (std::filesystem::is_directory(file))
     throw InputError(file.string() + ": is a folder, not a CSV file");
+  if (!std::ifstream(file))
+    throw InputError(file.string() + ": cannot be read: no such file, or no permission");
   InputLog::note(file);
   NumericTable table;
   try {

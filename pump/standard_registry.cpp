@@ -1275,7 +1275,8 @@ Table pressure_table() {
             }),
             .symbol = "p_s",
             .unit = kBar,
-            .meaning = "ideal: in the chambers; always: in the port, where it loads the lands"},
+            .meaning = "suction pressure; ideal: in the chambers; always: in the port, where it "
+                       "loads the lands"},
            {.key = "delivery_bar",
             .field = number_at([](const auto& v) {
               return in(in(v.pressure, &PressureSpec::ports), &PortPressures::delivery);
@@ -1287,7 +1288,8 @@ Table pressure_table() {
               return NumberRange{0, 10000};
             },
             .range_words = "hydraulic: [0, 10000]",
-            .meaning = "likewise; hydraulic: the mean asked for, 0 is an open line"},
+            .meaning = "delivery pressure, likewise; hydraulic: the mean asked for, 0 is an open "
+                       "line"},
            {.key = "points",
             .field =
                 integer_at([](const auto& v) { return in(v.pressure, &PressureSpec::points); }),

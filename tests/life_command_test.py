@@ -81,6 +81,7 @@ class LifeTest(ProgramTest):
             with self.subTest(text):
                 (self.folder / "duty.csv").write_text(text)
                 self.assert_mentions(self.refused(*self.life("--duty", "duty.csv")), *words)
+        self.assert_mentions(self.refused(*self.life("--duty", "nowhere.csv")), "nowhere.csv: cannot be read: no such file")
         rated = program.REPO / "cases" / "bap63_rated.toml"
         self.assert_mentions(self.refused("life", rated), "tapered_dynamic_rating_kN", "bearings")
 

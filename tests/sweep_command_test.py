@@ -285,7 +285,7 @@ class SweepTest(ProgramTest):
             (output, ("--vary",)),
             (vary, ("--output",)),
             ((*output, "--vary", "pump.tilt_deg"), ("--vary pump.tilt_deg", "NAME=VALUES")),
-            ((*output, "--vary", "pump.tilt_deg=20:40"), ("pump.tilt_deg", "FROM:TO:STEP")),
+            ((*output, "--vary", "pump.tilt_deg=20:40"), ("pump.tilt_deg = 20:40", "FROM:TO:STEP", "--sampling")),
             ((*output, "--vary", "pump.tilt_deg=a"), ("pump.tilt_deg = a", "number")),
             ((*output, "--vary", "pump.tilt_deg="), ("pump.tilt_deg", "values")),
             ((*output, *vary, "--vary", "pump.tilt_deg=30:40:5"), ("pump.tilt_deg", "twice")),
