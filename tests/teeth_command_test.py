@@ -122,7 +122,7 @@ class TeethTest(ProgramTest):
                     carries = float(teeth[f"{flank}_{which}_force_N"]) > 0
                     self.assertEqual(teeth[f"{flank}_{which}_x1_mm"] != "", carries)
         report = self.report()
-        (drawing,) = [f for f in report["figures"] if f["kind"] == "drawing"]
+        (drawing,) = [f for f in report["figures"] if f["id"] == "teeth"]
         self.assertEqual(len(drawing["frames"]), 36)
         for frame, teeth in zip(drawing["frames"], analytic):
             carrying = sum(float(v) > 0 for k, v in teeth.items() if k.endswith("_share"))
@@ -173,7 +173,7 @@ class TeethTest(ProgramTest):
 
     def test_picture(self):
         self.run_program("compare", self.case_file(), *FEW, "--out", "out")
-        (drawing,) = [f for f in self.report()["figures"] if f["kind"] == "drawing"]
+        (drawing,) = [f for f in self.report()["figures"] if f["id"] == "teeth"]
         rows = self.rows("teeth_analytic.csv")
         carried = [sum(float(v) for k, v in row.items() if k.endswith(FORCES)) for row in rows]
         self.assertEqual(drawing["shown"], carried.index(max(carried)))
@@ -251,7 +251,7 @@ class TeethTest(ProgramTest):
         self.assertEqual(len(rows), 41)
         self.assertEqual(float(rows[0]["lag_urad"]), 0)
         self.assertGreater(max(float(r["plus_force_N"]) for r in rows), 0)
-        (drawing,) = [f for f in self.report()["figures"] if f["kind"] == "drawing"]
+        (drawing,) = [f for f in self.report()["figures"] if f["id"] == "teeth"]
         self.assertEqual(len(drawing["frames"]), 41)
 
     def test_refusals(self):
