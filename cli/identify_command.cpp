@@ -21,7 +21,11 @@ struct Options {
   designs::IdentifyOptions identify;
 };
 
-int identify(const Options& options) {
+int identify(const Options& options, const CommandParser& command) {
+  if (options.fit_only)
+    for (const char* name : {"--steps", "--draws", "--measured"})
+      if (command.given(name))
+        throw InputError(std::string(name) + ": has no effect with --fit-only");
   if (designs::least_squares_library().empty())
     throw InputError(
         "identify: this program was built without Ceres; install libceres-dev (scripts/setup full) "
@@ -90,7 +94,7 @@ Command add_identify_command(CommandParser program) {
                "least squares and their derivatives alone: no profiles, posterior, leaving out");
   add_threads(command, identify_options.threads,
               "threads, at most one per processor; 0: as many. Results do not depend on it");
-  return {command, [options] { return identify(*options); }};
+  return {command, [options, command] { return identify(*options, command); }};
 }
 
 }  // namespace bentaxis::cli

@@ -174,7 +174,10 @@ SweepPlan sweep_plan(const SweepRequest& request, const Case& base) {
     throw InputError("--vary: name at least one parameter, as in pump.tilt_deg=20:40:5");
   if (plan.sampling == Sampling::grid && plan.samples > 0)
     throw InputError("--samples: a grid has none; --sampling lhs, sobol or random has");
-  if (plan.sampling != Sampling::grid && (plan.samples == 0 || plan.samples > kMostDesigns))
+  if (plan.sampling != Sampling::grid && plan.samples == 0)
+    throw InputError("--samples: --sampling " + to_string(plan.sampling) +
+                     " needs a number of points");
+  if (plan.sampling != Sampling::grid && plan.samples > kMostDesigns)
     throw InputError("--samples " + std::to_string(plan.samples) + ": must be in [1, " +
                      std::to_string(kMostDesigns) + "] with --sampling " +
                      to_string(plan.sampling));

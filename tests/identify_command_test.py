@@ -47,8 +47,8 @@ class IdentifyTest(ProgramTest):
 
     def identify(self, text, *options, **others):
         return self.run_program("identify", self.case(), "--set", "operation.samples_per_revolution=60", "--data",
-                                self.write(text), "--steps", 20, "--draws", 10, "--starts", 1, "--out", "out", *options,
-                                **others)
+                                self.write(text), "--starts", 1, "--out", "out",
+                                *(() if "--fit-only" in options else ("--steps", 20, "--draws", 10)), *options, **others)
 
     def test_files_and_tables(self):
         self.identify(DATA)
@@ -84,6 +84,11 @@ class IdentifyTest(ProgramTest):
         for word in words:
             self.assertIn(word, line)
         self.assertFalse((self.folder / "out" / "report.json").exists())
+
+    def test_options_without_effect_are_refused(self):
+        for option in ("--steps", "--draws", "--measured"):
+            self.assertIn(option, self.refused("identify", self.case(), "--data", self.write(DATA), "--fit-only", option,
+                                               "0.5" if option == "--measured" else 20, "--out", "out"))
 
     def test_refusals_name_file_line_and_key(self):
         self.refused_with(DATA.replace("bore_diameter_mm", "bore_diametre_mm"), "data.toml:6", "bore_diametre_mm",
