@@ -222,8 +222,10 @@ class HandOnTest(unittest.TestCase):
                     for number, top, _ in at:
                         width = self.coloured_columns(pages[number], int(top) + (60 if figure["kind"] == "scatter" else 20), min(int(top) + 300, pages[number][1]))
                         enough = {"piston_bars": 150, "xy": 150, "scatter": 40}.get(figure["kind"], 290)
-                        # Equal scales leave room beside what is drawn: two thin loops, a round plate.
-                        enough = {"bearing_loci": 5, "plate_pressure": 120}.get(figure["id"], enough)
+                        # Equal scales leave room beside what is drawn: two thin loops, a round plate; polygons are
+                        # taller than wide, and no figure is taller than 108 mm.
+                        enough = {"bearing_loci": 5, "plate_pressure": 120, "polygon_piston": 150,
+                                  "polygon_block": 150}.get(figure["id"], enough)
                         self.assertGreater(width, enough, f"page {number + 1}: columns with colour, of some 380")
 
     def test_paper_is_not_wasted(self):
