@@ -272,7 +272,7 @@ function pumpInSpace(report, data, scene) {
   };
   scenePanel = panel;
   cursor.follow(node, panel, x => { if (x != null && own.order.length) setRow(order[nearestPlace(own.theta, order, x)], cursor); });
-  own.mounts.push(() => {
+  data.mounts.push(() => {
     const near = new IntersectionObserver(entries => {
       if (entries.some(e => e.isIntersecting)) { near.disconnect(); open(); }
     }, { rootMargin: "400px" });
