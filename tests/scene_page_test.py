@@ -264,6 +264,14 @@ class SceneTest(unittest.TestCase):
         self.assertIn("no WebGL", found["text"])
         self.assertEqual(found["still"], 1)
 
+    def test_scene_with_curves_of_its_own(self):
+        """Beside curves of another kind (here of the oil) the view is there without being asked for."""
+        subprocess.run([PROGRAM, "pressure", str(REPO / "cases/bap63_rated_hydraulic.toml"), "--out", str(self.folder / "oil")],
+                       check=True, capture_output=True)
+        page = html.unescape(pages.chromium(self.folder, self.folder / "oil" / "pressure.html", (1280, 900), "--dump-dom", *WEBGL))
+        self.assertIn('data-ready="true"', page)
+        self.assertRegex(page, r">At 0\sdeg: Rs on piston \d [1-9]\d+\sN;")
+
 
 if __name__ == "__main__":
     if len(sys.argv) < 3:

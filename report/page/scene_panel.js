@@ -83,7 +83,7 @@ function pumpInSpace(report, data, scene) {
   const tags = el("div.tags", { "aria-hidden": "true" }), tip = el("div.tip", { role: "status", hidden: true });
   const frame = el("div.space", {}, canvas, tags, tip);
   const words = el("p.total", { "aria-live": "polite" }), scaleWords = el("p.hint"), sums = el("div");
-  const numbers = el("details", {}, el("summary", {}, "Numbers of the arrows"), el("div"));
+  const numbers = el("details", {}, el("summary", {}, "Numbers of the arrows, components in S1"), el("div"));
   const stills = el("div.stills", { "aria-hidden": "true" });
   const film = filmInset(state);
   numbers.addEventListener("toggle", () => update());
@@ -93,7 +93,9 @@ function pumpInSpace(report, data, scene) {
       : groups.filter(g => g.on);
     return largestWords(state, chosen, row, modelsShown());
   }
-  const placeText = () => (own.axis.angle ? degrees(own.theta[row]) : own.theta.length ? `${own.axis.label}: ${number(own.theta[row])}` : "");
+  const [, axisName, axisUnit] = /^(.*?)(?: \(([^()]*)\))?$/.exec(own.axis.label);  // "time (ms)"
+  const placeText = () => (own.axis.angle ? degrees(own.theta[row])
+    : own.theta.length ? `${axisName} ${unit(number(own.theta[row]), axisUnit)}` : "");
   function update() {
     slider.value = order.indexOf(row);
     reading.textContent = placeText();
@@ -272,7 +274,7 @@ function pumpInSpace(report, data, scene) {
   };
   scenePanel = panel;
   cursor.follow(node, panel, x => { if (x != null && own.order.length) setRow(order[nearestPlace(own.theta, order, x)], cursor); });
-  own.mounts.push(() => {
+  data.mounts.push(() => {
     const near = new IntersectionObserver(entries => {
       if (entries.some(e => e.isIntersecting)) { near.disconnect(); open(); }
     }, { rootMargin: "400px" });

@@ -8,6 +8,7 @@ const inner = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const outer = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const lengthOf = a => Math.sqrt(inner(a, a));
 const NOWHERE = { origin: [0, 0, 0], axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] };  // S1
+const NOTHING = 1e-9;  // of a peak: less is round-off, and said and drawn as zero
 
 function floatsOf(text) {
   const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));

@@ -54,7 +54,10 @@ function largestWords(state, groups, row, models) {
       const { force, moment } = state.loadAt(load, row, models[0]), v = force || moment;
       if (v && (!best || lengthOf(v) > best.size)) best = { load, size: lengthOf(v), name: force ? "N" : "Nm" };
     }
-    return best && `${best.load.label} ${unit(number(best.size, 4), best.name)}`;
+    if (!best) return null;
+    // What is drawn as a dot is zero here too.
+    const peak = state.peakOf(["largest", loads.length, loads[0].id].join(), loads)[best.name === "N" ? "force" : "moment"];
+    return `${best.load.label} ${unit(number(best.size < NOTHING * peak ? 0 : best.size, 4), best.name)}`;
   }).filter(Boolean).join("; ");
 }
 

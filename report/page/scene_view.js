@@ -117,7 +117,7 @@ function sceneView(state, canvas, look) {
         forces.add(made);
       }
       const object = arrows.get(key), peak = look.peak(load, kind), share = peak > 0 ? lengthOf(v) / peak : 0;
-      const none = share < 1e-9, least = !none && share * shown.length < SHORTEST;
+      const none = share < NOTHING, least = !none && share * shown.length < SHORTEST;
       object.visible = true;
       setArrow(object, at, none ? [0, 0, 0] : v, longest * Math.max(SHORTEST, share * shown.length), least);
       object.userData.now = { load, v, least, none, newtonsPerMetre: peak / (longest * shown.length) };
