@@ -11,6 +11,7 @@
 #include "integration/case_drive.h"
 #include "integration/motion_run.h"
 #include "reactions/solver_guard.h"
+#include "scene_facts.h"
 
 namespace bentaxis::multibody {
 

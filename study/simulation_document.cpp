@@ -458,11 +458,11 @@ report::KeyFigures key_figures_of(const SimulationResult& r) {
 }
 
 std::vector<report::Figure> diagrams_of(const SimulationResult& r) {
-  const auto& [name, run] = runs_of(r).front();
-  DiagramRun shown{r.ready.the_case, run->table.results, &run->loads};
-  shown.time_ms = times_of(*run);
-  for (std::size_t row = 0; row < run->lag.size(); ++row)
-    shown.block_deg.push_back(run->table.state(row, 1) - run->lag[row] / kRadPerDegree);
+  const Trajectory& run = *runs_of(r).front().second;
+  DiagramRun shown{r.ready.the_case, run.table.results, &run.loads};
+  shown.time_ms = times_of(run);
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    shown.block_deg.push_back(run.table.state(row, 1) - run.lag[row] / kRadPerDegree);
   shown.constant_ports = !r.oil_follows;
   return force_figures(shown);
 }

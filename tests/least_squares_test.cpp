@@ -23,6 +23,7 @@ struct Certified {
   double sum_of_squares, residual_deviation;
   double (*model)(double x, std::span<const double> b);
 };
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest asks for this name
 void PrintTo(const Certified& c, std::ostream* out) { *out << c.name; }
 
 double saturation(double x, std::span<const double> b) { return -b[0] * std::expm1(-b[1] * x); }

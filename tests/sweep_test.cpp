@@ -124,7 +124,8 @@ TEST(Sweep, BlocksHoldWhatTheEvaluatorGives) {
     ASSERT_EQ(block.first, b * 4);
     for (std::size_t i = 0; i < block.designs; ++i) {
       const std::size_t design = block.first + i;
-      const double values[] = {20 + 10 * static_cast<double>(design / 160),
+      const std::size_t tilt = design / 160;
+      const double values[] = {20 + 10 * static_cast<double>(tilt),
                                50 + 350.0 / 159 * static_cast<double>(design % 160)};
       EXPECT_NEAR(block.values[2 * i], values[0], 1e-12);
       EXPECT_NEAR(block.values[2 * i + 1], values[1], 1e-12);
