@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/plausibility_section.h"
-#include "bentaxis/study/pump_scene.h"
-#include "bentaxis/study/run.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -224,22 +221,13 @@ report::Figure spectrum_figure(const LifeStudy& s) {
       "that costs as much life."};
 }
 
-// Of the case itself; the rows of a duty cycle may be computed where it is not.
-std::optional<report::Scene> scene_of(const Case& the_case) {
-  try {
-    return study::analytic_scene(study::prepare(the_case).the_case);
-  } catch (const ComputationError&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 report::Document life_document(const LifeStudy& s, const report::Lines& program) {
   report::Document document;
   document.title = s.the_case.name + ": life of the bearings";
   document.program = program;
-  study::describe_case(document, s.the_case, scene_of(s.the_case));
+  study::describe_case(document, s.the_case);
   document.derived = study::derived_section(s.the_case);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.meaning =

@@ -20,6 +20,7 @@
 #include "bentaxis/report/document.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/samples.h"
+#include "bentaxis/study/run.h"
 #include "pump_shapes.h"
 
 namespace bentaxis::study {
@@ -510,15 +511,15 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
 
 std::optional<report::Scene> analytic_scene(const Case& the_case) {
   constexpr int kMostSamples = 120;
-  const PressureSpec& pressure = the_case.pressure;
-  if (pressure.kind == PressureKind::hydraulic && !pressure.computed &&
-      pressure.curve.theta_deg.empty())
-    return std::nullopt;
-  Case turn = the_case;
-  turn.operation.samples_per_revolution =
-      std::min(turn.operation.samples_per_revolution, kMostSamples);
   try {
-    const Samples samples = sample_case(turn, PressureTrace(pressure));
+    // Of a study of other cases the pressure of this one may not have been computed.
+    const PressureSpec& given = the_case.pressure;
+    const bool missing = given.kind == PressureKind::hydraulic && !given.computed &&
+                         given.curve.theta_deg.empty();
+    Case turn = missing ? prepare(the_case).the_case : the_case;
+    turn.operation.samples_per_revolution =
+        std::min(turn.operation.samples_per_revolution, kMostSamples);
+    const Samples samples = sample_case(turn, PressureTrace(turn.pressure));
     const ResultTable table = analytic::run(turn, turn.analytic, samples);
     const BodyLoadTable loads = analytic::run_body_loads(turn, turn.analytic, samples);
     const std::vector<SceneRun> runs = {{table, loads}};

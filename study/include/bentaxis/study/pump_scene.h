@@ -34,9 +34,8 @@ inline constexpr std::size_t kMostSceneRows = 1440;
 report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs,
                          const SceneMotion* motion = nullptr);
 
-/// By the analytic model alone, over one turn of at most 120 samples, with curves of its own. None
-/// where the model has no answer, and where the chamber pressure has not been computed
-/// (study::prepare).
+/// By the analytic model alone, over one turn of at most 120 samples, with curves of its own; a
+/// hydraulic pressure that has not been computed is. None where the case has no answer.
 std::optional<report::Scene> analytic_scene(const Case& the_case);
 
 }  // namespace bentaxis::study
