@@ -82,6 +82,7 @@ PROBE = r"""
     if (canvas) canvas.dispatchEvent(new KeyboardEvent("keydown", { key: ".", bubbles: true }));
     result.stepped = S.row();
     if (plot) {
+      dispatchEvent(new Event("beforeprint"));  // draws it: without frames nothing is seen to come near
       plot.scrollIntoView({ behavior: "instant" });
       await wait(3000);
       const figure = plot.closest("figure"), reading = () => figure.querySelector(".readout .angle").textContent;
