@@ -514,8 +514,8 @@ std::optional<report::Scene> analytic_scene(const Case& the_case) {
   try {
     // Of a study of other cases the pressure of this one may not have been computed.
     const PressureSpec& given = the_case.pressure;
-    const bool missing = given.kind == PressureKind::hydraulic && !given.computed &&
-                         given.curve.theta_deg.empty();
+    const bool missing =
+        given.kind == PressureKind::hydraulic && !given.computed && given.curve.theta_deg.empty();
     Case turn = missing ? prepare(the_case).the_case : the_case;
     turn.operation.samples_per_revolution =
         std::min(turn.operation.samples_per_revolution, kMostSamples);

@@ -322,8 +322,18 @@ TEST(PumpScene, AloneBringsItsCurves) {
   EXPECT_GT(named.size(), 20u);
   for (const std::string& name : named)
     EXPECT_TRUE(json["curves"]["tables"][0]["columns"].contains(name)) << name;
-  // Not computed yet: no pressure, no scene.
-  EXPECT_FALSE(study::analytic_scene(shipped_case("bap63_rated_hydraulic")));
+}
+
+TEST(PumpScene, ComputesThePressureThatItNeeds) {
+  const Case hydraulic = shipped_case("bap63_rated_hydraulic");
+  const auto scene = study::analytic_scene(hydraulic);
+  const auto prepared = study::analytic_scene(study::prepare(hydraulic).the_case);
+  ASSERT_TRUE(scene && prepared);
+  EXPECT_EQ(report::compact_json(*scene), report::compact_json(*prepared));
+  // Without a periodic state there is none.
+  Case standing = hydraulic;
+  standing.operation.speed_rpm = 0;
+  EXPECT_FALSE(study::analytic_scene(standing));
 }
 
 TEST(PumpScene, ShaftAndBlockStandAsSimulated) {
