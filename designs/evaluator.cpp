@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "idle.h"
 #include "turn_statistics.h"
 
 namespace bentaxis::designs {
@@ -24,25 +24,12 @@ struct Evaluator::Implementation {
     Case the_case;
     std::optional<TurnStatistics> turn;
   };
-  mutable std::mutex mutex;
-  mutable std::vector<std::unique_ptr<Scratch>> idle;
+  mutable Idle<Scratch> idle;
 
-  std::unique_ptr<Scratch> take() const {
-    {
-      const std::lock_guard lock(mutex);
-      if (!idle.empty()) {
-        auto scratch = std::move(idle.back());
-        idle.pop_back();
-        return scratch;
-      }
-    }
-    auto scratch = std::make_unique<Scratch>(Scratch{family.base(), {}});
-    if (kernel) scratch->turn.emplace(*kernel);
+  Scratch fresh() const {
+    Scratch scratch{family.base(), {}};
+    if (kernel) scratch.turn.emplace(*kernel);
     return scratch;
-  }
-  void give_back(std::unique_ptr<Scratch> scratch) const {
-    const std::lock_guard lock(mutex);
-    idle.push_back(std::move(scratch));
   }
 
   // Of a case that is valid.
@@ -81,7 +68,7 @@ Evaluation Evaluator::evaluate(std::span<const double> values) const {
 void Evaluator::evaluate(std::size_t count, std::span<const double> values,
                          std::span<double> results, std::span<std::string> reasons) const {
   const std::size_t n = family().variables().size(), m = outputs().size();
-  auto scratch = implementation_->take();
+  auto scratch = implementation_->idle.take([&] { return implementation_->fresh(); });
   for (std::size_t i = 0; i < count; ++i) {
     const auto to = results.subspan(i * m, m);
     reasons[i].clear();
@@ -95,7 +82,7 @@ void Evaluator::evaluate(std::size_t count, std::span<const double> values,
     }
     if (!reasons[i].empty()) std::fill(to.begin(), to.end(), not_computed());
   }
-  implementation_->give_back(std::move(scratch));
+  implementation_->idle.give_back(std::move(scratch));
 }
 
 }  // namespace bentaxis::designs

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <set>
 
 #include "bentaxis/designs/points.h"
@@ -12,6 +11,7 @@
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/run.h"
+#include "idle.h"
 #include "turn_statistics.h"
 
 namespace bentaxis::designs {
@@ -78,28 +78,15 @@ struct DataModel::Implementation {
     std::optional<analytic::BatchColumns> columns;
     ResultTable table;  // of the wanted columns
   };
-  mutable std::mutex mutex;
-  mutable std::vector<std::unique_ptr<Scratch>> idle;
+  mutable Idle<Scratch> idle;
 
-  std::unique_ptr<Scratch> take() const {
-    {
-      const std::lock_guard lock(mutex);
-      if (!idle.empty()) {
-        auto scratch = std::move(idle.back());
-        idle.pop_back();
-        return scratch;
-      }
-    }
-    auto scratch = std::make_unique<Scratch>();
-    scratch->of_branch.assign(branches.size(), base);
+  Scratch fresh() const {
+    Scratch scratch;
+    scratch.of_branch.assign(branches.size(), base);
     const ChannelLayout layout(base.pump.geometry.pistons);
     for (const std::size_t column : wanted)
-      scratch->table.channels.push_back(layout.channels()[column]);
+      scratch.table.channels.push_back(layout.channels()[column]);
     return scratch;
-  }
-  void give_back(std::unique_ptr<Scratch> scratch) const {
-    const std::lock_guard lock(mutex);
-    idle.push_back(std::move(scratch));
   }
   std::size_t place_in_table(std::size_t column) const {
     return static_cast<std::size_t>(std::lower_bound(wanted.begin(), wanted.end(), column) -
@@ -339,7 +326,7 @@ std::vector<double> DataModel::start() const {
 bool DataModel::predict(std::span<const double> x, std::span<double> numbers) const {
   const Implementation& self = *implementation_;
   std::fill(numbers.begin(), numbers.end(), not_computed());
-  auto scratch = self.take();
+  auto scratch = self.idle.take([&] { return self.fresh(); });
   bool found = true;
   try {
     for (const Implementation::State& state : self.states) {
@@ -354,7 +341,7 @@ bool DataModel::predict(std::span<const double> x, std::span<double> numbers) co
   } catch (const ComputationError&) {
     found = false;
   }
-  self.give_back(std::move(scratch));
+  self.idle.give_back(std::move(scratch));
   return found;
 }
 

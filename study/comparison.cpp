@@ -61,6 +61,11 @@ class Maker {
            result_.first.the_case.analytic.gear == BlockDrive::mesh &&
            result_.second.the_case.multibody.gear == BlockDrive::mesh;
   }
+  // Of another run they would be those beside its reactions, which no report shows.
+  bool has_loads() const {
+    return result_.options.loads && !integrated() &&
+           result_.options.scene.scene == multibody::Scene::full;
+  }
   bool has_budget() const {
     const ChannelLayout layout(result_.first.the_case.pump.geometry.pistons);
     return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
@@ -115,7 +120,7 @@ void Maker::run_models() {
   RunOptions analytic_run;
   analytic_run.budget = has_budget();
   analytic_run.teeth = has_teeth();
-  analytic_run.loads = o.loads;
+  analytic_run.loads = has_loads();
   ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
   r.analytic = std::move(analytic.table);
   r.analytic_loads = std::move(analytic.loads);
@@ -127,7 +132,7 @@ void Maker::run_models() {
   RunOptions driven = multibody_run(0);
   driven.budget = has_budget();
   driven.teeth = has_teeth();
-  driven.loads = o.loads;
+  driven.loads = has_loads();
   ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
   r.multibody = std::move(multibody.table);
   r.multibody_loads = std::move(multibody.loads);
@@ -141,11 +146,9 @@ void Maker::run_models() {
 void Maker::integrate_all() {
   ComparisonResult& r = result_;
   for (const double accuracy : r.options.accuracies) {
-    RunOptions options = multibody_run(accuracy);
-    options.loads = r.options.loads && accuracy == r.options.accuracies.back();
+    const RunOptions options = multibody_run(accuracy);
     ModelRun run = study::run(r.second, multibody_samples_, options, progress_of_);
     r.multibody = std::move(run.table);
-    r.multibody_loads = std::move(run.loads);
     const auto comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
     const auto worst = [&](const std::string& group) { return worst_of_group(comparison, group); };
     r.integrations.push_back(

@@ -142,8 +142,7 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   document.program = program;
   std::optional<report::Scene> scene;
   // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
-  const bool all_loads = r.options.loads && r.options.way == Way::driven &&
-                         r.options.scene.scene == multibody::Scene::full;
+  const bool all_loads = r.multibody_loads.rows() > 0;
   if (all_loads)
     scene =
         pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});

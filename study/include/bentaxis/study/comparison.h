@@ -37,7 +37,7 @@ struct ComparisonOptions {
   /// Printed numbers to hold the results to (reference_data/published); empty: none.
   std::filesystem::path published;
   std::filesystem::path with;  ///< a reference to hold both models to as well; empty: none
-  bool loads = false;          ///< all loads on the bodies too (RunOptions)
+  bool loads = false;          ///< all loads on the bodies too, of a driven run of full pumps
 };
 
 /// Assumptions in words: name and value.
