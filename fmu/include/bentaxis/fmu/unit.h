@@ -1,0 +1,32 @@
+// A case as a Functional Mock-up Unit (FMI 2.0, 3.0): the analytic pump for a system simulator.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bentaxis/pump/case.h"
+
+namespace bentaxis::fmu {
+
+enum class Version { fmi2, fmi3 };
+/// What turns the shaft of a unit.
+enum class Drive {
+  speed,       ///< inputs drive_speed, drive_acceleration
+  torque,      ///< input drive_torque
+  as_in_case,  ///< no input: the [drive] of the case
+};
+
+struct UnitOptions {
+  Version version = Version::fmi2;
+  Drive drive = Drive::speed;
+  double tolerance = 1e-9;  ///< of a step of co-simulation, as in coupled::Options
+  std::string model_name;   ///< empty: the name of the case
+  std::string generated;    ///< date and time, ISO 8601 UTC; empty: left out of the description
+};
+
+/// The bytes of the .fmu: a zip archive with modelDescription.xml, the library, the case with its
+/// curves and documentation. The same arguments give the same bytes.
+/// @throws InputError where the case cannot be simulated so
+std::string unit_archive(const Case& the_case, const UnitOptions& options);
+
+}  // namespace bentaxis::fmu
