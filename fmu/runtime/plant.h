@@ -14,11 +14,11 @@
 
 namespace bentaxis::fmu {
 
-/// What inputs are, in the units of the list of variables (SI but for what it says).
+/// What inputs are, SI.
 struct Inputs {
   double speed = 0, acceleration = 0;  ///< rad/s, rad/s2
   double torque = 0;                   ///< Nm
-  double suction = 0, delivery = 0;    ///< bar gauge, as in case files
+  double suction = 0, delivery = 0;    ///< Pa gauge
   double load_share = 1;
   bool acceleration_given = false;  ///< by whoever sets inputs: else reactions lack inertia by it
 };
