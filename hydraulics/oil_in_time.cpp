@@ -34,6 +34,18 @@ class OilInTime : public Oil {
 
   int pistons() const override { return network_.pistons(); }
   int states() const override { return network_.size(); }
+  TakesFromOutside takes() const override {
+    TakesFromOutside takes;
+    takes.suction = true;
+    takes.delivery = network_.fixed_end();
+    takes.load_share = !network_.fixed_end();
+    return takes;
+  }
+  void surround(const Surroundings& outside) override {
+    network_.set_suction(outside.suction);
+    if (network_.fixed_end()) network_.set_delivery(outside.delivery);
+    outside_share_ = outside.load_share;
+  }
   std::vector<double> start() const override { return start_; }
   // ln of pressures; what the lines have is over pressures and flows of the same kind.
   std::vector<double> scales() const override { return std::vector<double>(start_.size(), 1.0); }
@@ -157,6 +169,7 @@ class OilInTime : public Oil {
   }
 
   double load_size(double time) const {
+    if (outside_share_) return network_.load().shared(load_size_, *outside_share_);
     return share_ ? network_.load().shared(load_size_, share_->value(time)) : load_size_;
   }
 
@@ -176,6 +189,7 @@ class OilInTime : public Oil {
   double density_;  // of all volume flows
   double load_size_;
   std::optional<TimeSignal> share_;  // of that
+  std::optional<double> outside_share_;
   std::vector<double> start_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "bentaxis/pump/pressure.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/surroundings.h"
 
 namespace bentaxis {
 
@@ -39,6 +40,9 @@ class Oil {
 
   virtual int pistons() const = 0;
   virtual int states() const = 0;
+  /// Which pressures and loads from outside it takes, and from now on those.
+  virtual TakesFromOutside takes() const { return {}; }
+  virtual void surround(const Surroundings& /*outside*/) {}
   /// States at time 0, shaft and block at angle 0.
   virtual std::vector<double> start() const = 0;
   /// What each state is measured by: an error of one part in this scale changes pressures by about
