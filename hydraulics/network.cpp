@@ -227,6 +227,29 @@ double Network::expected_log_pressure(double share) const {
   return (low + high) / 2;
 }
 
+std::vector<OilColumn> Network::state_columns() const {
+  std::vector<OilColumn> all(static_cast<std::size_t>(states_));
+  const auto name = [&](int at, const std::string& called, const std::string& meaning) {
+    all[static_cast<std::size_t>(at)] = {called, meaning};
+  };
+  for (int k = 0; k < n_; ++k) {
+    const std::string number = std::to_string(k + 1);
+    name(k, "ln_p_" + number, "ln(P/P0) in chamber " + number + ", P absolute, P0 atmospheric");
+    if (air_at_ > 0)
+      name(air_at_ + k, "air_out_" + number,
+           "share of the dissolved air that is out in chamber " + number);
+  }
+  if (!fixed_) name(n_, "ln_p_delivery", "ln(P/P0) in the delivery volume");
+  if (has_suction_volume()) name(suction_at_, "ln_p_suction", "ln(P/P0) in the suction port");
+  if (suction_line_)
+    name(suction_at_ + 1, "flow_suction_line", "mass flow in the suction line over the ideal one");
+  if (accumulator_) name(accumulator_at_, "ln_p_accumulator", "ln(P/P0) in the accumulator");
+  for (int i = 0; pipe_ && i < pipe_->size(); ++i)
+    name(pipe_at_ + i, "delivery_line_" + std::to_string(i + 1),
+         "mode of the delivery line's pressure, then of its flow");
+  return all;
+}
+
 void Network::exchange_sides(double* y) const {
   const double suction = y[suction_at_], delivery = y[n_];
   for (int k = 0; k < n_; ++k) y[k] = y[k] == suction ? delivery : suction;

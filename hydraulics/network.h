@@ -9,6 +9,7 @@
 #include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/oil.h"
 #include "chamber.h"
 #include "fluid.h"
 #include "leakage.h"
@@ -80,6 +81,8 @@ class Network {
   int pressures() const { return fixed_ ? n_ : n_ + 1; }
   /// What comes back after a period, the first of the state: all but the mean.
   int states() const { return states_; }
+  /// Name and meaning of each of the state, of motion in time.
+  std::vector<OilColumn> state_columns() const;
   /// Length of the state.
   int size() const { return fixed_ || use_ == Use::time ? states_ : states_ + 1; }
   /// 360/N: after that angle every chamber stands where the one before it stood.

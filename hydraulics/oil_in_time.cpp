@@ -47,6 +47,7 @@ class OilInTime : public Oil {
     outside_share_ = outside.load_share;
   }
   std::vector<double> start() const override { return start_; }
+  std::vector<OilColumn> state_columns() const override { return network_.state_columns(); }
   // ln of pressures; what the lines have is over pressures and flows of the same kind.
   std::vector<double> scales() const override { return std::vector<double>(start_.size(), 1.0); }
   std::vector<double> knots() const override {

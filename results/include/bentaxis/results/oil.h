@@ -45,6 +45,8 @@ class Oil {
   virtual void surround(const Surroundings& /*outside*/) {}
   /// States at time 0, shaft and block at angle 0.
   virtual std::vector<double> start() const = 0;
+  /// What the states are: names without blanks, and their meaning; those of no unit have none.
+  virtual std::vector<OilColumn> state_columns() const { return {}; }
   /// What each state is measured by: an error of one part in this scale changes pressures by about
   /// the same part of their peak.
   virtual std::vector<double> scales() const = 0;
