@@ -1,0 +1,35 @@
+// A .fmu unpacked into a folder that goes with its owner. Internal.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace bentaxis::fmu {
+
+class Unpacked {
+ public:
+  /// Description, resources and the libraries of this machine.
+  /// @throws InputError where the file is no archive, or one that should not be unpacked
+  explicit Unpacked(const std::filesystem::path& archive);
+  ~Unpacked();
+  Unpacked(const Unpacked&) = delete;
+  Unpacked& operator=(const Unpacked&) = delete;
+
+  const std::filesystem::path& folder() const { return folder_; }
+  std::string description() const;
+  /// Folders below binaries/, as the archive has them.
+  const std::vector<std::string>& platforms() const { return platforms_; }
+
+ private:
+  void unpack(const std::filesystem::path& archive);
+  void remove() noexcept;
+
+  std::filesystem::path file_, folder_;
+  std::vector<std::string> platforms_;
+};
+
+/// Folder of this machine's libraries in an archive. @param version  of FMI
+std::string platform_folder(int version);
+
+}  // namespace bentaxis::fmu
