@@ -18,8 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr zip_int64_t kMostEntries = 20000;
-// Of what is unpacked, whatever the archive says of its sizes.
-constexpr std::uint64_t kMostBytes = 1ULL << 30;
 constexpr std::size_t kPiece = 1U << 16;
 constexpr std::string_view kDescription = "modelDescription.xml";
 
@@ -57,7 +55,7 @@ std::string platform_folder(int version) {
 #endif
 }
 
-Unpacked::Unpacked(const fs::path& archive) : file_(archive) {
+Unpacked::Unpacked(const fs::path& archive, std::uint64_t most) : file_(archive) {
   if (!fs::exists(archive)) fail(archive, "does not exist");
   if (fs::is_directory(archive)) fail(archive, "is a folder: must be a .fmu");
   std::string pattern = (fs::absolute(fs::temp_directory_path()) / "bentaxis-fmu-XXXXXX").string();
@@ -65,7 +63,7 @@ Unpacked::Unpacked(const fs::path& archive) : file_(archive) {
     fail(pattern, "a folder to unpack a unit into cannot be made");
   folder_ = pattern;
   try {
-    unpack(archive);
+    unpack(archive, most);
   } catch (...) {
     remove();
     throw;
@@ -79,7 +77,7 @@ void Unpacked::remove() noexcept {
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
-void Unpacked::unpack(const fs::path& file) {
+void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
   int error = 0;
   const std::unique_ptr<zip_t, Close> archive(zip_open(file.c_str(), ZIP_RDONLY, &error));
   if (!archive) fail(file, "is no zip archive, or a damaged one: must be a .fmu");
@@ -113,8 +111,8 @@ void Unpacked::unpack(const fs::path& file) {
       if (count < 0) fail(file, name + " cannot be unpacked: the archive is damaged");
       if (count == 0) break;
       bytes += static_cast<std::uint64_t>(count);
-      if (bytes > kMostBytes)
-        fail(file, "is larger than " + std::to_string(kMostBytes >> 20) + " MiB when unpacked");
+      if (bytes > most)
+        fail(file, "is larger than " + std::to_string(most >> 20) + " MiB when unpacked");
       out.write(piece.data(), count);
     }
     out.close();
