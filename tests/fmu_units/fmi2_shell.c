@@ -20,9 +20,9 @@ const char* fmi2GetVersion(void) { return "1.9"; }
 const char* fmi2GetVersion(void) { return fmi2Version; }
 #endif
 
-fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid,
-                              fmi2String resources, const fmi2CallbackFunctions* functions,
-                              fmi2Boolean visible, fmi2Boolean logging_on) {
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                              const fmi2CallbackFunctions* functions, fmi2Boolean visible,
+                              fmi2Boolean logging_on) {
   (void)visible;
   (void)logging_on;
   if (type != fmi2CoSimulation || strcmp(guid, kModelToken) != 0 ||
@@ -65,19 +65,19 @@ fmi2Status fmi2Terminate(fmi2Component c) {
 }
 #endif
 
-#define GET(TYPE)                                                                       \
+#define GET(TYPE)                                                                        \
   fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference vr[], size_t count, \
-                           fmi2##TYPE value[]) {                                        \
-    Instance* instance = c;                                                             \
-    model_outputs(instance->values, instance->time);                                    \
-    for (size_t i = 0; i < count; ++i) value[i] = (fmi2##TYPE)instance->values[vr[i]];  \
-    return fmi2OK;                                                                      \
-  }                                                                                     \
+                           fmi2##TYPE value[]) {                                         \
+    Instance* instance = c;                                                              \
+    model_outputs(instance->values, instance->time);                                     \
+    for (size_t i = 0; i < count; ++i) value[i] = (fmi2##TYPE)instance->values[vr[i]];   \
+    return fmi2OK;                                                                       \
+  }                                                                                      \
   fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference vr[], size_t count, \
-                           const fmi2##TYPE value[]) {                                  \
-    Instance* instance = c;                                                             \
-    for (size_t i = 0; i < count; ++i) instance->values[vr[i]] = value[i];              \
-    return fmi2OK;                                                                      \
+                           const fmi2##TYPE value[]) {                                   \
+    Instance* instance = c;                                                              \
+    for (size_t i = 0; i < count; ++i) instance->values[vr[i]] = value[i];               \
+    return fmi2OK;                                                                       \
   }
 GET(Real)
 GET(Integer)

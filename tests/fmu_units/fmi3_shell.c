@@ -19,12 +19,14 @@ const char* fmi3GetVersion(void) { return "2.9"; }
 const char* fmi3GetVersion(void) { return fmi3Version; }
 #endif
 
-fmi3Instance fmi3InstantiateCoSimulation(
-    fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
-    fmi3Boolean logging_on, fmi3Boolean event_mode_used, fmi3Boolean early_return_allowed,
-    const fmi3ValueReference intermediate[], size_t intermediates,
-    fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
-    fmi3IntermediateUpdateCallback update) {
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
+                                         fmi3Boolean visible, fmi3Boolean logging_on,
+                                         fmi3Boolean event_mode_used,
+                                         fmi3Boolean early_return_allowed,
+                                         const fmi3ValueReference intermediate[],
+                                         size_t intermediates, fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback log,
+                                         fmi3IntermediateUpdateCallback update) {
   (void)name;
   (void)visible;
   (void)logging_on;
@@ -71,21 +73,21 @@ fmi3Status fmi3Terminate(fmi3Instance c) {
 }
 #endif
 
-#define GET(TYPE)                                                                        \
-  fmi3Status fmi3Get##TYPE(fmi3Instance c, const fmi3ValueReference vr[], size_t count,  \
-                           fmi3##TYPE value[], size_t value_count) {                     \
-    Instance* instance = c;                                                              \
-    if (count != value_count) return fmi3Error;                                          \
-    model_outputs(instance->values, instance->time);                                     \
-    for (size_t i = 0; i < count; ++i) value[i] = (fmi3##TYPE)instance->values[vr[i]];   \
-    return fmi3OK;                                                                       \
-  }                                                                                      \
-  fmi3Status fmi3Set##TYPE(fmi3Instance c, const fmi3ValueReference vr[], size_t count,  \
-                           const fmi3##TYPE value[], size_t value_count) {               \
-    Instance* instance = c;                                                              \
-    if (count != value_count) return fmi3Error;                                          \
-    for (size_t i = 0; i < count; ++i) instance->values[vr[i]] = (double)value[i];       \
-    return fmi3OK;                                                                       \
+#define GET(TYPE)                                                                       \
+  fmi3Status fmi3Get##TYPE(fmi3Instance c, const fmi3ValueReference vr[], size_t count, \
+                           fmi3##TYPE value[], size_t value_count) {                    \
+    Instance* instance = c;                                                             \
+    if (count != value_count) return fmi3Error;                                         \
+    model_outputs(instance->values, instance->time);                                    \
+    for (size_t i = 0; i < count; ++i) value[i] = (fmi3##TYPE)instance->values[vr[i]];  \
+    return fmi3OK;                                                                      \
+  }                                                                                     \
+  fmi3Status fmi3Set##TYPE(fmi3Instance c, const fmi3ValueReference vr[], size_t count, \
+                           const fmi3##TYPE value[], size_t value_count) {              \
+    Instance* instance = c;                                                             \
+    if (count != value_count) return fmi3Error;                                         \
+    for (size_t i = 0; i < count; ++i) instance->values[vr[i]] = (double)value[i];      \
+    return fmi3OK;                                                                      \
   }
 GET(Float64)
 GET(Float32)

@@ -1,5 +1,6 @@
-/* A motor behind a coupling, as [drive] kind = "motor" of a case: inputs angle and speed of the shaft, output the torque of
-   the coupling. Over a step the shaft is taken to turn on at its speed. */
+/* A motor behind a coupling, as [drive] kind = "motor" of a case: inputs angle and speed of the
+   shaft, output the torque of the coupling. Over a step the shaft is taken to turn on at its speed.
+ */
 #include "model.h"
 
 const char* const kModelToken = "motor-1";
@@ -25,7 +26,7 @@ void model_start(double v[]) {
   v[kStiffness] = 30000;
   v[kDamping] = 20;
   v[kNominalTorque] = 290;
-  v[kAngle] = 0;
+  v[kAngle] = 290.0 / 30000; /* the coupling carries the torque */
 }
 
 static double coupling(const double v[], double angle, double speed, double shaft_angle) {

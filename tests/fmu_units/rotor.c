@@ -1,4 +1,5 @@
-/* A rotor on the shaft under a torque that stands: input the drive torque of the pump, outputs speed and acceleration. */
+/* A rotor on the shaft under a torque that stands: input the drive torque of the pump, outputs
+ * speed and acceleration. */
 #include "model.h"
 
 const char* const kModelToken = "rotor-1";

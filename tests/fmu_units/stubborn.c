@@ -10,6 +10,7 @@ enum { kFailAt, kStatus, kWhole, kSmall, kYes, kSingle, kSum, kSpeed };
 void model_start(double v[]) {
   v[kFailAt] = 0.01;
   v[kStatus] = 3; /* FMI's: error */
+  v[kSpeed] = 150;
 }
 
 void model_outputs(double v[], double time) {
