@@ -236,7 +236,7 @@ coupled::Exchange UnitCoupling::exchange(int parts, std::shared_ptr<UnitRecord> 
                                 unit_->file().string(), std::move(record));
   return {step, [partner, said = said_](const coupled::PumpOutputs& pump) {
             const Surroundings outside = partner->at(pump);
-            if (partner->log().size() > 0) said->add(partner->log());
+            said->add(partner->log());
             return outside;
           }};
 }
