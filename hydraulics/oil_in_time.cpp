@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/trajectory.h"
 #include "network.h"
 
 namespace bentaxis::hydraulics {
@@ -119,6 +120,10 @@ class OilInTime : public Oil {
     mass = all.mass;
   }
 
+  std::optional<OilLimits> limits() const override {
+    return OilLimits{network_.fluid().saturation(), network_.fluid().vapour()};
+  }
+
   std::vector<OilColumn> columns() const override {
     std::vector<OilColumn> all;
     for (int k = 1; k <= pistons(); ++k)
@@ -195,6 +200,22 @@ class OilInTime : public Oil {
 };
 
 }  // namespace
+
+bool starts_periodic(const Case& the_case) {
+  const DriveSpec& drive = drive_of(the_case);
+  const double speed = rad_per_second(the_case.operation.speed_rpm);
+  const bool by_curve = drive.kind == DriveKind::speed && !drive.curve.time.empty();
+  const double start =
+      by_curve ? TimeSignal(drive.curve).value(0) : drive.start_speed.value_or(speed);
+  return speed != 0 && start == speed;
+}
+
+bool needs_periodic_state(const Case& the_case) {
+  const LoadData load = the_case.hydraulics->load.value_or(LoadData());
+  const bool held =
+      the_case.pressure.ports.delivery == 0 || load.kind == LoadKind::constant_pressure;
+  return starts_periodic(the_case) || (!held && !load.sets_pressure());
+}
 
 OilStart running(const SteadyState& state) {
   return {state.corrected_load_size, state.corrected_states};

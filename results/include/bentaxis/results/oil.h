@@ -1,6 +1,7 @@
 // Oil in the chambers of a moving pump: what an integration carries along with the motion.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ namespace bentaxis {
 struct OilLoads {
   std::vector<double> chamber_pressure;  ///< Pa gauge, one per piston
   PortPressures ports;                   ///< Pa gauge, load the port-plate lands
+};
+
+/// Pressures of an oil below which something comes out of it, Pa gauge.
+struct OilLimits {
+  double saturation = 0;  ///< dissolved air
+  double vapour = 0;      ///< vapour
 };
 
 /// What a place of the hydraulic circuit does with power.
@@ -78,6 +85,9 @@ class Oil {
   /// Energy, J, and mass, kg, that the circuit holds.
   virtual void stored(double time, const AxisMotion& shaft, const AxisMotion& block,
                       const double* y, double& energy, double& mass) const = 0;
+
+  /// None where the oil is no oil but a curve.
+  virtual std::optional<OilLimits> limits() const { return std::nullopt; }
 
   /// What a table over time has of it, and its values.
   virtual std::vector<OilColumn> columns() const = 0;
