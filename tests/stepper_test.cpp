@@ -81,6 +81,42 @@ TEST(Stepper, CompliantTeethAreAsSimulated) {
   expect_as_simulated(short_case("bap63_tooth_rattle", 0.01, 40), false);
 }
 
+// Beyond the expected end too, points cost next to nothing.
+TEST(Stepper, GoesOnOverPointsBeyondTheEnd) {
+  PumpInTime pump(rated(0.01, 40));
+  const auto steps = [&](int points) {
+    coupled::Stepper stepper("analytic", *pump.mechanics, *pump.oil, kTolerance);
+    stepper.start(0, pump.start(), 0.001);
+    for (int i = 1; i <= points; ++i) stepper.step_to(0.01 * i / points);
+    return stepper.steps();
+  };
+  EXPECT_LT(steps(5000), 1.1 * static_cast<double>(steps(10)));
+}
+
+// What cannot be followed beyond a point is not met at it; what can leaves it where it stood.
+TEST(Stepper, FailureLeavesTheLastPoint) {
+  Case c = rated(0.01, 20);
+  c.drive->kind = DriveKind::torque;
+  c.drive->torque = 250;
+  c.pump.shaft.axial_inertia = c.pump.block.axial_inertia = 2e-3;
+  PumpInTime pump(c);
+  coupled::Stepper stepper("analytic", *pump.mechanics, *pump.oil, kTolerance);
+  stepper.start(0, pump.start(), 0.01);
+  stepper.step_to(0.001);
+  const std::vector<double> here = pump.row(0.001, stepper.state());
+  Surroundings impossible;
+  impossible.torque = std::nan("");
+  stepper.surround(impossible);
+  EXPECT_THROW(stepper.step_to(0.002), ComputationError);
+  EXPECT_EQ(stepper.time(), 0.001);
+  Surroundings outside;
+  outside.torque = 250;
+  stepper.surround(outside);
+  EXPECT_EQ(pump.row(0.001, stepper.state())[1], here[1]);
+  stepper.step_to(0.002);
+  EXPECT_EQ(stepper.time(), 0.002);
+}
+
 // A state that was kept goes on: by another stepper, of another pump.
 TEST(Stepper, KeptStateGoesOn) {
   Case c = rated(0.01, 20);

@@ -114,7 +114,7 @@ class Plant::Implementation {
     const std::vector<double> after = scales_of(case_);
     for (std::size_t i = 0; i < now.started.size(); ++i)
       if (after[i] != before[i]) now.started[i] = after[i];
-    set_state(now);
+    go_on_from(now, true);
   }
 
   void set_inputs(const Inputs& inputs) {
@@ -176,16 +176,7 @@ class Plant::Implementation {
     if (state.motion.size() != kMotionStates ||
         static_cast<int>(state.oil.size()) != machine_->oil->states())
       throw InputError("the state is of another pump");
-    load_size_ = state.load_size;
-    started_ = state.started;
-    build(as_started(), {load_size_, state.oil});
-    time_ = state.time;
-    inputs_ = state.inputs;
-    speed_changed_ = state.speed_changed;
-    std::copy(state.motion.begin(), state.motion.end(), state_.motion.begin());
-    state_.oil = state.oil;
-    outside_ = surroundings(state.shaft);
-    go_on();
+    go_on_from(state, state.load_size != load_size_ || state.started != started_);
   }
 
   std::vector<double> directional_derivative(const std::vector<const Variable*>& unknowns,
@@ -216,6 +207,20 @@ class Plant::Implementation {
   }
 
  private:
+  // @param anew  models are built anew: of another case, or by another start
+  void go_on_from(const PlantState& state, bool anew) {
+    load_size_ = state.load_size;
+    started_ = state.started;
+    if (anew) build(as_started(), {load_size_, state.oil});
+    time_ = state.time;
+    inputs_ = state.inputs;
+    speed_changed_ = state.speed_changed;
+    std::copy(state.motion.begin(), state.motion.end(), state_.motion.begin());
+    state_.oil = state.oil;
+    outside_ = surroundings(state.shaft);
+    go_on();
+  }
+
   double nominal(const Variable& known) const {
     if (known.role == Role::input) return nominal_of(known.input, machine_->the_case);
     return nominals_.at(known.place);
