@@ -8,6 +8,7 @@
 #include "bentaxis/coupled/stepper.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/trajectory.h"
 #include "columns.h"
@@ -71,7 +72,12 @@ class Plant::Implementation {
   Implementation(const Case& the_case, const UnitChoice& choice, Kind kind)
       : choice_(choice), kind_(kind), case_(with_drive(the_case, choice.drive)) {
     build(case_, {});
-    first_ = inputs_ = inputs_of_case();
+    first_ = inputs_of_case();
+    // A case whose speed changes over time begins with that of its curve.
+    if (choice.drive == Drive::speed && the_case.drive &&
+        the_case.drive->kind == DriveKind::speed && !the_case.drive->curve.time.empty())
+      first_.speed = TimeSignal(the_case.drive->curve).value(0);
+    inputs_ = first_;
     state_ = {machine_->mechanics->start(), machine_->oil->start()};
   }
 
@@ -89,7 +95,8 @@ class Plant::Implementation {
     Case c = case_;
     // Whatever the case says of them, the start is that of the inputs.
     const bool from_rest = choice_.drive == Drive::speed && inputs.speed == 0;
-    if (inputs.speed != first_.speed && choice_.drive == Drive::speed && !from_rest)
+    const bool as_in_case = inputs.speed == rad_per_second(c.operation.speed_rpm);
+    if (choice_.drive == Drive::speed && !as_in_case && !from_rest)
       c.operation.speed_rpm = inputs.speed / kRadPerSecondPerRpm;
     const TakesFromOutside given = takes();
     if (given.suction) c.pressure.ports.suction = inputs.suction;
@@ -190,19 +197,22 @@ class Plant::Implementation {
     const double step = kDifference / largest;
     const AxisMotion shaft = shaft_now();
     const std::vector<double> values = open_ ? open_->values() : std::vector<double>();
-    const auto side = [&](double sign) {
+    const auto beside = [&](double steps) {
       Inputs inputs = inputs_;
       std::vector<double> moved = values;
       for (std::size_t i = 0; i < knowns.size(); ++i) {
         double& place = knowns[i]->role == Role::input ? input_of(inputs, knowns[i]->input)
                                                        : moved.at(knowns[i]->place);
-        place += sign * step * seed[i];
+        place += steps * step * seed[i];
       }
       return look(shaft, inputs, moved, unknowns);
     };
-    const std::vector<double> above = side(1), below = side(-1);
+    const std::vector<double> above = beside(1), below = beside(-1);
+    const std::vector<double> far_above = beside(2), far_below = beside(-2);
     stand(outside_, values);  // as it was
-    for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (above[i] - below[i]) / (2 * step);
+    // Of fourth order: flows through orifices bend sharply where pressures are nearly equal.
+    for (std::size_t i = 0; i < slope.size(); ++i)
+      slope[i] = (8 * (above[i] - below[i]) - (far_above[i] - far_below[i])) / (12 * step);
     return slope;
   }
 
