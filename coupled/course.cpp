@@ -20,7 +20,6 @@ constexpr double kHopeless = 3;
 constexpr std::size_t kMostEvents = 1000000;
 // A step that is expected to reach an edge goes beyond it by this part of itself.
 constexpr double kBeyond = 1e-6;
-constexpr double kOutside = 1e-9;   // rad, beyond an end of the interval
 constexpr double kOnTouch = 1e-15;  // m: as good as touching
 constexpr int kMostShortSteps = 1000;
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
@@ -32,7 +31,7 @@ Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double to
     : name_(std::move(name)),
       system_(mechanics, oil, balances),
       integrator_(system_, tolerance),
-      edges_deg_(oil.edges_deg()),
+      edges_(oil.edges_deg()),
       knots_(mechanics.knots()),
       has_oil_(oil.states() > 0) {
   const std::vector<double> of_oil = oil.knots();
@@ -52,42 +51,16 @@ void Course::start(double time, const SystemState& state) {
   time_ = step_start_ = time;
   state_ = state;
   std::fill(integrals_.begin(), integrals_.end(), 0.0);
-  find_interval();
+  edges_.find(block(time_, state_));
+  set_interval();
   start_teeth();
   system_.forget();
   restart_ = true;
 }
 
-double Course::edge(std::ptrdiff_t index) const {
-  const auto count = static_cast<std::ptrdiff_t>(edges_deg_.size());
-  std::ptrdiff_t turns = index / count;
-  std::ptrdiff_t left = index % count;
-  if (left < 0) {
-    left += count;
-    --turns;
-  }
-  return radians(edges_deg_[static_cast<std::size_t>(left)] + 360 * static_cast<double>(turns));
-}
-
 void Course::set_interval() {
-  system_.from = edge(edge_ - 1);
-  system_.to = edge(edge_);
-}
-
-// The interval between edges in which the block stands, or which it enters.
-void Course::find_interval() {
-  if (edges_deg_.empty()) return;
-  const AxisMotion block = this->block(time_, state_);
-  const double degrees = block.angle / kRadPerDegree;
-  const double turn = std::floor(degrees / 360);
-  edge_ = std::upper_bound(edges_deg_.begin(), edges_deg_.end(), degrees - 360 * turn) -
-          edges_deg_.begin() +
-          static_cast<std::ptrdiff_t>(turn) * static_cast<std::ptrdiff_t>(edges_deg_.size());
-  set_interval();
-  // On an edge it enters what lies ahead. Where it stands still, the first step will tell.
-  if (std::abs(block.angle - system_.from) <= kOutside && block.speed < 0) --edge_;
-  if (std::abs(block.angle - system_.to) <= kOutside && block.speed > 0) ++edge_;
-  set_interval();
+  system_.from = edges_.from();
+  system_.to = edges_.to();
 }
 
 void Course::start_teeth() {
@@ -146,6 +119,11 @@ void Course::close_contact(Touching& of) {
 
 void Course::close_contacts() {
   for (Touching& of : touching_) close_contact(of);
+}
+
+void Course::forget_events() {
+  for (Touching& of : touching_) of.event = kNone;
+  events_.clear();
 }
 
 void Course::state_at(double time, SystemState& state) const {
@@ -230,7 +208,7 @@ double Course::horizon(double end) const {
   double stop = end;
   const auto knot = std::upper_bound(knots_.begin(), knots_.end(), time_);
   if (knot != knots_.end()) stop = std::min(stop, *knot);
-  if (edges_deg_.empty()) return stop;
+  if (edges_.none()) return stop;
   const AxisMotion b = block(time_, state_);
   const double left = b.speed > 0 ? system_.to - b.angle : system_.from - b.angle;
   if (b.speed == 0 || left / b.speed <= 0) return stop;
@@ -291,20 +269,20 @@ void Course::advance(double end) {
     }
   }
   if (std::binary_search(knots_.begin(), knots_.end(), time_)) restart_ = true;
-  if (!edges_deg_.empty()) {
+  if (!edges_.none()) {
     const double angle = block(time_, state_).angle;
     const std::vector<int>& passed = integrator_.passed();
     int side = 0;
     if (reached == Integrator::Reached::guard)
       side = passed[System::kTo] != 0 ? 1 : passed[System::kFrom] != 0 ? -1 : 0;
     if (side != 0) {
-      edge_ += side;
-      set_interval();
+      edges_.pass(side);
       restart_ = true;
-    } else if (angle > system_.to + kOutside || angle < system_.from - kOutside) {
-      find_interval();
+    } else if (edges_.left_by(angle)) {
+      edges_.find(block(time_, state_));
       restart_ = true;
     }
+    set_interval();
   }
   if (reached == Integrator::Reached::guard && system_.mechanics().compliant()) {
     const std::vector<int>& passed = integrator_.passed();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bentaxis/results/trajectory.h"
+#include "port_edges.h"
 #include "system.h"
 
 namespace bentaxis::coupled {
@@ -37,6 +38,8 @@ class Course {
   /// Flanks that touch have their impulse until now.
   void close_contacts();
   const std::vector<ToothEvent>& events() const { return events_; }
+  /// They are not kept any longer: of a motion without an end.
+  void forget_events();
   double time_apart() const { return apart_; }  ///< s, without touch of a flank
   long steps() const { return integrator_.steps(); }
   long evaluations() const { return system_.evaluations(); }
@@ -57,9 +60,7 @@ class Course {
   };
 
   [[noreturn]] void fail(const std::string& why) const;
-  double edge(std::ptrdiff_t index) const;
   void set_interval();
-  void find_interval();
   void start_teeth();
   bool touching(int flank) const { return touching_[flank > 0 ? 0 : 1].now; }
   bool touching() const { return touching(1) || touching(-1); }
@@ -73,10 +74,10 @@ class Course {
   std::string name_;
   System system_;
   Integrator integrator_;
-  std::vector<double> edges_deg_, knots_;
+  PortEdges edges_;
+  std::vector<double> knots_;
   bool has_oil_;
-  std::ptrdiff_t edge_ = 0;  // that ends the interval, counted over turns
-  bool restart_ = false;     // before the next step
+  bool restart_ = false;  // before the next step
   double time_ = 0, step_start_ = 0, apart_ = 0;
   SystemState state_;  // at time_
   std::vector<double> y_, integrals_;

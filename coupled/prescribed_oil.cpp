@@ -13,10 +13,21 @@ class PrescribedOil : public Oil {
       : pistons_(pistons),
         pressure_(pressure),
         ports_(ports),
+        now_(ports),
         edges_deg_(block_edges_deg(pressure, pistons)) {}
 
   int pistons() const override { return pistons_; }
   int states() const override { return 0; }
+  // Of ports alone: a curve says by itself what the pressure is.
+  TakesFromOutside takes() const override {
+    TakesFromOutside takes;
+    takes.suction = takes.delivery = pressure_.ideal_share(0).has_value();
+    return takes;
+  }
+  void surround(const Surroundings& outside) override {
+    now_ = {outside.suction.value_or(ports_.suction), outside.delivery.value_or(ports_.delivery)};
+    moved_ = outside.suction || outside.delivery;
+  }
   std::vector<double> start() const override { return {}; }
   std::vector<double> scales() const override { return {}; }
   std::vector<double> edges_deg() const override { return edges_deg_; }
@@ -31,9 +42,13 @@ class PrescribedOil : public Oil {
   void loads(double, const AxisMotion& block, const double*, OilLoads& loads) const override {
     loads.chamber_pressure.resize(static_cast<std::size_t>(pistons_));
     const double degrees = block.angle / kRadPerDegree;
-    for (int k = 0; k < pistons_; ++k)
-      loads.chamber_pressure[k] = pressure_(piston_angle_deg(degrees, k + 1, pistons_));
-    loads.ports = ports_;
+    for (int k = 0; k < pistons_; ++k) {
+      const double angle = piston_angle_deg(degrees, k + 1, pistons_);
+      loads.chamber_pressure[k] =
+          moved_ ? now_.suction + (now_.delivery - now_.suction) * *pressure_.ideal_share(angle)
+                 : pressure_(angle);
+    }
+    loads.ports = now_;
   }
 
   std::vector<OilPlace> places() const override { return {}; }
@@ -51,7 +66,8 @@ class PrescribedOil : public Oil {
  private:
   int pistons_;
   const PressureTrace& pressure_;
-  PortPressures ports_;
+  PortPressures ports_, now_;
+  bool moved_ = false;  // the ports' pressures come from outside
   std::vector<double> edges_deg_;
 };
 

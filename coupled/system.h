@@ -4,17 +4,12 @@
 #include <array>
 #include <vector>
 
+#include "bentaxis/coupled/system_state.h"
 #include "bentaxis/results/mechanics.h"
 #include "bentaxis/results/oil.h"
 #include "integrator.h"
 
 namespace bentaxis::coupled {
-
-/// States of both.
-struct SystemState {
-  MotionVector motion{};
-  std::vector<double> oil;
-};
 
 class System : public Equations {
  public:

@@ -62,6 +62,12 @@ double kinematic_viscosity(const HydraulicData& data) {
 
 }  // namespace
 
+Network::Held::Held(const Fluid& fluid, double pressure)
+    : gauge(pressure),
+      s(fluid.log_pressure(pressure)),
+      state(fluid.state(s)),
+      potential(fluid.potential(s)) {}
+
 Network::Network(const Case& the_case, Use use)
     : use_(use),
       direction_(use == Use::period && the_case.operation.speed_rpm < 0 ? -1 : 1),
@@ -81,14 +87,16 @@ Network::Network(const Case& the_case, Use use)
       leakage_(the_case, fluid_, chamber_),
       suction_s_(fluid_.log_pressure(the_case.pressure.ports.suction)),
       delivery_s_(fluid_.log_pressure(the_case.pressure.ports.delivery)),
+      suction_pressure_(the_case.pressure.ports.suction),
       delivery_pressure_(the_case.pressure.ports.delivery),
       mean_scale_(delivery_pressure_ > 0 ? delivery_pressure_ : fluid_.atmosphere()),
       suction_state_(fluid_.state(suction_s_)),
       fixed_state_(fluid_.state(delivery_s_)),
       outside_(fluid_.state(0)),
       case_potential_(fluid_.potential(fluid_.log_pressure(the_case.hydraulics->case_pressure))),
-      suction_potential_(fluid_.potential(suction_s_)),
       fixed_potential_(fluid_.potential(delivery_s_)),
+      tank_(fluid_, the_case.pressure.ports.suction),
+      end_(fluid_, the_case.pressure.ports.delivery),
       load_(load_of(the_case), orifice_, fluid_, suction_state_.density * load_of(the_case).flow,
             the_case.hydraulics->loop.has_value()),
       loop_(the_case.hydraulics->loop.has_value()),
@@ -159,6 +167,18 @@ Network::Network(const Case& the_case, Use use)
                    edges_deg_.end());
 }
 
+void Network::set_suction(std::optional<double> gauge) {
+  const double now = gauge.value_or(suction_pressure_);
+  if (now == tank_.gauge) return;
+  tank_ = Held(fluid_, now);
+  if (suction_line_) suction_line_->set_tank(tank_.state);
+}
+
+void Network::set_delivery(std::optional<double> gauge) {
+  const double now = gauge.value_or(delivery_pressure_);
+  if (now != end_.gauge) end_ = Held(fluid_, now);
+}
+
 Network::Moment Network::at(double x) const {
   return {direction_ * x, seconds_per_degree_, direction_ * kRadPerDegree, {}, {}, true};
 }
@@ -207,6 +227,29 @@ double Network::expected_log_pressure(double share) const {
   return (low + high) / 2;
 }
 
+std::vector<OilColumn> Network::state_columns() const {
+  std::vector<OilColumn> all(static_cast<std::size_t>(states_));
+  const auto name = [&](int at, const std::string& called, const std::string& meaning) {
+    all[static_cast<std::size_t>(at)] = {called, meaning};
+  };
+  for (int k = 0; k < n_; ++k) {
+    const std::string number = std::to_string(k + 1);
+    name(k, "ln_p_" + number, "ln(P/P0) in chamber " + number + ", P absolute, P0 atmospheric");
+    if (air_at_ > 0)
+      name(air_at_ + k, "air_out_" + number,
+           "share of the dissolved air that is out in chamber " + number);
+  }
+  if (!fixed_) name(n_, "ln_p_delivery", "ln(P/P0) in the delivery volume");
+  if (has_suction_volume()) name(suction_at_, "ln_p_suction", "ln(P/P0) in the suction port");
+  if (suction_line_)
+    name(suction_at_ + 1, "flow_suction_line", "mass flow in the suction line over the ideal one");
+  if (accumulator_) name(accumulator_at_, "ln_p_accumulator", "ln(P/P0) in the accumulator");
+  for (int i = 0; pipe_ && i < pipe_->size(); ++i)
+    name(pipe_at_ + i, "delivery_line_" + std::to_string(i + 1),
+         "mode of the delivery line's pressure, then of its flow");
+  return all;
+}
+
 void Network::exchange_sides(double* y) const {
   const double suction = y[suction_at_], delivery = y[n_];
   for (int k = 0; k < n_; ++k) y[k] = y[k] == suction ? delivery : suction;
@@ -226,7 +269,7 @@ std::vector<double> Network::at_rest(const std::vector<double>& chambers, double
 }
 
 double Network::load_gauge(const double* y) const {
-  if (fixed_end_) return delivery_pressure_;
+  if (fixed_end_) return end_.gauge;
   return pipe_ ? pipe_->end_pressure(y + pipe_at_) - fluid_.atmosphere() : delivery_gauge(y);
 }
 
@@ -242,21 +285,21 @@ Load::Flow Network::to_load(const double* y, const Fluid::State& line, const Flu
 }
 
 Fluid::State Network::source_of(const double* y) const {
-  return has_suction_volume() ? fluid_.state(y[suction_at_]) : suction_state_;
+  return has_suction_volume() ? fluid_.state(y[suction_at_]) : tank_.state;
 }
 
 MassFlow Network::charge_into(const Fluid::State& side) const {
-  if (!loop_ || side.pressure >= suction_state_.pressure) return {};
-  const double share = (suction_state_.pressure - side.pressure) / charge_opening_;
-  MassFlow flow = orifice_.flow(charge_area_ * std::min(share, 1.0), suction_state_, side);
+  if (!loop_ || side.pressure >= tank_.state.pressure) return {};
+  const double share = (tank_.state.pressure - side.pressure) / charge_opening_;
+  MassFlow flow = orifice_.flow(charge_area_ * std::min(share, 1.0), tank_.state, side);
   if (share < 1) flow.by_second -= flow.value / share * side.pressure / charge_opening_;
   return flow;
 }
 
 Network::Sources Network::sources(const double* y) const {
   if (air_at_ == 0) return {};
-  return {fluid_.equilibrium(has_suction_volume() ? y[suction_at_] : suction_s_),
-          fluid_.equilibrium(fixed_ ? delivery_s_ : y[n_]), fluid_.equilibrium(case_s_)};
+  return {fluid_.equilibrium(has_suction_volume() ? y[suction_at_] : tank_.s),
+          fluid_.equilibrium(fixed_ ? end_.s : y[n_]), fluid_.equilibrium(case_s_)};
 }
 
 Network::ChamberFlows Network::chamber_flows(double angle_deg, double volume,
@@ -313,7 +356,7 @@ Network::AirRate Network::air_rate(double s, double air_out, const Fluid::Mixtur
 }
 
 bool Network::rates(const Moment& now, const double* y, double load_size, double* dy) const {
-  const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
+  const Fluid::State line = fixed_ ? end_.state : fluid_.state(y[n_]);
   const Fluid::State source = source_of(y);
   const Sources from = sources(y);
   double delivered = 0, taken = 0;
@@ -362,7 +405,7 @@ bool Network::rates(const Moment& now, const double* y, double load_size, double
     dy[size() - 1] = (line.pressure - outside_.pressure) / (mean_scale_ * period_deg());
   if (pipe_) {
     double* modes = dy + pipe_at_;
-    pipe_->rates(y + pipe_at_, line.pressure, fixed_end_ ? fixed_state_.pressure : load, modes);
+    pipe_->rates(y + pipe_at_, line.pressure, fixed_end_ ? end_.state.pressure : load, modes);
     for (int i = 0; i < pipe_->size(); ++i) modes[i] *= now.seconds;
   }
   return finite(dy + n_, dy + size());
@@ -374,7 +417,7 @@ void Network::jacobian(const Moment& now, const double* y, double load_size, dou
   std::fill(by_state, by_state + size * size, 0.0);
   if (by_load != nullptr) std::fill(by_load, by_load + size, 0.0);
   const auto entry = [&](int row, int column) -> double& { return by_state[column * size + row]; };
-  const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
+  const Fluid::State line = fixed_ ? end_.state : fluid_.state(y[n_]);
   const Fluid::State source = source_of(y);
   const double line_factor = line.stiffness * now.seconds / (line.density * delivery_volume_);
   const double source_factor =
@@ -505,7 +548,7 @@ void Network::flows(const Moment& now, const double* y, double load_size, Flows&
   flows.suction.resize(n_);
   flows.delivery.resize(n_);
   flows.leakage.resize(n_);
-  const Fluid::State line = fixed_ ? fixed_state_ : fluid_.state(y[n_]);
+  const Fluid::State line = fixed_ ? end_.state : fluid_.state(y[n_]);
   const Fluid::State source = source_of(y);
   flows.load = 0;
   flows.taken = 0;
@@ -537,16 +580,15 @@ double Network::load_flow(double x, const double* y, double load_size) const {
   if (!fixed_) return to_load(y, fluid_.state(y[n_]), source_of(y), load_size).value;
   double sum = 0;
   for (int k = 0; k < n_; ++k)
-    sum += orifice_.flow(delivery_.area(angle_deg(x, k)), fluid_.state(y[k]), fixed_state_).value;
+    sum += orifice_.flow(delivery_.area(angle_deg(x, k)), fluid_.state(y[k]), end_.state).value;
   return sum;
 }
 
 PowerBudget Network::power(const Moment& now, const double* y, const Flows& flows) const {
   PowerBudget power;
   power[Place::pistons] = flows.power;
-  const double line = fixed_ ? fixed_potential_ : fluid_.potential(y[n_]);
-  const double source =
-      has_suction_volume() ? fluid_.potential(y[suction_at_]) : suction_potential_;
+  const double line = fixed_ ? end_.potential : fluid_.potential(y[n_]);
+  const double source = has_suction_volume() ? fluid_.potential(y[suction_at_]) : tank_.potential;
   const Sources from = sources(y);
   const double taken = flows.taken;
   for (int k = 0; k < n_; ++k) {
@@ -575,19 +617,19 @@ PowerBudget Network::power(const Moment& now, const double* y, const Flows& flow
   }
   // In a line the oil has one density: its potential there is linear in the pressure.
   if (suction_line_) {
-    const double drop = fluid_.state(y[suction_at_]).pressure - suction_state_.pressure;
+    const double drop = fluid_.state(y[suction_at_]).pressure - tank_.state.pressure;
     power[Place::suction_line] = suction_line_->lost(taken);
     power[Place::line_density] +=
-        taken * (suction_potential_ + drop / suction_state_.density - source);
+        taken * (tank_.potential + drop / suction_state_.density - source);
   }
-  power[Place::tank] = taken * suction_potential_;
+  power[Place::tank] = taken * tank_.potential;
   double front = line;  // of the load
   if (pipe_) {
     const double* modes = y + pipe_at_;
     const auto within = [&](double pressure) {
       return fixed_potential_ + (pressure - fixed_state_.pressure) / fixed_state_.density;
     };
-    front = within(fixed_end_ ? fixed_state_.pressure : pipe_->end_pressure(modes));
+    front = within(fixed_end_ ? end_.state.pressure : pipe_->end_pressure(modes));
     power[Place::delivery_line] = pipe_->friction_power(modes);
     power[Place::damped_waves] = pipe_->damped_power(modes);
     power[Place::line_density] +=
@@ -595,9 +637,8 @@ PowerBudget Network::power(const Moment& now, const double* y, const Flows& flow
   }
   if (loop_) {
     front -= source;
-    power[Place::charge_valves] =
-        charge_into(source_of(y)).value * (suction_potential_ - source) +
-        charge_into(fluid_.state(y[n_])).value * (suction_potential_ - line);
+    power[Place::charge_valves] = charge_into(source_of(y)).value * (tank_.potential - source) +
+                                  charge_into(fluid_.state(y[n_])).value * (tank_.potential - line);
   }
   power[Place::load] = (flows.load - flows.relief) * front;
   power[Place::relief_valve] = flows.relief * front;

@@ -9,6 +9,7 @@
 #include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/oil.h"
 #include "chamber.h"
 #include "fluid.h"
 #include "leakage.h"
@@ -48,6 +49,12 @@ class Network {
   /// have no stroke; of a period at standstill, and backwards without a supply or a given load
   explicit Network(const Case& the_case, Use use = Use::period);
 
+  /// Of motion in time: the pressure in the tank, or of the charge supply, Pa gauge, instead of the
+  /// case's; and that at which the delivery side is held. Scales of the states, volumes at suction
+  /// density and what lines are linear about stay those of the case.
+  void set_suction(std::optional<double> gauge);
+  void set_delivery(std::optional<double> gauge);
+
   /// Where shaft and block stand, and how they move while the states change.
   struct Moment {
     double block_deg = 0;     ///< chambers meet the ports at the block's angle
@@ -74,6 +81,8 @@ class Network {
   int pressures() const { return fixed_ ? n_ : n_ + 1; }
   /// What comes back after a period, the first of the state: all but the mean.
   int states() const { return states_; }
+  /// Name and meaning of each of the state, of motion in time.
+  std::vector<OilColumn> state_columns() const;
   /// Length of the state.
   int size() const { return fixed_ || use_ == Use::time ? states_ : states_ + 1; }
   /// 360/N: after that angle every chamber stands where the one before it stood.
@@ -143,9 +152,7 @@ class Network {
   /// What the mean in the state is a multiple of, Pa.
   double mean_scale() const { return mean_scale_; }
   /// Gauge pressure of the delivery volume, or of the fixed line.
-  double delivery_gauge(const double* y) const {
-    return fluid_.gauge(fixed_ ? delivery_s_ : y[n_]);
-  }
+  double delivery_gauge(const double* y) const { return fluid_.gauge(fixed_ ? end_.s : y[n_]); }
   /// Whether the suction port has a pressure of its own.
   bool has_suction_volume() const { return suction_at_ > 0; }
   bool has_suction_line() const { return suction_line_.has_value(); }
@@ -156,7 +163,7 @@ class Network {
   bool has_delivery_line() const { return pipe_.has_value(); }
   /// Gauge pressure in the suction port.
   double suction_gauge(const double* y) const {
-    return fluid_.gauge(has_suction_volume() ? y[suction_at_] : suction_s_);
+    return fluid_.gauge(has_suction_volume() ? y[suction_at_] : tank_.s);
   }
   /// Place in the state of the air that is out, of chambers 1..N; 0: it is no state.
   int air_at() const { return air_at_; }
@@ -232,9 +239,18 @@ class Network {
   double seconds_per_degree_, delivery_volume_, suction_volume_ = 0;
   Orifice orifice_;
   Leakage leakage_;
-  double suction_s_, delivery_s_, delivery_pressure_, mean_scale_;
-  Fluid::State suction_state_, fixed_state_, outside_;
-  double case_potential_, suction_potential_, fixed_potential_;  // J/kg
+  // A pressure that is held: at the tank (or the charge supply) and at the end of the delivery
+  // side.
+  struct Held {
+    Held(const Fluid& fluid, double gauge);
+    double gauge, s;
+    Fluid::State state;
+    double potential;  // J/kg
+  };
+  double suction_s_, delivery_s_, suction_pressure_, delivery_pressure_, mean_scale_;
+  Fluid::State suction_state_, fixed_state_, outside_;  // of the case: scales, what lines are about
+  double case_potential_, fixed_potential_;             // J/kg
+  Held tank_, end_;                                     // as they are now
   Load load_;
   std::optional<TransmissionLine> pipe_;
   std::optional<SuctionLine> suction_line_;

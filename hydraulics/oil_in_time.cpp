@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/trajectory.h"
 #include "network.h"
 
 namespace bentaxis::hydraulics {
@@ -34,7 +35,20 @@ class OilInTime : public Oil {
 
   int pistons() const override { return network_.pistons(); }
   int states() const override { return network_.size(); }
+  TakesFromOutside takes() const override {
+    TakesFromOutside takes;
+    takes.suction = true;
+    takes.delivery = network_.fixed_end();
+    takes.load_share = !network_.fixed_end();
+    return takes;
+  }
+  void surround(const Surroundings& outside) override {
+    network_.set_suction(outside.suction);
+    if (network_.fixed_end()) network_.set_delivery(outside.delivery);
+    outside_share_ = outside.load_share;
+  }
   std::vector<double> start() const override { return start_; }
+  std::vector<OilColumn> state_columns() const override { return network_.state_columns(); }
   // ln of pressures; what the lines have is over pressures and flows of the same kind.
   std::vector<double> scales() const override { return std::vector<double>(start_.size(), 1.0); }
   std::vector<double> knots() const override {
@@ -106,6 +120,10 @@ class OilInTime : public Oil {
     mass = all.mass;
   }
 
+  std::optional<OilLimits> limits() const override {
+    return OilLimits{network_.fluid().saturation(), network_.fluid().vapour()};
+  }
+
   std::vector<OilColumn> columns() const override {
     std::vector<OilColumn> all;
     for (int k = 1; k <= pistons(); ++k)
@@ -157,6 +175,7 @@ class OilInTime : public Oil {
   }
 
   double load_size(double time) const {
+    if (outside_share_) return network_.load().shared(load_size_, *outside_share_);
     return share_ ? network_.load().shared(load_size_, share_->value(time)) : load_size_;
   }
 
@@ -176,10 +195,27 @@ class OilInTime : public Oil {
   double density_;  // of all volume flows
   double load_size_;
   std::optional<TimeSignal> share_;  // of that
+  std::optional<double> outside_share_;
   std::vector<double> start_;
 };
 
 }  // namespace
+
+bool starts_periodic(const Case& the_case) {
+  const DriveSpec& drive = drive_of(the_case);
+  const double speed = rad_per_second(the_case.operation.speed_rpm);
+  const bool by_curve = drive.kind == DriveKind::speed && !drive.curve.time.empty();
+  const double start =
+      by_curve ? TimeSignal(drive.curve).value(0) : drive.start_speed.value_or(speed);
+  return speed != 0 && start == speed;
+}
+
+bool needs_periodic_state(const Case& the_case) {
+  const LoadData load = the_case.hydraulics->load.value_or(LoadData());
+  const bool held =
+      the_case.pressure.ports.delivery == 0 || load.kind == LoadKind::constant_pressure;
+  return starts_periodic(the_case) || (!held && !load.sets_pressure());
+}
 
 OilStart running(const SteadyState& state) {
   return {state.corrected_load_size, state.corrected_states};

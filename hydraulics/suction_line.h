@@ -22,6 +22,9 @@ class SuctionLine {
         loss_(data.loss / (2 * tank.density * area(data) * area(data))),
         laminar_(32 * viscosity * data.length / (area(data) * data.diameter * data.diameter)) {}
 
+  /// Another pressure in the tank; the oil in the pipe stays what it is.
+  void set_tank(const Fluid::State& tank) { tank_ = tank.pressure; }
+
   /// dm/dt, kg/s2, of the mass flow m into the port, kg/s, and its derivatives.
   double rate(double port, double m) const {
     return area_per_length_ * (tank_ - port - loss_ * m * std::abs(m) - laminar_ * m);

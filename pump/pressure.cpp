@@ -51,12 +51,17 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
 }
 
 double PressureTrace::operator()(double theta_k_deg) const {
-  return spline_     ? (*spline_)(theta_k_deg)
-         : computed_ ? computed_->gauge(theta_k_deg)
-                     : ideal(theta_k_deg);
+  if (spline_) return (*spline_)(theta_k_deg);
+  if (computed_) return computed_->gauge(theta_k_deg);
+  return ports_.suction + (ports_.delivery - ports_.suction) * share_of_delivery(theta_k_deg);
 }
 
-double PressureTrace::ideal(double theta_k_deg) const {
+std::optional<double> PressureTrace::ideal_share(double theta_k_deg) const {
+  if (kind_ != PressureKind::ideal) return std::nullopt;
+  return share_of_delivery(theta_k_deg);
+}
+
+double PressureTrace::share_of_delivery(double theta_k_deg) const {
   double past = wrap_degrees(theta_k_deg - delivery_start_deg_);
   for (const double edge : {0.0, 180.0, 360.0})
     if (std::abs(past - edge) <= kEdgeTolerance) past = edge;
@@ -76,7 +81,7 @@ double PressureTrace::ideal(double theta_k_deg) const {
   } else if (past >= 360 - half) {
     share = smooth_step((past - 360 + half) / width);
   }
-  return ports_.suction + (ports_.delivery - ports_.suction) * share;
+  return share;
 }
 
 std::vector<double> block_edges_deg(const PressureTrace& pressure, int pistons) {

@@ -7,7 +7,6 @@
 #include "bentaxis/coupled/prescribed_oil.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/multibody/mechanics.h"
-#include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/trajectory.h"
 
@@ -20,8 +19,8 @@ std::unique_ptr<Oil> oil_of(const ReadyCase& ready, bool follows) {
     return coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
   hydraulics::OilStart start;
   if (ready.hydraulics)
-    start = starts_periodic(c) ? hydraulics::running(*ready.hydraulics)
-                               : hydraulics::at_rest(*ready.hydraulics);
+    start = hydraulics::starts_periodic(c) ? hydraulics::running(*ready.hydraulics)
+                                           : hydraulics::at_rest(*ready.hydraulics);
   return hydraulics::oil_in_time(c, start);
 }
 
@@ -39,15 +38,6 @@ double mass_passed(const Trajectory& run) {
                     (run.table.state(row, 0) - run.table.state(row - 1, 0));
   }
   return std::max(mass, circulated);
-}
-
-bool starts_periodic(const Case& the_case) {
-  const DriveSpec& drive = drive_of(the_case);
-  const double speed = rad_per_second(the_case.operation.speed_rpm);
-  const bool by_curve = drive.kind == DriveKind::speed && !drive.curve.time.empty();
-  const double start =
-      by_curve ? TimeSignal(drive.curve).value(0) : drive.start_speed.value_or(speed);
-  return speed != 0 && start == speed;
 }
 
 CoupledPump::CoupledPump(const ReadyCase& ready, bool follows)

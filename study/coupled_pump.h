@@ -29,8 +29,4 @@ class CoupledPump {
 /// kg that passed, of a simulation with oil: in, out or, in a closed loop, through the load.
 double mass_passed(const Trajectory& run);
 
-/// Whether a simulation with oil begins in the periodic state of the speed of [operation]: where
-/// every body turns at that speed.
-bool starts_periodic(const Case& the_case);
-
 }  // namespace bentaxis::study

@@ -534,13 +534,6 @@ class Study {
   mutable double tolerance_ = 0;     // of its last run
 };
 
-bool needs_periodic_oil(const Case& the_case) {
-  const LoadData load = the_case.hydraulics->load.value_or(LoadData());
-  const bool held =
-      the_case.pressure.ports.delivery == 0 || load.kind == LoadKind::constant_pressure;
-  return starts_periodic(the_case) || (!held && !load.sets_pressure());
-}
-
 // What changes in time leaves no motion that repeats itself.
 void refuse_course(const Case& the_case) {
   const auto refuse = [&](const char* key, const std::filesystem::path& file) {
@@ -657,7 +650,7 @@ ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
     // [operation].
     if (the_case.drive->start_speed == 0.0) the_case.drive->start_speed.reset();
   }
-  if (!hydraulic || choice.oil == OilInTime::periodic || needs_periodic_oil(the_case))
+  if (!hydraulic || choice.oil == OilInTime::periodic || hydraulics::needs_periodic_state(the_case))
     return prepare(std::move(the_case), progress_of);
   ReadyCase ready;
   ready.the_case = std::move(the_case);

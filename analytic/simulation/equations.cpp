@@ -104,9 +104,15 @@ Equations::Response Equations::respond(const Model& model, double shaft_accelera
   return {values_[model.layout().Td()], instant_.shaft.speed < 0 ? -tooth : tooth};
 }
 
+void Equations::surround(const Surroundings& outside) {
+  require_drive(drive_, outside);
+  outside_ = outside;
+}
+
 AxisMotion Equations::shaft(double time, const State& y) const {
   if (drive_.kind != DriveKind::speed)
     return {start_speed_ * time + y[kTurn], start_speed_ + y[kTurnRate], 0};
+  if (outside_.shaft) return outside_.shaft_at(time);
   if (curve_) return {curve_->integral(time), curve_->value(time), curve_->slope(time)};
   return {omega_ * time, omega_, 0};
 }
@@ -243,6 +249,7 @@ BevelTeeth::Approach Equations::approach_of_teeth(double time, const State& y, i
 
 // Of drives that give a torque.
 double Equations::drive_torque_at(double time, const State& y) const {
+  if (outside_.torque) return *outside_.torque;
   if (drive_.kind == DriveKind::torque) return curve_ ? curve_->value(time) : drive_.torque;
   return drive_.motor->coupling_stiffness * y[kTwist] +
          drive_.motor->coupling_damping * y[kTwistRate];

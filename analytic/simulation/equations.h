@@ -40,6 +40,8 @@ class Equations {
 
   const Model& model() const { return model_; }
   const DriveSpec& drive() const { return drive_; }
+  /// From now on these act from outside.
+  void surround(const Surroundings& outside);
   bool compliant() const { return law_ || bevel_; }
   const closed_form::ToothLaw& law() const { return *law_; }
   long evaluations() const { return evaluations_; }
@@ -125,6 +127,7 @@ class Equations {
   std::optional<closed_form::ToothLaw> law_;
   double arm_;
   std::optional<TimeSignal> curve_;
+  Surroundings outside_;
   double probe_ = 1;  // rad/s2, for differences of responses
   double torque_scale_ = 0, tooth_scale_ = 0, shaft_inertia_ = 0, block_inertia_ = 0;
   Instant instant_;

@@ -29,6 +29,7 @@ class ClosedForm : public Mechanics {
 
   const ChannelLayout& layout() const override { return equations_.model().layout(); }
   MotionVector start() const override { return equations_.start({}); }
+  void surround(const Surroundings& outside) override { equations_.surround(outside); }
   MotionVector scales() const override { return equations_.scales(); }
   bool shaft_is_free() const override { return equations_.drive().kind != DriveKind::speed; }
   bool compliant() const override { return equations_.compliant(); }

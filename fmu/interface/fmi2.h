@@ -1,5 +1,5 @@
-// The C interface of the Functional Mock-up Interface 2.0, as chapters 2 to 4 of the standard have it: names,
-// types, values and order of arguments are the standard's, the words are ours.
+// The C interface of the Functional Mock-up Interface 2.0, as chapters 2 to 4 of the standard have
+// it: names, types, values and order of arguments are the standard's, the words are ours.
 #pragma once
 
 #include <stddef.h>
@@ -95,8 +95,8 @@ typedef fmi2Status fmi2SetFMUstateTYPE(fmi2Component c, fmi2FMUstate state);
 typedef fmi2Status fmi2FreeFMUstateTYPE(fmi2Component c, fmi2FMUstate* state);
 typedef fmi2Status fmi2SerializedFMUstateSizeTYPE(fmi2Component c, fmi2FMUstate state,
                                                   size_t* size);
-typedef fmi2Status fmi2SerializeFMUstateTYPE(fmi2Component c, fmi2FMUstate state,
-                                             fmi2Byte bytes[], size_t size);
+typedef fmi2Status fmi2SerializeFMUstateTYPE(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[],
+                                             size_t size);
 typedef fmi2Status fmi2DeSerializeFMUstateTYPE(fmi2Component c, const fmi2Byte bytes[], size_t size,
                                                fmi2FMUstate* state);
 typedef fmi2Status fmi2GetDirectionalDerivativeTYPE(fmi2Component c,
@@ -140,50 +140,50 @@ typedef fmi2Status fmi2GetBooleanStatusTYPE(fmi2Component c, fmi2StatusKind kind
 typedef fmi2Status fmi2GetStringStatusTYPE(fmi2Component c, fmi2StatusKind kind, fmi2String* value);
 
 // Every function by name: BENTAXIS_FMI2_FUNCTIONS(use) with use(name).
-#define BENTAXIS_FMI2_FUNCTIONS(X)                                                                 \
-  X(fmi2GetTypesPlatform)                                                                          \
-  X(fmi2GetVersion)                                                                                \
-  X(fmi2SetDebugLogging)                                                                           \
-  X(fmi2Instantiate)                                                                               \
-  X(fmi2FreeInstance)                                                                              \
-  X(fmi2SetupExperiment)                                                                           \
-  X(fmi2EnterInitializationMode)                                                                   \
-  X(fmi2ExitInitializationMode)                                                                    \
-  X(fmi2Terminate)                                                                                 \
-  X(fmi2Reset)                                                                                     \
-  X(fmi2GetReal)                                                                                   \
-  X(fmi2GetInteger)                                                                                \
-  X(fmi2GetBoolean)                                                                                \
-  X(fmi2GetString)                                                                                 \
-  X(fmi2SetReal)                                                                                   \
-  X(fmi2SetInteger)                                                                                \
-  X(fmi2SetBoolean)                                                                                \
-  X(fmi2SetString)                                                                                 \
-  X(fmi2GetFMUstate)                                                                               \
-  X(fmi2SetFMUstate)                                                                               \
-  X(fmi2FreeFMUstate)                                                                              \
-  X(fmi2SerializedFMUstateSize)                                                                    \
-  X(fmi2SerializeFMUstate)                                                                         \
-  X(fmi2DeSerializeFMUstate)                                                                       \
-  X(fmi2GetDirectionalDerivative)                                                                  \
-  X(fmi2EnterEventMode)                                                                            \
-  X(fmi2NewDiscreteStates)                                                                         \
-  X(fmi2EnterContinuousTimeMode)                                                                   \
-  X(fmi2CompletedIntegratorStep)                                                                   \
-  X(fmi2SetTime)                                                                                   \
-  X(fmi2SetContinuousStates)                                                                       \
-  X(fmi2GetDerivatives)                                                                            \
-  X(fmi2GetEventIndicators)                                                                        \
-  X(fmi2GetContinuousStates)                                                                       \
-  X(fmi2GetNominalsOfContinuousStates)                                                             \
-  X(fmi2SetRealInputDerivatives)                                                                   \
-  X(fmi2GetRealOutputDerivatives)                                                                  \
-  X(fmi2DoStep)                                                                                    \
-  X(fmi2CancelStep)                                                                                \
-  X(fmi2GetStatus)                                                                                 \
-  X(fmi2GetRealStatus)                                                                             \
-  X(fmi2GetIntegerStatus)                                                                          \
-  X(fmi2GetBooleanStatus)                                                                          \
+#define BENTAXIS_FMI2_FUNCTIONS(X)     \
+  X(fmi2GetTypesPlatform)              \
+  X(fmi2GetVersion)                    \
+  X(fmi2SetDebugLogging)               \
+  X(fmi2Instantiate)                   \
+  X(fmi2FreeInstance)                  \
+  X(fmi2SetupExperiment)               \
+  X(fmi2EnterInitializationMode)       \
+  X(fmi2ExitInitializationMode)        \
+  X(fmi2Terminate)                     \
+  X(fmi2Reset)                         \
+  X(fmi2GetReal)                       \
+  X(fmi2GetInteger)                    \
+  X(fmi2GetBoolean)                    \
+  X(fmi2GetString)                     \
+  X(fmi2SetReal)                       \
+  X(fmi2SetInteger)                    \
+  X(fmi2SetBoolean)                    \
+  X(fmi2SetString)                     \
+  X(fmi2GetFMUstate)                   \
+  X(fmi2SetFMUstate)                   \
+  X(fmi2FreeFMUstate)                  \
+  X(fmi2SerializedFMUstateSize)        \
+  X(fmi2SerializeFMUstate)             \
+  X(fmi2DeSerializeFMUstate)           \
+  X(fmi2GetDirectionalDerivative)      \
+  X(fmi2EnterEventMode)                \
+  X(fmi2NewDiscreteStates)             \
+  X(fmi2EnterContinuousTimeMode)       \
+  X(fmi2CompletedIntegratorStep)       \
+  X(fmi2SetTime)                       \
+  X(fmi2SetContinuousStates)           \
+  X(fmi2GetDerivatives)                \
+  X(fmi2GetEventIndicators)            \
+  X(fmi2GetContinuousStates)           \
+  X(fmi2GetNominalsOfContinuousStates) \
+  X(fmi2SetRealInputDerivatives)       \
+  X(fmi2GetRealOutputDerivatives)      \
+  X(fmi2DoStep)                        \
+  X(fmi2CancelStep)                    \
+  X(fmi2GetStatus)                     \
+  X(fmi2GetRealStatus)                 \
+  X(fmi2GetIntegerStatus)              \
+  X(fmi2GetBooleanStatus)              \
   X(fmi2GetStringStatus)
 
 #ifdef __cplusplus

@@ -24,18 +24,22 @@ struct Inputs {
 };
 bool operator==(const Inputs& a, const Inputs& b);
 
-/// A state of a unit that a run can go on from: everything but parameters and inputs.
+/// A state of a unit that a run can go on from: everything but parameters.
 struct PlantState {
-  double time = 0;             ///< s, of the pump: FMI's less the start time
-  std::vector<double> states;  ///< as Plant::states()
-  std::vector<double> memory;  ///< what else decides how it goes on: flanks in touch, interval
+  double time = 0;  ///< s, of the pump: FMI's less the start time
+  std::vector<double> motion, oil;
+  AxisMotion shaft;      ///< at that time, where its motion is an input
+  double load_size = 0;  ///< that was found at the start
+  bool speed_changed = false;
+  Inputs inputs;
 };
 
 class Plant {
  public:
+  enum class Kind { co_simulation, model_exchange };
   /// @param the_case  with its parameters as they are set
   /// @throws InputError where a case file that says the same would be refused
-  Plant(const Case& the_case, const UnitChoice& choice);
+  Plant(const Case& the_case, const UnitChoice& choice, Kind kind);
   ~Plant();
 
   /// Start values of the inputs: those of the case.
@@ -44,7 +48,8 @@ class Plant {
 
   /// Finds the start (of a hydraulic case that begins in its periodic state: that state). Long.
   /// @throws InputError, ComputationError
-  void start(const Inputs& inputs);
+  /// @param end  s, at which it is expected to end
+  void start(const Inputs& inputs, double end = 1);
   /// Other numbers of the case while it runs: the state stays. Of tunable parameters.
   void change(const Case& the_case);
   /// From the present time on.
@@ -88,8 +93,7 @@ class Plant {
   /// At the present time: the columns of `simulate`'s tables in their order and units, those of
   /// simulation_analytic.csv but time_s, then of oil_analytic.csv but time_s.
   const std::vector<double>& outputs();
-  /// inertia_reactions_valid, tooth_contact, cavitation, vapour, film_pushes, .. as
-  /// names_of_flags().
+  /// In the order of columns_of().
   const std::vector<bool>& flags();
 
   PlantState state() const;

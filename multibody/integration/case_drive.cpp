@@ -41,7 +41,13 @@ CaseDrive::CaseDrive(const Case& the_case)
       omega_(rad_per_second(the_case.operation.speed_rpm)),
       curve_(spec_.curve.time.empty() ? std::nullopt : std::optional<TimeSignal>(spec_.curve)) {}
 
+void CaseDrive::surround(const Surroundings& outside) {
+  require_drive(spec_, outside);
+  outside_ = outside;
+}
+
 AxisMotion CaseDrive::turning(double time) const {
+  if (outside_.shaft) return outside_.shaft_at(time);
   if (!curve_) return {omega_ * time, omega_, 0};
   return {curve_->integral(time), curve_->value(time), curve_->slope(time)};
 }
@@ -54,6 +60,7 @@ DriveInTime CaseDrive::in_time() const {
   }
   drive.torque.emplace();
   drive.torque->torque = [this](double time) {
+    if (outside_.torque) return *outside_.torque;
     return curve_ ? curve_->value(time) : spec_.torque;
   };
   drive.torque->motor_torque = [this](double speed) { return motor_torque(speed); };

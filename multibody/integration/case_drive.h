@@ -6,6 +6,7 @@
 
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/time_signal.h"
+#include "bentaxis/results/surroundings.h"
 #include "scene/pump_system.h"
 
 namespace bentaxis::multibody {
@@ -27,6 +28,8 @@ class CaseDrive {
   const DriveSpec& spec() const { return spec_; }
   bool gives_speed() const { return spec_.kind == DriveKind::speed; }
   bool is_motor() const { return spec_.kind == DriveKind::motor; }
+  /// From now on these act from outside.
+  void surround(const Surroundings& outside);
   /// For a pump that it outlives.
   DriveInTime in_time() const;
   /// Of the shaft, where its speed is given.
@@ -44,6 +47,7 @@ class CaseDrive {
   const DriveSpec& spec_;
   double omega_;  // rad/s, of [operation]
   std::optional<TimeSignal> curve_;
+  Surroundings outside_;
 };
 
 }  // namespace bentaxis::multibody

@@ -63,6 +63,10 @@ class MultibodyMechanics : public Mechanics {
     if (has_motor()) y[kTwist] = drive_.start_torque() / motor().coupling_stiffness;
     return y;
   }
+  void surround(const Surroundings& outside) override {
+    drive_.surround(outside);
+    placed_.reset();
+  }
   MotionVector scales() const override { return scales_; }
   bool shaft_is_free() const override { return !drive_.gives_speed(); }
   bool compliant() const override { return system_.teeth() != nullptr || has_bevel(); }

@@ -26,6 +26,12 @@ OilStart running(const SteadyState& state);
 /// At rest before the load of that state.
 OilStart at_rest(const SteadyState& state);
 
+/// Whether motion with oil begins in the periodic state of the speed of [operation]: where every
+/// body turns at that speed. @throws InputError as drive_of()
+bool starts_periodic(const Case& the_case);
+/// Whether that periodic state has to be known: for the start, or for the load's size.
+bool needs_periodic_state(const Case& the_case);
+
 /// The equations of steady_state(), per second: chambers see the ports at the block's angle, and
 /// their volume follows both angles. Any speed of [operation] will do, 0 and backwards among them;
 /// of the suction line's flow it sets the scale alone.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,12 +66,14 @@ class PressureTrace {
 
   /// Gauge pressure, Pa, in a chamber at angle theta_k (any real number of degrees).
   double operator()(double theta_k_deg) const;
+  /// Of an ideal trace: share of the way from suction to delivery pressure there.
+  std::optional<double> ideal_share(double theta_k_deg) const;
 
   /// Chamber angles in [0, 360) where the pressure or its derivative jumps, in increasing order.
   const std::vector<double>& edges_deg() const { return edges_deg_; }
 
  private:
-  double ideal(double theta_k_deg) const;
+  double share_of_delivery(double theta_k_deg) const;
 
   PressureKind kind_;
   PortPressures ports_;

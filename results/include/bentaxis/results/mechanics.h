@@ -9,6 +9,7 @@
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/oil.h"
+#include "bentaxis/results/surroundings.h"
 #include "bentaxis/results/teeth.h"
 
 namespace bentaxis {
@@ -37,6 +38,9 @@ class Mechanics {
   virtual const ChannelLayout& layout() const = 0;
   /// At time 0, theta = psi = 0, as DriveSpec says.
   virtual MotionVector start() const = 0;
+  /// From now on these act from outside; what is not given is as the case says. Nothing is, before.
+  /// @throws std::logic_error of mechanics that take nothing
+  virtual void surround(const Surroundings& outside);
   /// What each state is measured by: an error of one part in this scale changes reactions by about
   /// the same part of their peak. > 0.
   virtual MotionVector scales() const = 0;

@@ -1,11 +1,13 @@
 // Oil in the chambers of a moving pump: what an integration carries along with the motion.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bentaxis/pump/pressure.h"
 #include "bentaxis/results/instant.h"
+#include "bentaxis/results/surroundings.h"
 
 namespace bentaxis {
 
@@ -13,6 +15,12 @@ namespace bentaxis {
 struct OilLoads {
   std::vector<double> chamber_pressure;  ///< Pa gauge, one per piston
   PortPressures ports;                   ///< Pa gauge, load the port-plate lands
+};
+
+/// Pressures of an oil below which something comes out of it, Pa gauge.
+struct OilLimits {
+  double saturation = 0;  ///< dissolved air
+  double vapour = 0;      ///< vapour
 };
 
 /// What a place of the hydraulic circuit does with power.
@@ -39,8 +47,13 @@ class Oil {
 
   virtual int pistons() const = 0;
   virtual int states() const = 0;
+  /// Which pressures and loads from outside it takes, and from now on those.
+  virtual TakesFromOutside takes() const { return {}; }
+  virtual void surround(const Surroundings& /*outside*/) {}
   /// States at time 0, shaft and block at angle 0.
   virtual std::vector<double> start() const = 0;
+  /// What the states are: names without blanks, and their meaning; those of no unit have none.
+  virtual std::vector<OilColumn> state_columns() const { return {}; }
   /// What each state is measured by: an error of one part in this scale changes pressures by about
   /// the same part of their peak.
   virtual std::vector<double> scales() const = 0;
@@ -72,6 +85,9 @@ class Oil {
   /// Energy, J, and mass, kg, that the circuit holds.
   virtual void stored(double time, const AxisMotion& shaft, const AxisMotion& block,
                       const double* y, double& energy, double& mass) const = 0;
+
+  /// None where the oil is no oil but a curve.
+  virtual std::optional<OilLimits> limits() const { return std::nullopt; }
 
   /// What a table over time has of it, and its values.
   virtual std::vector<OilColumn> columns() const = 0;

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "bentaxis/pump/pressure.h"
+#include "bentaxis/pump/drive_spec.h"
 #include "bentaxis/results/instant.h"
 
 namespace bentaxis {
@@ -15,7 +15,9 @@ struct Surroundings {
   /// the acceleration is the same, the speed is speed + acceleration (t - time), and the angle
   /// follows likewise.
   std::optional<AxisMotion> shaft;
-  double time = 0;               ///< s, at which `shaft` is what it says
+  double time = 0;  ///< s, at which `shaft` is what it says
+  /// The shaft's motion at another time, s, where it is given.
+  AxisMotion shaft_at(double at) const;
   std::optional<double> torque;  ///< Nm, on the shaft
   /// Pa gauge. Of an ideal trace both ports; of a hydraulic case the tank (or charge supply), and
   /// the delivery side where the case holds it at a pressure.
@@ -31,5 +33,8 @@ struct TakesFromOutside {
   bool shaft = false, torque = false;
   bool suction = false, delivery = false, load_share = false;
 };
+
+/// @throws InputError where a case's drive takes neither what is given
+void require_drive(const DriveSpec& drive, const Surroundings& outside);
 
 }  // namespace bentaxis

@@ -1,0 +1,48 @@
+// Motion and oil from one communication point to the next, under what comes from outside.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "bentaxis/coupled/system_state.h"
+#include "bentaxis/results/mechanics.h"
+#include "bentaxis/results/oil.h"
+#include "bentaxis/results/surroundings.h"
+
+namespace bentaxis::coupled {
+
+/// Follows motion and oil as simulate() does. Steps of the integrator go on over communication
+/// points and are read there by its own polynomial, so that without changes the result is
+/// simulate()'s, however many points there are; what changes at a point starts it anew from the
+/// state there.
+class Stepper {
+ public:
+  /// @param name       of the model, for messages
+  /// @param tolerance  error per step of each state, of its scale
+  Stepper(std::string name, Mechanics& mechanics, Oil& oil, double tolerance);
+  ~Stepper();
+
+  /// Begins at a time, s, with a state.
+  /// @param end  s, at which it is expected to end: no step goes beyond it before it is reached
+  void start(double time, const SystemState& state, double end);
+  /// Anew from time() on: after what the mechanics or the oil are has been changed.
+  void restart();
+  /// From time() on these act from outside; nothing is done where they do so already.
+  /// @throws InputError where the drive does not take them
+  void surround(const Surroundings& outside);
+  const Surroundings& surroundings() const;
+
+  /// @throws ComputationError naming the time where the motion cannot be followed; time() and
+  /// state()
+  ///         are then what they were
+  void step_to(double time);
+  double time() const;
+  const SystemState& state() const;
+  long steps() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> it_;
+};
+
+}  // namespace bentaxis::coupled

@@ -1,0 +1,89 @@
+#include "bentaxis/coupled/stepper.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "course.h"
+
+namespace bentaxis::coupled {
+
+class Stepper::Implementation {
+ public:
+  Implementation(std::string name, Mechanics& mechanics, Oil& oil, double tolerance)
+      : mechanics_(mechanics),
+        oil_(oil),
+        course_(std::move(name), mechanics, oil, tolerance, true) {}
+
+  void start(double time, const SystemState& state, double end) {
+    time_ = time;
+    end_ = end;
+    state_ = state;
+    restart();
+  }
+
+  void restart() {
+    course_.start(time_, state_);
+    course_.forget_events();
+  }
+
+  void surround(const Surroundings& outside) {
+    if (outside == outside_) return;
+    mechanics_.surround(outside);
+    oil_.surround(outside);
+    outside_ = outside;
+    restart();
+  }
+
+  void step_to(double time) {
+    try {
+      advance_to(time, std::max(end_, time));
+    } catch (const ComputationError&) {
+      // What lies beyond the point need not be possible: it may be changed there.
+      restart();
+      try {
+        advance_to(time, time);
+      } catch (...) {
+        restart();
+        throw;
+      }
+    }
+    course_.state_at(time, state_);
+    time_ = time;
+  }
+
+  double time() const { return time_; }
+  const SystemState& state() const { return state_; }
+  const Surroundings& surroundings() const { return outside_; }
+  long steps() const { return course_.steps(); }
+
+ private:
+  void advance_to(double time, double end) {
+    while (course_.time() < time) {
+      course_.advance(end);
+      course_.forget_events();
+    }
+  }
+
+  Mechanics& mechanics_;
+  Oil& oil_;
+  Course course_;
+  Surroundings outside_;
+  double time_ = 0, end_ = 0;
+  SystemState state_;
+};
+
+Stepper::Stepper(std::string name, Mechanics& mechanics, Oil& oil, double tolerance)
+    : it_(std::make_unique<Implementation>(std::move(name), mechanics, oil, tolerance)) {}
+Stepper::~Stepper() = default;
+void Stepper::start(double time, const SystemState& state, double end) {
+  it_->start(time, state, end);
+}
+void Stepper::restart() { it_->restart(); }
+void Stepper::surround(const Surroundings& outside) { it_->surround(outside); }
+const Surroundings& Stepper::surroundings() const { return it_->surroundings(); }
+void Stepper::step_to(double time) { it_->step_to(time); }
+double Stepper::time() const { return it_->time(); }
+const SystemState& Stepper::state() const { return it_->state(); }
+long Stepper::steps() const { return it_->steps(); }
+
+}  // namespace bentaxis::coupled

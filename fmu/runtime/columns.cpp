@@ -1,0 +1,142 @@
+#include "columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "bentaxis/coupled/open_system.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/trajectory.h"
+#include "machine.h"
+#include "plant.h"
+
+namespace bentaxis::fmu {
+namespace {
+
+std::string meaning_of(const std::string& column) {
+  if (column == "theta_deg") return "angle of the shaft, theta";
+  if (column == "psi_deg") return "angle of the block, psi";
+  if (column == "shaft_rpm") return "speed of the shaft";
+  if (column == "block_rpm") return "speed of the block";
+  return "speed of the motor's rotor";
+}
+
+std::string meaning_of(const Channel& channel) {
+  std::string text = channel.meaning;
+  const auto add = [&](const char* how, const std::string& what) {
+    if (!what.empty()) text += std::string(text.empty() ? "" : ", ") + how + what;
+  };
+  add("on ", channel.on_body);
+  add("by ", channel.by_body);
+  add("at ", channel.point);
+  add("in ", channel.frame);
+  return text;
+}
+
+std::string unit_in_name(const std::string& name) {
+  for (const auto& [end, unit] : {std::pair{"_l_per_min", "l/min"}, std::pair{"_bar", "bar"}})
+    if (name.ends_with(end)) return unit;
+  return {};
+}
+
+}  // namespace
+
+std::vector<FlagRule> flag_rules(const Machine& machine) {
+  std::vector<FlagRule> rules = {{Flag::inertia,
+                                  {"inertia_reactions_valid", "",
+                                   "false where drive_speed has changed and drive_acceleration was "
+                                   "never given: inertia forces and Td are then those of the old "
+                                   "acceleration"}}};
+  if (machine.mechanics->compliant())
+    rules.push_back({Flag::contact, {"tooth_contact", "", "a flank of the teeth touches"}});
+  rules.push_back(
+      {Flag::flank,
+       {"valid_flank", "", "Rcs >= 0: the tooth force is on the flank that is modelled"}});
+  rules.push_back(
+      {Flag::film, {"valid_film", "", "Fh <= 0: the film pushes the block off the port plate"}});
+  if (machine.the_case.pump.port_plate)
+    rules.push_back(
+        {Flag::point, {"valid_point", "", "the film force acts within the port plate"}});
+  rules.push_back(
+      {Flag::thrust,
+       {"valid_thrust", "", "Rb1_z1 >= 0: the tapered bearing is loaded in its direction"}});
+  if (machine.oil->limits()) {
+    rules.push_back(
+        {Flag::saturation,
+         {"cavitation", "", "pressure in a chamber below that at which dissolved air comes out"}});
+    rules.push_back(
+        {Flag::vapour, {"vapour", "", "pressure in a chamber below that at which oil boils"}});
+  }
+  return rules;
+}
+
+std::vector<OutputPlace> output_places(const Machine& machine) {
+  std::vector<OutputPlace> places;
+  std::vector<std::string> names;
+  const auto add = [&](PlantColumn column, OutputPlace::From from, std::size_t index, double unit) {
+    // What is a channel too is not shown twice.
+    if (std::find(names.begin(), names.end(), column.name) != names.end()) return;
+    names.push_back(column.name);
+    places.push_back({std::move(column), from, index, unit});
+  };
+  const std::vector<std::string> states = trajectory_columns(*machine.the_case.drive);
+  for (std::size_t i = 1; i < states.size(); ++i)
+    add({states[i], states[i].ends_with("_deg") ? "deg" : "rpm", meaning_of(states[i])},
+        OutputPlace::From::state, i, 1);
+  const std::vector<Channel>& channels = machine.mechanics->layout().channels();
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    add({channels[i].name, channels[i].unit, meaning_of(channels[i])}, OutputPlace::From::row, i,
+        channels[i].unit_in_si);
+  const std::vector<Channel> checks = motion_channels();
+  for (std::size_t i = 0; i < checks.size(); ++i)
+    // Of teeth that give way alone.
+    if (i != 0 || machine.mechanics->compliant())
+      add({checks[i].name, checks[i].unit, meaning_of(checks[i])}, OutputPlace::From::check, i,
+          checks[i].unit_in_si);
+  const std::vector<OilColumn> oil = machine.oil->columns();
+  for (std::size_t i = 0; i < oil.size(); ++i)
+    add({oil[i].name, unit_in_name(oil[i].name), oil[i].meaning}, OutputPlace::From::oil, i, 1);
+  return places;
+}
+
+Case with_drive(Case the_case, Drive drive) {
+  if (drive == Drive::as_in_case) {
+    drive_of(the_case);
+    return the_case;
+  }
+  DriveSpec spec = the_case.drive.value_or(DriveSpec());
+  const double omega = rad_per_second(the_case.operation.speed_rpm);
+  if (drive == Drive::speed) {
+    spec.start_speed.reset();
+    spec.torque = 0;
+    spec.kind = DriveKind::speed;
+  } else {
+    if (spec.kind != DriveKind::torque) spec.torque = 0;
+    if (!spec.start_speed) spec.start_speed = omega;
+    spec.kind = DriveKind::torque;
+  }
+  spec.curve = {};
+  spec.motor.reset();
+  if (!(spec.duration > 0)) {
+    constexpr double kTurn = 60;  // s rpm
+    spec.duration = omega != 0 ? kTurn / std::abs(the_case.operation.speed_rpm) : 1;
+    spec.samples = the_case.operation.samples_per_revolution;
+  }
+  the_case.drive = spec;
+  return the_case;
+}
+
+PlantColumns columns_of(const Case& the_case, const UnitChoice& choice) {
+  const Machine machine(with_drive(the_case, choice.drive), {});
+  PlantColumns all;
+  for (OutputPlace& place : output_places(machine)) all.outputs.push_back(std::move(place.column));
+  for (FlagRule& rule : flag_rules(machine)) all.flags.push_back(std::move(rule.column));
+  const coupled::OpenSystem open(*machine.mechanics, *machine.oil, choice.drive == Drive::speed);
+  for (const coupled::OpenState& state : open.states())
+    all.states.push_back({state.name, state.unit, state.meaning, state.nominal});
+  for (const coupled::OpenIndicator& indicator : open.indicators())
+    all.indicators.push_back({indicator.name, indicator.unit, indicator.meaning});
+  return all;
+}
+
+}  // namespace bentaxis::fmu
