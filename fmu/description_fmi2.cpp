@@ -40,7 +40,6 @@ void add_variables(pugi::xml_node root, const std::vector<Variable>& variables) 
     set_values(type, variable);
     if (variable.role == Role::derivative && variable.state)
       type.append_attribute("derivative") = index_of(*variable.state);
-    if (variable.role == Role::state) set(type, "reinit", true);
   }
 }
 

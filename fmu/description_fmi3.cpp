@@ -32,7 +32,6 @@ void add_variables(pugi::xml_node root, const std::vector<Variable>& variables) 
     set_values(node, variable);
     if (variable.role == Role::derivative && variable.state)
       node.append_attribute("derivative") = *variable.state;
-    if (variable.role == Role::state) set(node, "reinit", true);
   }
 }
 

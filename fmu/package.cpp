@@ -54,7 +54,7 @@ Description description_of(const Case& the_case, const UnitOptions& options) {
   it.tolerance = options.tolerance;
   const Case driven = with_drive(the_case, options.drive);
   it.stop_time = driven.drive->duration;
-  if (the_case.drive) it.step = the_case.drive->duration / the_case.drive->samples;
+  it.step = it.stop_time / driven.drive->samples;
   return it;
 }
 
