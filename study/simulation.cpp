@@ -7,6 +7,7 @@
 #include <map>
 
 #include "bentaxis/analytic/simulation.h"
+#include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/multibody/simulation.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
