@@ -194,7 +194,7 @@ void add_comparison(py::module_& module) {
           },
           "The headline.");
   module.def(
-      "compare", &compare_cases, py::arg("case"), py::arg("multibody") = py::none(),
+      "compare", &compare_cases, py::arg("case"), py::arg("multibody") = py::none(), py::kw_only(),
       py::arg("analytic") = py::none(), py::arg("multibody_case") = nullptr,
       py::arg("channels") = py::none(), py::arg("tolerance") = py::none(),
       "Runs both models over one turn and compares them. `multibody`, `analytic`: what a model "

@@ -216,8 +216,9 @@ void add_identification(py::module_& module) {
           "How many unknowns.");
   module.def(
       "identify", &identify, py::arg("case"), py::arg("data"), py::arg("unknowns") = py::none(),
-      py::arg("starts") = 8, py::arg("seed") = 1, py::arg("steps") = 2000, py::arg("draws") = 400,
-      py::arg("measured") = 0.01, py::arg("fit_only") = false, py::arg("threads") = 0,
+      py::kw_only(), py::arg("starts") = 8, py::arg("seed") = 1, py::arg("steps") = 2000,
+      py::arg("draws") = 400, py::arg("measured") = 0.01, py::arg("fit_only") = false,
+      py::arg("threads") = 0,
       "Determines parameters from printed numbers, windows and records "
       "(docs/identification.md). `data`: a file or several. `unknowns`: further ones, lowest "
       "and highest value by name. `fit_only`: least squares alone, without profiles, posterior "

@@ -158,7 +158,7 @@ void add_simulation(py::module_& module) {
           },
           "The headline.");
   module.def(
-      "simulate", &simulate, py::arg("case"), py::arg("model") = py::none(),
+      "simulate", &simulate, py::arg("case"), py::arg("model") = py::none(), py::kw_only(),
       py::arg("error") = 1e-6, py::arg("oil") = "coupled", py::arg("steady") = false,
       "Integrates the motion of shaft and block in time, as [drive] of the case says, by both "
       "models or by one. `error`: wanted error of every reaction, of its peak, in [1e-10, "

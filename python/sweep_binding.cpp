@@ -141,7 +141,7 @@ void add_sweep(py::module_& module) {
            "Writes report.html, report.json and sweep.csv as the program does; returns their "
            "paths.");
   module.def(
-      "sweep", &sweep, py::arg("case"), py::arg("vary"), py::arg("outputs"),
+      "sweep", &sweep, py::arg("case"), py::arg("vary"), py::arg("outputs"), py::kw_only(),
       py::arg("sampling") = "grid", py::arg("samples") = 0, py::arg("seed") = 1,
       py::arg("model") = "analytic", py::arg("check") = 0.0, py::arg("minimise") = py::none(),
       py::arg("maximise") = py::none(), py::arg("threads") = 0,

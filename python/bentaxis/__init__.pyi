@@ -1,5 +1,6 @@
 # Made by scripts/write_python_stub from the module's own signatures and docstrings.
 import os
+import pathlib
 from typing import Any, Iterator, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy
@@ -272,7 +273,7 @@ class Comparison:
     def warnings(self) -> list[str]:
         """What is doubtful about the results."""
 
-    def report(self, folder: _Path) -> list[_Path]:
+    def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes report.html, report.json and the curves as the program does; returns their paths."""
 
     def __repr__(self) -> str:
@@ -382,7 +383,7 @@ class Identification:
     def bands(self) -> Optional[Table]:
         """Reactions over the turn with their bands; None with fit_only."""
 
-    def report(self, folder: _Path) -> list[_Path]:
+    def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes what the program writes; returns the files' paths."""
 
     def __repr__(self) -> str:
@@ -627,7 +628,7 @@ class Simulation:
     def judged_until_s(self) -> float:
         """Later a disturbance of the wanted error would change results altogether."""
 
-    def report(self, folder: _Path) -> list[_Path]:
+    def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes report.html, report.json and the curves as the program does; returns their paths."""
 
     def __repr__(self) -> str:
@@ -658,7 +659,7 @@ class Sweep(Table):
     def seconds(self) -> float:
         """What the computation took."""
 
-    def report(self, folder: _Path) -> list[_Path]:
+    def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes report.html, report.json and sweep.csv as the program does; returns their paths."""
 
 
@@ -741,7 +742,7 @@ class Table:
         """Name and size."""
 
 
-def compare(case: Case, multibody: Optional[Mapping[str, _Value]] = None, analytic: Optional[Mapping[str, _Value]] = None, multibody_case: Case = None, channels: Union[str, Sequence[str], None] = None, tolerance: Optional[float] = None) -> Comparison:
+def compare(case: Case, multibody: Optional[Mapping[str, _Value]] = None, *, analytic: Optional[Mapping[str, _Value]] = None, multibody_case: Optional[Case] = None, channels: Union[str, Sequence[str], None] = None, tolerance: Optional[float] = None) -> Comparison:
     """Runs both models over one turn and compares them. `multibody`, `analytic`: what a model assumes instead of
     what the case says, {"piston_friction": False, "gear": "imposed"}: the difference is then taken apart.
     `multibody_case`: another case for the multibody model. `channels`: only these."""
@@ -751,7 +752,7 @@ def data_folder(name: str = 'cases') -> str:
     """Folder of what comes with bentaxis: "cases" or "reference_data"."""
 
 
-def identify(case: Case, data: Union[_Path, Sequence[_Path]], unknowns: Optional[Mapping[str, Tuple[float, float]]] = None, starts: int = 8, seed: int = 1, steps: int = 2000, draws: int = 400, measured: float = 0.01, fit_only: bool = False, threads: int = 0) -> Identification:
+def identify(case: Case, data: Union[_Path, Sequence[_Path]], unknowns: Optional[Mapping[str, Tuple[float, float]]] = None, *, starts: int = 8, seed: int = 1, steps: int = 2000, draws: int = 400, measured: float = 0.01, fit_only: bool = False, threads: int = 0) -> Identification:
     """Determines parameters from printed numbers, windows and records (docs/identification.md). `data`: a file
     or several. `unknowns`: further ones, lowest and highest value by name. `fit_only`: least squares alone,
     without profiles, posterior and leaving out. Needs a build with Ceres."""
@@ -789,13 +790,13 @@ def run_states(case: Case, states: Union[_Path, Mapping[str, _Array]], model: st
     columns. Messages count arrays from 0."""
 
 
-def simulate(case: Case, model: Optional[str] = None, error: float = 1e-06, oil: str = 'coupled', steady: bool = False) -> Simulation:
+def simulate(case: Case, model: Optional[str] = None, *, error: float = 1e-06, oil: str = 'coupled', steady: bool = False) -> Simulation:
     """Integrates the motion of shaft and block in time, as [drive] of the case says, by both models or by one.
     `error`: wanted error of every reaction, of its peak, in [1e-10, 0.1]. `oil`, of a hydraulic case:
     "coupled" or "periodic". `steady`: the motion that repeats itself, and its stability."""
 
 
-def sweep(case: Case, vary: Mapping[str, Union[str, float, bool, Sequence[_Value], _Array]], outputs: Union[str, Sequence[str], None], sampling: str = 'grid', samples: int = 0, seed: int = 1, model: str = 'analytic', check: float = 0.0, minimise: Union[str, Sequence[str], None] = None, maximise: Union[str, Sequence[str], None] = None, threads: int = 0) -> Sweep:
+def sweep(case: Case, vary: Mapping[str, Union[str, float, bool, Sequence[_Value], _Array]], outputs: Union[str, Sequence[str], None], *, sampling: str = 'grid', samples: int = 0, seed: int = 1, model: str = 'analytic', check: float = 0.0, minimise: Union[str, Sequence[str], None] = None, maximise: Union[str, Sequence[str], None] = None, threads: int = 0) -> Sweep:
     """Outputs of many designs (docs/sweeps.md), on all processors or `threads` of them. `vary`: values by
     parameter, a list, an array or a text as "20:40:5" or, where they are sampled, "normal(40, 0.1)".
     `outputs`: "max:Rb1_z1", "mean:Td". `sampling`: "grid", or "lhs", "sobol", "random" with a number of
