@@ -25,3 +25,13 @@ done
 usr/bin/bentaxis compare usr/share/bentaxis/cases/bap63_rated.toml --out out > /dev/null
 usr/bin/bentaxis hardcases --filter tilt_45 --out out > /dev/null
 ls out/report.html out/hardcases.html
+# The Python module, where it was built, finds what is installed with it.
+packages=$scratch/usr/lib/python3/dist-packages
+if [[ -d $packages/bentaxis ]]; then
+  PYTHONPATH=$packages /usr/bin/python3 - "$scratch/usr/share/bentaxis" <<'EOF'
+import pathlib, sys
+import bentaxis
+assert pathlib.Path(bentaxis.data_folder()) == pathlib.Path(sys.argv[1]) / "cases", bentaxis.data_folder()
+assert bentaxis.compare(bentaxis.read_case(bentaxis.data_folder() + "/bap63_rated.toml")).agrees
+EOF
+fi
