@@ -9,6 +9,17 @@ cmake --install "$build" --prefix "$scratch/usr" > /dev/null
 cmake -S "$source_dir/tests/install" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/usr" \
   -DCMAKE_BUILD_TYPE=Release > "$scratch/log" || { cat "$scratch/log"; exit 1; }
 cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+# One room of it, without what the others need; and a room there is not.
+cmake -S "$source_dir/tests/install/components" -B "$scratch/components" -DCMAKE_PREFIX_PATH="$scratch/usr" \
+  -DCMAKE_BUILD_TYPE=Release > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+cmake --build "$scratch/components" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+"$scratch/components/uses_analytic"
+if cmake -S "$source_dir/tests/install/components" -B "$scratch/unknown" -DCMAKE_PREFIX_PATH="$scratch/usr" -DROOM=analitic \
+    > "$scratch/log" 2>&1; then
+  echo "an unknown component was found"
+  exit 1
+fi
+grep -q 'no component "analitic": there are pump' <(tr -s '\n ' ' ' < "$scratch/log") || { cat "$scratch/log"; exit 1; }
 cd "$scratch"
 "$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
 share=usr/share
