@@ -1,7 +1,6 @@
 #include <memory>
 #include <string>
 
-#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/results/trajectory.h"
 #include "bentaxis/study/simulation_document.h"
@@ -9,6 +8,7 @@
 #include "console.h"
 #include "options.h"
 #include "report_files.h"
+#include "result_files.h"
 #include "unit_option.h"
 #include "versions.h"
 
@@ -51,20 +51,8 @@ int simulate(const Options& options, const CommandParser& command) {
   ReportFolders folders(options.place);
   const study::SimulationResult result = study::simulate(
       study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);
-  std::vector<TextFile> curves;
-  for (const auto& [name, run] :
-       {std::pair{"analytic", &result.analytic}, std::pair{"multibody", &result.multibody}}) {
-    if (!*run) continue;
-    curves.emplace_back(std::string("simulation_") + name + ".csv", to_csv((*run)->table));
-    if (!(*run)->teeth.empty())
-      curves.emplace_back(std::string("teeth_") + name + ".csv",
-                          to_csv(teeth_table_of(**run, result.ready.the_case.pump.gear)));
-    if ((*run)->oil) curves.emplace_back(std::string("oil_") + name + ".csv", oil_csv(**run));
-    if (const auto& told = result.exchanged[run == &result.multibody]; told)
-      curves.emplace_back(std::string("unit_") + name + ".csv", told->csv());
-  }
   const auto paths = folders.write("report", study::simulation_document(result, versions()),
-                                   study::simulation_curves(result), curves);
+                                   study::simulation_curves(result), simulation_files(result));
   print_result(study::simulation_text(result), paths);
   return result.agrees() ? kDone : kOutOfTolerance;
 }
