@@ -58,6 +58,25 @@ void Course::start(double time, const SystemState& state) {
   restart_ = true;
 }
 
+void Course::go_back(double time) {
+  if (time < time_) {
+    SystemState there;
+    state_at(time, there);
+    if (!integrals_.empty()) integrator_.integrals_at(time, integrals_.data());
+    state_ = there;
+    time_ = time;
+    touching_ = before_.touching;
+    events_.resize(before_.events);
+    apart_ = before_.apart;
+    if (system_.mechanics().compliant() && !touching()) apart_ += time - step_start_;
+    edges_.find(block(time_, state_));
+    set_interval();
+  }
+  step_start_ = time_;
+  system_.forget();
+  restart_ = true;
+}
+
 void Course::set_interval() {
   system_.from = edges_.from();
   system_.to = edges_.to();
@@ -124,6 +143,7 @@ void Course::close_contacts() {
 void Course::forget_events() {
   for (Touching& of : touching_) of.event = kNone;
   events_.clear();
+  forgotten_steps_ = integrator_.steps();
 }
 
 void Course::state_at(double time, SystemState& state) const {
@@ -224,7 +244,7 @@ void Course::keep_going() {
       fail("at this rate it would take " + rounded_text(expected) + " steps, more than " +
            std::to_string(kMostSteps) + ": simulate less of it (duration_s)");
   }
-  if (integrator_.steps() > kMostSteps)
+  if (integrator_.steps() - forgotten_steps_ > kMostSteps)
     fail("after " + std::to_string(kMostSteps) +
          " steps: motion or pressures are too fast for the time that is asked for; simulate less "
          "of it (duration_s), or with a larger error");
@@ -245,6 +265,7 @@ void Course::advance(double end) {
     restart_ = false;
   }
   keep_going();
+  before_ = {touching_, events_.size(), apart_};
   const double stop = horizon(end);
   const double before = time_;
   Integrator::Reached reached{};

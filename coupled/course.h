@@ -24,6 +24,11 @@ class Course {
   /// that everything between is still to be had from state_at().
   /// @throws ComputationError naming the time
   void advance(double end);
+  /// Takes the last step back to a time within it, as if it had ended there: what acts from outside
+  /// changes then.
+  void go_back(double time);
+  /// To a state that jumps at time(): of integrals of it, what is not the motion's own.
+  void jump(const SystemState& state) { state_ = state; }
   double time() const { return time_; }
   double step_start() const { return step_start_; }
 
@@ -38,7 +43,7 @@ class Course {
   /// Flanks that touch have their impulse until now.
   void close_contacts();
   const std::vector<ToothEvent>& events() const { return events_; }
-  /// They are not kept any longer: of a motion without an end.
+  /// They are not kept any longer, nor are steps counted until now: of a motion without an end.
   void forget_events();
   double time_apart() const { return apart_; }  ///< s, without touch of a flank
   long steps() const { return integrator_.steps(); }
@@ -57,6 +62,13 @@ class Course {
     bool now = false;
     std::size_t event = kNone;  // of its touch
     double impulse = 0;         // then
+  };
+
+  // What a step changes beside the states.
+  struct Memory {
+    std::array<Touching, 2> touching;
+    std::size_t events = 0;
+    double apart = 0;
   };
 
   [[noreturn]] void fail(const std::string& why) const;
@@ -83,7 +95,9 @@ class Course {
   std::vector<double> y_, integrals_;
   std::array<Touching, 2> touching_;  // flanks +1, -1
   std::vector<ToothEvent> events_;
+  Memory before_;  // the last step
   int short_steps_ = 0;
+  long forgotten_steps_ = 0;
   mutable SystemState sampled_;
   mutable std::vector<double> sampled_y_;
 };

@@ -6,6 +6,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/stopwatch.h"
 #include "bentaxis/results/worst.h"
+#include "communication.h"
 #include "course.h"
 #include "table.h"
 
@@ -109,10 +110,9 @@ std::string method_text(double tolerance) {
          rounded_text(tolerance) + " per step of what each state's scale is";
 }
 
-Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
-                    const DriveSpec& drive, const SystemState& start,
-                    const std::vector<double>& times, const Options& options,
-                    const Progress& progress) {
+Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,
+                    const SystemState& start, const std::vector<double>& times,
+                    const Options& options, const Progress& progress) {
   const double tolerance = options.tolerance;
   const Stopwatch watch;
   Trajectory trajectory;
@@ -124,12 +124,21 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oi
   SystemState at = start;
   std::vector<double> integrals;
   const double end = times.back();
+  std::optional<Communication> points;
+  if (options.exchange) points.emplace(name, mechanics, oil, drive, *options.exchange, end);
   constexpr long kStepsBetweenSigns = 64;
-  for (const double time : times) {
+  const auto go_to = [&](double time) {
     while (course.time() < time) {
       if (progress && course.steps() % kStepsBetweenSigns == 0) progress(course.time() / end);
       course.advance(end);
     }
+  };
+  for (const double time : times) {
+    while (points && points->next() <= time) {
+      go_to(points->next());
+      points->pass(course);
+    }
+    go_to(time);
     course.state_at(time, at);
     course.integrals_at(time, integrals);
     rows.add(time, at, integrals);
@@ -145,8 +154,8 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oi
   return trajectory;
 }
 
-Trajectory simulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
-                    const DriveSpec& drive, const Options& options, const Progress& progress) {
+Trajectory simulate(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,
+                    const Options& options, const Progress& progress) {
   SystemState start{mechanics.start(), oil.start()};
   if (options.disturbance != 0) {
     const MotionVector scales = mechanics.scales();

@@ -330,8 +330,8 @@ class Newton {
 
 }  // namespace
 
-SteadyMotion steady(const std::string& name, Mechanics& mechanics, const Oil& oil,
-                    const DriveSpec& drive, const Options& options, const Progress& progress) {
+SteadyMotion steady(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,
+                    const Options& options, const Progress& progress) {
   const bool over_time = !drive.curve.time.empty() && drive.kind != DriveKind::motor;
   if (over_time || !mechanics.knots().empty())
     throw InputError(
@@ -377,7 +377,9 @@ SteadyMotion steady(const std::string& name, Mechanics& mechanics, const Oil& oi
   const double turn = result.period_s * oil.pistons();
   std::vector<double> times;
   for (int i = 0; i <= drive.samples; ++i) times.push_back(turn * i / drive.samples);
-  result.turn = tabulate(name, mechanics, oil, drive, found, times, options, {});
+  Options of_turn = options;
+  of_turn.exchange.reset();
+  result.turn = tabulate(name, mechanics, oil, drive, found, times, of_turn, {});
   return result;
 }
 

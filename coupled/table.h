@@ -14,11 +14,10 @@
 namespace bentaxis::coupled {
 
 /// Integrates from a state at time 0 and reads rows at `times`, s, rising.
-/// @param options  its tolerance and whether loads are wanted
-Trajectory tabulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
-                    const DriveSpec& drive, const SystemState& start,
-                    const std::vector<double>& times, const Options& options,
-                    const Progress& progress);
+/// @param options  its tolerance, whether loads are wanted, and its exchange
+Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,
+                    const SystemState& start, const std::vector<double>& times,
+                    const Options& options, const Progress& progress);
 
 /// "BDF of variable order ..", for records.
 std::string method_text(double tolerance);

@@ -387,7 +387,7 @@ TEST(Integration, BalancesCloseWithTheTolerance) {
   std::map<double, Trajectory> runs;
   for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
     OneShaft shaft = starting_pump();
-    const LinearOil oil;
+    LinearOil oil;
     runs[tolerance] = simulate("toy", shaft, oil, drive_for(0.2, 50), within(tolerance));
   }
   double before = 0;
@@ -416,7 +416,7 @@ TEST(Integration, BalancesCloseWithTheTolerance) {
 
 TEST(Integration, RowsAndHistoryAreOfTheSameInstants) {
   OneShaft shaft = starting_pump();
-  const LinearOil oil;
+  LinearOil oil;
   const Trajectory t = simulate("toy", shaft, oil, drive_for(0.1, 7));
   ASSERT_EQ(t.lag.size(), 8U);
   ASSERT_EQ(t.oil->values.size(), 8U);
@@ -472,7 +472,7 @@ TEST(Integration, KnotsEndSteps) {
 
 TEST(Integration, DisturbanceMovesTheStart) {
   OneShaft shaft = starting_pump(), other = starting_pump();
-  const LinearOil oil;
+  LinearOil oil;
   Options moved = within(1e-10);
   moved.disturbance = 1e-3;
   const Trajectory a = simulate("toy", shaft, oil, drive_for(0.01, 1), within(1e-10));
@@ -484,7 +484,7 @@ TEST(Integration, DisturbanceMovesTheStart) {
 TEST(Integration, FailuresNameModelTimeAndCause) {
   OneShaft shaft = starting_pump();
   shaft.strange_after = 0.05;
-  const LinearOil oil;
+  LinearOil oil;
   try {
     simulate("toy", shaft, oil, drive_for(0.1, 5));
     FAIL();
@@ -507,7 +507,7 @@ TEST(Integration, JacobianIsThatOfTheRates) {
   OneShaft shaft = starting_pump();
   shaft.start_speed = 20;
   shaft.swing = 3;
-  const LinearOil oil;
+  LinearOil oil;
   coupled::System system(shaft, oil, true);
   coupled::SystemState state{shaft.start(), oil.start()};
   state.motion[kTurn] = 0.3;
@@ -679,7 +679,7 @@ TEST(Steady, LongRunDecaysTowardsItAsTheMultiplierSays) {
   OneShaft shaft = starting_pump();
   shaft.inertia = 0.2;
   shaft.start_speed = 70;
-  const LinearOil oil;
+  LinearOil oil;
   const SteadyMotion motion = steady("toy", shaft, oil, drive_for(1, 10), within(1e-11));
   ASSERT_EQ(motion.multipliers.size(), kPistons + 2U);
   EXPECT_LE(motion.iterations, 6);  // forward differences are good enough to begin with
@@ -704,7 +704,7 @@ TEST(Steady, LongRunDecaysTowardsItAsTheMultiplierSays) {
 }
 
 TEST(Steady, RefusesWhatHasNoPeriodicMotion) {
-  const LinearOil oil;
+  LinearOil oil;
   OneShaft shaft = starting_pump();
   DriveSpec curve = drive_for(1, 10);
   curve.curve.time = {0, 1, 2, 3};

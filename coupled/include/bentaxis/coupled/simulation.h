@@ -2,6 +2,8 @@
 #pragma once
 
 #include <complex>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,9 +11,30 @@
 #include "bentaxis/results/mechanics.h"
 #include "bentaxis/results/oil.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/results/surroundings.h"
 #include "bentaxis/results/trajectory.h"
 
 namespace bentaxis::coupled {
+
+/// What a pump tells at an instant: a row of its tables.
+struct PumpOutputs {
+  double time = 0;                        ///< s
+  const std::vector<std::string>& names;  ///< of trajectory_columns(), channels and oil columns
+  const std::vector<double>& values;  ///< in the units of their names; not_computed() among them
+  /// By name.
+  /// @throws InputError where there is no such column
+  double operator[](const std::string& name) const;
+};
+
+/// A partner outside that acts on the pump, and is told of it, from one communication point to the
+/// next.
+struct Exchange {
+  double step = 0;  ///< s, between communication points; the first is 0
+  /// Called at each of them before the end with what the pump tells there, under what acted until
+  /// then. @return what acts until the next: constant, but for the shaft's speed, which changes by
+  /// its acceleration. Of the shaft's motion speed and acceleration count: its angle goes on.
+  std::function<Surroundings(const PumpOutputs& pump)> partner;
+};
 
 struct Options {
   double tolerance = 1e-9;    ///< error per step of each state, of its scale
@@ -19,6 +42,9 @@ struct Options {
   /// Moves the start by this share of each state's scale.
   double disturbance = 0;
   bool body_loads = false;  ///< Trajectory::loads too
+  /// Of simulate(): acts from outside as far as mechanics and oil take it. Rows at communication
+  /// points are those under what acts from then on.
+  std::optional<Exchange> exchange;
 };
 
 /// Integrates states of motion and of the oil together, by variable-order BDF (CVODE) with Newton's
@@ -27,10 +53,9 @@ struct Options {
 /// and masses are integrated along.
 /// @param name  of the model, for the table
 /// @throws ComputationError naming the time where the motion cannot be followed, or not within a
-///         bounded number of steps
-Trajectory simulate(const std::string& name, Mechanics& mechanics, const Oil& oil,
-                    const DriveSpec& drive, const Options& options = {},
-                    const Progress& progress = {});
+///         bounded number of steps; what the partner of an exchange throws
+Trajectory simulate(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,
+                    const Options& options = {}, const Progress& progress = {});
 
 /// A motion that repeats itself after every N-th of the block's turn.
 struct SteadyMotion {
@@ -56,8 +81,7 @@ struct SteadyMotion {
 /// after which pistons are numbered again. Derivatives by central differences.
 /// @throws InputError where what drives the shaft or the circuit changes in time (a curve);
 ///         ComputationError where no periodic motion is found, or the shaft does not turn
-SteadyMotion steady(const std::string& name, Mechanics& mechanics, const Oil& oil,
-                    const DriveSpec& drive, const Options& options = {},
-                    const Progress& progress = {});
+SteadyMotion steady(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,
+                    const Options& options = {}, const Progress& progress = {});
 
 }  // namespace bentaxis::coupled
