@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -121,5 +124,104 @@ class Resources {
   UnitChoice choice_;
   std::vector<Variable> variables_;
 };
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// An instance of FMI 2 with its messages; freed with this.
+struct Unit2 {
+  explicit Unit2(const Resources& from, fmi2Type type = fmi2CoSimulation, bool debug = false)
+      : resources(from) {
+    functions = {log2, nullptr, nullptr, nullptr, &messages};
+    it = f.fmi2Instantiate("pump", type, kToken, from.uri().c_str(), &functions, fmi2False,
+                           debug ? fmi2True : fmi2False);
+    EXPECT_NE(it, nullptr) << messages.text;
+  }
+  ~Unit2() { f.fmi2FreeInstance(it); }
+  Unit2(const Unit2&) = delete;
+  Unit2& operator=(const Unit2&) = delete;
+
+  void start(double stop = 1) {
+    ASSERT_EQ(f.fmi2SetupExperiment(it, fmi2False, 0, 0, fmi2True, stop), fmi2OK) << messages.text;
+    ASSERT_EQ(f.fmi2EnterInitializationMode(it), fmi2OK) << messages.text;
+    ASSERT_EQ(f.fmi2ExitInitializationMode(it), fmi2OK) << messages.text;
+  }
+  double get(const std::string& name) {
+    const unsigned reference = resources[name];
+    double value = kNan;
+    EXPECT_EQ(f.fmi2GetReal(it, &reference, 1, &value), fmi2OK) << name << messages.text;
+    return value;
+  }
+  fmi2Status set(const std::string& name, double value) {
+    const unsigned reference = resources[name];
+    return f.fmi2SetReal(it, &reference, 1, &value);
+  }
+  std::vector<double> outputs() {
+    const auto references = resources.of(Causality::output);
+    std::vector<double> values(references.size());
+    EXPECT_EQ(f.fmi2GetReal(it, references.data(), references.size(), values.data()), fmi2OK)
+        << messages.text;
+    return values;
+  }
+  void steps(int count, double size) {
+    for (int i = 0; i < count; ++i, ++done)
+      ASSERT_EQ(f.fmi2DoStep(it, done * size, size, fmi2True), fmi2OK) << messages.text;
+  }
+
+  const Functions& f = library();
+  const Resources& resources;
+  Messages messages;
+  fmi2CallbackFunctions functions{};
+  fmi2Component it = nullptr;
+  int done = 0;
+};
+
+// The same of FMI 3.
+struct Unit3 {
+  explicit Unit3(const Resources& from, bool exchange = false) : resources(from) {
+    const std::string path = from.path().string() + "/";
+    it = exchange ? f.fmi3InstantiateModelExchange("pump", kToken, path.c_str(), false, false,
+                                                   &messages, log3)
+                  : f.fmi3InstantiateCoSimulation("pump", kToken, path.c_str(), false, false, false,
+                                                  false, nullptr, 0, &messages, log3, nullptr);
+    EXPECT_NE(it, nullptr) << messages.text;
+  }
+  ~Unit3() { f.fmi3FreeInstance(it); }
+  Unit3(const Unit3&) = delete;
+  Unit3& operator=(const Unit3&) = delete;
+
+  void start(double stop = 1) {
+    ASSERT_EQ(f.fmi3EnterInitializationMode(it, false, 0, 0, true, stop), fmi3OK) << messages.text;
+    ASSERT_EQ(f.fmi3ExitInitializationMode(it), fmi3OK) << messages.text;
+  }
+  std::vector<double> outputs() {
+    const auto references = resources.of(Causality::output);
+    std::vector<double> values(references.size());
+    EXPECT_EQ(
+        f.fmi3GetFloat64(it, references.data(), references.size(), values.data(), values.size()),
+        fmi3OK)
+        << messages.text;
+    return values;
+  }
+  fmi3Status step(double time, double size) {
+    return f.fmi3DoStep(it, time, size, true, &event, &terminate, &early, &last);
+  }
+
+  const Functions& f = library();
+  const Resources& resources;
+  Messages messages;
+  fmi3Instance it = nullptr;
+  bool event = false, terminate = false, early = false;
+  double last = kNan;
+};
+
+inline void expect_near(const std::vector<double>& a, const std::vector<double>& b,
+                        double relative) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::isnan(a[i]) || std::isnan(b[i]))
+      EXPECT_EQ(std::isnan(a[i]), std::isnan(b[i])) << i;
+    else
+      EXPECT_NEAR(a[i], b[i], relative * std::max(100.0, std::abs(b[i]))) << i;
+}
 
 }  // namespace bentaxis::fmu
