@@ -49,8 +49,8 @@ Instance::Instance(const std::filesystem::path& resources, const std::string& to
                    Log log)
     : kind_(kind), log_(std::move(log)), resources_(read_resources(resources)) {
   if (token != resources_.token)
-    throw Refused("the token " + token + " is that of another unit than its resources: " +
-                  resources_.token);
+    throw Refused("the token " + token +
+                  " is that of another unit than its resources: " + resources_.token);
   variables_ = variables_of(resources_.the_case, resources_.choice);
   for (const Variable& it : variables_)
     first_parameters_.push_back(it.role == Role::parameter ? it.start.value() : 0);
@@ -106,8 +106,8 @@ void Instance::set_up(std::optional<double> tolerance, double start_time,
   if (stop_time) {
     require_finite(*stop_time, "the stop time");
     if (!(*stop_time > start_time))
-      throw Refused("the stop time " + number_text(*stop_time) + " s must be after the start time " +
-                    number_text(start_time) + " s");
+      throw Refused("the stop time " + number_text(*stop_time) +
+                    " s must be after the start time " + number_text(start_time) + " s");
   }
   if (tolerance && !(*tolerance > 0 && std::isfinite(*tolerance)))
     throw Refused("the tolerance must be a number > 0");
@@ -172,11 +172,15 @@ Case Instance::case_as_set(const std::vector<double>& parameters) const {
   return validate(changed);
 }
 
-void Instance::start() {
-  const Case the_case = case_as_set(wanted_);
+UnitChoice Instance::present_choice() const {
   UnitChoice choice = resources_.choice;
   choice.tolerance = tolerance_;
-  auto plant = std::make_unique<Plant>(the_case, choice, kind_);
+  return choice;
+}
+
+void Instance::start() {
+  const Case the_case = case_as_set(wanted_);
+  auto plant = std::make_unique<Plant>(the_case, present_choice(), kind_);
   plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 1);
   plant_ = std::move(plant);
   parameters_ = wanted_;
@@ -194,9 +198,12 @@ void Instance::settle() {
   }
   if (changed) {
     try {
-      plant_->change(case_as_set(wanted_));
+      // Anew, so that what is refused leaves the old one as it was.
+      auto plant = std::make_unique<Plant>(case_as_set(wanted_), present_choice(), kind_);
+      plant->set_state(plant_->state());
+      plant_ = std::move(plant);
       parameters_ = wanted_;
-    } catch (const InputError&) {
+    } catch (...) {
       wanted_ = parameters_;
       throw;
     }

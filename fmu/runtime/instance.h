@@ -136,6 +136,7 @@ class Instance {
   /// The case with the parameters as they are set.
   /// @throws InputError where a file that says the same would be refused
   Case case_as_set(const std::vector<double>& parameters) const;
+  UnitChoice present_choice() const;
   /// What has been set takes effect.
   void settle();
   void start();
