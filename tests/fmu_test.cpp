@@ -1,0 +1,213 @@
+// The pump's own unit through importers of our own, for both versions and both kinds, against
+// simulate; expectations first: 1e-8 of the peak of every output, whatever the steps.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "bentaxis/fmu/slave.h"
+#include "bentaxis/fmu/unit.h"
+#include "bentaxis/hydraulics/oil_in_time.h"
+#include "bentaxis/study/simulation.h"
+#include "fmu_exchange.h"
+#include "support.h"
+
+namespace bentaxis {
+namespace {
+
+namespace fs = std::filesystem;
+using Columns = std::map<std::string, std::vector<double>>;
+
+constexpr double kDuration = 0.012;
+constexpr int kRows = 24;
+
+Case rated() {
+  Case c = read_case(fs::path(BENTAXIS_SOURCE_DIR) / "cases/bap63_rated_hydraulic.toml");
+  DriveSpec drive;
+  drive.duration = kDuration;
+  drive.samples = kRows;
+  c.drive = drive;
+  return c;
+}
+
+// Rows of simulate: reactions, states and oil by their columns.
+const Columns& simulated() {
+  static const Columns columns = [] {
+    study::SimulationChoice choice;
+    choice.only = study::Model::analytic;
+    choice.error = 1e-8;
+    const auto r = study::simulate(study::prepare_simulation(rated(), choice), choice);
+    const Trajectory& t = *r.analytic;
+    Columns made;
+    for (std::size_t row = 0; row < t.lag.size(); ++row) {
+      for (std::size_t c = 1; c < t.table.state_names.size(); ++c)
+        made[t.table.state_names[c]].push_back(t.table.state(row, c));
+      for (const Channel& channel : t.table.results.channels)
+        if (channel.kind == ChannelKind::reaction)
+          made[channel.name].push_back(t.table.results.at(row, t.table.results.find(channel.name)));
+      // Flows through open ports are errors of the pressures a thousand times larger.
+      for (std::size_t c = 0; c < t.oil->columns.size(); ++c)
+        if (t.oil->columns[c].name.find("_bar") != std::string::npos)
+          made[t.oil->columns[c].name].push_back(t.oil->value(row, c));
+    }
+    return made;
+  }();
+  return columns;
+}
+
+// A unit in a file that goes.
+class PumpUnit {
+ public:
+  explicit PumpUnit(int version, const fmu::UnitOptions& options = {}) {
+    fmu::UnitOptions wanted = options;
+    wanted.version = version == 2 ? fmu::Version::fmi2 : fmu::Version::fmi3;
+    wanted.tolerance = 1e-11;
+    std::string pattern = (fs::temp_directory_path() / "bentaxis_test_XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+    std::ofstream(folder_ / "pump.fmu", std::ios::binary) << fmu::unit_archive(rated(), wanted);
+    unit_ = std::make_unique<fmu::ImportedUnit>(folder_ / "pump.fmu");
+  }
+  ~PumpUnit() { fs::remove_all(folder_); }
+  PumpUnit(const PumpUnit&) = delete;
+  PumpUnit& operator=(const PumpUnit&) = delete;
+  const fmu::ImportedUnit& operator*() const { return *unit_; }
+  const fmu::ImportedUnit* operator->() const { return unit_.get(); }
+
+ private:
+  fs::path folder_;
+  std::unique_ptr<fmu::ImportedUnit> unit_;
+};
+
+// Rows of an instance at the times of simulate.
+Columns stepped(const fmu::ImportedUnit& unit, int parts) {
+  const auto slave = unit.instantiate("pump");
+  slave->enter_initialisation(0, kDuration);
+  slave->exit_initialisation();
+  Columns rows;
+  const auto add = [&] {
+    for (const auto& [name, values] : simulated())
+      rows[name].push_back(slave->get(*unit.description().find(name)));
+  };
+  add();
+  const double step = kDuration / (kRows * parts);
+  for (int i = 0; i < kRows * parts; ++i) {
+    slave->step(step * i, step);
+    if ((i + 1) % parts == 0) add();
+  }
+  return rows;
+}
+
+double apart(const Columns& a, const Columns& b, const char* what) {
+  double worst = 0;
+  std::string where;
+  for (const auto& [name, values] : b) {
+    // Components of one force have one peak: Rs_1_x2_N, Rs_1_y2_N.
+    double peak = 0;
+    const std::string group = name.substr(0, name.find('_'));
+    for (const auto& [other, others] : b)
+      if (other.substr(0, other.find('_')) == group)
+        for (const double x : others) peak = std::max(peak, std::abs(x));
+    const std::vector<double>& mine = a.at(name);
+    EXPECT_EQ(mine.size(), values.size());
+    for (std::size_t row = 0; row < values.size() && peak > 0; ++row)
+      if (const double share = std::abs(mine[row] - values[row]) / peak; !(share <= worst)) {
+        worst = share;
+        where = name;
+      }
+  }
+  std::printf("%s: %.2e of peak (%s)\n", what, worst, where.c_str());
+  return worst;
+}
+
+TEST(PumpUnitTest, CoSimulationIsSimulateWhateverTheStep) {
+  for (const int version : {2, 3}) {
+    const PumpUnit pump(version);
+    const Columns coarse = stepped(*pump, 1), fine = stepped(*pump, 7);
+    EXPECT_LT(apart(coarse, simulated(), "a step per row, against simulate"), 1e-8);
+    EXPECT_LT(apart(fine, simulated(), "seven steps per row"), 1e-8);
+    EXPECT_LT(apart(fine, coarse, "against each other"), 1e-8);
+  }
+}
+
+TEST(PumpUnitTest, InterleavedInstancesAreEachAlone) {
+  const PumpUnit pump(3);
+  const fmu::UnitVariable torque = *pump->description().find("Td_z1_Nm");
+  const fmu::UnitVariable tilt = *pump->description().find("pump.tilt_deg");
+  const auto start = [&](double degrees) {
+    auto slave = pump->instantiate("pump");
+    slave->set(tilt, degrees);
+    slave->enter_initialisation(0, kDuration);
+    slave->exit_initialisation();
+    return slave;
+  };
+  std::vector<double> alone[2];
+  for (int i = 0; i < 2; ++i) {
+    const auto slave = start(40 - 5 * i);
+    for (int k = 0; k < 10; ++k) {
+      slave->step(k * 1e-4, 1e-4);
+      alone[i].push_back(slave->get(torque));
+    }
+  }
+  const auto a = start(40), b = start(35);
+  for (int k = 0; k < 10; ++k) {
+    a->step(k * 1e-4, 1e-4);
+    b->step(k * 1e-4, 1e-4);
+    EXPECT_EQ(a->get(torque), alone[0][static_cast<std::size_t>(k)]);
+    EXPECT_EQ(b->get(torque), alone[1][static_cast<std::size_t>(k)]);
+  }
+  EXPECT_GT(std::abs(alone[0].back() - alone[1].back()), 1);
+}
+
+// An integrator that knows FMI's calls alone; events where indicators change sign.
+TEST(PumpUnitTest, ModelExchangeIsSimulateWithEventsAtTheEdges) {
+  for (const int version : {2, 3}) {
+    const PumpUnit pump(version);
+    const std::string platform = version == 2 ? "linux64" : "x86_64-linux";
+    const fs::path file =
+        pump->folder() / "binaries" / platform / (pump->description().identifier + ".so");
+    void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    ASSERT_NE(library, nullptr) << dlerror();
+    {
+      std::ostringstream text;
+      text << std::ifstream(pump->folder() / "modelDescription.xml").rdbuf();
+      const std::string xml = text.str();
+      std::smatch found;
+      const std::size_t indicators =
+          std::regex_search(xml, found, std::regex("numberOfEventIndicators=\"(\\d+)\""))
+              ? std::stoul(found[1])
+              : 0;
+      std::unique_ptr<test::Exchange> it;
+      if (version == 2)
+        it = std::make_unique<test::Exchange2>(library, *pump, indicators, kDuration);
+      else
+        it = std::make_unique<test::Exchange3>(library, *pump, kDuration);
+      EXPECT_EQ(it->states(), 7U);  // angle, five chambers, delivery
+      EXPECT_GE(it->indicators(), 2U);
+      test::Solver solver(*it, 1e-11);
+      Columns rows;
+      for (int row = 0; row <= kRows; ++row) {
+        solver.go_to(kDuration * row / kRows);
+        for (const auto& [name, values] : simulated())
+          rows[name].push_back(it->get(pump->description().find(name)->reference));
+      }
+      std::printf("FMI %d: %ld steps, %ld events\n", version, solver.steps, solver.events);
+      EXPECT_LT(apart(rows, simulated(), "model exchange, against simulate"), 1e-8);
+      // One for each edge of a port that a chamber passes in 108 degrees.
+      long edges = 0;
+      for (const double edge : hydraulics::oil_in_time(rated(), {})->edges_deg())
+        if (edge > 0 && edge < 360 * kDuration * 1500 / 60) ++edges;
+      EXPECT_EQ(solver.events, edges);
+    }
+    dlclose(library);
+  }
+}
+
+}  // namespace
+}  // namespace bentaxis
