@@ -92,5 +92,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     instance->callbacks.logger(instance->callbacks.componentEnvironment, instance->name,
                                (fmi2Status)status, "logStatusError", "%s", message);
   if (status <= fmi2Warning) instance->time = time + step;
+  /* After that an importer makes no call: not to free it either. */
+  if (status == fmi2Fatal) free(instance);
   return (fmi2Status)status;
 }

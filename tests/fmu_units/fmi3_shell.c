@@ -113,5 +113,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
   if (message[0] != '\0')
     instance->log(instance->environment, (fmi3Status)status, "logStatusError", message);
   if (status <= fmi3Warning) *reached = instance->time = time + step;
+  /* After that an importer makes no call: not to free it either. */
+  if (status == fmi3Fatal) free(instance);
   return (fmi3Status)status;
 }
