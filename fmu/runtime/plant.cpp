@@ -106,7 +106,7 @@ class Plant::Implementation {
     started_ = scales_of(c);
     build(c, oil);
     time_ = 0;
-    end_ = end;
+    end_ = end > 0 ? end : c.drive->duration;
     inputs_ = inputs;
     speed_changed_ = false;
     state_ = {machine_->mechanics->start(), machine_->oil->start()};
@@ -334,7 +334,8 @@ class Plant::Implementation {
     if (kind_ == Kind::co_simulation) {
       stepper_ = std::make_unique<coupled::Stepper>("analytic", *machine_->mechanics,
                                                     *machine_->oil, choice_.tolerance);
-      stepper_->start(time_, state_, std::max(end_, time_));
+      const double beyond = time_ + machine_->the_case.drive->duration;
+      stepper_->start(time_, state_, end_ > time_ ? end_ : beyond);
       stepper_->surround(outside_);
       return;
     }
