@@ -28,6 +28,7 @@ Command add_calibrate_command(CommandParser program);
 Command add_completion_command(CommandParser program);
 Command add_compare_command(CommandParser program);
 Command add_fig34_command(CommandParser program);
+Command add_fmu_command(CommandParser program);
 Command add_hardcases_command(CommandParser program);
 Command add_identify_command(CommandParser program);
 Command add_index_command(CommandParser program);

@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "console.h"
 #include "provenance.h"
+#include "versions.h"
 
 namespace {
 
@@ -51,7 +52,7 @@ ProgramParser::Texts texts() {
           "bentaxis: reaction forces and drive torque of bent-axis piston pumps by two independent "
           "models\n(analytic: closed form after Roccatello & Nervegna 2009; multibody: Simbody), "
           "and how far they are apart.",
-          "bentaxis " BENTAXIS_VERSION,
+          "bentaxis " BENTAXIS_VERSION "\noptional parts: " + optional_parts(),
           "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
           "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out"};
 }
@@ -72,7 +73,7 @@ int run_program(int argc, char** argv) {
       add_merge_command(program),       add_uncertainty_command(program),
       add_sensitivity_command(program), add_life_command(program),
       add_identify_command(program),    add_index_command(program),
-      add_paper_command(program)};
+      add_paper_command(program),       add_fmu_command(program)};
   return guarded([&]() -> int {
     if (!parser.parse(argc, argv)) return kDone;
     watch_for_interruption();

@@ -1,6 +1,7 @@
 // A case as a Functional Mock-up Unit (FMI 2.0, 3.0): the analytic pump for a system simulator.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -28,5 +29,13 @@ struct UnitOptions {
 /// curves and documentation. The same arguments give the same bytes.
 /// @throws InputError where the case cannot be simulated so
 std::string unit_archive(const Case& the_case, const UnitOptions& options);
+
+/// What such a unit has.
+struct UnitSummary {
+  std::vector<std::string> inputs;  ///< by name
+  std::size_t outputs = 0, states = 0, indicators = 0, parameters = 0;
+};
+/// @throws InputError as unit_archive
+UnitSummary unit_summary(const Case& the_case, const UnitOptions& options);
 
 }  // namespace bentaxis::fmu

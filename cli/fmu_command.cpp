@@ -1,0 +1,108 @@
+// bentaxis fmu: a case as a unit for system simulators.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "bentaxis/files/output_folder.h"
+#include "bentaxis/fmu/unit.h"
+#include "bentaxis/pump/error.h"
+#include "commands.h"
+#include "options.h"
+
+namespace bentaxis::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  CaseOption the_case;
+  std::string out, version = "2", drive;
+  fmu::UnitOptions unit;
+};
+
+// What [drive] of the case makes of its shaft; where it is a torque or a motor, it stays with it.
+fmu::Drive usual_drive(const Case& the_case) {
+  const bool own = the_case.drive && the_case.drive->kind != DriveKind::speed;
+  return own ? fmu::Drive::as_in_case : fmu::Drive::speed;
+}
+
+fmu::Drive drive_of(const std::string& word, const Case& the_case) {
+  if (word.empty()) return usual_drive(the_case);
+  if (word == "case" && !the_case.drive)
+    throw InputError("--drive case: " + the_case.file.string() + " has no table [drive]");
+  if (word == "case") return fmu::Drive::as_in_case;
+  return word == "torque" ? fmu::Drive::torque : fmu::Drive::speed;
+}
+
+std::string sentence_of(fmu::Drive drive) {
+  switch (drive) {
+    case fmu::Drive::speed:
+      return "inputs drive_speed and drive_acceleration (--drive speed)";
+    case fmu::Drive::torque:
+      return "input drive_torque (--drive torque)";
+    case fmu::Drive::as_in_case:
+      break;
+  }
+  return "[drive] of the case, no input (--drive case)";
+}
+
+fs::path checked_place(const std::string& out) {
+  const fs::path place = out;
+  if (place.extension() != ".fmu" || place.stem().empty())
+    throw InputError("--out " + out + ": must be a file that ends in .fmu");
+  if (fs::is_directory(place)) throw InputError("--out " + out + ": is a folder");
+  return place;
+}
+
+void print(const fs::path& file, const Options& options, const fmu::UnitSummary& has) {
+  std::cout << file.string() << ": FMI " << options.version
+            << ".0, model exchange and co-simulation, Linux on x86-64\n"
+            << "drive: " << sentence_of(options.unit.drive) << "\ninputs:";
+  for (const std::string& input : has.inputs) std::cout << " " << input;
+  if (has.inputs.empty()) std::cout << " none";
+  std::cout << "\noutputs: " << has.outputs << ", states: " << has.states
+            << ", event indicators: " << has.indicators << ", parameters: " << has.parameters
+            << "\nhow to try it: docs/fmu.md\n";
+}
+
+int make_unit(Options& options) {
+  const fs::path place = checked_place(options.out);
+  const Case the_case = options.the_case.read();
+  options.unit.version = options.version == "3" ? fmu::Version::fmi3 : fmu::Version::fmi2;
+  options.unit.drive = drive_of(options.drive, the_case);
+  OutputFolder folder(place.has_parent_path() ? place.parent_path() : fs::path("."));
+  folder.add(place.filename().string(), fmu::unit_archive(the_case, options.unit));
+  folder.commit();
+  print(place, options, fmu::unit_summary(the_case, options.unit));
+  return kDone;
+}
+
+}  // namespace
+
+Command add_fmu_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command = program.subcommand(
+      "fmu", "write the pump of a case as a Functional Mock-up Unit for system simulators");
+  add_case(command, options->the_case);
+  command.option("--out", options->out, "the unit; its folder is made where it is missing")
+      .required()
+      .text("FILE.fmu");
+  command.option("--fmi", options->version, "version of the standard")
+      .one_of({"2", "3"})
+      .text("2|3 [2]");
+  command
+      .option("--drive", options->drive,
+              "what turns the shaft: inputs for its speed and acceleration, an input for its "
+              "torque, or [drive] of the case")
+      .one_of({"speed", "torque", "case"})
+      .text("speed|torque|case [speed; case where its [drive] is a torque or a motor]");
+  command
+      .option("--tolerance", options->unit.tolerance,
+              "of co-simulation: error of a step of the integrator, of each state's scale")
+      .number_in(1e-13, 1e-3)
+      .text("NUMBER [1e-9]");
+  return {command, [options] { return make_unit(*options); }};
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,181 @@
+#include "description_parts.h"
+
+#include <algorithm>
+#include <iterator>
+#include <sstream>
+
+#include "bentaxis/pump/number.h"
+#include "units.h"
+
+namespace bentaxis::fmu {
+namespace {
+
+const char* word_of(Causality causality) {
+  switch (causality) {
+    case Causality::independent:
+      return "independent";
+    case Causality::parameter:
+      return "parameter";
+    case Causality::input:
+      return "input";
+    case Causality::output:
+      return "output";
+    case Causality::local:
+      break;
+  }
+  return "local";
+}
+
+const char* word_of(Variability variability) {
+  switch (variability) {
+    case Variability::fixed:
+      return "fixed";
+    case Variability::tunable:
+      return "tunable";
+    case Variability::discrete:
+      return "discrete";
+    case Variability::continuous:
+      break;
+  }
+  return "continuous";
+}
+
+void add_base(pugi::xml_node unit, const UnitDefinition& definition) {
+  pugi::xml_node base = unit.append_child("BaseUnit");
+  for (const auto& [name, exponent] :
+       {std::pair{"kg", definition.kg}, std::pair{"m", definition.m}, std::pair{"s", definition.s},
+        std::pair{"K", definition.kelvin}, std::pair{"rad", definition.rad}})
+    if (exponent != 0) base.append_attribute(name) = exponent;
+  if (definition.factor != 1) set(base, "factor", definition.factor);
+  if (definition.offset != 0) set(base, "offset", definition.offset);
+}
+
+}  // namespace
+
+Initial initial_of(const Variable& variable) {
+  if (variable.causality == Causality::independent || variable.causality == Causality::input)
+    return Initial::none;
+  if (variable.causality == Causality::parameter) return Initial::exact;
+  const bool begins_as_said = variable.role == Role::state && variable.start.has_value();
+  return begins_as_said ? Initial::exact : Initial::calculated;
+}
+
+std::vector<const Variable*> initial_unknowns(const std::vector<Variable>& variables) {
+  std::vector<const Variable*> unknowns;
+  for (const Variable& variable : variables) {
+    const bool listed = variable.causality == Causality::output || variable.role == Role::state ||
+                        variable.role == Role::derivative;
+    if (listed && initial_of(variable) == Initial::calculated) unknowns.push_back(&variable);
+  }
+  return unknowns;
+}
+
+void set(pugi::xml_node node, const char* name, const std::string& value) {
+  std::string text;
+  std::transform(value.begin(), value.end(), std::back_inserter(text), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 ? ' ' : c;  // names are to be on one line
+  });
+  node.append_attribute(name) = text.c_str();
+}
+
+void set(pugi::xml_node node, const char* name, double value) {
+  set(node, name, number_text(value));
+}
+
+void set(pugi::xml_node node, const char* name, bool value) { node.append_attribute(name) = value; }
+
+pugi::xml_node add_root(pugi::xml_document& document, const Description& description,
+                        const char* version, const char* token_name) {
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  declaration.append_attribute("version") = "1.0";
+  declaration.append_attribute("encoding") = "UTF-8";
+  pugi::xml_node root = document.append_child("fmiModelDescription");
+  root.append_attribute("fmiVersion") = version;
+  set(root, "modelName", description.model_name);
+  set(root, token_name, description.token);
+  set(root, "description", description.text);
+  root.append_attribute("version") = BENTAXIS_VERSION;
+  root.append_attribute("license") = "Apache-2.0";
+  root.append_attribute("generationTool") = "bentaxis " BENTAXIS_VERSION;
+  if (!description.generated.empty()) set(root, "generationDateAndTime", description.generated);
+  root.append_attribute("variableNamingConvention") = "structured";
+  return root;
+}
+
+void add_units(pugi::xml_node root, const std::vector<Variable>& variables) {
+  std::vector<std::string> used;
+  for (const Variable& variable : variables)
+    if (!variable.boolean) used.push_back(variable.unit);
+  const auto definitions = unit_definitions(used);
+  if (definitions.empty()) return;
+  pugi::xml_node all = root.append_child("UnitDefinitions");
+  for (const UnitDefinition* definition : definitions) {
+    pugi::xml_node unit = all.append_child("Unit");
+    set(unit, "name", definition->name);
+    add_base(unit, *definition);
+    if (definition->display.empty()) continue;
+    pugi::xml_node display = unit.append_child("DisplayUnit");
+    set(display, "name", definition->display);
+    set(display, "factor", definition->display_factor);
+  }
+}
+
+void add_log_categories(pugi::xml_node root) {
+  pugi::xml_node all = root.append_child("LogCategories");
+  const std::pair<const char*, const char*> categories[] = {
+      {"logEvents", "events: edges of ports, teeth that touch or part, knots of curves"},
+      {"logStatusWarning", "what a call that returns a warning has to say"},
+      {"logStatusDiscard", "why a call was not followed"},
+      {"logStatusError", "what was wrong"},
+      {"logStatusFatal", "why no instance can go on"},
+      {"logAll", "all of these"}};
+  for (const auto& [name, meaning] : categories) {
+    pugi::xml_node category = all.append_child("Category");
+    category.append_attribute("name") = name;
+    category.append_attribute("description") = meaning;
+  }
+}
+
+void add_experiment(pugi::xml_node root, const Description& description) {
+  pugi::xml_node experiment = root.append_child("DefaultExperiment");
+  set(experiment, "startTime", 0.0);
+  set(experiment, "stopTime", description.stop_time);
+  set(experiment, "tolerance", description.tolerance);
+  if (description.step > 0) set(experiment, "stepSize", description.step);
+}
+
+void set_identity(pugi::xml_node node, const Variable& variable) {
+  set(node, "name", variable.name);
+  node.append_attribute("valueReference") = variable.reference;
+  if (!variable.description.empty()) set(node, "description", variable.description);
+  node.append_attribute("causality") = word_of(variable.causality);
+  node.append_attribute("variability") = word_of(variable.variability);
+  const Initial initial = initial_of(variable);
+  if (initial != Initial::none)
+    node.append_attribute("initial") = initial == Initial::exact ? "exact" : "calculated";
+}
+
+void set_values(pugi::xml_node node, const Variable& variable) {
+  const bool starts = variable.start && variable.causality != Causality::independent &&
+                      initial_of(variable) != Initial::calculated;
+  if (variable.boolean) {
+    if (starts) set(node, "start", *variable.start != 0);
+    return;
+  }
+  if (const UnitDefinition* unit = unit_definition(variable.unit)) {
+    set(node, "unit", unit->name);
+    if (!unit->display.empty()) set(node, "displayUnit", unit->display);
+  }
+  if (variable.least) set(node, "min", *variable.least);
+  if (variable.most) set(node, "max", *variable.most);
+  if (variable.nominal) set(node, "nominal", *variable.nominal);
+  if (starts) set(node, "start", *variable.start);
+}
+
+std::string to_text(const pugi::xml_document& document) {
+  std::ostringstream text;
+  document.save(text, "  ", pugi::format_default, pugi::encoding_utf8);
+  return text.str();
+}
+
+}  // namespace bentaxis::fmu

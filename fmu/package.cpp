@@ -1,0 +1,98 @@
+// The archive of a unit.
+#include "archive.h"
+#include "bentaxis/files/input_log.h"
+#include "bentaxis/fmu/unit.h"
+#include "bentaxis/pump/number.h"
+#include "documentation.h"
+#include "embedded.h"
+#include "kept_case.h"
+
+namespace bentaxis::fmu {
+namespace {
+
+const char* word_of(Drive drive) {
+  switch (drive) {
+    case Drive::speed:
+      return "speed";
+    case Drive::torque:
+      return "torque";
+    case Drive::as_in_case:
+      break;
+  }
+  return "case";
+}
+
+// 128 bits of the digest of all that makes this unit, as identifiers are usually written.
+std::string token_of(const std::string& all) {
+  std::string text = sha256_of(all).substr(0, 32);
+  for (const std::size_t place : {20, 16, 12, 8}) text.insert(place, "-");
+  return "{" + text + "}";
+}
+
+std::string choice_text(const UnitOptions& options) {
+  return std::string("drive ") + word_of(options.drive) + "\ntolerance " +
+         number_text(options.tolerance) + "\n";
+}
+
+// What decides what the variables are and what they do.
+std::string identity(const KeptCase& kept, const std::string& choice,
+                     const std::vector<Variable>& variables) {
+  std::string all = BENTAXIS_VERSION "\n" + choice + kept.text;
+  for (const ArchiveFile& curve : kept.curves) all += curve.name + "\n" + curve.bytes;
+  for (const Variable& variable : variables) all += variable.name + " " + variable.unit + "\n";
+  return all;
+}
+
+Description description_of(const Case& the_case, const UnitOptions& options) {
+  Description it;
+  it.variables = variables_of(the_case, {options.drive, options.tolerance});
+  it.model_name = options.model_name.empty() ? the_case.name : options.model_name;
+  it.text = "Bent-axis axial piston pump with " + std::to_string(the_case.pump.geometry.pistons) +
+            " pistons: motion, every reaction force and drive torque in closed form" +
+            (the_case.hydraulics ? ", with its oil" : "");
+  it.generated = options.generated;
+  it.tolerance = options.tolerance;
+  const Case driven = with_drive(the_case, options.drive);
+  it.stop_time = driven.drive->duration;
+  it.step = it.stop_time / driven.drive->samples;
+  return it;
+}
+
+const char* folder_of_library(Version version) {
+  return version == Version::fmi2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
+}
+
+}  // namespace
+
+std::string unit_archive(const Case& the_case, const UnitOptions& options) {
+  Description description = description_of(the_case, options);
+  const KeptCase kept = kept_case(the_case);
+  const std::string choice = choice_text(options);
+  description.token = token_of(identity(kept, choice, description.variables));
+  std::vector<ArchiveFile> files;
+  files.push_back({"modelDescription.xml", description_xml(options.version, description)});
+  files.push_back({folder_of_library(options.version) + std::string(kModelIdentifier) + ".so",
+                   embedded_library(), true});
+  files.push_back({"resources/case.toml", kept.text});
+  for (const ArchiveFile& curve : kept.curves)
+    files.push_back({"resources/" + curve.name, curve.bytes});
+  files.push_back({"resources/unit.txt", choice + "token " + description.token + "\n"});
+  files.push_back({"documentation/index.html", documentation_page(description, options)});
+  files.push_back({"documentation/licenses/license.txt", embedded_licence()});
+  files.push_back({"documentation/licenses/third_party.txt", embedded_notices()});
+  return zip_archive(files);
+}
+
+UnitSummary unit_summary(const Case& the_case, const UnitOptions& options) {
+  UnitSummary has;
+  for (const Variable& variable : variables_of(the_case, {options.drive, options.tolerance})) {
+    if (variable.causality == Causality::input) has.inputs.push_back(variable.name);
+    if (variable.causality == Causality::output) ++has.outputs;
+    if (variable.causality == Causality::parameter) ++has.parameters;
+    if (variable.role == Role::state) ++has.states;
+    if (variable.role == Role::indicator) ++has.indicators;
+  }
+  return has;
+}
+
+}  // namespace bentaxis::fmu

@@ -1,0 +1,33 @@
+# The description of a unit and its archive, for the program. Carries the pump of a unit with it: the list of
+# variables is what that has.
+bentaxis_library(fmu STANDARD 20
+  SOURCES archive.cpp description_fmi2.cpp description_fmi3.cpp description_parts.cpp documentation.cpp
+    embedded.cpp kept_case.cpp package.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
+target_link_libraries(bentaxis_fmu PUBLIC bentaxis::pump
+  PRIVATE bentaxis::analytic bentaxis::coupled bentaxis::files bentaxis::hydraulics bentaxis::results
+    pugixml::pugixml zip)
+target_compile_definitions(bentaxis_fmu PRIVATE BENTAXIS_VERSION="${PROJECT_VERSION}")
+bentaxis_compile_fast(bentaxis_fmu)
+
+# What the archive carries: the library of the unit, the licence, and those of what is joined to the library.
+if(TARGET bentaxis_fmu_library)
+  set(library ${CMAKE_CURRENT_BINARY_DIR}/bentaxis_fmu.so)
+  add_dependencies(bentaxis_fmu bentaxis_fmu_library)
+else()
+  set(library ${CMAKE_CURRENT_BINARY_DIR}/stand_in.so)
+  string(ASCII 127 delete)
+  file(WRITE ${library} "${delete}ELF, not: a stand-in")
+endif()
+set(notices ${CMAKE_CURRENT_BINARY_DIR}/third_party.txt)
+file(READ ${CMAKE_CURRENT_SOURCE_DIR}/third_party.txt text)
+foreach(package libsundials-dev libtomlplusplus-dev)
+  set(copyright /usr/share/doc/${package}/copyright)
+  if(EXISTS ${copyright})
+    file(READ ${copyright} one)
+    string(APPEND text "\n==== ${package} ====\n${one}")
+  endif()
+endforeach()
+file(WRITE ${notices} "${text}")
+set_source_files_properties(embedded.cpp PROPERTIES
+  OBJECT_DEPENDS "${library};${notices};${PROJECT_SOURCE_DIR}/LICENSE"
+  COMPILE_DEFINITIONS "BENTAXIS_FMU_LIBRARY=\"${library}\";BENTAXIS_FMU_NOTICES=\"${notices}\";BENTAXIS_FMU_LICENCE=\"${PROJECT_SOURCE_DIR}/LICENSE\"")

@@ -1,0 +1,196 @@
+#include "variables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "bentaxis/pump/registry.h"
+#include "plant.h"
+
+namespace bentaxis::fmu {
+namespace {
+
+// Numbers of a case that no unit uses: of other commands, or of the run, which the importer rules.
+bool is_of_other_commands(const Table& table, const Parameter& parameter) {
+  const std::string name = table.name + "." + parameter.key;
+  if (table.name == "bearings") return parameter.path.empty();  // ratings, of their life
+  return name == "drive.duration_s" || name == "hydraulics.curve_error";
+}
+
+// Numbers that an input stands for.
+bool is_replaced(const std::string& name, const Case& the_case, const TakesFromOutside& takes) {
+  if (name == "operation.speed_rpm") return takes.shaft;
+  if (name == "drive.torque_Nm") return takes.torque || !the_case.drive->curve.time.empty();
+  if (name == "pressure.suction_bar") return takes.suction;
+  if (name == "pressure.delivery_bar") return takes.delivery;
+  return false;
+}
+
+// Numbers that laws of the moment depend on and states do not: they may change while a unit runs.
+bool is_tunable(const std::string& table, const std::string& key) {
+  if (key == "regularization_m_per_s") return false;  // 0 is another law
+  return table == "friction" || table == "leakage" || table == "oil" || table == "load" ||
+         key == "gravity_m_per_s2";
+}
+
+std::string words_of(const Parameter& parameter) {
+  std::string text = (parameter.symbol.empty() ? "" : parameter.symbol + ": ") + parameter.meaning;
+  std::erase(text, '`');
+  return text;
+}
+
+std::string rate_unit(const std::string& unit) {
+  if (unit == "rad/s") return "rad/s2";
+  if (unit == "m/s") return "m/s2";
+  return unit.empty() || unit == "-" ? "1/s" : unit + "/s";
+}
+
+class List {
+ public:
+  std::vector<Variable> take() { return std::move(all_); }
+
+  Variable& add(std::string name, const std::string& unit, Role role, Causality causality,
+                Variability variability) {
+    if (!names_.insert(name).second) throw std::logic_error("two variables of a unit are " + name);
+    Variable variable;
+    variable.reference = static_cast<std::uint32_t>(all_.size());
+    variable.name = std::move(name);
+    variable.unit = unit;
+    variable.role = role;
+    variable.causality = causality;
+    variable.variability = variability;
+    all_.push_back(std::move(variable));
+    return all_.back();
+  }
+
+  void add_parameter(const Table& table, const Parameter& parameter, const std::string& name,
+                     std::size_t place, double start) {
+    Variable& it =
+        add(name, parameter.unit.name, Role::parameter, Causality::parameter,
+            is_tunable(table.name, parameter.key) ? Variability::tunable : Variability::fixed);
+    it.description = words_of(parameter);
+    it.table = table.name;
+    it.key = parameter.key;
+    it.place = place;
+    it.start = start;
+    // A range that depends on other parameters holds for their present values alone.
+    if (parameter.range_here != nullptr) return;
+    const NumberRange& range = parameter.range;
+    // A start may be off a bound by its conversion.
+    if (std::isfinite(range.low) && !range.low_open && start >= range.low) it.least = range.low;
+    if (std::isfinite(range.high) && !range.high_open && start <= range.high) it.most = range.high;
+  }
+
+  void add_parameters(const Case& the_case, const TakesFromOutside& takes) {
+    const ConstView view = view_of(the_case);
+    const Registry& registry = standard_registry();
+    for (const Table& table : registry.tables)
+      for (const Parameter& parameter : table.parameters) {
+        const std::string name = table.name + "." + parameter.key;
+        if (!is_active(table, parameter, registry, view) ||
+            is_of_other_commands(table, parameter) || is_replaced(name, the_case, takes))
+          continue;
+        const std::optional<Value> value = value_of(parameter, view);
+        if (!value) continue;
+        if (const double* number = std::get_if<double>(&*value))
+          add_parameter(table, parameter, name, 0, *number);
+        if (const auto* pair = std::get_if<std::array<double, 2>>(&*value))
+          for (const std::size_t place : {0U, 1U})
+            add_parameter(table, parameter, name + (place == 0 ? "[1]" : "[2]"), place,
+                          (*pair)[place]);
+      }
+  }
+
+  void add_input(Input input, const char* name, const char* unit, const char* description,
+                 double start) {
+    Variable& it = add(name, unit, Role::input, Causality::input, Variability::continuous);
+    it.description = description;
+    it.input = input;
+    it.start = start;
+  }
+
+  void add_inputs(const Inputs& first, const TakesFromOutside& takes) {
+    if (takes.shaft) {
+      add_input(Input::speed, "drive_speed", "rad/s", "speed of the shaft, positive about +z1",
+                first.speed);
+      add_input(Input::acceleration, "drive_acceleration", "rad/s2",
+                "acceleration of the shaft, from which the speed goes on between two points of "
+                "communication; without it inertia forces of a changing speed are missing",
+                first.acceleration);
+    }
+    if (takes.torque)
+      add_input(Input::torque, "drive_torque", "Nm", "torque on the shaft, positive about +z1",
+                first.torque);
+    if (takes.suction)
+      add_input(Input::suction, "suction_pressure", "Pa", "gauge, of what the pump draws from",
+                first.suction);
+    if (takes.delivery)
+      add_input(Input::delivery, "delivery_pressure", "Pa", "gauge, of what the pump delivers to",
+                first.delivery);
+    if (takes.load_share) {
+      add_input(Input::load_share, "load_share", "",
+                "share of the load's size: of an orifice's area, a laminar load's conductance, a "
+                "motor's flow or the opening of a valve",
+                first.load_share);
+      all_.back().least = 0;
+    }
+  }
+
+  void add_states(const std::vector<PlantColumn>& states) {
+    std::vector<std::uint32_t> references;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      Variable& it = add("state." + states[i].name, states[i].unit, Role::state, Causality::local,
+                         Variability::continuous);
+      it.description = states[i].description;
+      it.nominal = states[i].nominal;
+      it.place = i;
+      references.push_back(it.reference);
+    }
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      Variable& it = add("der(state." + states[i].name + ")", rate_unit(states[i].unit),
+                         Role::derivative, Causality::local, Variability::continuous);
+      it.description = "rate of state." + states[i].name;
+      it.state = references[i];
+      it.place = i;
+    }
+  }
+
+  void add_columns(const std::vector<PlantColumn>& columns, Role role, const std::string& prefix) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      Variable& it = add(prefix + columns[i].name, columns[i].unit, role,
+                         role == Role::indicator ? Causality::local : Causality::output,
+                         role == Role::flag ? Variability::discrete : Variability::continuous);
+      it.description = columns[i].description;
+      it.place = i;
+      it.boolean = role == Role::flag;
+      if (columns[i].nominal != 1) it.nominal = columns[i].nominal;
+    }
+  }
+
+ private:
+  std::vector<Variable> all_;
+  std::set<std::string> names_;
+};
+
+}  // namespace
+
+std::vector<Variable> variables_of(const Case& the_case, const UnitChoice& choice) {
+  const Case driven = with_drive(the_case, choice.drive);
+  const Plant plant(driven, choice, Plant::Kind::model_exchange);
+  const PlantColumns columns = columns_of(driven, choice);
+  List list;
+  list.add("time", "s", Role::time, Causality::independent, Variability::continuous).description =
+      "time of the simulation";
+  list.add_parameters(driven, plant.takes());
+  list.add_inputs(plant.first_inputs(), plant.takes());
+  list.add_states(columns.states);
+  list.add_columns(columns.outputs, Role::output, "");
+  list.add_columns(columns.flags, Role::flag, "");
+  list.add_columns(columns.indicators, Role::indicator, "indicator.");
+  return list.take();
+}
+
+}  // namespace bentaxis::fmu

@@ -1,0 +1,379 @@
+#!/usr/bin/env python3
+"""Tests of `bentaxis fmu`: what is in the archive, and whether modelDescription.xml keeps the rules of FMI 2.0 and 3.0,
+written here from the standards' text (sections 2.2 and 2.4), apart from the program.
+
+usage: fmu_archive_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+import zipfile
+
+PROGRAM = REPO = None  # set in main
+
+# (case, drive): rigid and compliant gear, ideal and hydraulic pressure, motor, curves.
+UNITS = [("bap63_rated", None), ("bap63_rated", "torque"), ("bap63_tooth_rattle", "speed"), ("bap63_motor_start", None),
+         ("bap63_rated_hydraulic", "speed"), ("bap63_start_up", "case"), ("bap63_load_step", "speed"),
+         ("bap63_motoring", "torque"), ("bap63_reversal", "case")]
+
+# Allowed pairs, and the values of `initial` with the default first (FMI 2.0.4, 2.2.7; FMI 3.0, 2.4.7).
+ALLOWED = {("parameter", "fixed"): ["exact"], ("parameter", "tunable"): ["exact"],
+           ("calculatedParameter", "fixed"): ["calculated", "approx"],
+           ("calculatedParameter", "tunable"): ["calculated", "approx"],
+           ("input", "discrete"): [None], ("input", "continuous"): [None],
+           ("output", "constant"): ["exact"], ("output", "discrete"): ["calculated", "exact", "approx"],
+           ("output", "continuous"): ["calculated", "exact", "approx"], ("local", "constant"): ["exact"],
+           ("local", "fixed"): ["calculated", "exact", "approx"], ("local", "tunable"): ["calculated", "exact", "approx"],
+           ("local", "discrete"): ["calculated", "exact", "approx"],
+           ("local", "continuous"): ["calculated", "exact", "approx"], ("independent", "continuous"): [None]}
+
+ROOT = {"modelName", "description", "author", "version", "copyright", "license", "generationTool", "generationDateAndTime",
+        "variableNamingConvention", "fmiVersion"}
+COMMON = {"modelIdentifier", "needsExecutionTool", "canBeInstantiatedOnlyOncePerProcess"}
+ATTRIBUTES = {
+    2: {"root": ROOT | {"guid", "numberOfEventIndicators"},
+        "ModelExchange": COMMON | {"completedIntegratorStepNotNeeded", "canNotUseMemoryManagementFunctions",
+                                   "canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"},
+        "CoSimulation": COMMON | {"canHandleVariableCommunicationStepSize", "canInterpolateInputs",
+                                  "maxOutputDerivativeOrder", "canRunAsynchronuously", "canNotUseMemoryManagementFunctions",
+                                  "canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"}},
+    3: {"root": ROOT | {"instantiationToken"},
+        "ModelExchange": COMMON | {"canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives",
+                                   "providesAdjointDerivatives", "providesPerElementDependencies",
+                                   "needsCompletedIntegratorStep", "providesEvaluateDiscreteStates"},
+        "CoSimulation": COMMON | {"canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives",
+                                  "providesAdjointDerivatives", "providesPerElementDependencies",
+                                  "canHandleVariableCommunicationStepSize", "fixedInternalStepSize",
+                                  "maxOutputDerivativeOrder", "recommendedIntermediateInputSmoothness",
+                                  "providesIntermediateUpdate", "mightReturnEarlyFromDoStep",
+                                  "canReturnEarlyAfterIntermediateUpdate", "hasEventMode",
+                                  "providesEvaluateDiscreteStates"}}}
+IDENTITY = {"name", "valueReference", "description", "causality", "variability", "initial"}
+NUMBER = {"unit", "displayUnit", "min", "max", "nominal", "start", "derivative", "reinit", "unbounded", "quantity"}
+
+# Names of the structured convention: identifiers joined by dots, with indices, derivatives in der( ).
+IDENTIFIER = r"[A-Za-z_][A-Za-z_0-9]*(\[\d+(,\d+)*\])?"
+STRUCTURED = re.compile(rf"^(der\()?{IDENTIFIER}(\.{IDENTIFIER})*(,\d+)?\)?$")
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run([str(PROGRAM), *map(str, arguments)], capture_output=True, text=True, timeout=120, cwd=cwd)
+
+
+class Variable:
+    """A variable as either version writes it."""
+
+    def __init__(self, node, place, version):
+        inner = node[0] if version == 2 else node
+        self.type = inner.tag
+        self.all = {**node.attrib, **inner.attrib}
+        self.name, self.place = node.get("name"), place
+        self.reference = int(node.get("valueReference"))
+        self.causality = node.get("causality", "local")
+        self.variability = node.get("variability", "continuous" if version == 2 or self.real else "discrete")
+        self.initial = node.get("initial", ALLOWED[(self.causality, self.variability)][0])
+        self.stated = node.get("initial")
+        self.start = inner.get("start")
+        self.derivative = inner.get("derivative")
+
+    @property
+    def real(self):
+        return self.type in ("Real", "Float64")
+
+
+class Description:
+    def __init__(self, text):
+        self.root = xml.fromstring(text)
+        self.version = int(self.root.get("fmiVersion")[0])
+        self.variables = [Variable(node, i + 1, self.version) for i, node in enumerate(self.root.find("ModelVariables"))]
+        structure = self.root.find("ModelStructure")
+        if self.version == 2:
+            by_place = {v.place: v for v in self.variables}
+            self.lists = {name: [by_place[int(one.get("index"))] for one in structure.findall(f"{name}/Unknown")]
+                          for name in ("Outputs", "Derivatives", "InitialUnknowns")}
+        else:
+            by_reference = {v.reference: v for v in self.variables}
+            self.lists = {plural: [by_reference[int(one.get("valueReference"))] for one in structure.findall(name)]
+                          for plural, name in (("Outputs", "Output"), ("Derivatives", "ContinuousStateDerivative"),
+                                               ("InitialUnknowns", "InitialUnknown"), ("Indicators", "EventIndicator"))}
+
+    def state_of(self, derivative):
+        number = int(derivative.derivative)
+        return next(v for v in self.variables if (v.place if self.version == 2 else v.reference) == number)
+
+
+def of_every_unit(test):
+    """A test of one description, as a test of all."""
+    def of_all(self):
+        for key, it in self.descriptions.items():
+            with self.subTest("%s, drive %s, FMI %d" % key):
+                test(self, it)
+    return of_all
+
+
+class Archives(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.files, cls.said, cls.descriptions = {}, {}, {}
+        for case, drive in UNITS:
+            for version in (2, 3):
+                file = cls.folder / f"{case}-{drive}-{version}.fmu"
+                more = ["--drive", drive] if drive else []
+                result = run("fmu", REPO / f"cases/{case}.toml", "--out", file, "--fmi", version, *more)
+                if result.returncode != 0:
+                    raise AssertionError(f"{file.name}: {result.returncode} {result.stderr}")
+                cls.files[case, drive, version] = file
+                cls.said[case, drive, version] = result.stdout
+                with zipfile.ZipFile(file) as archive:
+                    cls.descriptions[case, drive, version] = Description(archive.read("modelDescription.xml"))
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @of_every_unit
+    def test_attributes_are_those_of_the_schemas(self, it):
+        allowed = ATTRIBUTES[it.version]
+        self.assertLessEqual(set(it.root.attrib), allowed["root"])
+        for kind in ("ModelExchange", "CoSimulation"):
+            self.assertLessEqual(set(it.root.find(kind).attrib), allowed[kind])
+            self.assertEqual(it.root.find(kind).get("modelIdentifier"), "bentaxis_pump")
+            self.assertEqual(it.root.find(kind).get("needsExecutionTool"), "false")
+        self.assertRegex(it.root.get("fmiVersion"), r"^[23]\.0$")
+        tags = [child.tag for child in it.root]
+        self.assertEqual(tags, ["ModelExchange", "CoSimulation", "UnitDefinitions", "LogCategories", "DefaultExperiment",
+                                "ModelVariables", "ModelStructure"])
+        for v in it.variables:
+            self.assertIn(v.type, ("Real", "Boolean") if it.version == 2 else ("Float64", "Boolean"))
+            self.assertLessEqual(set(v.all), IDENTITY | (NUMBER if v.real else {"start"}), v.name)
+
+    @of_every_unit
+    def test_names_and_references_are_unique_and_named_as_is_said(self, it):
+        self.assertEqual(it.root.get("variableNamingConvention"), "structured")
+        self.assertEqual(len({v.name for v in it.variables}), len(it.variables))
+        self.assertEqual(len({v.reference for v in it.variables}), len(it.variables))
+        for v in it.variables:
+            self.assertRegex(v.name, STRUCTURED)
+
+    @of_every_unit
+    def test_units_are_defined_once_and_display_units_too(self, it):
+        units = it.root.findall("UnitDefinitions/Unit")
+        defined = {unit.get("name"): [d.get("name") for d in unit.findall("DisplayUnit")] for unit in units}
+        self.assertEqual(len(defined), len(units))
+        used = set()
+        for v in it.variables:
+            if "unit" in v.all:
+                used.add(v.all["unit"])
+                self.assertIn(v.all["unit"], defined, v.name)
+            if "displayUnit" in v.all:
+                self.assertIn(v.all["displayUnit"], defined[v.all["unit"]], v.name)
+        self.assertEqual(used, set(defined))
+        for unit in units:
+            base = unit.find("BaseUnit")
+            self.assertGreater(float(base.get("factor", 1)), 0)
+            self.assertLessEqual(set(base.attrib), {"kg", "m", "s", "A", "K", "mol", "cd", "rad", "factor", "offset"})
+
+    @of_every_unit
+    def test_causality_variability_initial_and_start_go_together(self, it):
+        for v in it.variables:
+            allowed = ALLOWED[(v.causality, v.variability)]
+            self.assertIn(v.initial, allowed, v.name)
+            if v.causality in ("input", "independent"):
+                self.assertIsNone(v.stated, v.name)
+            needs = v.initial in ("exact", "approx") or v.causality == "input"
+            self.assertEqual(v.start is not None, needs, v.name)
+            if v.variability == "continuous":
+                self.assertTrue(v.real, v.name)
+        times = [v for v in it.variables if v.causality == "independent"]
+        self.assertEqual([(v.name, v.all.get("unit")) for v in times], [("time", "s")])
+
+    @of_every_unit
+    def test_numbers_are_finite_and_start_values_in_their_ranges(self, it):
+        for v in it.variables:
+            values = {key: float(v.all[key]) for key in ("min", "max", "nominal", "start") if v.real and key in v.all}
+            for key, value in values.items():
+                self.assertTrue(abs(value) < 1e300, f"{v.name} {key}")
+            self.assertGreater(values.get("nominal", 1), 0, v.name)
+            if "start" in values:
+                self.assertGreaterEqual(values["start"], values.get("min", values["start"]), v.name)
+                self.assertLessEqual(values["start"], values.get("max", values["start"]), v.name)
+            if not v.real and v.start is not None:
+                self.assertIn(v.start, ("true", "false"))
+
+    @of_every_unit
+    def test_structure_lists_every_output_and_every_derivative(self, it):
+        outputs = [v for v in it.variables if v.causality == "output"]
+        self.assertEqual(it.lists["Outputs"], outputs)
+        self.assertGreater(len(outputs), 50)
+        derivatives = [v for v in it.variables if v.derivative is not None]
+        self.assertCountEqual(it.lists["Derivatives"], derivatives)
+        states = [it.state_of(v) for v in it.lists["Derivatives"]]
+        self.assertEqual(len(set(map(id, states))), len(states))
+        for v, state in zip(it.lists["Derivatives"], states):
+            self.assertTrue(state.real and state.variability == "continuous", v.name)
+            self.assertIn(state.causality, ("local", "output"))
+            self.assertEqual(v.variability, "continuous")
+        for v in it.variables:
+            if "reinit" in v.all:
+                self.assertIn(v, states)
+        indicators = it.lists.get("Indicators", [])
+        for v in indicators:
+            self.assertTrue(v.real and v.variability == "continuous" and v.causality in ("local", "output"))
+        if it.version == 2:
+            self.assertIsNotNone(it.root.get("numberOfEventIndicators"))
+            for number, v in enumerate(it.variables):
+                self.assertEqual(v.place, number + 1)
+
+    @of_every_unit
+    def test_initial_unknowns_are_exactly_those_of_the_rule(self, it):
+        listed = it.lists["InitialUnknowns"]
+        of_motion = it.lists["Derivatives"] + [it.state_of(v) for v in it.lists["Derivatives"]]
+        expected = [v for v in it.variables
+                    if (v.causality == "output" and v.initial in ("approx", "calculated"))
+                    or v.causality == "calculatedParameter"
+                    or (v in of_motion and v.initial in ("approx", "calculated"))]
+        self.assertEqual(listed, expected)  # by their places, each once
+        self.assertTrue(all("" != v.name for v in listed))
+
+    def test_both_versions_say_the_same(self):
+        for case, drive in UNITS:
+            two, three = both = [self.descriptions[case, drive, version] for version in (2, 3)]
+            facts = [[(v.name, v.reference, v.causality, v.variability, v.initial, v.start, v.all.get("unit"))
+                      for v in it.variables] for it in both]
+            self.assertEqual(*facts)
+            self.assertEqual(int(two.root.get("numberOfEventIndicators")), len(three.lists["Indicators"]))
+
+    def test_inputs_are_those_of_the_drive(self):
+        wanted = {"speed": {"drive_speed", "drive_acceleration"}, "torque": {"drive_torque"}, "case": set()}
+        for (case, drive, version), file in self.files.items():
+            with self.subTest(case=case, drive=drive, fmi=version), zipfile.ZipFile(file) as archive:
+                choice = dict(line.split(" ", 1) for line in archive.read("resources/unit.txt").decode().splitlines())
+                if drive:
+                    self.assertEqual(choice["drive"], drive)
+                it = Description(archive.read("modelDescription.xml"))
+                names = {v.name for v in it.variables if v.causality == "input"}
+                self.assertEqual({name for name in names if name.startswith("drive_")}, wanted[choice["drive"]])
+                token = it.root.get("guid" if version == 2 else "instantiationToken")
+                self.assertEqual(choice["token"], token)
+                self.assertEqual(float(choice["tolerance"]), 1e-9)
+                said = self.said[case, drive, version]
+                inputs = re.search(r"^inputs: (.*)$", said, re.M).group(1)
+                self.assertEqual(set() if inputs == "none" else set(inputs.split()), names)
+                self.assertIn(f"states: {len(it.lists['Derivatives'])},", said)
+
+    def test_tokens_differ_where_units_do(self):
+        tokens = set()
+        variants = [[], ["--tolerance", "1e-7"], ["--drive", "torque"], ["--set", "pump.tilt_deg=39"]]
+        for i, more in enumerate(variants):
+            file = self.folder / f"variant{i}.fmu"
+            self.assertEqual(run("fmu", REPO / "cases/bap63_rated.toml", "--out", file, *more).returncode, 0)
+            with zipfile.ZipFile(file) as archive:
+                tokens.add(Description(archive.read("modelDescription.xml")).root.get("guid"))
+        self.assertEqual(len(tokens), len(variants))
+        for token in tokens:
+            self.assertRegex(token, r"^\{[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}\}$")
+
+    def test_layout_of_the_archive(self):
+        for (case, drive, version), file in self.files.items():
+            with self.subTest(case=case, drive=drive, fmi=version), zipfile.ZipFile(file) as archive:
+                self.assertIsNone(archive.testzip())
+                names = archive.namelist()
+                self.assertEqual(names[0], "modelDescription.xml")
+                library = {2: "binaries/linux64/bentaxis_pump.so", 3: "binaries/x86_64-linux/bentaxis_pump.so"}[version]
+                self.assertEqual([name for name in names if name.startswith("binaries/")], [library])
+                self.assertEqual(archive.read(library)[:4], b"\x7fELF")
+                for name in ("resources/case.toml", "resources/unit.txt", "documentation/index.html",
+                             "documentation/licenses/license.txt", "documentation/licenses/third_party.txt"):
+                    self.assertIn(name, names)
+                self.assertIn(b"Apache", archive.read("documentation/licenses/license.txt"))
+                self.assertIn(b"SUNDIALS", archive.read("documentation/licenses/third_party.txt"))
+                page = archive.read("documentation/index.html").decode()
+                self.assertIn("Td_z1_Nm", page)
+                for name in names:
+                    self.assertFalse(name.startswith("/") or ".." in name or "\\" in name, name)
+
+    def test_curves_are_in_the_archive_and_named_from_the_case(self):
+        with zipfile.ZipFile(self.files["bap63_start_up", "case", 3]) as archive:
+            text = archive.read("resources/case.toml").decode()
+            self.assertIn('file = "curves/start_up_motor.csv"', text)
+            self.assertEqual(archive.read("resources/curves/start_up_motor.csv"),
+                             (REPO / "cases/curves/start_up_motor.csv").read_bytes())
+            out = self.folder / "unpacked"
+            archive.extractall(out)
+        # The case in there is one: bentaxis reads it, from another place.
+        again = run("fmu", out / "resources/case.toml", "--drive", "case", "--fmi", 3, "--out", self.folder / "again.fmu")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        with zipfile.ZipFile(self.folder / "again.fmu") as archive:
+            self.assertEqual(archive.read("resources/case.toml").decode(), text)
+
+    def test_no_path_of_this_machine_is_in_the_archive(self):
+        for key in (("bap63_start_up", "case", 2), ("bap63_rated_hydraulic", "speed", 3)):
+            with zipfile.ZipFile(self.files[key]) as archive:
+                for name in archive.namelist():
+                    content = archive.read(name)
+                    for path in (str(REPO), str(self.folder), str(PROGRAM.parent.parent)):
+                        self.assertNotIn(path.encode(), content, f"{name}: {path}")
+
+    def test_the_same_bytes_twice_and_elsewhere(self):
+        elsewhere = self.folder / "else where"
+        shutil.copytree(REPO / "cases", elsewhere / "cases")
+        again = run("fmu", "cases/bap63_start_up.toml", "--drive", "case", "--fmi", 3, "--out", "x.fmu", cwd=elsewhere)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual((elsewhere / "x.fmu").read_bytes(), self.files["bap63_start_up", "case", 3].read_bytes())
+
+    @unittest.skipUnless(shutil.which("xmllint"), "needs xmllint")
+    def test_xmllint_reads_it(self):
+        with zipfile.ZipFile(self.files["bap63_rated_hydraulic", "speed", 2]) as archive:
+            text = archive.read("modelDescription.xml")
+        self.assertEqual(subprocess.run(["xmllint", "--noout", "-"], input=text, timeout=30, check=False).returncode, 0)
+
+
+class Refusals(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def refused(self, *arguments, says, case="bap63_rated", out="pump.fmu"):
+        result = run("fmu", REPO / f"cases/{case}.toml", "--out", self.folder / out, *arguments)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        lines = [line for line in result.stderr.splitlines() if line.startswith("bentaxis: ") and "warning" not in line]
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertIn(says, lines[0])
+        self.assertEqual(result.stdout, "")
+        self.assertFalse((self.folder / out).is_file())
+
+    def test_out_must_be_a_file_that_ends_in_fmu(self):
+        self.refused(out="pump", says=".fmu")
+        self.refused(out=".fmu", says=".fmu")
+        (self.folder / "folder.fmu").mkdir()
+        self.refused(out="folder.fmu", says="is a folder")
+
+    def test_options(self):
+        self.refused("--fmi", "1", says="--fmi")
+        self.refused("--drive", "hand", says="--drive")
+        self.refused("--tolerance", "1", says="--tolerance")
+        self.refused("--drive", "case", says="[drive]")
+        self.refused("--set", "pump.tilt_deg=95", says="tilt_deg")
+
+    def test_cases_that_cannot_be_simulated_so(self):
+        jumps = ["--set", "friction.regularization_m_per_s=0"]
+        self.refused(*jumps, "--drive", "torque", says="regularization_m_per_s")
+        self.refused("--set", "assumptions.analytic.gear=imposed", says="gear")
+
+    def test_a_unit_is_replaced_whole(self):
+        file = self.folder / "pump.fmu"
+        for _ in range(2):
+            self.assertEqual(run("fmu", REPO / "cases/bap63_rated.toml", "--out", file).returncode, 0)
+        self.assertEqual([name.name for name in self.folder.iterdir()], ["pump.fmu"])
+
+
+if __name__ == "__main__":
+    PROGRAM, REPO = map(lambda path: pathlib.Path(path).resolve(), sys.argv[1:3])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
