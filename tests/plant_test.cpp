@@ -362,6 +362,42 @@ TEST(Plant, ChangedParametersActFromThenOn) {
   EXPECT_NEAR(plant.time(), 0.008, 1e-15);
 }
 
+TEST(Plant, RefusedParametersChangeNothing) {
+  const auto run = [](bool tries) {
+    Plant plant(rated(), driven_by(Drive::speed), kSteps);
+    plant.start(plant.first_inputs());
+    stepped(plant, 0.004, 4);
+    if (tries) {
+      Case flat = rated();
+      flat.pump.geometry.tilt = 0;
+      EXPECT_THROW(plant.change(flat), InputError);
+    }
+    return stepped(plant, 0.004, 4);
+  };
+  EXPECT_EQ(apart(run(true), run(false)), 0);
+}
+
+// Pressures of the ports that no input gives are parameters, which may change too.
+TEST(Plant, ChangedPortsAct) {
+  const Case c = shipped("bap63_rated", 0.01, 10);
+  Plant plant(c, driven_by(Drive::as_in_case), kSteps);
+  plant.start(plant.first_inputs());
+  const auto suction = plant.first_inputs().suction;
+  EXPECT_EQ(suction, c.pressure.ports.suction);
+  plant.step(0.004);
+  Case other = c;
+  other.pressure.ports.delivery *= 0.5;
+  plant.change(other);
+  Plant truth(other, driven_by(Drive::as_in_case), kSteps);
+  Inputs inputs = truth.first_inputs();
+  truth.start(inputs);
+  truth.step(0.004);
+  Inputs same = plant.inputs();
+  same.delivery = other.pressure.ports.delivery;
+  plant.set_inputs(same);
+  EXPECT_LT(apart({plant.outputs()}, {truth.outputs()}), 1e-9);
+}
+
 // What cannot be followed leaves the plant where it stood; it goes on under better inputs.
 TEST(Plant, FailedStepLeavesItWhereItStood) {
   Plant plant(with_torque(), driven_by(Drive::torque), kSteps);

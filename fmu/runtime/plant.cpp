@@ -116,12 +116,18 @@ class Plant::Implementation {
 
   void change(const Case& the_case) {
     PlantState now = state();
-    const std::vector<double> before = scales_of(case_);
-    case_ = with_drive(the_case, choice_.drive);
-    const std::vector<double> after = scales_of(case_);
+    const std::vector<double> started = started_;
+    const Case before = std::exchange(case_, with_drive(the_case, choice_.drive));
+    const std::vector<double> old_scales = scales_of(before), new_scales = scales_of(case_);
     for (std::size_t i = 0; i < now.started.size(); ++i)
-      if (after[i] != before[i]) now.started[i] = after[i];
-    go_on_from(now, true);
+      if (new_scales[i] != old_scales[i]) now.started[i] = new_scales[i];
+    try {
+      go_on_from(now, true);
+    } catch (...) {
+      case_ = before;
+      started_ = started;
+      throw;
+    }
   }
 
   void set_inputs(const Inputs& inputs) {
@@ -318,9 +324,10 @@ class Plant::Implementation {
   }
 
   void build(const Case& the_case, const hydraulics::OilStart& start) {
+    auto machine = std::make_unique<Machine>(the_case, start);  // refused: all stays
     stepper_.reset();
     open_.reset();
-    machine_ = std::make_unique<Machine>(the_case, start);
+    machine_ = std::move(machine);
     places_ = output_places(*machine_);
     rules_ = flag_rules(*machine_);
     oil_columns_ = machine_->oil->columns().size();

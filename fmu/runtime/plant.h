@@ -55,6 +55,8 @@ class Plant {
   ///             simulate does
   void start(const Inputs& inputs, double end = 0);
   /// Other numbers of the case while it runs: the state stays. Of tunable parameters.
+  /// @throws InputError where a case file that says the same would be refused; all is then as it
+  /// was
   void change(const Case& the_case);
   /// From the present time on.
   void set_inputs(const Inputs& inputs);
