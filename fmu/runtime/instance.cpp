@@ -177,7 +177,7 @@ void Instance::start() {
   UnitChoice choice = resources_.choice;
   choice.tolerance = tolerance_;
   auto plant = std::make_unique<Plant>(the_case, choice, kind_);
-  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 1);
+  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 0);
   plant_ = std::move(plant);
   parameters_ = wanted_;
   started_ = true;
