@@ -1,0 +1,366 @@
+// The functions of FMI 2.0: each checks its pointers and hands over to the instance.
+#include "interface/fmi2.h"
+
+#include <algorithm>
+#include <cstring>
+#include <initializer_list>
+#include <memory>
+
+#include "instance.h"
+
+extern "C" {
+#define BENTAXIS_DECLARE(name) name##TYPE name;
+BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_DECLARE)
+#undef BENTAXIS_DECLARE
+}
+
+namespace {
+
+using bentaxis::fmu::Instance;
+using bentaxis::fmu::kAny;
+using bentaxis::fmu::kContinuous;
+using bentaxis::fmu::kEvent;
+using bentaxis::fmu::kInitialization;
+using bentaxis::fmu::kInstantiated;
+using bentaxis::fmu::kKnown;
+using bentaxis::fmu::kRunning;
+using bentaxis::fmu::kStep;
+using bentaxis::fmu::kTerminated;
+using bentaxis::fmu::Log;
+using bentaxis::fmu::Refused;
+using bentaxis::fmu::Status;
+using Kind = Instance::Kind;
+
+// Messages are formats, in which #r3# is a variable.
+std::string as_format(const std::string& text) {
+  std::string format;
+  for (const char c : text) {
+    format += c;
+    if (c == '%' || c == '#') format += c;
+  }
+  return format;
+}
+
+Log::Sink sink_of(const fmi2CallbackFunctions& functions, const std::string& name) {
+  if (functions.logger == nullptr) return {};
+  return [logger = functions.logger, environment = functions.componentEnvironment, name](
+             Status status, const char* category, const std::string& message) {
+    logger(environment, name.c_str(), static_cast<fmi2Status>(status), category,
+           as_format(message).c_str());
+  };
+}
+
+void require_places(std::size_t count, std::initializer_list<const void*> places) {
+  if (count > 0 && std::find(places.begin(), places.end(), nullptr) != places.end())
+    throw Refused("a null pointer where values should be");
+}
+void require_place(const void* place) { require_places(1, {place}); }
+
+template <class Body>
+fmi2Status call(fmi2Component c, const char* function, unsigned modes, Body body) noexcept {
+  if (c == nullptr) return fmi2Error;
+  Instance& it = *static_cast<Instance*>(c);
+  return static_cast<fmi2Status>(it.call(function, modes, [&] { return body(it); }));
+}
+
+// Of one kind only.
+template <class Body>
+fmi2Status call(fmi2Component c, const char* function, Kind kind, unsigned modes,
+                Body body) noexcept {
+  if (c == nullptr) return fmi2Error;
+  Instance& it = *static_cast<Instance*>(c);
+  const Status right =
+      it.call(function, kAny, [&] { it.require(kind); });
+  if (right != Status::ok) return fmi2Error;
+  return call(c, function, modes, body);
+}
+
+// Of types that no variable has.
+fmi2Status no_values(fmi2Component c, const char* function, unsigned modes,
+                     const fmi2ValueReference vr[], std::size_t count, const char* type) noexcept {
+  return call(c, function, modes, [&](Instance& it) {
+    require_places(count, {vr});
+    it.refuse_values(vr, count, type);
+  });
+}
+
+constexpr unsigned kGet = kInstantiated | kKnown;  // what is not known yet is refused one by one
+constexpr unsigned kSet = kInstantiated | kInitialization | kRunning;
+constexpr unsigned kSetDiscrete = kInstantiated | kInitialization | kEvent | kStep;
+
+}  // namespace
+
+const char* fmi2GetTypesPlatform() { return fmi2TypesPlatform; }
+const char* fmi2GetVersion() { return fmi2Version; }
+
+fmi2Component fmi2Instantiate(fmi2String instance_name, fmi2Type type, fmi2String guid,
+                              fmi2String resource_location, const fmi2CallbackFunctions* functions,
+                              fmi2Boolean /*visible*/, fmi2Boolean logging_on) {
+  if (functions == nullptr) return nullptr;
+  try {
+    const std::string name = instance_name == nullptr ? "" : instance_name;
+    const Log log(sink_of(*functions, name), logging_on != fmi2False);
+    try {
+      if (name.empty()) throw Refused("the instance needs a name");
+      if (guid == nullptr) throw Refused("the GUID is missing");
+      if (resource_location == nullptr) throw Refused("the location of resources is missing");
+      if (type != fmi2ModelExchange && type != fmi2CoSimulation)
+        throw Refused("the kind must be model exchange or co-simulation");
+      return new Instance(bentaxis::fmu::path_of_uri(resource_location), guid,
+                          type == fmi2CoSimulation ? Kind::co_simulation : Kind::model_exchange,
+                          log);
+    } catch (const std::exception& error) {
+      log.say(Status::error, std::string("fmi2Instantiate: ") + error.what());
+    }
+  } catch (...) {  // nothing is left to say it with
+  }
+  return nullptr;
+}
+
+void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance*>(c); }
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
+                               const fmi2String categories[]) {
+  return call(c, __func__, kAny, [&](Instance& it) {
+    require_places(count, {categories});
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < count; ++i) {
+      require_place(categories[i]);
+      names.emplace_back(categories[i]);
+    }
+    if (!it.log().set_debug(on != fmi2False, names)) throw Refused("there is no such category");
+  });
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance,
+                               fmi2Real start_time, fmi2Boolean stop_time_defined,
+                               fmi2Real stop_time) {
+  return call(c, __func__, kInstantiated, [&](Instance& it) {
+    const auto given = [](fmi2Boolean defined, fmi2Real value) {
+      return defined != fmi2False ? std::optional<double>(value) : std::nullopt;
+    };
+    it.set_up(given(tolerance_defined, tolerance), start_time, given(stop_time_defined, stop_time));
+  });
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+  return call(c, __func__, kInstantiated, [](Instance& it) { it.enter_initialization(); });
+}
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
+  return call(c, __func__, kInitialization, [](Instance& it) { it.exit_initialization(); });
+}
+fmi2Status fmi2Terminate(fmi2Component c) {
+  return call(c, __func__, kRunning, [](Instance& it) { it.terminate(); });
+}
+fmi2Status fmi2Reset(fmi2Component c) {
+  return call(c, __func__, kAny, [](Instance& it) { it.reset(); });
+}
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                       fmi2Real value[]) {
+  return call(c, __func__, kGet, [&](Instance& it) {
+    require_places(count, {vr, value});
+    it.numbers(vr, count, value);
+  });
+}
+fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                          fmi2Boolean value[]) {
+  return call(c, __func__, kGet, [&](Instance& it) {
+    require_places(count, {vr, value});
+    it.flags(vr, count, value);
+  });
+}
+fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                          fmi2Integer /*value*/[]) {
+  return no_values(c, __func__, kGet, vr, count, "Integer");
+}
+fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                         fmi2String /*value*/[]) {
+  return no_values(c, __func__, kGet, vr, count, "String");
+}
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                       const fmi2Real value[]) {
+  return call(c, __func__, kSet, [&](Instance& it) {
+    require_places(count, {vr, value});
+    it.set_numbers(vr, count, value);
+  });
+}
+fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                          const fmi2Integer /*value*/[]) {
+  return no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
+}
+fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                          const fmi2Boolean /*value*/[]) {
+  return no_values(c, __func__, kSetDiscrete, vr, count, "Boolean");
+}
+fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
+                         const fmi2String /*value*/[]) {
+  return no_values(c, __func__, kSetDiscrete, vr, count, "String");
+}
+
+fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
+  return call(c, __func__, kAny, [&](Instance& it) { it.save(state); });
+}
+fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
+  return call(c, __func__, kAny, [&](Instance& it) { it.restore(state); });
+}
+fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
+  return call(c, __func__, kAny, [&](Instance& it) { it.free_state(state); });
+}
+fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
+  return call(c, __func__, kAny, [&](Instance& it) {
+    require_place(size);
+    *size = it.serialized_size(state);
+  });
+}
+fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[],
+                                 size_t size) {
+  return call(c, __func__, kAny, [&](Instance& it) {
+    require_place(bytes);
+    it.serialize(state, bytes, size);
+  });
+}
+fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
+                                   fmi2FMUstate* state) {
+  return call(c, __func__, kAny, [&](Instance& it) {
+    require_place(bytes);
+    it.deserialize(bytes, size, state);
+  });
+}
+
+fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
+                                        size_t unknowns, const fmi2ValueReference known[],
+                                        size_t knowns, const fmi2Real known_seed[],
+                                        fmi2Real unknown_sensitivity[]) {
+  return call(c, __func__, kKnown, [&](Instance& it) {
+    require_places(unknowns, {unknown, unknown_sensitivity});
+    require_places(knowns, {known, known_seed});
+    it.derivative(unknown, unknowns, known, knowns, known_seed, unknown_sensitivity);
+  });
+}
+
+// Model exchange.
+
+fmi2Status fmi2EnterEventMode(fmi2Component c) {
+  return call(c, __func__, Kind::model_exchange, kEvent | kContinuous,
+              [](Instance& it) { it.enter_event_mode(); });
+}
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
+  return call(c, __func__, Kind::model_exchange, kEvent, [&](Instance& it) {
+    require_place(info);
+    const Instance::Event event = it.update_discrete_states();
+    *info = {};
+    info->valuesOfContinuousStatesChanged = event.states_changed ? fmi2True : fmi2False;
+    info->nextEventTimeDefined = event.next_time ? fmi2True : fmi2False;
+    info->nextEventTime = event.next_time.value_or(0);
+  });
+}
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
+  return call(c, __func__, Kind::model_exchange, kEvent,
+              [](Instance& it) { it.enter_continuous_mode(); });
+}
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean /*no_set_state_before*/,
+                                       fmi2Boolean* enter_event_mode, fmi2Boolean* terminate) {
+  return call(c, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
+    require_places(1, {enter_event_mode, terminate});
+    *enter_event_mode = it.step_completed() ? fmi2True : fmi2False;
+    *terminate = fmi2False;
+  });
+}
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
+  return call(c, __func__, Kind::model_exchange, kEvent | kContinuous,
+              [&](Instance& it) { it.set_time(time); });
+}
+fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t count) {
+  return call(c, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
+    require_places(count, {x});
+    it.set_states(x, count);
+  });
+}
+fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t count) {
+  return call(c, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
+    require_places(count, {derivatives});
+    it.rates(derivatives, count);
+  });
+}
+fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t count) {
+  return call(c, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
+    require_places(count, {indicators});
+    it.indicators(indicators, count);
+  });
+}
+fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t count) {
+  return call(c, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
+    require_places(count, {x});
+    it.states(x, count);
+  });
+}
+fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[], size_t count) {
+  return call(c, __func__, Kind::model_exchange, kAny, [&](Instance& it) {
+    require_places(count, {nominals});
+    it.nominals(nominals, count);
+  });
+}
+
+// Co-simulation.
+
+fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference /*vr*/[],
+                                       size_t count, const fmi2Integer /*order*/[],
+                                       const fmi2Real /*value*/[]) {
+  return call(c, __func__, Kind::co_simulation, kSet, [&](Instance& /*it*/) {
+    if (count > 0)
+      throw Refused("inputs are not interpolated: canInterpolateInputs is false");
+  });
+}
+fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference /*vr*/[],
+                                        size_t count, const fmi2Integer /*order*/[],
+                                        fmi2Real /*value*/[]) {
+  return call(c, __func__, Kind::co_simulation, kKnown, [&](Instance& /*it*/) {
+    if (count > 0)
+      throw Refused("outputs have no derivatives over time: maxOutputDerivativeOrder is 0");
+  });
+}
+fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step,
+                      fmi2Boolean /*no_set_state_before*/) {
+  return call(c, __func__, Kind::co_simulation, kStep,
+              [&](Instance& it) { return it.step(time, step); });
+}
+fmi2Status fmi2CancelStep(fmi2Component c) {
+  return call(c, __func__, Kind::co_simulation, kAny, [](Instance& /*it*/) {
+    throw Refused("no step is under way: a step has ended when its call returns");
+  });
+}
+fmi2Status fmi2GetStatus(fmi2Component c, fmi2StatusKind kind, fmi2Status* value) {
+  return call(c, __func__, Kind::co_simulation, kStep | kTerminated, [&](Instance& /*it*/) {
+    require_place(value);
+    if (kind != fmi2DoStepStatus) throw Refused("of this kind there is no status");
+    *value = fmi2OK;
+  });
+}
+fmi2Status fmi2GetRealStatus(fmi2Component c, fmi2StatusKind kind, fmi2Real* value) {
+  return call(c, __func__, Kind::co_simulation, kStep | kTerminated | bentaxis::fmu::kFailed,
+              [&](Instance& it) {
+                require_place(value);
+                if (kind != fmi2LastSuccessfulTime) throw Refused("of this kind there is no real");
+                *value = it.last_time();
+              });
+}
+fmi2Status fmi2GetIntegerStatus(fmi2Component c, fmi2StatusKind /*kind*/, fmi2Integer* /*value*/) {
+  return call(c, __func__, Kind::co_simulation, kAny, [](Instance& /*it*/) {
+    throw Refused("there is no integer status");
+  });
+}
+fmi2Status fmi2GetBooleanStatus(fmi2Component c, fmi2StatusKind kind, fmi2Boolean* value) {
+  return call(c, __func__, Kind::co_simulation, kStep | kTerminated, [&](Instance& /*it*/) {
+    require_place(value);
+    if (kind != fmi2Terminated) throw Refused("of this kind there is no Boolean");
+    *value = fmi2False;  // a pump does not ask for the end
+  });
+}
+fmi2Status fmi2GetStringStatus(fmi2Component c, fmi2StatusKind kind, fmi2String* value) {
+  return call(c, __func__, Kind::co_simulation, kStep | kTerminated, [&](Instance& /*it*/) {
+    require_place(value);
+    if (kind != fmi2PendingStatus) throw Refused("of this kind there is no text");
+    *value = "";
+  });
+}

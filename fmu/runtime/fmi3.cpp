@@ -1,0 +1,482 @@
+// The functions of FMI 3.0: each checks its pointers and hands over to the instance.
+#include "interface/fmi3.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <memory>
+
+#include "instance.h"
+
+extern "C" {
+#define BENTAXIS_DECLARE(name) name##TYPE name;
+BENTAXIS_FMI3_FUNCTIONS(BENTAXIS_DECLARE)
+#undef BENTAXIS_DECLARE
+}
+
+namespace {
+
+using bentaxis::fmu::Instance;
+using bentaxis::fmu::kAny;
+using bentaxis::fmu::kContinuous;
+using bentaxis::fmu::kEvent;
+using bentaxis::fmu::kInitialization;
+using bentaxis::fmu::kInstantiated;
+using bentaxis::fmu::kKnown;
+using bentaxis::fmu::kRunning;
+using bentaxis::fmu::kStep;
+using bentaxis::fmu::Log;
+using bentaxis::fmu::Refused;
+using bentaxis::fmu::Status;
+using Kind = Instance::Kind;
+
+void require_places(std::size_t count, std::initializer_list<const void*> places) {
+  if (count > 0 && std::find(places.begin(), places.end(), nullptr) != places.end())
+    throw Refused("a null pointer where values should be");
+}
+
+// All variables are scalars.
+void require_scalars(std::size_t count, std::size_t value_count) {
+  if (count != value_count)
+    throw Refused("there must be one value per variable: " + std::to_string(count) + ", not " +
+                  std::to_string(value_count));
+}
+
+template <class Body>
+fmi3Status call(fmi3Instance c, const char* function, unsigned modes, Body body) noexcept {
+  if (c == nullptr) return fmi3Error;
+  Instance& it = *static_cast<Instance*>(c);
+  return static_cast<fmi3Status>(it.call(function, modes, [&] { return body(it); }));
+}
+
+// Of one kind only.
+template <class Body>
+fmi3Status call(fmi3Instance c, const char* function, Kind kind, unsigned modes,
+                Body body) noexcept {
+  if (c == nullptr) return fmi3Error;
+  Instance& it = *static_cast<Instance*>(c);
+  if (it.call(function, kAny, [&] { it.require(kind); }) != Status::ok) return fmi3Error;
+  return call(c, function, modes, body);
+}
+
+constexpr unsigned kGet = kInstantiated | kKnown;  // what is not known yet is refused one by one
+constexpr unsigned kSet = kInstantiated | kInitialization | kRunning;
+constexpr unsigned kSetDiscrete = kInstantiated | kInitialization | kEvent | kStep;
+
+// Of types that no variable has.
+fmi3Status no_values(fmi3Instance c, const char* function, unsigned modes,
+                     const fmi3ValueReference vr[], std::size_t count, const char* type) noexcept {
+  return call(c, function, modes, [&](Instance& it) {
+    require_places(count, {vr});
+    it.refuse_values(vr, count, type);
+  });
+}
+
+fmi3Status refuse(fmi3Instance c, const char* function, const char* why) noexcept {
+  return call(c, function, kAny, [&](Instance& /*it*/) { throw Refused(why); });
+}
+
+fmi3Status no_clocks(fmi3Instance c, const char* function, std::size_t count) noexcept {
+  return call(c, function, kAny, [&](Instance& /*it*/) {
+    if (count > 0) throw Refused("there are no clocks");
+  });
+}
+
+Log log_to(fmi3LogMessageCallback callback, fmi3InstanceEnvironment environment, bool debug) {
+  if (callback == nullptr) return Log({}, debug);
+  return Log(
+      [callback, environment](Status status, const char* category, const std::string& message) {
+        callback(environment, static_cast<fmi3Status>(status), category, message.c_str());
+      },
+      debug);
+}
+
+fmi3Instance instantiate(const char* function, fmi3String name, fmi3String token, fmi3String path,
+                         Kind kind, bool event_mode, const Log& log) noexcept {
+  try {
+    try {
+      if (name == nullptr || *name == 0) throw Refused("the instance needs a name");
+      if (token == nullptr) throw Refused("the instantiation token is missing");
+      if (path == nullptr) throw Refused("the path of resources is missing");
+      if (event_mode) throw Refused("co-simulation has no event mode: hasEventMode is false");
+      return new Instance(path, token, kind, log);
+    } catch (const std::exception& error) {
+      log.say(Status::error, std::string(function) + ": " + error.what());
+    }
+  } catch (...) {  // nothing is left to say it with
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+const char* fmi3GetVersion() { return fmi3Version; }
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t count,
+                               const fmi3String categories[]) {
+  return call(instance, __func__, kAny, [&](Instance& it) {
+    require_places(count, {categories});
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < count; ++i) {
+      require_places(1, {categories[i]});
+      names.emplace_back(categories[i]);
+    }
+    if (!it.log().set_debug(on, names)) throw Refused("there is no such category");
+  });
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token,
+                                          fmi3String resource_path, fmi3Boolean /*visible*/,
+                                          fmi3Boolean logging_on,
+                                          fmi3InstanceEnvironment environment,
+                                          fmi3LogMessageCallback log) {
+  return instantiate(__func__, name, token, resource_path, Kind::model_exchange, false,
+                     log_to(log, environment, logging_on));
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(
+    fmi3String name, fmi3String token, fmi3String resource_path, fmi3Boolean /*visible*/,
+    fmi3Boolean logging_on, fmi3Boolean event_mode_used, fmi3Boolean /*early_return_allowed*/,
+    const fmi3ValueReference /*intermediate*/[], size_t intermediates,
+    fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
+    fmi3IntermediateUpdateCallback /*update*/) {
+  const Log sink = log_to(log, environment, logging_on);
+  if (intermediates > 0)
+    sink.say(Status::warning, std::string(__func__) +
+                                  ": no intermediate updates: providesIntermediateUpdate is false");
+  return instantiate(__func__, name, token, resource_path, Kind::co_simulation, event_mode_used,
+                     sink);
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(
+    fmi3String /*name*/, fmi3String /*token*/, fmi3String /*resource_path*/,
+    fmi3Boolean /*visible*/, fmi3Boolean logging_on, fmi3InstanceEnvironment environment,
+    fmi3LogMessageCallback log, fmi3ClockUpdateCallback /*clock_update*/,
+    fmi3LockPreemptionCallback /*lock*/, fmi3UnlockPreemptionCallback /*unlock*/) {
+  log_to(log, environment, logging_on)
+      .say(Status::error, std::string(__func__) + ": there is no scheduled execution of this unit");
+  return nullptr;
+}
+
+void fmi3FreeInstance(fmi3Instance instance) { delete static_cast<Instance*>(instance); }
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolerance_defined,
+                                       fmi3Float64 tolerance, fmi3Float64 start_time,
+                                       fmi3Boolean stop_time_defined, fmi3Float64 stop_time) {
+  return call(instance, __func__, kInstantiated, [&](Instance& it) {
+    const auto given = [](bool defined, double value) {
+      return defined ? std::optional<double>(value) : std::nullopt;
+    };
+    it.set_up(given(tolerance_defined, tolerance), start_time, given(stop_time_defined, stop_time));
+    it.enter_initialization();
+  });
+}
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
+  return call(instance, __func__, kInitialization, [](Instance& it) { it.exit_initialization(); });
+}
+fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
+  return call(instance, __func__, Kind::model_exchange, kContinuous,
+              [](Instance& it) { it.enter_event_mode(); });
+}
+fmi3Status fmi3Terminate(fmi3Instance instance) {
+  return call(instance, __func__, kRunning, [](Instance& it) { it.terminate(); });
+}
+fmi3Status fmi3Reset(fmi3Instance instance) {
+  return call(instance, __func__, kAny, [](Instance& it) { it.reset(); });
+}
+
+fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                          fmi3Float64 values[], size_t value_count) {
+  return call(instance, __func__, kGet, [&](Instance& it) {
+    require_places(count, {vr, values});
+    require_scalars(count, value_count);
+    it.numbers(vr, count, values);
+  });
+}
+fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                          const fmi3Float64 values[], size_t value_count) {
+  return call(instance, __func__, kSet, [&](Instance& it) {
+    require_places(count, {vr, values});
+    require_scalars(count, value_count);
+    it.set_numbers(vr, count, values);
+  });
+}
+fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                          fmi3Boolean values[], size_t value_count) {
+  return call(instance, __func__, kGet, [&](Instance& it) {
+    require_places(count, {vr, values});
+    require_scalars(count, value_count);
+    it.flags(vr, count, values);
+  });
+}
+fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                          const fmi3Boolean /*values*/[], size_t /*value_count*/) {
+  return no_values(instance, __func__, kSetDiscrete, vr, count, "Boolean");
+}
+
+// Types that no variable has.
+#define BENTAXIS_NO_TYPE(Type)                                                                    \
+  fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,    \
+                           fmi3##Type /*values*/[], size_t /*value_count*/) {                     \
+    return no_values(instance, __func__, kGet, vr, count, #Type);                                 \
+  }                                                                                               \
+  fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,    \
+                           const fmi3##Type /*values*/[], size_t /*value_count*/) {               \
+    return no_values(instance, __func__, kSetDiscrete, vr, count, #Type);                         \
+  }
+BENTAXIS_NO_TYPE(Float32)
+BENTAXIS_NO_TYPE(Int8)
+BENTAXIS_NO_TYPE(UInt8)
+BENTAXIS_NO_TYPE(Int16)
+BENTAXIS_NO_TYPE(UInt16)
+BENTAXIS_NO_TYPE(Int32)
+BENTAXIS_NO_TYPE(UInt32)
+BENTAXIS_NO_TYPE(Int64)
+BENTAXIS_NO_TYPE(UInt64)
+BENTAXIS_NO_TYPE(String)
+#undef BENTAXIS_NO_TYPE
+fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                         size_t /*sizes*/[], fmi3Binary /*values*/[], size_t /*value_count*/) {
+  return no_values(instance, __func__, kGet, vr, count, "Binary");
+}
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                         const size_t /*sizes*/[], const fmi3Binary /*values*/[],
+                         size_t /*value_count*/) {
+  return no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
+}
+fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                        fmi3Clock /*values*/[]) {
+  return no_values(instance, __func__, kGet, vr, count, "Clock");
+}
+fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
+                        const fmi3Clock /*values*/[]) {
+  return no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
+}
+
+fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference /*vr*/,
+                                               size_t* /*count*/) {
+  return refuse(instance, __func__,
+                "dependencies of elements are not given: providesPerElementDependencies is false");
+}
+fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference /*dependent*/,
+                                       size_t /*dependent_elements*/[],
+                                       fmi3ValueReference /*independents*/[],
+                                       size_t /*independent_elements*/[],
+                                       fmi3DependencyKind /*kinds*/[], size_t /*count*/) {
+  return refuse(instance, __func__,
+                "dependencies of elements are not given: providesPerElementDependencies is false");
+}
+
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState* state) {
+  return call(instance, __func__, kAny, [&](Instance& it) { it.save(state); });
+}
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
+  return call(instance, __func__, kAny, [&](Instance& it) { it.restore(state); });
+}
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState* state) {
+  return call(instance, __func__, kAny, [&](Instance& it) { it.free_state(state); });
+}
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t* size) {
+  return call(instance, __func__, kAny, [&](Instance& it) {
+    require_places(1, {size});
+    *size = it.serialized_size(state);
+  });
+}
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[],
+                                 size_t size) {
+  return call(instance, __func__, kAny, [&](Instance& it) {
+    require_places(1, {bytes});
+    it.serialize(state, reinterpret_cast<char*>(bytes), size);
+  });
+}
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
+                                   fmi3FMUState* state) {
+  return call(instance, __func__, kAny, [&](Instance& it) {
+    require_places(1, {bytes});
+    it.deserialize(reinterpret_cast<const char*>(bytes), size, state);
+  });
+}
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
+                                        size_t unknown_count, const fmi3ValueReference knowns[],
+                                        size_t known_count, const fmi3Float64 seed[],
+                                        size_t seed_count, fmi3Float64 sensitivity[],
+                                        size_t sensitivity_count) {
+  return call(instance, __func__, kKnown, [&](Instance& it) {
+    require_places(unknown_count, {unknowns, sensitivity});
+    require_places(known_count, {knowns, seed});
+    require_scalars(known_count, seed_count);
+    require_scalars(unknown_count, sensitivity_count);
+    it.derivative(unknowns, unknown_count, knowns, known_count, seed, sensitivity);
+  });
+}
+fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference /*unknowns*/[],
+                                    size_t /*unknown_count*/, const fmi3ValueReference /*knowns*/[],
+                                    size_t /*known_count*/, const fmi3Float64 /*seed*/[],
+                                    size_t /*seed_count*/, fmi3Float64 /*sensitivity*/[],
+                                    size_t /*sensitivity_count*/) {
+  return refuse(instance, __func__,
+                "there are no adjoint derivatives: providesAdjointDerivatives is false");
+}
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
+  return refuse(instance, __func__, "there are no structural parameters to configure");
+}
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
+  return refuse(instance, __func__, "there are no structural parameters to configure");
+}
+
+fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                                  size_t count, fmi3Float64 /*intervals*/[],
+                                  fmi3IntervalQualifier /*qualifiers*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                                   size_t count, fmi3UInt64 /*counters*/[],
+                                   fmi3UInt64 /*resolutions*/[],
+                                   fmi3IntervalQualifier /*qualifiers*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                               size_t count, fmi3Float64 /*shifts*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+fmi3Status fmi3GetShiftFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                                size_t count, fmi3UInt64 /*counters*/[],
+                                fmi3UInt64 /*resolutions*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                                  size_t count, const fmi3Float64 /*intervals*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+fmi3Status fmi3SetIntervalFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                                   size_t count, const fmi3UInt64 /*counters*/[],
+                                   const fmi3UInt64 /*resolutions*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                               size_t count, const fmi3Float64 /*shifts*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+fmi3Status fmi3SetShiftFraction(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                                size_t count, const fmi3UInt64 /*counters*/[],
+                                const fmi3UInt64 /*resolutions*/[]) {
+  return no_clocks(instance, __func__, count);
+}
+
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
+  return call(instance, __func__, Kind::model_exchange, kInitialization | kEvent,
+              [](Instance& /*it*/) {});
+}
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean* again,
+                                    fmi3Boolean* terminate, fmi3Boolean* nominals_changed,
+                                    fmi3Boolean* states_changed,
+                                    fmi3Boolean* next_event_time_defined,
+                                    fmi3Float64* next_event_time) {
+  return call(instance, __func__, Kind::model_exchange, kEvent, [&](Instance& it) {
+    require_places(1, {again, terminate, nominals_changed, states_changed, next_event_time_defined,
+                       next_event_time});
+    const Instance::Event event = it.update_discrete_states();
+    *again = *terminate = *nominals_changed = false;
+    *states_changed = event.states_changed;
+    *next_event_time_defined = event.next_time.has_value();
+    *next_event_time = event.next_time.value_or(0);
+  });
+}
+
+// Model exchange.
+
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
+  return call(instance, __func__, Kind::model_exchange, kEvent,
+              [](Instance& it) { it.enter_continuous_mode(); });
+}
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean /*no_set_state_before*/,
+                                       fmi3Boolean* enter_event_mode, fmi3Boolean* terminate) {
+  return call(instance, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
+    require_places(1, {enter_event_mode, terminate});
+    *enter_event_mode = it.step_completed();
+    *terminate = false;
+  });
+}
+fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {
+  return call(instance, __func__, Kind::model_exchange, kEvent | kContinuous,
+              [&](Instance& it) { it.set_time(time); });
+}
+fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 x[], size_t count) {
+  return call(instance, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
+    require_places(count, {x});
+    it.set_states(x, count);
+  });
+}
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[],
+                                             size_t count) {
+  return call(instance, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
+    require_places(count, {derivatives});
+    it.rates(derivatives, count);
+  });
+}
+fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 indicators[], size_t count) {
+  return call(instance, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
+    require_places(count, {indicators});
+    it.indicators(indicators, count);
+  });
+}
+fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 x[], size_t count) {
+  return call(instance, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
+    require_places(count, {x});
+    it.states(x, count);
+  });
+}
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[],
+                                             size_t count) {
+  return call(instance, __func__, Kind::model_exchange, kAny, [&](Instance& it) {
+    require_places(count, {nominals});
+    it.nominals(nominals, count);
+  });
+}
+fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t* count) {
+  return call(instance, __func__, Kind::model_exchange, kAny, [&](Instance& it) {
+    require_places(1, {count});
+    *count = it.indicator_count();
+  });
+}
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t* count) {
+  return call(instance, __func__, Kind::model_exchange, kAny, [&](Instance& it) {
+    require_places(1, {count});
+    *count = it.state_count();
+  });
+}
+
+// Co-simulation.
+
+fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
+  return refuse(instance, __func__, "there is no event mode to leave: hasEventMode is false");
+}
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference /*vr*/[],
+                                    size_t count, const fmi3Int32 /*orders*/[],
+                                    fmi3Float64 /*values*/[], size_t /*value_count*/) {
+  return call(instance, __func__, Kind::co_simulation, kKnown, [&](Instance& /*it*/) {
+    if (count > 0)
+      throw Refused("outputs have no derivatives over time: maxOutputDerivativeOrder is 0");
+  });
+}
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 step,
+                      fmi3Boolean /*no_set_state_before*/, fmi3Boolean* event_handling_needed,
+                      fmi3Boolean* terminate, fmi3Boolean* early_return,
+                      fmi3Float64* last_successful_time) {
+  return call(instance, __func__, Kind::co_simulation, kStep, [&](Instance& it) {
+    require_places(1, {event_handling_needed, terminate, early_return, last_successful_time});
+    *event_handling_needed = *terminate = *early_return = false;
+    *last_successful_time = it.last_time();
+    const Status status = it.step(time, step);
+    *last_successful_time = it.last_time();
+    return status;
+  });
+}
+
+// Scheduled execution.
+
+fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference /*clock*/,
+                                      fmi3Float64 /*time*/) {
+  return refuse(instance, __func__, "there is no scheduled execution of this unit");
+}

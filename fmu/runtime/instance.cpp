@@ -1,0 +1,316 @@
+#include "instance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/validate.h"
+
+namespace bentaxis::fmu {
+namespace {
+
+// Times of an importer that differ by less than this share are one: sums of steps are rounded.
+constexpr double kSameTime = 1e-9;
+
+bool same_time(double a, double b) {
+  return std::abs(a - b) <= kSameTime * std::max({1.0, std::abs(a), std::abs(b)});
+}
+
+const char* word_of(unsigned mode) {
+  switch (mode) {
+    case kInstantiated:
+      return "before initialization";
+    case kInitialization:
+      return "in initialization mode";
+    case kEvent:
+      return "in event mode";
+    case kContinuous:
+      return "in continuous-time mode";
+    case kStep:
+      return "between steps";
+    case kTerminated:
+      return "after termination";
+    default:
+      break;
+  }
+  return "after an error: restore a state, reset or free the instance";
+}
+
+void require_finite(double value, const char* what) {
+  if (!std::isfinite(value)) throw Refused(std::string(what) + " is not a finite number");
+}
+
+}  // namespace
+
+Instance::Instance(const std::filesystem::path& resources, const std::string& token, Kind kind,
+                   Log log)
+    : kind_(kind), log_(std::move(log)), resources_(read_resources(resources)) {
+  if (token != resources_.token)
+    throw Refused("the token " + token + " is that of another unit than its resources: " +
+                  resources_.token);
+  variables_ = variables_of(resources_.the_case, resources_.choice);
+  for (const Variable& it : variables_)
+    first_parameters_.push_back(it.role == Role::parameter ? it.start.value() : 0);
+  first_inputs_ = Plant(resources_.the_case, resources_.choice, kind).first_inputs();
+  tolerance_ = resources_.choice.tolerance;
+  reset();
+}
+
+void Instance::require(Kind kind) const {
+  if (kind != kind_)
+    throw Refused(kind == Kind::co_simulation ? "this instance is of model exchange"
+                                              : "this instance is of co-simulation");
+}
+
+void Instance::require_mode(unsigned modes) const {
+  if ((modes & mode_) == 0) throw Refused(std::string("must not be called ") + word_of(mode_));
+}
+
+Status Instance::failed(const char* function) noexcept {
+  Status status = Status::error;
+  try {
+    const auto say = [&](const char* what) {
+      log_.say(status, std::string(function) + ": " + what);
+    };
+    try {
+      throw;
+    } catch (const Refused& error) {
+      say(error.what());
+    } catch (const InputError& error) {
+      say(error.what());
+    } catch (const ComputationError& error) {
+      mode_ = kFailed;
+      say(error.what());
+    } catch (const std::bad_alloc&) {
+      mode_ = kFailed;
+      say("no memory is left");
+    } catch (const std::exception& error) {
+      mode_ = kFailed;
+      say(error.what());
+    } catch (...) {
+      mode_ = kFailed;
+      say("failed");
+    }
+  } catch (...) {  // no memory for words
+    mode_ = kFailed;
+  }
+  return status;
+}
+
+void Instance::set_up(std::optional<double> tolerance, double start_time,
+                      std::optional<double> stop_time) {
+  require_finite(start_time, "the start time");
+  if (stop_time) {
+    require_finite(*stop_time, "the stop time");
+    if (!(*stop_time > start_time))
+      throw Refused("the stop time " + number_text(*stop_time) + " s must be after the start time " +
+                    number_text(start_time) + " s");
+  }
+  if (tolerance && !(*tolerance > 0 && std::isfinite(*tolerance)))
+    throw Refused("the tolerance must be a number > 0");
+  // Never looser than what the unit was made with: importers pass on defaults of their own solvers.
+  constexpr double kTightest = 1e-12;
+  tolerance_ = resources_.choice.tolerance;
+  if (tolerance) tolerance_ = std::min(tolerance_, std::max(*tolerance, kTightest));
+  start_time_ = now_ = start_time;
+  stops_ = stop_time.has_value();
+  stop_time_ = stop_time.value_or(0);
+  set_up_ = true;
+}
+
+void Instance::enter_initialization() {
+  if (!set_up_) set_up({}, 0, {});
+  mode_ = kInitialization;
+}
+
+void Instance::exit_initialization() {
+  try {
+    settle();
+  } catch (const InputError&) {
+    mode_ = kFailed;
+    throw;
+  }
+  mode_ = kind_ == Kind::co_simulation ? kStep : kEvent;
+}
+
+void Instance::terminate() {
+  settle();
+  mode_ = kTerminated;
+}
+
+void Instance::reset() {
+  mode_ = kInstantiated;
+  set_up_ = false;
+  tolerance_ = resources_.choice.tolerance;
+  start_time_ = stop_time_ = now_ = 0;
+  stops_ = false;
+  parameters_ = wanted_ = first_parameters_;
+  inputs_ = first_inputs_;
+  inputs_changed_ = false;
+  plant_.reset();
+  open_.reset();
+  started_ = false;
+}
+
+Case Instance::case_as_set(const std::vector<double>& parameters) const {
+  Case changed = resources_.the_case;
+  const View view = view_of(changed);
+  for (const Variable& it : variables_) {
+    const double value = parameters[it.reference];
+    if (it.role != Role::parameter || value == first_parameters_[it.reference]) continue;
+    const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
+    Value whole = value_of(parameter, as_const(view)).value();
+    if (auto* pair = std::get_if<std::array<double, 2>>(&whole))
+      (*pair)[it.place] = value;
+    else
+      whole = value;
+    store(parameter, view, whole);
+  }
+  return validate(changed);
+}
+
+void Instance::start() {
+  const Case the_case = case_as_set(wanted_);
+  UnitChoice choice = resources_.choice;
+  choice.tolerance = tolerance_;
+  auto plant = std::make_unique<Plant>(the_case, choice, kind_);
+  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 1);
+  plant_ = std::move(plant);
+  parameters_ = wanted_;
+  started_ = true;
+}
+
+void Instance::settle() {
+  if ((mode_ & (kInitialization | kRunning)) == 0) return;
+  const bool changed = wanted_ != parameters_;
+  if (mode_ == kInitialization) {
+    if (!started_ || changed || inputs_changed_) start();
+    inputs_changed_ = false;
+    open_.reset();
+    return;
+  }
+  if (changed) {
+    try {
+      plant_->change(case_as_set(wanted_));
+      parameters_ = wanted_;
+    } catch (const InputError&) {
+      wanted_ = parameters_;
+      throw;
+    }
+    log_.event("parameters have changed at " + number_text(now_) + " s");
+    open_.reset();
+  }
+  if (inputs_changed_) {
+    plant_->set_inputs(inputs_);
+    inputs_changed_ = false;
+    open_.reset();
+  }
+}
+
+Status Instance::step(double time, double size) {
+  require_finite(time, "the time of the step");
+  require_finite(size, "the size of the step");
+  if (!(size > 0)) throw Refused("the size of the step " + number_text(size) + " s must be > 0");
+  if (!same_time(time, now_))
+    throw Refused("the step begins at " + number_text(time) + " s, the pump stands at " +
+                  number_text(now_) + " s");
+  const double end = time + size;
+  if (stops_ && end > stop_time_ && !same_time(end, stop_time_))
+    throw Refused("the step ends at " + number_text(end) + " s, after the stop time " +
+                  number_text(stop_time_) + " s");
+  settle();
+  open_.reset();
+  try {
+    // A step below the resolution of time is none.
+    if (end - start_time_ > plant_->time()) plant_->step(end - start_time_);
+  } catch (const ComputationError& error) {
+    return log_.say(Status::discard, error.what());
+  }
+  now_ = end;
+  return Status::ok;
+}
+
+void Instance::enter_event_mode() {
+  settle();
+  mode_ = kEvent;
+  if (log_.tells_events()) log_.event("event at " + number_text(now_) + " s");
+}
+
+Instance::Event Instance::update_discrete_states() {
+  settle();
+  const Plant::Event event = plant_->pass_event();
+  Event told{event.states_changed, {}};
+  if (event.next_time) told.next_time = start_time_ + *event.next_time;
+  return told;
+}
+
+void Instance::enter_continuous_mode() {
+  settle();
+  mode_ = kContinuous;
+}
+
+bool Instance::step_completed() {
+  settle();
+  return plant_->wants_event();
+}
+
+void Instance::set_time(double time) {
+  require_finite(time, "the time");
+  if (time < start_time_ && !same_time(time, start_time_))
+    throw Refused("the time " + number_text(time) + " s is before the start time " +
+                  number_text(start_time_) + " s");
+  settle();
+  plant_->set_time(time - start_time_);
+  now_ = time;
+}
+
+namespace {
+
+void require_count(std::size_t count, std::size_t wanted, const char* what) {
+  if (count != wanted)
+    throw Refused("there are " + std::to_string(wanted) + " " + what + ", not " +
+                  std::to_string(count));
+}
+
+}  // namespace
+
+void Instance::set_states(const double* values, std::size_t count) {
+  require_count(count, state_count(), "continuous states");
+  for (std::size_t i = 0; i < count; ++i) require_finite(values[i], "a continuous state");
+  settle();
+  scratch_.assign(values, values + count);
+  plant_->set_states(scratch_);
+}
+
+void Instance::states(double* values, std::size_t count) {
+  require_count(count, state_count(), "continuous states");
+  settle();
+  const std::vector<double> states = open_plant().states();
+  std::copy(states.begin(), states.end(), values);
+}
+
+void Instance::rates(double* values, std::size_t count) {
+  require_count(count, state_count(), "derivatives");
+  settle();
+  open_plant().rates(scratch_);
+  std::copy(scratch_.begin(), scratch_.end(), values);
+}
+
+void Instance::indicators(double* values, std::size_t count) {
+  require_count(count, indicator_count(), "event indicators");
+  settle();
+  scratch_.resize(count);
+  open_plant().indicators(scratch_);
+  std::copy(scratch_.begin(), scratch_.end(), values);
+}
+
+void Instance::nominals(double* values, std::size_t count) const {
+  require_count(count, state_count(), "continuous states");
+  for (const Variable& it : variables_)
+    if (it.role == Role::state) values[it.place] = it.nominal.value_or(1);
+}
+
+}  // namespace bentaxis::fmu

@@ -1,0 +1,116 @@
+// Saved states of an instance.
+#include <cstring>
+
+#include "bentaxis/pump/error.h"
+#include "instance.h"
+
+namespace bentaxis::fmu {
+
+SavedState Instance::present() const {
+  SavedState state;
+  state.mode = mode_;
+  state.start_time = start_time_;
+  state.stop_time = stop_time_;
+  state.now = now_;
+  state.tolerance = tolerance_;
+  state.stops = stops_;
+  state.set_up = set_up_;
+  state.started = started_;
+  state.parameters = wanted_;
+  state.inputs = inputs_;
+  if (started_) state.plant = plant_->state();
+  return state;
+}
+
+const SavedState& Instance::known_state(void* state) const {
+  const auto found = saved_.find(state);
+  if (state == nullptr || found == saved_.end())
+    throw Refused("the state is none that this instance has given, or it has been freed");
+  return *found->second;
+}
+
+void Instance::put_state(void** place, SavedState state) {
+  if (place == nullptr) throw Refused("there is no place for a state");
+  if (*place != nullptr) {  // of the same instance: to be used again
+    const auto found = saved_.find(*place);
+    if (found == saved_.end())
+      throw Refused("the state to be written is none that this instance has given; a new one is "
+                    "asked for by a null pointer");
+    *found->second = std::move(state);
+    return;
+  }
+  auto kept = std::make_unique<SavedState>(std::move(state));
+  SavedState* const pointer = kept.get();
+  saved_[pointer] = std::move(kept);
+  *place = pointer;
+}
+
+void Instance::save(void** state) {
+  // What was set but has not taken effect is set in the saved state too; a plant whose parameters
+  // are others than those that are saved would be no state.
+  if ((mode_ & kRunning) != 0) settle();
+  put_state(state, present());
+}
+
+void Instance::restore(void* saved) {
+  const SavedState state = known_state(saved);
+  std::unique_ptr<Plant> plant;
+  const bool initializing = (state.mode & (kInstantiated | kInitialization)) != 0;
+  // In initialization mode the start is looked for anew: it may be that of other values.
+  if (state.started && !initializing) {
+    UnitChoice choice = resources_.choice;
+    choice.tolerance = state.tolerance;
+    if (plant_ && state.parameters == parameters_ && state.tolerance == tolerance_)
+      plant_->set_state(state.plant);
+    else
+      plant = std::make_unique<Plant>(case_as_set(state.parameters), choice, kind_);
+    if (plant) plant->set_state(state.plant);
+  }
+  if (plant) plant_ = std::move(plant);
+  mode_ = state.mode;
+  start_time_ = state.start_time;
+  stop_time_ = state.stop_time;
+  now_ = state.now;
+  tolerance_ = state.tolerance;
+  stops_ = state.stops;
+  set_up_ = state.set_up;
+  parameters_ = wanted_ = state.parameters;
+  inputs_ = state.inputs;
+  started_ = state.started && !initializing;
+  inputs_changed_ = false;
+  open_.reset();
+  if (!started_) plant_.reset();
+}
+
+void Instance::free_state(void** state) {
+  if (state == nullptr || *state == nullptr) return;
+  known_state(*state);
+  saved_.erase(*state);
+  *state = nullptr;
+}
+
+std::size_t Instance::serialized_size(void* state) const {
+  return bytes_of(known_state(state), resources_.token).size();
+}
+
+void Instance::serialize(void* state, char* bytes, std::size_t size) const {
+  const std::string text = bytes_of(known_state(state), resources_.token);
+  if (size < text.size())
+    throw Refused("the state takes " + std::to_string(text.size()) + " bytes, not " +
+                  std::to_string(size));
+  std::memcpy(bytes, text.data(), text.size());
+}
+
+void Instance::deserialize(const char* bytes, std::size_t size, void** state) {
+  SavedState read = state_of(bytes, size, resources_.token);
+  const bool one_mode = read.mode != 0 && (read.mode & (read.mode - 1)) == 0 && read.mode <= kFailed;
+  const unsigned foreign =
+      kind_ == Kind::co_simulation ? unsigned{kEvent} | kContinuous : unsigned{kStep};
+  if (one_mode && (read.mode & foreign) != 0)
+    throw InputError("the bytes are a state of the other kind of instance");
+  if (!one_mode || read.parameters.size() != variables_.size())
+    throw InputError("the bytes are no state of this unit");
+  put_state(state, std::move(read));
+}
+
+}  // namespace bentaxis::fmu

@@ -1,0 +1,166 @@
+// Values of an instance by reference, and how they depend on each other.
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/registry.h"
+#include "instance.h"
+
+namespace bentaxis::fmu {
+
+const Variable& Instance::variable(Reference reference) const {
+  if (reference >= variables_.size())
+    throw Refused("there is no variable with the reference " + std::to_string(reference));
+  return variables_[reference];
+}
+
+std::size_t Instance::count_of(Role role) const {
+  return static_cast<std::size_t>(
+      std::count_if(variables_.begin(), variables_.end(),
+                    [&](const Variable& it) { return it.role == role; }));
+}
+
+double& Instance::input(Input which) {
+  switch (which) {
+    case Input::speed:
+      return inputs_.speed;
+    case Input::acceleration:
+      return inputs_.acceleration;
+    case Input::torque:
+      return inputs_.torque;
+    case Input::suction:
+      return inputs_.suction;
+    case Input::delivery:
+      return inputs_.delivery;
+    case Input::load_share:
+      break;
+  }
+  return inputs_.load_share;
+}
+
+// States, rates and indicators at the present time. Of co-simulation the plant has none by itself.
+Plant& Instance::open_plant() {
+  if (!plant_) throw Refused("the pump has not been started");
+  if (kind_ == Kind::model_exchange) return *plant_;
+  if (!open_) {
+    auto open = std::make_unique<Plant>(case_as_set(parameters_), resources_.choice,
+                                        Kind::model_exchange);
+    open->set_state(plant_->state());
+    open_ = std::move(open);
+  }
+  return *open_;
+}
+
+double Instance::number(Reference reference) {
+  const Variable& it = variable(reference);
+  if (it.boolean) throw Refused(it.name + " is a Boolean");
+  if (it.role == Role::time) return now_;
+  if (it.role == Role::parameter) return wanted_[reference];
+  if (it.role == Role::input) return input(it.input);
+  if (mode_ == kInstantiated) throw Refused(it.name + " is not known before initialization");
+  settle();
+  if (!plant_) throw Refused(it.name + " is not known: the pump has not been started");
+  if (it.role == Role::output) return plant_->outputs().at(it.place);
+  if (it.role == Role::state) return open_plant().states().at(it.place);
+  if (it.role == Role::derivative)
+    open_plant().rates(scratch_);
+  else {
+    scratch_.resize(indicator_count());
+    open_plant().indicators(scratch_);
+  }
+  return scratch_.at(it.place);
+}
+
+void Instance::numbers(const Reference* references, std::size_t count, double* values) {
+  for (std::size_t i = 0; i < count; ++i) values[i] = number(references[i]);
+}
+
+bool Instance::flag(Reference reference) {
+  const Variable& it = variable(reference);
+  if (!it.boolean) throw Refused(it.name + " is a real number");
+  if (mode_ == kInstantiated) throw Refused(it.name + " is not known before initialization");
+  settle();
+  if (!plant_) throw Refused(it.name + " is not known: the pump has not been started");
+  return plant_->flags().at(it.place);
+}
+
+void Instance::require_settable(const Variable& it, double value) const {
+  if (it.role != Role::parameter && it.role != Role::input)
+    throw Refused(it.name + " is calculated: it cannot be set");
+  const bool early = (mode_ & (kInstantiated | kInitialization)) != 0;
+  if (it.role == Role::parameter && !early) {
+    if (it.variability != Variability::tunable)
+      throw Refused(it.name + " is fixed: it can be set before the end of initialization");
+    if (mode_ == kContinuous)
+      throw Refused(it.name + " can be set in event mode, not in continuous-time mode");
+  }
+  if (!std::isfinite(value)) throw Refused(it.name + " must be a finite number");
+  const auto say = [&](const std::string& allowed) {
+    throw Refused(it.name + " = " + number_text(value) + ": must be " + allowed);
+  };
+  if (it.role == Role::input) {
+    if (it.least && value < *it.least) say(">= " + number_text(*it.least));
+    return;
+  }
+  const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
+  // One that depends on other parameters is looked at with them.
+  if (parameter.range_here != nullptr || value == first_parameters_[it.reference]) return;
+  if (!parameter.range.contains(value)) say(parameter.range.text());
+}
+
+void Instance::set_numbers(const Reference* references, std::size_t count, const double* values) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Variable& it = variable(references[i]);
+    if (it.boolean) throw Refused(it.name + " is a Boolean");
+    require_settable(it, values[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Variable& it = variables_[references[i]];
+    if (it.role == Role::parameter) {
+      wanted_[it.reference] = values[i];
+      continue;
+    }
+    double& place = input(it.input);
+    const bool first = it.input == Input::acceleration && !inputs_.acceleration_given;
+    if (place == values[i] && !first) continue;
+    place = values[i];
+    if (first) inputs_.acceleration_given = true;
+    inputs_changed_ = true;
+  }
+}
+
+void Instance::refuse_values(const Reference* references, std::size_t count,
+                             const char* type) const {
+  if (count == 0) return;
+  throw Refused(variable(references[0]).name + " is no " + type + " that can be got or set so");
+}
+
+void Instance::derivative(const Reference* unknowns, std::size_t unknown_count,
+                          const Reference* knowns, std::size_t known_count, const double* seed,
+                          double* sensitivity) {
+  bool open = kind_ == Kind::model_exchange;
+  std::vector<const Variable*> of, by;
+  for (std::size_t i = 0; i < unknown_count; ++i) {
+    const Variable& it = variable(unknowns[i]);
+    if (it.role != Role::output && it.role != Role::derivative && it.role != Role::state)
+      throw Refused(it.name + " is no unknown: derivatives are of outputs and of rates of states");
+    open = open || it.role != Role::output;
+    of.push_back(&it);
+  }
+  for (std::size_t i = 0; i < known_count; ++i) {
+    const Variable& it = variable(knowns[i]);
+    if (it.role != Role::input && it.role != Role::state)
+      throw Refused(it.name + " is no known: derivatives are by inputs and states");
+    if (!std::isfinite(seed[i])) throw Refused("the seed of " + it.name + " is not finite");
+    open = open || it.role != Role::input;
+    by.push_back(&it);
+  }
+  settle();
+  if (!plant_) throw Refused("the pump has not been started");
+  Plant& plant = open ? open_plant() : *plant_;
+  const std::vector<double> slopes =
+      plant.directional_derivative(of, by, std::vector<double>(seed, seed + known_count));
+  std::copy(slopes.begin(), slopes.end(), sensitivity);
+}
+
+}  // namespace bentaxis::fmu

@@ -1,0 +1,57 @@
+#include "log.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace bentaxis::fmu {
+namespace {
+
+constexpr const char* kEvents = "logEvents";
+constexpr const char* kAll = "logAll";
+constexpr std::array<const char*, 6> kCategories = {
+    kEvents, "logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal", kAll};
+
+const char* category_of(Status status) {
+  switch (status) {
+    case Status::warning:
+      return kCategories[1];
+    case Status::discard:
+      return kCategories[2];
+    case Status::error:
+      return kCategories[3];
+    case Status::fatal:
+      return kCategories[4];
+    case Status::ok:
+      break;
+  }
+  return kEvents;
+}
+
+}  // namespace
+
+bool Log::set_debug(bool on, const std::vector<std::string>& categories) {
+  bool events = categories.empty();
+  for (const std::string& category : categories) {
+    if (std::find(kCategories.begin(), kCategories.end(), category) == kCategories.end())
+      return false;
+    events = events || category == kEvents || category == kAll;
+  }
+  debug_ = on;
+  events_ = events;
+  return true;
+}
+
+Status Log::say(Status status, const std::string& message) const noexcept {
+  try {
+    if (sink_) sink_(status, category_of(status), message);
+  } catch (...) {  // an importer's function that throws is no reason to stop
+  }
+  return status;
+}
+
+void Log::event(const std::string& message) const noexcept {
+  if (tells_events()) say(Status::ok, message);
+}
+
+}  // namespace bentaxis::fmu
