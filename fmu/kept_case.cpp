@@ -15,7 +15,11 @@ std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream bytes;
   if (!in || !(bytes << in.rdbuf())) throw InputError(file.string() + ": cannot be read");
-  return bytes.str();
+  std::string all = std::move(bytes).str();
+  if (all.find('\0') != std::string::npos)
+    throw InputError(file.string() +
+                     ": is a workbook or a .mat file, which a unit cannot read: save it as CSV");
+  return all;
 }
 
 constexpr const char* kRoot = "/bentaxis-unit/";  // a path that no file has

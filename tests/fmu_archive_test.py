@@ -17,10 +17,11 @@ import zipfile
 
 PROGRAM = REPO = None  # set in main
 
-# (case, drive): rigid and compliant gear, ideal and hydraulic pressure, motor, curves.
-UNITS = [("bap63_rated", None), ("bap63_rated", "torque"), ("bap63_tooth_rattle", "speed"), ("bap63_motor_start", None),
-         ("bap63_rated_hydraulic", "speed"), ("bap63_start_up", "case"), ("bap63_load_step", "speed"),
-         ("bap63_motoring", "torque"), ("bap63_reversal", "case")]
+# (case, drive, versions): rigid and compliant gear, ideal and hydraulic pressure, motor, curves.
+UNITS = [("bap63_rated", None, (2, 3)), ("bap63_rated", "torque", (2,)), ("bap63_tooth_rattle", "speed", (3,)),
+         ("bap63_motor_start", None, (2,)), ("bap63_rated_hydraulic", "speed", (2, 3)), ("bap63_start_up", "case", (2, 3)),
+         ("bap63_load_step", "speed", (3,)), ("bap63_motoring", "torque", (2,)), ("bap63_reversal", "case", (3,)),
+         ("bap63_teeth", "speed", (2,))]
 
 # Allowed pairs, and the values of `initial` with the default first (FMI 2.0.4, 2.2.7; FMI 3.0, 2.4.7).
 ALLOWED = {("parameter", "fixed"): ["exact"], ("parameter", "tunable"): ["exact"],
@@ -122,8 +123,8 @@ class Archives(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp())
         cls.files, cls.said, cls.descriptions = {}, {}, {}
-        for case, drive in UNITS:
-            for version in (2, 3):
+        for case, drive, versions in UNITS:
+            for version in versions:
                 file = cls.folder / f"{case}-{drive}-{version}.fmu"
                 more = ["--drive", drive] if drive else []
                 result = run("fmu", REPO / f"cases/{case}.toml", "--out", file, "--fmi", version, *more)
@@ -243,8 +244,10 @@ class Archives(unittest.TestCase):
         self.assertTrue(all("" != v.name for v in listed))
 
     def test_both_versions_say_the_same(self):
-        for case, drive in UNITS:
-            two, three = both = [self.descriptions[case, drive, version] for version in (2, 3)]
+        for case, drive, versions in UNITS:
+            if len(versions) < 2:
+                continue
+            two, three = both = [self.descriptions[case, drive, version] for version in versions]
             facts = [[(v.name, v.reference, v.causality, v.variability, v.initial, v.start, v.all.get("unit"))
                       for v in it.variables] for it in both]
             self.assertEqual(*facts)
