@@ -3,7 +3,6 @@
 
 #include "bentaxis/designs/validation.h"
 #include "bentaxis/files/case_file.h"
-#include "bentaxis/files/csv.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
@@ -13,6 +12,7 @@
 #include "data_folder.h"
 #include "options.h"
 #include "report_files.h"
+#include "result_files.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -69,20 +69,7 @@ int compare(const Options& options) {
   refuse(result.first);
   if (!options.multibody_case.empty()) refuse(result.second);
 
-  const auto wanted = [&](const Channel& channel) { return how.channels.wants(channel); };
-  std::vector<TextFile> curves = {
-      {"analytic.csv", to_csv(select_channels(result.analytic, wanted))},
-      {"multibody.csv", to_csv(select_channels(result.multibody, wanted))}};
-  if (result.first.hydraulics)
-    curves.emplace_back("pressure.csv", to_csv(result.first.hydraulics->table));
-  if (result.budget) {
-    curves.emplace_back("budget_analytic.csv", to_csv(result.budget->analytic));
-    curves.emplace_back("budget_multibody.csv", to_csv(result.budget->multibody));
-  }
-  if (result.teeth) {
-    curves.emplace_back("teeth_analytic.csv", to_csv(result.teeth->analytic));
-    curves.emplace_back("teeth_multibody.csv", to_csv(result.teeth->multibody));
-  }
+  std::vector<TextFile> curves = comparison_files(result);
   report::Document document = study::comparison_document(result, versions());
   std::string known;  // how well
   if (samples > 0) {

@@ -3,14 +3,19 @@
 namespace bentaxis::cli {
 namespace fs = std::filesystem;
 
-std::optional<fs::path> shipped_reference_data() {
+std::optional<fs::path> shipped_folder(const std::string& name, const fs::path& file,
+                                       const std::string& data_from_file) {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
   for (const fs::path& folder :
-       {program.parent_path() / BENTAXIS_DATA_FROM_BINARY / "reference_data",
-        fs::path(BENTAXIS_SOURCE_DIR) / "reference_data"})
+       {file.parent_path() / data_from_file / name, fs::path(BENTAXIS_SOURCE_DIR) / name})
     if (fs::is_directory(folder, error)) return folder.lexically_normal();
   return std::nullopt;
+}
+
+std::optional<fs::path> shipped_reference_data() {
+  std::error_code error;
+  return shipped_folder("reference_data", fs::read_symlink("/proc/self/exe", error),
+                        BENTAXIS_DATA_FROM_BINARY);
 }
 
 }  // namespace bentaxis::cli

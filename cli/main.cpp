@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "console.h"
 #include "provenance.h"
+#include "versions.h"
 
 namespace {
 
@@ -51,7 +52,7 @@ ProgramParser::Texts texts() {
           "bentaxis: reaction forces and drive torque of bent-axis piston pumps by two independent "
           "models\n(analytic: closed form after Roccatello & Nervegna 2009; multibody: Simbody), "
           "and how far they are apart.",
-          "bentaxis " BENTAXIS_VERSION,
+          "bentaxis " BENTAXIS_VERSION "\noptional parts: " + optional_parts(),
           "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
           "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out"};
 }

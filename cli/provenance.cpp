@@ -86,6 +86,8 @@ void remember_command(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) command() += " " + shell_word(argv[i]);
 }
 
+void remember_command(const std::string& text) { command() = text; }
+
 report::Provenance provenance() {
   report::Provenance provenance;
   provenance.command = command();
@@ -93,7 +95,7 @@ report::Provenance provenance() {
       std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
   for (const InputFile& input : InputLog::files())
     provenance.inputs.push_back({short_name(input.file), input.sha256});
-  for (const auto& [name, value] : versions()) {
+  for (const auto& [name, value] : shared_versions()) {
     if (name == "bentaxis") provenance.version = value;
     if (name == "processor" || name == "compiler") provenance.machine.emplace_back(name, value);
   }

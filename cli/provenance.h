@@ -1,12 +1,16 @@
 // Where a report comes from: this run of the program.
 #pragma once
 
+#include <string>
+
 #include "bentaxis/report/document.h"
 
 namespace bentaxis::cli {
 
 /// Remembers the command line, for reports.
 void remember_command(int argc, const char* const* argv);
+/// The same in words, where there is no command line.
+void remember_command(const std::string& text);
 
 /// Command line, date, version, files read so far, machine. The date is SOURCE_DATE_EPOCH where
 /// that is set.

@@ -4,7 +4,6 @@
 
 #include "bentaxis/report/page.h"
 #include "bentaxis/report/picture.h"
-#include "options.h"
 #include "provenance.h"
 
 namespace bentaxis::cli {
@@ -33,19 +32,6 @@ std::vector<std::string> files_of_list(const std::string& list) {
 }
 
 }  // namespace
-
-void add_report(const CommandParser& command, ReportPlace& place, const std::string& what) {
-  add_out(command, place.out, what);
-  add_figures(command, place.figures);
-}
-
-void add_figures(CommandParser command, std::string& folder) {
-  command
-      .option("--figures", folder,
-              "also write every figure of the report as SVG, PNG and CSV into this folder, made "
-              "where missing")
-      .text("DIR");
-}
 
 ReportFolders::ReportFolders(const ReportPlace& place) : report_(place.out) {
   if (!place.figures.empty()) figures_.emplace(place.figures);

@@ -9,9 +9,10 @@
 
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/report/document.h"
-#include "command_parser.h"
 
 namespace bentaxis::cli {
+
+class CommandParser;
 
 /// Name and content.
 using TextFile = std::pair<std::string, std::string>;

@@ -1,7 +1,6 @@
 #include <memory>
 #include <string>
 
-#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/results/trajectory.h"
 #include "bentaxis/study/simulation_document.h"
@@ -9,6 +8,7 @@
 #include "console.h"
 #include "options.h"
 #include "report_files.h"
+#include "result_files.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -20,7 +20,27 @@ struct Options {
   std::string model;  ///< "": both
   std::string oil;    ///< "": it follows the motion
   study::SimulationChoice choice;
+  study::UnitChoice unit;
+  std::string fmu;
 };
+
+// What acts on the pump beside its case.
+void couple(const Options& options, const CommandParser& command, const Case& read,
+            study::SimulationChoice& choice) {
+  for (const char* option : {"--connect", "--communication-step"})
+    if (command.given(option) && !command.given("--fmu"))
+      throw InputError(std::string(option) + ": changes nothing: there is no --fmu");
+  if (!command.given("--fmu")) return;
+  if (choice.steady)
+    throw InputError(
+        "--steady: not with --fmu: what a unit does need not repeat itself; simulate from the "
+        "start");
+  study::UnitChoice unit = options.unit;
+  unit.file = options.fmu;
+  choice.unit = std::make_shared<study::UnitCoupling>(
+      unit, read,
+      read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows);
+}
 
 int simulate(const Options& options, const CommandParser& command) {
   study::SimulationChoice choice = options.choice;
@@ -36,30 +56,42 @@ int simulate(const Options& options, const CommandParser& command) {
   drive_of(read);
   const bool one_method =
       (read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows) ||
-      read.pump.gear.contact == ToothContact::teeth;
+      read.pump.gear.contact == ToothContact::teeth || command.given("--fmu");
   for (const char* option : {"--integrator", "--accuracy"})
     if (command.given(option) && (one_method || choice.steady))
-      throw InputError(
-          std::string(option) +
-          ": changes nothing: with oil, of teeth and for a periodic motion, one method "
-          "integrates what both models find; --error sets its tolerance");
+      throw InputError(std::string(option) +
+                       ": changes nothing: with oil, with a unit, of teeth and for a periodic "
+                       "motion, one method "
+                       "integrates what both models find; --error sets its tolerance");
+  couple(options, command, read, choice);
   ReportFolders folders(options.place);
   const study::SimulationResult result = study::simulate(
       study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);
-  std::vector<TextFile> curves;
-  for (const auto& [name, run] :
-       {std::pair{"analytic", &result.analytic}, std::pair{"multibody", &result.multibody}}) {
-    if (!*run) continue;
-    curves.emplace_back(std::string("simulation_") + name + ".csv", to_csv((*run)->table));
-    if (!(*run)->teeth.empty())
-      curves.emplace_back(std::string("teeth_") + name + ".csv",
-                          to_csv(teeth_table_of(**run, result.ready.the_case.pump.gear)));
-    if ((*run)->oil) curves.emplace_back(std::string("oil_") + name + ".csv", oil_csv(**run));
-  }
   const auto paths = folders.write("report", study::simulation_document(result, versions()),
-                                   study::simulation_curves(result), curves);
+                                   study::simulation_curves(result), simulation_files(result));
   print_result(study::simulation_text(result), paths);
   return result.agrees() ? kDone : kOutOfTolerance;
+}
+
+void add_unit(CommandParser command, Options& options) {
+  command
+      .option("--fmu", options.fmu,
+              "a drive or load as a Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that "
+              "acts on the pump; both models get an instance of their own")
+      .text("FILE");
+  command
+      .option("--connect", options.unit.connect,
+              "A gets the value of B: an input of the pump (drive_speed, drive_acceleration, "
+              "drive_torque, suction_pressure, delivery_pressure, load_share) that of an output of "
+              "the unit, or an input of the unit that of a column of the CSV files; equal names "
+              "are connected anyhow")
+      .repeatable()
+      .text("A=B");
+  command
+      .option("--communication-step", options.unit.step,
+              "s between the points at which pump and unit exchange values")
+      .positive_number()
+      .text("SECONDS [that of the unit, or between rows]");
 }
 
 }  // namespace
@@ -82,6 +114,7 @@ Command add_simulate_command(CommandParser program) {
   command.flag("--steady", options->choice.steady,
                "find the motion that repeats itself every N-th of a turn, and its stability, "
                "instead of what follows the start; rows over one turn");
+  add_unit(command, *options);
   Option accuracy = command.option("--accuracy", options->choice.accuracy,
                                    "multibody: relative accuracy per step of Simbody's integrator");
   accuracy.accuracy().text("NUMBER [found for --error]");

@@ -10,7 +10,6 @@
 #include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
-#include "ranks.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -25,7 +24,7 @@ std::string processor() {
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> versions() {
+std::vector<std::pair<std::string, std::string>> shared_versions() {
   return {
       {"bentaxis", BENTAXIS_VERSION},
       {"compiler",
@@ -41,7 +40,6 @@ std::vector<std::pair<std::string, std::string>> versions() {
       {"Simbody", multibody::simbody_version()},
       {"BLAS", multibody::blas_library()},
       {"HDF5", designs::hdf5_version()},
-      {"MPI", mpi_library()},
       {"OpenTURNS", designs::openturns_version()},
       {"Ceres",
        designs::least_squares_library().empty() ? "none" : designs::least_squares_library()},

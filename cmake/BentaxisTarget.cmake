@@ -45,7 +45,11 @@ function(bentaxis_library room)
   target_include_directories(${name}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
-  install(TARGETS ${name} EXPORT bentaxisTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  # A component of find_package(bentaxis) of its own.
+  install(TARGETS ${name} EXPORT bentaxis_${room} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT bentaxis_${room} NAMESPACE bentaxis:: FILE bentaxis-${room}.cmake
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/bentaxis)
+  set_property(GLOBAL APPEND PROPERTY BENTAXIS_ROOMS ${room})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 endfunction()
 

@@ -17,6 +17,7 @@ class Stepper::Implementation {
   void start(double time, const SystemState& state, double end) {
     time_ = time;
     end_ = end;
+    span_ = end - time;
     state_ = state;
     restart();
   }
@@ -35,8 +36,10 @@ class Stepper::Implementation {
   }
 
   void step_to(double time) {
+    // Beyond the end another one is expected as far away, so that steps go on over points there too.
+    if (time > end_) end_ = std::max(time, end_ + span_);
     try {
-      advance_to(time, std::max(end_, time));
+      advance_to(time, end_);
     } catch (const ComputationError&) {
       // What lies beyond the point need not be possible: it may be changed there.
       restart();
@@ -68,7 +71,7 @@ class Stepper::Implementation {
   Oil& oil_;
   Course course_;
   Surroundings outside_;
-  double time_ = 0, end_ = 0;
+  double time_ = 0, end_ = 0, span_ = 0;
   SystemState state_;
 };
 

@@ -156,6 +156,17 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   return result;
 }
 
+std::string sweep_csv(const SweepResult& result) {
+  SweepBlock all{.first = 0,
+                 .designs = result.designs,
+                 .values = result.values,
+                 .results = result.results,
+                 .reasons = std::vector<std::string>(result.designs),
+                 .checks = {}};
+  for (const auto& [design, reason] : result.infeasible) all.reasons[design] = reason;
+  return csv_head(result.plan) + csv_rows(all, result.plan);
+}
+
 std::string disagreements_text(const SweepResult& result) {
   std::string text;
   constexpr int kMost = 20;

@@ -283,7 +283,11 @@ constexpr const char* kMotionColumns[] = {"theta_deg", "psi_deg",          "thet
 
 States read_states(const std::filesystem::path& file, const Case& the_case,
                    const PressureTrace& pressure) {
-  const NumericTable table = read_numeric_csv(file);
+  return states_of(read_numeric_csv(file), file, file.string() + ":1", the_case, pressure);
+}
+
+States states_of(const NumericTable& table, const std::filesystem::path& file,
+                 const std::string& head, const Case& the_case, const PressureTrace& pressure) {
   const int pistons = the_case.pump.geometry.pistons;
   std::map<std::string, std::size_t> columns;
   std::set<std::string> known(std::begin(kMotionColumns), std::end(kMotionColumns));
@@ -293,14 +297,14 @@ States read_states(const std::filesystem::path& file, const Case& the_case,
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const std::string& name = table.header[c];
     if (known.count(name) == 0)
-      throw InputError(file.string() + ":1: unknown column \"" + name + "\"" +
+      throw InputError(head + ": unknown column \"" + name + "\"" +
                        suggestion(name, known));
     if (!columns.emplace(name, c).second)
-      throw InputError(file.string() + ":1: column \"" + name + "\" stands there twice");
+      throw InputError(head + ": column \"" + name + "\" stands there twice");
   }
   const auto has = [&](const std::string& name) { return columns.count(name) > 0; };
   const auto require = [&](const std::string& name) {
-    if (!has(name)) throw InputError(file.string() + ":1: column \"" + name + "\" is missing");
+    if (!has(name)) throw InputError(head + ": column \"" + name + "\" is missing");
   };
   for (const char* const name : kMotionColumns) require(name);
   const bool pressures = has(chamber(0));

@@ -175,7 +175,7 @@ class Study {
       : r_(result), progress_of_(progress_of) {}
 
   void run() {
-    if (r_.oil_follows || r_.choice.steady || r_.has_teeth()) {
+    if (r_.oil_follows || r_.choice.steady || r_.has_teeth() || r_.choice.unit) {
       pump_.emplace(r_.ready, r_.oil_follows);
       r_.choice.steady ? run_steady() : run_coupled();
     } else {
@@ -203,8 +203,7 @@ class Study {
     Trajectory run = integrate(first, tolerance, r_.oil_follows ? "with oil" : "motion");
     Trajectory loose = integrate(first, kLooser * tolerance, "looser");
     peaks_ = peaks_of(run);
-    coupled::Options disturbed;
-    disturbed.tolerance = tolerance;
+    coupled::Options disturbed = options_for(tolerance);
     r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
     note_growth(run, pump_->simulate(first, disturbed, progress_of_("sensitivity")));
     const auto error = [&] { return change_of(loose, run) / kChangeOverError; };
@@ -219,6 +218,7 @@ class Study {
                          error(), 0, 1, 1});
     add_effort(first, kLooser * tolerance, loose, r_.integration_change);
     add_effort(first, tolerance, run, r_.integration_change / kChangeOverError);
+    if (r_.choice.unit) note_coupling(first, run);
     if (!analytic) {
       r_.multibody = std::move(run);
       return;
@@ -234,10 +234,41 @@ class Study {
   }
 
   Trajectory integrate(Model model, double tolerance, const std::string& part) const {
-    coupled::Options options;
-    options.tolerance = tolerance_ = tolerance;
+    coupled::Options options = options_for(tolerance);
+    tolerance_ = tolerance;
     options.body_loads = true;
     return pump_->simulate(model, options, progress_of_(to_string(model) + ", " + part));
+  }
+
+  // Each run with a unit has an instance of its own.
+  coupled::Options options_for(double tolerance) const {
+    coupled::Options options;
+    options.tolerance = tolerance;
+    if (r_.choice.unit) options.exchange = r_.choice.unit->exchange();
+    return options;
+  }
+
+  // What exchanging values at points alone has changed: from a run with points between them.
+  void note_coupling(Model model, const Trajectory& run) {
+    coupled::Options options = options_for(tolerance_);
+    options.exchange = r_.choice.unit->exchange(2);
+    const Trajectory half =
+        pump_->simulate(model, options, progress_of_("half the communication step"));
+    std::map<std::string, CouplingChange> groups;
+    for (std::size_t row = 0; row < judged_rows(); ++row)
+      for_each_difference(run, half, peaks_, row, [&](const Compared& what, double share) {
+        CouplingChange& group = groups[what.group];
+        group.group = what.group;
+        group.unit = what.unit;
+        group.peak = peaks_.at(what.group);
+        if (std::isnan(share) || share > group.change) {
+          group.change = share;
+          group.time_s = run.table.state(row, 0);
+        }
+      });
+    for (const auto& [name, group] : groups) r_.coupling.push_back(group);
+    std::sort(r_.coupling.begin(), r_.coupling.end(),
+              [](const auto& x, const auto& y) { return x.change > y.change; });
   }
 
   void run_steady() {
@@ -465,8 +496,7 @@ class Study {
           std::max(earliest, std::abs(late) < spacing / 4 ? time + late : time));
     }
     if (!pump_) return analytic(options, "analytic, over the angle");
-    coupled::Options with_oil;
-    with_oil.tolerance = tolerance_;
+    coupled::Options with_oil = options_for(tolerance_);
     with_oil.times = options.times;
     return pump_->simulate(Model::analytic, with_oil, progress_of_("analytic, over the angle"));
   }
@@ -635,12 +665,17 @@ std::string SimulationResult::headline() const {
 
 ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
                              const PartProgress& progress_of) {
+  if (choice.unit) the_case = choice.unit->driven();
   drive_of(the_case);
   const bool hydraulic = the_case.pressure.kind == PressureKind::hydraulic;
   if (!hydraulic && choice.oil == OilInTime::periodic)
     throw InputError(
         "--oil periodic changes nothing: the pressure of the case is not \"hydraulic\"");
   if (choice.steady) {
+    if (choice.unit)
+      throw InputError(
+          "--steady: not with --fmu: what a unit does need not repeat itself; simulate from the "
+          "start");
     refuse_course(the_case);
     if (the_case.pump.gear.contact == ToothContact::teeth)
       throw InputError(

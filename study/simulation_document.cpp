@@ -15,6 +15,7 @@
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth.h"
+#include "fmu_section.h"
 #include "key_figures.h"
 
 namespace bentaxis::study {
@@ -426,6 +427,8 @@ std::vector<report::Warning> warnings_of(const SimulationResult& r) {
                      "motion; the oil does not follow it.",
                      r.ready.the_case.operation.speed_rpm)});
   warn_of_further_pairs(r, warnings);
+  if (r.choice.unit)
+    for (report::Warning& warning : coupling_warnings(r)) warnings.push_back(std::move(warning));
   return warnings;
 }
 
@@ -490,7 +493,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
             "method. Agreement says that both follow the same description; the error of the "
             "integration is that of another tolerance, the oil's are its balances; whether a pump "
             "does so is another question (docs/limits.md)."
-      : r.has_teeth()
+      : r.has_teeth() || r.choice.unit
           ? "Two derivations of the mechanics, integrated by the same method. Agreement says that "
             "both follow the same description; the error of the integration is that of another "
             "tolerance; whether a pump does so is another question (docs/limits.md)."
@@ -505,6 +508,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
   document.runs.emplace();
   if (r.choice.steady) document.runs->push_back(periodic_section(r));
   if (!r.groups.empty()) document.runs->push_back(difference_section(r));
+  if (r.choice.unit) document.runs->push_back(coupling_section(r));
   if (r.oil_follows) document.runs->push_back(energy_section(r));
   document.runs->push_back(work_section(r));
   if (compliant(r)) document.runs->push_back(teeth_section(r));
@@ -610,6 +614,7 @@ std::string simulation_text(const SimulationResult& r) {
     text += fmt::format("at a tolerance ten times looser results change by {:.1e} of peak\n",
                         r.integration_change);
   if (!r.multibody_choice.empty()) text += "chosen " + r.multibody_choice + "\n";
+  if (r.choice.unit) text += coupling_text(r);
   for (const report::Warning& warning : warnings_of(r))
     text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
   return text;

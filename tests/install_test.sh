@@ -9,6 +9,17 @@ cmake --install "$build" --prefix "$scratch/usr" > /dev/null
 cmake -S "$source_dir/tests/install" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/usr" \
   -DCMAKE_BUILD_TYPE=Release > "$scratch/log" || { cat "$scratch/log"; exit 1; }
 cmake --build "$scratch/build" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+# One room of it, without what the others need; and a room there is not.
+cmake -S "$source_dir/tests/install/components" -B "$scratch/components" -DCMAKE_PREFIX_PATH="$scratch/usr" \
+  -DCMAKE_BUILD_TYPE=Release > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+cmake --build "$scratch/components" > "$scratch/log" 2>&1 || { cat "$scratch/log"; exit 1; }
+"$scratch/components/uses_analytic"
+if cmake -S "$source_dir/tests/install/components" -B "$scratch/unknown" -DCMAKE_PREFIX_PATH="$scratch/usr" -DROOM=analitic \
+    > "$scratch/log" 2>&1; then
+  echo "an unknown component was found"
+  exit 1
+fi
+grep -q 'no component "analitic": there are pump' <(tr -s '\n ' ' ' < "$scratch/log") || { cat "$scratch/log"; exit 1; }
 cd "$scratch"
 "$scratch/build/uses_bentaxis" "$source_dir/cases/bap63_rated.toml" "$source_dir/cases/bap63_rated_hydraulic.toml"
 share=usr/share
@@ -25,3 +36,13 @@ done
 usr/bin/bentaxis compare usr/share/bentaxis/cases/bap63_rated.toml --out out > /dev/null
 usr/bin/bentaxis hardcases --filter tilt_45 --out out > /dev/null
 ls out/report.html out/hardcases.html
+# The Python module, where it was built, finds what is installed with it.
+packages=$scratch/usr/lib/python3/dist-packages
+if [[ -d $packages/bentaxis ]]; then
+  PYTHONPATH=$packages /usr/bin/python3 - "$scratch/usr/share/bentaxis" <<'EOF'
+import pathlib, sys
+import bentaxis
+assert pathlib.Path(bentaxis.data_folder()) == pathlib.Path(sys.argv[1]) / "cases", bentaxis.data_folder()
+assert bentaxis.compare(bentaxis.read_case(bentaxis.data_folder() + "/bap63_rated.toml")).agrees
+EOF
+fi

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bentaxis/coupled/open_system.h"
+#include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/trajectory.h"
 #include "machine.h"
@@ -111,7 +112,10 @@ Case with_drive(Case the_case, Drive drive) {
     spec.torque = 0;
     spec.kind = DriveKind::speed;
   } else {
-    if (spec.kind != DriveKind::torque) spec.torque = 0;
+    if (spec.kind != DriveKind::torque)
+      spec.torque = 0;
+    else if (!spec.curve.time.empty())
+      spec.torque = TimeSignal(spec.curve).value(0);
     if (!spec.start_speed) spec.start_speed = omega;
     spec.kind = DriveKind::torque;
   }

@@ -22,11 +22,12 @@ Machine::Machine(const Case& given, const hydraulics::OilStart& start) : the_cas
                  : hydraulics::oil_in_time(the_case, start);
 }
 
-hydraulics::OilStart oil_start(const Case& the_case, bool from_rest) {
+hydraulics::OilStart oil_start(Case& the_case, bool from_rest) {
   if (!has_oil(the_case)) return {};
   const bool periodic = !from_rest && hydraulics::starts_periodic(the_case);
   if (!periodic && !hydraulics::needs_periodic_state(the_case)) return {};
   const hydraulics::SteadyState state = hydraulics::steady_state(the_case);
+  hydraulics::give_to(the_case, state);
   return periodic ? hydraulics::running(state) : hydraulics::at_rest(state);
 }
 

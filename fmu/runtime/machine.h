@@ -25,8 +25,9 @@ struct Machine {
   std::unique_ptr<Oil> oil;
 };
 
-/// Where the oil of a case starts: in its periodic state, at rest, or nowhere.
+/// Where the oil of a case starts: in its periodic state, at rest, or nowhere. Where that has to be
+/// computed, what it is of the ports' pressures is given to the case, as simulate does.
 /// @throws InputError, ComputationError
-hydraulics::OilStart oil_start(const Case& the_case, bool from_rest);
+hydraulics::OilStart oil_start(Case& the_case, bool from_rest);
 
 }  // namespace bentaxis::fmu

@@ -8,6 +8,7 @@
 #include "bentaxis/coupled/stepper.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/trajectory.h"
 #include "columns.h"
@@ -71,7 +72,12 @@ class Plant::Implementation {
   Implementation(const Case& the_case, const UnitChoice& choice, Kind kind)
       : choice_(choice), kind_(kind), case_(with_drive(the_case, choice.drive)) {
     build(case_, {});
-    first_ = inputs_ = inputs_of_case();
+    first_ = inputs_of_case();
+    // A case whose speed changes over time begins with that of its curve.
+    if (choice.drive == Drive::speed && the_case.drive &&
+        the_case.drive->kind == DriveKind::speed && !the_case.drive->curve.time.empty())
+      first_.speed = TimeSignal(the_case.drive->curve).value(0);
+    inputs_ = first_;
     state_ = {machine_->mechanics->start(), machine_->oil->start()};
   }
 
@@ -89,13 +95,15 @@ class Plant::Implementation {
     Case c = case_;
     // Whatever the case says of them, the start is that of the inputs.
     const bool from_rest = choice_.drive == Drive::speed && inputs.speed == 0;
-    if (inputs.speed != first_.speed && choice_.drive == Drive::speed && !from_rest)
+    const bool as_in_case = inputs.speed == rad_per_second(c.operation.speed_rpm);
+    if (choice_.drive == Drive::speed && !as_in_case && !from_rest)
       c.operation.speed_rpm = inputs.speed / kRadPerSecondPerRpm;
     const TakesFromOutside given = takes();
     if (given.suction) c.pressure.ports.suction = inputs.suction;
     if (given.delivery) c.pressure.ports.delivery = inputs.delivery;
     const hydraulics::OilStart oil = oil_start(c, from_rest);
     load_size_ = oil.load_size;
+    started_ = scales_of(c);
     build(c, oil);
     time_ = 0;
     end_ = end;
@@ -107,15 +115,19 @@ class Plant::Implementation {
   }
 
   void change(const Case& the_case) {
-    const PlantState now = state();
+    PlantState now = state();
+    const std::vector<double> before = scales_of(case_);
     case_ = with_drive(the_case, choice_.drive);
-    set_state(now);
+    const std::vector<double> after = scales_of(case_);
+    for (std::size_t i = 0; i < now.started.size(); ++i)
+      if (after[i] != before[i]) now.started[i] = after[i];
+    go_on_from(now, true);
   }
 
   void set_inputs(const Inputs& inputs) {
     if (inputs == inputs_) return;
     if (inputs.speed != inputs_.speed) speed_changed_ = true;
-    const AxisMotion shaft = shaft_after(inputs_, inputs);
+    const AxisMotion shaft = steered(shaft_now(), inputs_, inputs);
     inputs_ = inputs;
     outside_ = surroundings(shaft);
     fresh_ = false;
@@ -161,6 +173,7 @@ class Plant::Implementation {
     state.oil = now.oil;
     state.shaft = shaft_now();
     state.load_size = load_size_;
+    state.started = started_;
     state.speed_changed = speed_changed_;
     state.inputs = inputs_;
     return state;
@@ -170,15 +183,7 @@ class Plant::Implementation {
     if (state.motion.size() != kMotionStates ||
         static_cast<int>(state.oil.size()) != machine_->oil->states())
       throw InputError("the state is of another pump");
-    load_size_ = state.load_size;
-    build(case_, {load_size_, state.oil});
-    time_ = state.time;
-    inputs_ = state.inputs;
-    speed_changed_ = state.speed_changed;
-    std::copy(state.motion.begin(), state.motion.end(), state_.motion.begin());
-    state_.oil = state.oil;
-    outside_ = surroundings(state.shaft);
-    go_on();
+    go_on_from(state, state.load_size != load_size_ || state.started != started_);
   }
 
   std::vector<double> directional_derivative(const std::vector<const Variable*>& unknowns,
@@ -190,57 +195,87 @@ class Plant::Implementation {
     std::vector<double> slope(unknowns.size(), 0.0);
     if (largest == 0) return slope;
     const double step = kDifference / largest;
-    const PlantState here = state();
+    const AxisMotion shaft = shaft_now();
     const std::vector<double> values = open_ ? open_->values() : std::vector<double>();
-    const auto side = [&](double sign) {
-      Inputs inputs = here.inputs;
+    const auto beside = [&](double steps) {
+      Inputs inputs = inputs_;
       std::vector<double> moved = values;
       for (std::size_t i = 0; i < knowns.size(); ++i) {
         double& place = knowns[i]->role == Role::input ? input_of(inputs, knowns[i]->input)
                                                        : moved.at(knowns[i]->place);
-        place += sign * step * seed[i];
+        place += steps * step * seed[i];
       }
-      return look(inputs, moved, unknowns);
+      return look(shaft, inputs, moved, unknowns);
     };
-    const std::vector<double> above = side(1), below = side(-1);
-    look(here.inputs, values, {});  // as it was
-    for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (above[i] - below[i]) / (2 * step);
+    const std::vector<double> above = beside(1), below = beside(-1);
+    const std::vector<double> far_above = beside(2), far_below = beside(-2);
+    stand(outside_, values);  // as it was
+    // Of fourth order: flows through orifices bend sharply where pressures are nearly equal.
+    for (std::size_t i = 0; i < slope.size(); ++i)
+      slope[i] = (8 * (above[i] - below[i]) - (far_above[i] - far_below[i])) / (12 * step);
     return slope;
   }
 
  private:
+  // @param anew  models are built anew: of another case, or by another start
+  void go_on_from(const PlantState& state, bool anew) {
+    load_size_ = state.load_size;
+    started_ = state.started;
+    if (anew) build(as_started(), {load_size_, state.oil});
+    time_ = state.time;
+    inputs_ = state.inputs;
+    speed_changed_ = state.speed_changed;
+    std::copy(state.motion.begin(), state.motion.end(), state_.motion.begin());
+    state_.oil = state.oil;
+    outside_ = surroundings(state.shaft);
+    go_on();
+  }
+
   double nominal(const Variable& known) const {
     if (known.role == Role::input) return nominal_of(known.input, machine_->the_case);
     return nominals_.at(known.place);
   }
 
-  // Values of unknowns under other inputs and states, at the present time.
-  std::vector<double> look(const Inputs& inputs, const std::vector<double>& values,
-                           const std::vector<const Variable*>& unknowns) {
-    const AxisMotion shaft = shaft_after(inputs_, inputs);
-    const Inputs kept = std::exchange(inputs_, inputs);
-    const Surroundings there = surroundings(shaft);
-    inputs_ = kept;
-    if (open_) {
-      open_->surround(there);
-      open_->set(values);
-    } else {
-      machine_->mechanics->surround(there);
-      machine_->oil->surround(there);
-    }
+  // What acts and, of model exchange, the states.
+  void stand(const Surroundings& outside, const std::vector<double>& values) {
     fresh_ = false;
+    if (open_) {
+      open_->surround(outside);
+      open_->set(values);
+      return;
+    }
+    machine_->mechanics->surround(outside);
+    machine_->oil->surround(outside);
+  }
+
+  // Values of unknowns under other inputs and states, at the present time.
+  // @param shaft  as it moves under the present ones
+  std::vector<double> look(const AxisMotion& shaft, const Inputs& inputs,
+                           const std::vector<double>& values,
+                           const std::vector<const Variable*>& unknowns) {
+    const Inputs kept = std::exchange(inputs_, inputs);
+    const Surroundings there = surroundings(steered(shaft, kept, inputs));
+    inputs_ = kept;
+    stand(there, values);
     std::vector<double> found, rates;
-    if (open_ && !unknowns.empty()) open_->rates(rates);
+    if (open_) open_->rates(rates);
     for (const Variable* unknown : unknowns)
       found.push_back(unknown->role == Role::derivative ? rates.at(unknown->place)
                       : unknown->role == Role::state    ? values.at(unknown->place)
                                                         : outputs().at(unknown->place));
-    if (!open_) {
-      machine_->mechanics->surround(outside_);
-      machine_->oil->surround(outside_);
-    }
-    fresh_ = false;
     return found;
+  }
+
+  // What the start makes of a case and its states are measured by.
+  static std::vector<double> scales_of(const Case& c) {
+    return {c.operation.speed_rpm, c.pressure.ports.suction, c.pressure.ports.delivery};
+  }
+  Case as_started() const {
+    Case c = case_;
+    if (started_.size() != scales_of(c).size()) return c;
+    c.operation.speed_rpm = started_[0];
+    c.pressure.ports = {started_[1], started_[2]};
+    return c;
   }
 
   Inputs inputs_of_case() const {
@@ -274,8 +309,7 @@ class Plant::Implementation {
   }
 
   // The shaft's motion where inputs follow others: it goes on where they say nothing new of it.
-  AxisMotion shaft_after(const Inputs& before, const Inputs& now) const {
-    AxisMotion shaft = shaft_now();
+  static AxisMotion steered(AxisMotion shaft, const Inputs& before, const Inputs& now) {
     if (now.speed != before.speed || now.acceleration != before.acceleration) {
       shaft.speed = now.speed;
       shaft.acceleration = now.acceleration;
@@ -382,6 +416,7 @@ class Plant::Implementation {
   Surroundings outside_;
   double time_ = 0, end_ = 1, load_size_ = 0;
   bool speed_changed_ = false;
+  std::vector<double> started_;
   std::size_t oil_columns_ = 0;
   coupled::SystemState state_;
   std::vector<double> nominals_;

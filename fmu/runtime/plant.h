@@ -30,6 +30,9 @@ struct PlantState {
   std::vector<double> motion, oil;
   AxisMotion shaft;      ///< at that time, where its motion is an input
   double load_size = 0;  ///< that was found at the start
+  /// What the start has made of the case, which scales the states: speed of [operation], rpm, and
+  /// the ports' pressures, Pa gauge. Empty: those of the case.
+  std::vector<double> started;
   bool speed_changed = false;
   Inputs inputs;
 };

@@ -23,7 +23,8 @@ class Stepper {
   ~Stepper();
 
   /// Begins at a time, s, with a state.
-  /// @param end  s, at which it is expected to end: no step goes beyond it before it is reached
+  /// @param end  s, at which it is expected to end: no step goes beyond it before it is reached.
+  ///             Where it goes on after that, it is expected to for as long again.
   void start(double time, const SystemState& state, double end);
   /// Anew from time() on: after what the mechanics or the oil are has been changed.
   void restart();

@@ -138,4 +138,8 @@ struct SweepResult {
   bool agrees() const;
 };
 
+/// Computes all blocks side by side and keeps all results in memory: for sweeps that fit there.
+/// @param threads  0: one per processor
+SweepResult compute_in_memory(const Sweep& sweep, int threads, const Progress& progress = {});
+
 }  // namespace bentaxis::designs

@@ -26,6 +26,9 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
                         OutputFolder& folder, int threads, const Progress& progress,
                         std::size_t most = 200000);
 
+/// sweep.csv of results that are in memory, all of them.
+std::string sweep_csv(const SweepResult& result);
+
 /// Designs and outputs at which the other model disagrees, a line each; of many the first ones.
 std::string disagreements_text(const SweepResult& result);
 

@@ -60,6 +60,13 @@ void read_tooth_errors(const std::filesystem::path& file, ToothData& teeth);
 States read_states(const std::filesystem::path& file, const Case& the_case,
                    const PressureTrace& pressure);
 
+/// The same from a table that is there already.
+/// @param file  what messages call it, with the table's lines
+/// @param head  what messages call its line of names: "file:1"
+/// @throws InputError as above
+States states_of(const NumericTable& table, const std::filesystem::path& file,
+                 const std::string& head, const Case& the_case, const PressureTrace& pressure);
+
 /// A table along a motion as CSV text: its states, then its channels.
 std::string to_csv(const MotionTable& table);
 

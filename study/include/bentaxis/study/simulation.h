@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/trajectory.h"
+#include "bentaxis/study/fmu_coupling.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -22,11 +24,12 @@ enum class OilInTime {
 };
 
 struct SimulationChoice {
-  OilInTime oil = OilInTime::follows;  ///< of hydraulic cases
-  bool steady = false;                 ///< the periodic motion instead of that from the start
-  std::optional<Model> only;           ///< none: both, compared
-  double error = 1e-6;                 ///< of every reaction, of its peak: wanted and tolerated
-  std::optional<double> accuracy;      ///< of Simbody's steps instead of one found for `error`
+  OilInTime oil = OilInTime::follows;        ///< of hydraulic cases
+  bool steady = false;                       ///< the periodic motion instead of that from the start
+  std::optional<Model> only;                 ///< none: both, compared
+  std::shared_ptr<const UnitCoupling> unit;  ///< that acts on the pump; none: the case alone says
+  double error = 1e-6;             ///< of every reaction, of its peak: wanted and tolerated
+  std::optional<double> accuracy;  ///< of Simbody's steps instead of one found for `error`
   multibody::Integrator integrator = multibody::Integrator::runge_kutta_merson;
 };
 
@@ -58,6 +61,16 @@ struct Effort {
   double error = 0;  ///< largest of any reaction, of peak, within the judged time
   double seconds = 0;
   long steps = 0, evaluations = 0;
+};
+
+/// By how much results change at half the communication step, in a group of channels.
+struct CouplingChange {
+  std::string group, unit;
+  double peak = 0;
+  double change = 0, time_s = 0;  ///< of peak, largest, and when
+  /// Of the results shown: values stand from one communication point to the next, so that the error
+  /// falls as the step does, and twice the change is left.
+  double error() const { return 2 * change; }
 };
 
 /// A periodic motion: of an N-th of a turn.
@@ -94,7 +107,8 @@ struct SimulationResult {
   EventMatch events;
   std::vector<compare::Check> checks;
   std::vector<Effort> effort;
-  std::string multibody_choice;  ///< how Simbody's accuracy was found
+  std::vector<CouplingChange> coupling;  ///< with a unit, in the judged time, largest first
+  std::string multibody_choice;          ///< how Simbody's accuracy was found
 
   /// Allowed difference at a row, of peak: the wanted error, grown as disturbances grow.
   double allowed(std::size_t row) const { return choice.error * growth[row]; }

@@ -1,0 +1,27 @@
+#include <algorithm>
+#include <string>
+
+#include "bentaxis/designs/least_squares.h"
+#include "bentaxis/designs/propagation.h"
+#include "bentaxis/designs/sweep_tables.h"
+#include "ranks.h"
+#include "versions.h"
+
+namespace bentaxis::cli {
+
+std::vector<std::pair<std::string, std::string>> versions() {
+  auto all = shared_versions();
+  const auto next = std::find_if(all.begin(), all.end(),
+                                 [](const auto& one) { return one.first == "OpenTURNS"; });
+  all.insert(next, {"MPI", mpi_library()});
+  return all;
+}
+
+std::string optional_parts() {
+  const std::string ceres = designs::least_squares_library();
+  return "Ceres " + (ceres.empty() ? "none" : ceres) + ", HDF5 " + designs::hdf5_version() +
+         ", MPI " + mpi_library() + ", OpenTURNS " + designs::openturns_version() +
+         ", Python module " BENTAXIS_PYTHON;
+}
+
+}  // namespace bentaxis::cli

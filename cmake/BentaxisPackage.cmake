@@ -1,0 +1,28 @@
+# cpack: one .deb with program, library, headers, data, manual, completions and documents (scripts/make_package).
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME bentaxis)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGE_DESCRIPTION "Computes every reaction force and the drive torque of a bent-axis axial piston pump twice,
+by a closed-form model and by a multibody model, and reports where and by how much
+they differ. Program, C++ library, Python module, cases and reference data.")
+set(BENTAXIS_PACKAGE_CONTACT "the bentaxis developers <bentaxis@example.org>" CACHE STRING
+  "Maintainer of the package, as Debian writes it: name <address>")
+set(CPACK_PACKAGE_CONTACT "${BENTAXIS_PACKAGE_CONTACT}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/package)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+# What is linked is found by dpkg-shlibdeps; librsvg is loaded when a PNG is wanted.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "librsvg2-2")
+if(TARGET _bentaxis)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3 (>= 3.11), python3-numpy")
+endif()
+# For those who build programs with the library: what its headers' users link.
+file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/packages.txt libraries REGEX "^libraries ")
+list(TRANSFORM libraries REPLACE "^libraries " "")
+list(JOIN libraries ", " CPACK_DEBIAN_PACKAGE_SUGGESTS)
+include(CPack)

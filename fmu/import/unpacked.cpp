@@ -1,0 +1,132 @@
+#include "unpacked.h"
+
+#include <zip.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis::fmu {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr zip_int64_t kMostEntries = 20000;
+constexpr std::size_t kPiece = 1U << 16;
+constexpr std::string_view kDescription = "modelDescription.xml";
+
+[[noreturn]] void fail(const fs::path& file, const std::string& why) {
+  throw InputError(file.string() + ": " + why);
+}
+
+// Names that stay below the folder they are unpacked into.
+bool stays_inside(const std::string& name) {
+  if (name.empty() || name.front() == '/' || name.find('\\') != std::string::npos ||
+      name.find(':') != std::string::npos)
+    return false;
+  const fs::path path(name);
+  return std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
+}
+
+bool is_needed(const std::string& name) {
+  if (name == kDescription || name.rfind("resources/", 0) == 0) return true;
+  return name.rfind("binaries/" + platform_folder(2) + "/", 0) == 0 ||
+         name.rfind("binaries/" + platform_folder(3) + "/", 0) == 0;
+}
+
+struct Close {
+  void operator()(zip_t* archive) const { zip_discard(archive); }
+  void operator()(zip_file_t* entry) const { zip_fclose(entry); }
+};
+
+}  // namespace
+
+std::string platform_folder(int version) {
+#if defined(__aarch64__)
+  return version == 2 ? "linux-aarch64" : "aarch64-linux";
+#else
+  return version == 2 ? "linux64" : "x86_64-linux";
+#endif
+}
+
+Unpacked::Unpacked(const fs::path& archive, std::uint64_t most) : file_(archive) {
+  if (!fs::exists(archive)) fail(archive, "does not exist");
+  if (fs::is_directory(archive)) fail(archive, "is a folder: must be a .fmu");
+  std::string pattern = (fs::absolute(fs::temp_directory_path()) / "bentaxis-fmu-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr)
+    fail(pattern, "a folder to unpack a unit into cannot be made");
+  folder_ = pattern;
+  try {
+    unpack(archive, most);
+  } catch (...) {
+    remove();
+    throw;
+  }
+}
+
+Unpacked::~Unpacked() { remove(); }
+
+void Unpacked::remove() noexcept {
+  std::error_code ignored;
+  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+}
+
+void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
+  int error = 0;
+  const std::unique_ptr<zip_t, Close> archive(zip_open(file.c_str(), ZIP_RDONLY, &error));
+  if (!archive) fail(file, "is no zip archive, or a damaged one: must be a .fmu");
+  const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
+  if (entries > kMostEntries)
+    fail(file, "has " + std::to_string(entries) + " entries: at most " +
+                   std::to_string(kMostEntries) + " are unpacked");
+  std::uint64_t bytes = 0;
+  std::vector<char> piece(kPiece);
+  for (zip_int64_t i = 0; i < entries; ++i) {
+    const char* raw = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), 0);
+    const std::string name = raw != nullptr ? raw : "";
+    if (!stays_inside(name)) fail(file, "entry \"" + name + "\" would be unpacked elsewhere");
+    if (constexpr std::string_view kBinaries = "binaries/"; name.rfind(kBinaries, 0) == 0) {
+      const std::string platform =
+          name.substr(kBinaries.size(), name.find('/', kBinaries.size()) - kBinaries.size());
+      if (!platform.empty() &&
+          std::find(platforms_.begin(), platforms_.end(), platform) == platforms_.end())
+        platforms_.push_back(platform);
+    }
+    if (name.back() == '/' || !is_needed(name)) continue;
+    const std::unique_ptr<zip_file_t, Close> in(
+        zip_fopen_index(archive.get(), static_cast<zip_uint64_t>(i), 0));
+    if (!in) fail(file, name + " cannot be unpacked: the archive is damaged or encrypted");
+    const fs::path target = folder_ / name;
+    std::error_code failed;
+    fs::create_directories(target.parent_path(), failed);
+    std::ofstream out(target, std::ios::binary);
+    for (;;) {
+      const zip_int64_t count = zip_fread(in.get(), piece.data(), piece.size());
+      if (count < 0) fail(file, name + " cannot be unpacked: the archive is damaged");
+      if (count == 0) break;
+      bytes += static_cast<std::uint64_t>(count);
+      if (bytes > most)
+        fail(file, "is larger than " + std::to_string(most >> 20) + " MiB when unpacked");
+      out.write(piece.data(), count);
+    }
+    out.close();
+    if (failed || !out) fail(target, "cannot be written: is there room for the unpacked unit?");
+  }
+  fs::create_directories(folder_ / "resources");
+  if (!fs::exists(folder_ / kDescription)) fail(file, "is no .fmu: it has no modelDescription.xml");
+}
+
+std::string Unpacked::description() const {
+  std::ifstream in(folder_ / kDescription, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace bentaxis::fmu

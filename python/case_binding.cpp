@@ -1,0 +1,192 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <set>
+
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/output_folder.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/validate.h"
+#include "bentaxis/pump/words.h"
+#include "bentaxis/study/plausibility.h"
+#include "binding.h"
+#include "python_case.h"
+#include "values.h"
+
+namespace bentaxis::python {
+namespace {
+
+namespace py = pybind11;
+namespace fs = std::filesystem;
+using study::Doubt;
+
+PythonCase::Changes changes_of(const py::handle& values) {
+  PythonCase::Changes changes;
+  for (const auto& [key, value] : items_of(values, "changes"))
+    changes.emplace_back(key, toml_of(value, key));
+  return changes;
+}
+
+const Parameter& known(const std::string& key) {
+  if (const Parameter* const parameter = parameter_called(key)) return *parameter;
+  const std::vector<std::string> keys = all_keys();
+  throw py::key_error("no parameter is called " + key +
+                      suggestion(key, {keys.begin(), keys.end()}));
+}
+
+py::object value_in(const PythonCase& the_case, const std::string& key) {
+  known(key);
+  const auto value = the_case.value(key);
+  return value ? python_of(*value) : py::none();
+}
+
+void write(const Case& the_case, const fs::path& file) {
+  const fs::path path = fs::absolute(file);
+  OutputFolder folder(path.parent_path());
+  folder.add(path.filename(), case_text(the_case));
+  folder.commit();
+}
+
+std::string range_text(const Parameter& parameter) {
+  if (!parameter.range_words.empty()) return parameter.range_words;
+  if (!parameter.words.empty()) {
+    std::string words;
+    for (const std::string& word : parameter.words) words += (words.empty() ? "" : ", ") + word;
+    return "one of " + words;
+  }
+  return parameter.range.text();
+}
+
+void add_class(py::module_& module) {
+  py::class_<PythonCase>(
+      module, "Case",
+      "A pump, how it runs and the pressure in its chambers, as a case file says. "
+      "A mapping from the keys of the file, \"pump.tilt_deg\", to values in the "
+      "file's units. Computations work on a copy made when they are called.")
+      .def("__getitem__", &value_in, py::arg("key"),
+           "Value of a parameter in the file's unit; None where it has none in this case.")
+      .def(
+          "__setitem__",
+          [](PythonCase& self, const std::string& key, const CaseValue& value) {
+            self.change({{key, toml_of(value, key)}});
+          },
+          py::arg("key"), py::arg("value"),
+          "Changes a parameter as if its file said so: it is held to its range, and defaults that "
+          "follow from it follow.")
+      .def(
+          "update",
+          [](PythonCase& self, const CaseValues& values) { self.change(changes_of(values)); },
+          py::arg("changes"),
+          "Changes several parameters together: for those that are refused alone. All or none.")
+      .def(
+          "__contains__",
+          [](const PythonCase& self, const std::string& key) {
+            return self.value(key).has_value();
+          },
+          py::arg("key"), "Whether a parameter has a value in this case.")
+      .def("keys", &PythonCase::keys, "Parameters that have something to do in this case.")
+      .def(
+          "__iter__", [](const PythonCase& self) { return py::iter(py::cast(self.keys())); },
+          "Over keys().")
+      .def(
+          "__len__", [](const PythonCase& self) { return self.keys().size(); }, "Of keys().")
+      .def(
+          "items",
+          [](const PythonCase& self) {
+            py::list items;
+            for (const std::string& key : self.keys())
+              items.append(py::make_tuple(key, value_in(self, key)));
+            return items;
+          },
+          "Keys with their values.")
+      .def(
+          "validate", [](const PythonCase& self) { validate(self.get()); },
+          "Holds every parameter to its range and all to each other; raises InputError.")
+      .def(
+          "doubts", [](const PythonCase& self) { return study::plausibility(self.get()).warnings; },
+          "What is possible but hardly meant, as docs/plausibility.md says.")
+      .def(
+          "summary",
+          [](const PythonCase& self) { return study::plausibility(self.get()).summary(); },
+          "The pump in a line: displacement, flow, torque, speed, pressure.")
+      .def(
+          "write", [](const PythonCase& self, const fs::path& path) { write(self.get(), path); },
+          py::arg("path"), "Writes a case file that reads back as this case.")
+      .def(
+          "text", [](const PythonCase& self) { return case_text(self.get()); },
+          "What write() writes.")
+      .def(
+          "copy", [](const PythonCase& self) { return self; }, "A case of its own.")
+      .def(
+          "__copy__", [](const PythonCase& self) { return self; }, "As copy().")
+      .def(
+          "__deepcopy__", [](const PythonCase& self, const py::object&) { return self; },
+          py::arg("memo"), "As copy().")
+      .def(
+          "__eq__",
+          [](const PythonCase& self, const py::object& other) {
+            return py::isinstance<PythonCase>(other) &&
+                   case_text(self.get()) == case_text(other.cast<const PythonCase&>().get());
+          },
+          py::arg("other"), "Whether both write the same file.")
+      .def(
+          "__repr__",
+          [](const PythonCase& self) {
+            return "<bentaxis.Case \"" + self.get().name + "\" of " + self.file().string() + ">";
+          },
+          "Name and file.")
+      .def_property_readonly(
+          "name", [](const PythonCase& self) { return self.get().name; }, "Name of the case.")
+      .def_property_readonly(
+          "file", [](const PythonCase& self) { return self.file().string(); },
+          "Path of its file, absolute.")
+      .def(py::pickle(
+          [](const PythonCase& self) {
+            return py::make_tuple(self.text(), self.file().string(), self.changes());
+          },
+          [](const py::tuple& state) {
+            return PythonCase(state[0].cast<std::string>(), state[1].cast<std::string>(),
+                              state[2].cast<PythonCase::Changes>());
+          }))
+      .attr("__hash__") = py::none();
+}
+
+}  // namespace
+
+void add_case(py::module_& module) {
+  py::class_<Doubt>(module, "Doubt", "A value, or values together, that are hardly meant.")
+      .def_readonly("code", &Doubt::code, "Stable short name: \"tilt-in-radians\".")
+      .def_readonly("text", &Doubt::text, "The key with its value, the limit and its reason.")
+      .def_readonly("reason", &Doubt::reason, "Why it is meant all the same, where the case says.")
+      .def(
+          "__repr__",
+          [](const Doubt& self) { return "<bentaxis.Doubt " + self.code + ": " + self.text + ">"; },
+          "Name and text.");
+  py::class_<Parameter>(module, "Parameter", "A parameter of a case file.")
+      .def_property_readonly(
+          "unit", [](const Parameter& self) { return std::string(self.unit.name); },
+          "Unit of its value; \"\" where it has none.")
+      .def_readonly("symbol", &Parameter::symbol, "Symbol in the paper or in the documentation.")
+      .def_readonly("meaning", &Parameter::meaning, "What it is.")
+      .def_property_readonly("range", &range_text, "What it may be.")
+      .def_readonly("words", &Parameter::words, "Of a choice: its words.");
+  add_class(module);
+  module.def(
+      "read_case",
+      [](const fs::path& path, const CaseValues& changes) {
+        return PythonCase::read(path, changes_of(changes));
+      },
+      py::arg("path"), py::arg("changes") = py::none(),
+      "Reads a case file. Files that it names are found from it, wherever the program goes "
+      "later. `changes`: as if the file said so.");
+  module.def(
+      "parse_case",
+      [](const std::string& text, const fs::path& path) { return PythonCase(text, path, {}); },
+      py::arg("text"), py::arg("path") = "case.toml",
+      "The same of a text; `path` stands in messages and says where files are that it names.");
+  module.def("parameter", &known, py::arg("key"), py::return_value_policy::reference,
+             "What is known of a parameter: unit, symbol, meaning, range.");
+  module.def("parameters", &all_keys, "Every key that a case file may have.");
+}
+
+}  // namespace bentaxis::python

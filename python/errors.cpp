@@ -1,0 +1,57 @@
+#include <pybind11/pybind11.h>
+
+#include "bentaxis/pump/error.h"
+#include "binding.h"
+#include "call.h"
+#include "words.h"
+
+namespace bentaxis::python {
+namespace {
+
+namespace py = pybind11;
+
+// They live as long as the module, which Python never unloads.
+PyObject* input_error = nullptr;
+PyObject* computation_error = nullptr;
+PyObject* warning = nullptr;
+
+PyObject* new_class(py::module_& module, const char* name, const char* doc, PyObject* base) {
+  PyObject* const made =
+      PyErr_NewExceptionWithDoc((std::string("bentaxis.") + name).c_str(), doc, base, nullptr);
+  if (made == nullptr) throw py::error_already_set();
+  module.attr(name) = py::handle(made);
+  return made;
+}
+
+}  // namespace
+
+void warn(const std::string& text) {
+  if (PyErr_WarnEx(warning, in_python(text).c_str(), 1) != 0) throw py::error_already_set();
+}
+
+void add_errors(py::module_& module) {
+  input_error =
+      new_class(module, "InputError",
+                "An input cannot be used: a file, a key, an argument. One line that names "
+                "it, its value and what is allowed, in the words of the program.",
+                PyExc_ValueError);
+  computation_error = new_class(module, "ComputationError",
+                                "A computation on valid input failed: which model, where, and why.",
+                                PyExc_RuntimeError);
+  warning =
+      new_class(module, "DoubtWarning",
+                "A result can be computed but is doubtful: digits that rounding takes, a port's "
+                "timing beyond its limits, states that are hardly meant.",
+                PyExc_UserWarning);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const InputError& error) {
+      PyErr_SetString(input_error, in_python(error.what()).c_str());
+    } catch (const ComputationError& error) {
+      PyErr_SetString(computation_error, in_python(error.what()).c_str());
+    }
+  });
+}
+
+}  // namespace bentaxis::python

@@ -1,0 +1,89 @@
+#include "python_case.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "bentaxis/files/case_file.h"
+
+namespace bentaxis::python {
+namespace {
+
+std::string key_of(const Table& table, const Parameter& parameter) {
+  return (table.name.empty() ? "" : table.name + ".") + parameter.key;
+}
+
+// Of two for one key the last counts, in the place of the first.
+void add(PythonCase::Changes& all, const PythonCase::Changes& more) {
+  for (const auto& [key, value] : more) {
+    const auto same = [&key = key](const auto& one) { return one.first == key; };
+    const auto old = std::find_if(all.begin(), all.end(), same);
+    if (old != all.end())
+      old->second = value;
+    else
+      all.emplace_back(key, value);
+  }
+}
+
+Case parsed(const std::string& text, const std::filesystem::path& file,
+            const PythonCase::Changes& changes) {
+  std::vector<std::string> lines;
+  for (const auto& [key, value] : changes) lines.push_back(key + "=" + value);
+  return parse_case(text, file, lines);
+}
+
+}  // namespace
+
+PythonCase PythonCase::read(const std::filesystem::path& file, const Changes& changes) {
+  const std::filesystem::path place = std::filesystem::absolute(file).lexically_normal();
+  std::ifstream in(place, std::ios::binary);
+  std::ostringstream text;
+  if (!in || std::filesystem::is_directory(place) || !(text << in.rdbuf()))
+    read_case(file);  // says why not
+  return {text.str(), place, changes};
+}
+
+PythonCase::PythonCase(std::string text, const std::filesystem::path& file, const Changes& changes)
+    : text_(std::move(text)), file_(std::filesystem::absolute(file).lexically_normal()) {
+  add(changes_, changes);
+  case_ = parsed(text_, file_, changes_);
+}
+
+void PythonCase::change(const Changes& changes) {
+  Changes all = changes_;
+  add(all, changes);
+  case_ = parsed(text_, file_, all);
+  changes_ = std::move(all);
+}
+
+std::vector<std::string> PythonCase::keys() const {
+  std::vector<std::string> keys;
+  const ConstView view = view_of(case_);
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& parameter : table.parameters)
+      if (is_active(table, parameter, standard_registry(), view) && value_of(parameter, view))
+        keys.push_back(key_of(table, parameter));
+  return keys;
+}
+
+std::optional<Value> PythonCase::value(const std::string& key) const {
+  const Parameter* const parameter = parameter_called(key);
+  if (parameter == nullptr) return std::nullopt;
+  return value_of(*parameter, view_of(case_));
+}
+
+std::vector<std::string> all_keys() {
+  std::vector<std::string> keys;
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& parameter : table.parameters) keys.push_back(key_of(table, parameter));
+  return keys;
+}
+
+const Parameter* parameter_called(const std::string& key) {
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& parameter : table.parameters)
+      if (key_of(table, parameter) == key) return &parameter;
+  return nullptr;
+}
+
+}  // namespace bentaxis::python

@@ -1,0 +1,180 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+
+#include "bentaxis/files/output_folder.h"
+#include "bentaxis/report/junit.h"
+#include "bentaxis/study/regression.h"
+#include "bentaxis/study/regression_document.h"
+#include "binding.h"
+#include "call.h"
+#include "report.h"
+#include "table.h"
+
+namespace bentaxis::python {
+namespace {
+
+namespace py = pybind11;
+namespace fs = std::filesystem;
+using study::GroupLine;
+using study::Outcome;
+
+struct Regression {
+  std::shared_ptr<const std::vector<Outcome>> outcomes;
+};
+struct Held {
+  std::shared_ptr<const Outcome> outcome;
+};
+
+std::string state_of(const Outcome& outcome) {
+  switch (outcome.state) {
+    case Outcome::State::agrees:
+      return "agrees";
+    case Outcome::State::differs:
+      return "differs";
+    case Outcome::State::unusable:
+      return "unusable";
+    case Outcome::State::failed:
+      break;
+  }
+  return "failed";
+}
+
+Regression regress(const std::optional<fs::path>& folder, const std::string& filter) {
+  fs::path root;
+  if (folder) {
+    root = *folder;
+  } else {
+    const auto with_package = shipped("reference_data");
+    if (!with_package)
+      throw InputError("no reference data are installed with this package: name a folder");
+    root = *with_package;
+  }
+  return {unlocked([&](const study::PartProgress& progress_of) {
+    std::vector<study::ReferencePlace> places = study::references_below(root);
+    std::erase_if(places,
+                  [&](const auto& place) { return place.name.find(filter) == std::string::npos; });
+    if (places.empty())
+      throw InputError("filter \"" + filter + "\" leaves none of the cases below " + root.string());
+    std::vector<Outcome> outcomes;
+    for (const auto& place : places) outcomes.push_back(study::hold(place, progress_of));
+    return std::make_shared<const std::vector<Outcome>>(std::move(outcomes));
+  })};
+}
+
+void write_junit(const Regression& self, const fs::path& path) {
+  unlocked([&](const study::PartProgress&) {
+    std::vector<report::TestSuite> suites;
+    for (const Outcome& outcome : *self.outcomes) suites.push_back(study::suite_of(outcome));
+    const fs::path file = fs::absolute(path);
+    OutputFolder folder(file.parent_path());
+    folder.add(file.filename(), report::junit_xml("bentaxis regress", suites));
+    folder.commit();
+  });
+}
+
+std::optional<Table> table(const Held& self, const std::string& model, bool reference) {
+  const auto held = self.outcome->held.find(model);
+  if (held == self.outcome->held.end()) return std::nullopt;
+  return table_of(part_of(self.outcome, reference ? held->second.reference : held->second.result));
+}
+
+void add_pieces(py::module_& module) {
+  py::class_<GroupLine>(module, "ReferenceGroup",
+                        "A group of channels of one model, held against one reference.")
+      .def_readonly("reference", &GroupLine::reference, "Name of the reference.")
+      .def_readonly("kind", &GroupLine::kind, "What kind of reference that is.")
+      .def_readonly("model", &GroupLine::model, "Of which model.")
+      .def_readonly("group", &GroupLine::group, "Which channels.")
+      .def_readonly("compared", &GroupLine::compared, "Number of channels that were compared.")
+      .def_readonly("missing", &GroupLine::missing, "Number of those the reference has not.")
+      .def_readonly("failed", &GroupLine::failed, "Number of those that differ.")
+      .def_property_readonly("verdict", &GroupLine::verdict, "In a word.")
+      .def_property_readonly("text", &GroupLine::text,
+                             "Where it is worst and what that looks like.")
+      .def(
+          "__repr__",
+          [](const GroupLine& self) {
+            return "<bentaxis.ReferenceGroup " + self.reference + ", " + self.model + ", " +
+                   self.group + ": " + self.verdict() + ">";
+          },
+          "What it is and its verdict.");
+  py::class_<Held>(module, "Outcome", "What one reference came to.")
+      .def_property_readonly(
+          "name", [](const Held& self) { return self.outcome->name; }, "Of the reference.")
+      .def_property_readonly(
+          "kind", [](const Held& self) { return self.outcome->kind; },
+          "What kind of reference it is.")
+      .def_property_readonly(
+          "state", [](const Held& self) { return state_of(*self.outcome); },
+          "\"agrees\", \"differs\", \"unusable\" or \"failed\".")
+      .def_property_readonly(
+          "error", [](const Held& self) { return self.outcome->error; },
+          "Why it differs as a whole, is unusable or failed.")
+      .def_property_readonly(
+          "groups", [](const Held& self) { return self.outcome->lines; },
+          "What was found of each group of channels of each model.")
+      .def_property_readonly(
+          "notes", [](const Held& self) { return self.outcome->notes; },
+          "What else there is to know.")
+      .def(
+          "result",
+          [](const Held& self, const std::string& model) { return table(self, model, false); },
+          py::arg("model"), "What a model gave; None where it was not run.")
+      .def(
+          "reference",
+          [](const Held& self, const std::string& model) { return table(self, model, true); },
+          py::arg("model"), "The reference at the same angles.")
+      .def(
+          "__repr__",
+          [](const Held& self) {
+            return "<bentaxis.Outcome " + self.outcome->name + ": " + state_of(*self.outcome) + ">";
+          },
+          "Name and state.");
+}
+
+}  // namespace
+
+void add_regression(py::module_& module) {
+  add_pieces(module);
+  py::class_<Regression>(module, "Regression", "Both models held to stored curves.")
+      .def_property_readonly(
+          "agrees",
+          [](const Regression& self) {
+            return std::all_of(
+                self.outcomes->begin(), self.outcomes->end(),
+                [](const Outcome& one) { return one.state == Outcome::State::agrees; });
+          },
+          "Whether all do.")
+      .def_property_readonly(
+          "summary", [](const Regression& self) { return study::summary(*self.outcomes); },
+          "All in a sentence.")
+      .def_property_readonly(
+          "text",
+          [](const Regression& self) {
+            return study::regression_text(*self.outcomes) + study::summary(*self.outcomes);
+          },
+          "All that the program prints.")
+      .def_property_readonly(
+          "outcomes",
+          [](const Regression& self) {
+            std::vector<Held> all;
+            for (const Outcome& one : *self.outcomes) all.push_back({part_of(self.outcomes, one)});
+            return all;
+          },
+          "What each reference came to.")
+      .def("write_junit", &write_junit, py::arg("path"), "Writes a JUnit file for CI.")
+      .def(
+          "__repr__",
+          [](const Regression& self) {
+            return "<bentaxis.Regression: " + study::summary(*self.outcomes) + ">";
+          },
+          "The summary.");
+  module.def(
+      "regress", &regress, py::arg("folder") = py::none(), py::arg("filter") = "",
+      "Holds both models to the references of a folder, or to those that come with bentaxis. "
+      "`filter`: only those whose name contains it.");
+}
+
+}  // namespace bentaxis::python

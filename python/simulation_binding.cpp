@@ -1,0 +1,169 @@
+#include <pybind11/complex.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "bentaxis/results/trajectory.h"
+#include "bentaxis/study/simulation.h"
+#include "bentaxis/study/simulation_document.h"
+#include "binding.h"
+#include "call.h"
+#include "choices.h"
+#include "python_case.h"
+#include "report.h"
+#include "result_files.h"
+#include "table.h"
+
+namespace bentaxis::python {
+namespace {
+
+namespace py = pybind11;
+using study::GroupDifference;
+using study::PeriodicMotion;
+
+struct Simulation {
+  std::shared_ptr<const study::SimulationResult> result;
+};
+
+Simulation simulate(const PythonCase& the_case, const std::optional<std::string>& model,
+                    double error, const std::string& oil, bool steady) {
+  study::SimulationChoice choice;
+  if (model) choice.only = model_called(*model);
+  constexpr NumberRange kErrors{1e-10, 0.1};
+  if (!kErrors.contains(error))
+    throw InputError("error = " + number_text(error) + ": must be " + kErrors.text());
+  choice.error = error;
+  if (oil != "coupled" && oil != "periodic")
+    throw InputError("oil " + oil + ": must be coupled or periodic");
+  if (oil == "periodic") choice.oil = study::OilInTime::periodic;
+  choice.steady = steady;
+  Case copy = the_case.get();
+  return {unlocked([&](const study::PartProgress& progress_of) {
+    drive_of(copy);
+    return std::make_shared<const study::SimulationResult>(study::simulate(
+        study::prepare_simulation(std::move(copy), choice, progress_of), choice, progress_of));
+  })};
+}
+
+using Run = std::optional<Trajectory> study::SimulationResult::*;
+
+std::optional<Table> motion(const Simulation& self, Run run) {
+  const std::optional<Trajectory>& of = (*self.result).*run;
+  if (!of) return std::nullopt;
+  return table_of(part_of(self.result, of->table));
+}
+
+std::optional<Table> oil(const Simulation& self, Run run, const char* name) {
+  const std::optional<Trajectory>& of = (*self.result).*run;
+  if (!of || !of->oil) return std::nullopt;
+  return oil_table_of(part_of(self.result, *of), name);
+}
+
+std::optional<Table> teeth(const Simulation& self, Run run) {
+  const std::optional<Trajectory>& of = (*self.result).*run;
+  if (!of || of->teeth.empty()) return std::nullopt;
+  return table_of(std::make_shared<const MotionTable>(
+      teeth_table_of(*of, self.result->ready.the_case.pump.gear)));
+}
+
+std::vector<std::filesystem::path> report(const Simulation& self,
+                                          const std::filesystem::path& folder) {
+  return unlocked([&](const study::PartProgress&) {
+    const study::SimulationResult& result = *self.result;
+    return write_report(folder, "bentaxis.simulate", {&result.ready.the_case},
+                        study::simulation_document(result, versions()),
+                        study::simulation_curves(result), cli::simulation_files(result));
+  });
+}
+
+void add_pieces(py::module_& module) {
+  py::class_<GroupDifference>(module, "GroupDifference",
+                              "How far apart the models are in a group of channels, over its peak.")
+      .def_readonly("group", &GroupDifference::group, "Which channels.")
+      .def_readonly("unit", &GroupDifference::unit, "Of the peak.")
+      .def_readonly("peak", &GroupDifference::peak, "Largest magnitude.")
+      .def_readonly("in_time", &GroupDifference::in_time, "At equal times, largest.")
+      .def_readonly("time_s", &GroupDifference::time_s, "When that is.")
+      .def_readonly("over_angle", &GroupDifference::over_angle, "At equal angles of the shaft.")
+      .def_readonly("of_allowed", &GroupDifference::of_allowed,
+                    "Largest difference over what is allowed then: 1 is the limit.");
+  py::class_<PeriodicMotion>(module, "PeriodicMotion", "A motion that repeats itself.")
+      .def_readonly("period_s", &PeriodicMotion::period_s, "Its period.")
+      .def_readonly("speed_rad_per_s", &PeriodicMotion::speed, "Mean speed of the shaft.")
+      .def_readonly("iterations", &PeriodicMotion::iterations, "Of the search.")
+      .def_readonly("error", &PeriodicMotion::error, "How far a state is off, of its scale.")
+      .def_readonly("multipliers", &PeriodicMotion::multipliers,
+                    "Floquet's, largest magnitude first.")
+      .def_property_readonly("stable", &PeriodicMotion::stable, "Whether disturbances die away.");
+}
+
+}  // namespace
+
+void add_simulation(py::module_& module) {
+  add_pieces(module);
+  constexpr Run kAnalytic = &study::SimulationResult::analytic;
+  constexpr Run kMultibody = &study::SimulationResult::multibody;
+  const auto periodic = [](int model) {
+    return [model](const Simulation& self) { return self.result->periodic[model]; };
+  };
+  py::class_<Simulation>(
+      module, "Simulation",
+      "Motion in time by both models, or by one alone, and how far they are apart.")
+      .def_property_readonly(
+          "agrees", [](const Simulation& self) { return self.result->agrees(); },
+          "Whether both models agree; of one model alone: whether its checks hold.")
+      .def_property_readonly(
+          "headline", [](const Simulation& self) { return self.result->headline(); },
+          "The verdict in a sentence.")
+      .def_property_readonly(
+          "text", [](const Simulation& self) { return study::simulation_text(*self.result); },
+          "All that the program prints.")
+      .def_property_readonly(
+          "analytic", [](const Simulation& self) { return motion(self, kAnalytic); },
+          "What the analytic model found, over time; None where it was not asked.")
+      .def_property_readonly(
+          "multibody", [](const Simulation& self) { return motion(self, kMultibody); },
+          "What the multibody model found; None where it was not asked.")
+      .def_property_readonly(
+          "oil_analytic",
+          [](const Simulation& self) { return oil(self, kAnalytic, "oil, analytic"); },
+          "What the oil does; None where it does not follow the motion.")
+      .def_property_readonly(
+          "oil_multibody",
+          [](const Simulation& self) { return oil(self, kMultibody, "oil, multibody"); },
+          "Likewise.")
+      .def_property_readonly(
+          "teeth_analytic", [](const Simulation& self) { return teeth(self, kAnalytic); },
+          "What the teeth do; None where the contact is none of teeth.")
+      .def_property_readonly(
+          "teeth_multibody", [](const Simulation& self) { return teeth(self, kMultibody); },
+          "Likewise.")
+      .def_property_readonly("periodic_analytic", periodic(0),
+                             "The motion it settles to; None where it was not asked for.")
+      .def_property_readonly("periodic_multibody", periodic(1), "Likewise.")
+      .def_property_readonly(
+          "groups", [](const Simulation& self) { return self.result->groups; },
+          "How far apart the models are.")
+      .def_property_readonly(
+          "checks", [](const Simulation& self) { return self.result->checks; }, "What must vanish.")
+      .def_property_readonly(
+          "judged_until_s", [](const Simulation& self) { return self.result->judged_until_s; },
+          "Later a disturbance of the wanted error would change results altogether.")
+      .def("report", &report, py::arg("folder"),
+           "Writes report.html, report.json and the curves as the program does; returns their "
+           "paths.")
+      .def(
+          "__repr__",
+          [](const Simulation& self) {
+            return "<bentaxis.Simulation: " + self.result->headline() + ">";
+          },
+          "The headline.");
+  module.def(
+      "simulate", &simulate, py::arg("case"), py::arg("model") = py::none(), py::kw_only(),
+      py::arg("error") = 1e-6, py::arg("oil") = "coupled", py::arg("steady") = false,
+      "Integrates the motion of shaft and block in time, as [drive] of the case says, by both "
+      "models or by one. `error`: wanted error of every reaction, of its peak, in [1e-10, "
+      "0.1]. `oil`, of a hydraulic case: \"coupled\" or \"periodic\". `steady`: the motion "
+      "that repeats itself, and its stability.");
+}
+
+}  // namespace bentaxis::python

@@ -1,0 +1,157 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <map>
+
+#include "bentaxis/designs/sweep_document.h"
+#include "bentaxis/designs/sweep_tables.h"
+#include "bentaxis/pump/number.h"
+#include "binding.h"
+#include "call.h"
+#include "choices.h"
+#include "python_case.h"
+#include "report.h"
+#include "table.h"
+#include "values.h"
+#include "words.h"
+
+namespace bentaxis::python {
+namespace {
+
+namespace py = pybind11;
+using designs::SweepCheck;
+
+struct Sweep : Table {
+  std::shared_ptr<const designs::SweepResult> result;
+};
+
+// Values as a command line has them: "20:40:5", or those of a list with commas between them.
+std::string values_text(const std::string& name, const py::handle& values) {
+  if (py::isinstance<py::str>(values)) return values.cast<std::string>();
+  const auto one = [&](const py::handle& value) {
+    return py::isinstance<py::str>(value) ? value.cast<std::string>() : toml_of(value, name);
+  };
+  if (!py::isinstance<py::iterable>(values)) return one(values);
+  std::string text;
+  for (const py::handle value : py::reinterpret_borrow<py::object>(values))
+    text += (text.empty() ? "" : ",") + one(value);
+  return text;
+}
+
+Sweep shown(std::shared_ptr<const designs::SweepResult> result) {
+  Sweep sweep;
+  const std::size_t n = result->plan.varied.size(), m = result->plan.outputs.size();
+  sweep.name = "sweep";
+  sweep.rows = result->designs;
+  sweep.first_is_index = false;
+  sweep.first_of_block = n;
+  for (std::size_t i = 0; i < n; ++i) {
+    const designs::Variable& variable = result->plan.varied[i].variable;
+    sweep.columns.push_back(
+        {variable.name(), variable.unit(), variable.meaning(), result->values.data() + i, n});
+  }
+  for (std::size_t i = 0; i < m; ++i) {
+    const designs::Output& output = result->plan.outputs[i];
+    sweep.columns.push_back(
+        {output.name, output.unit, output.meaning, result->results.data() + i, m});
+  }
+  sweep.csv = [result] { return designs::sweep_csv(*result); };
+  sweep.owner = result;
+  sweep.result = std::move(result);
+  return sweep;
+}
+
+Sweep sweep(const PythonCase& the_case, const Variations& vary, const Texts& outputs,
+            const std::string& sampling, std::size_t samples, std::uint64_t seed,
+            const std::string& model, double check, const Texts& minimise, const Texts& maximise,
+            int threads) {
+  designs::SweepRequest request;
+  const auto& words = designs::sampling_words();
+  const auto word = std::find(words.begin(), words.end(), sampling);
+  if (word == words.end())
+    throw InputError("sampling " + sampling + ": must be grid, lhs, sobol or random");
+  request.sampling = static_cast<designs::Sampling>(word - words.begin());
+  for (const auto& [name, values] : items_of(vary, "vary"))
+    request.vary.emplace_back(name, values_text(name, values));
+  request.samples = samples;
+  request.seed = seed;
+  request.outputs = texts_of(outputs, "outputs");
+  request.minimise = texts_of(minimise, "minimise");
+  request.maximise = texts_of(maximise, "maximise");
+  request.model = model_called(model);
+  if (!(check >= 0 && check <= 1))
+    throw InputError("check = " + number_text(check) + ": must be a share of the designs, 0 to 1");
+  request.check_share = check;
+  if (threads < 0) throw InputError("threads = " + std::to_string(threads) + ": must be >= 0");
+  const Case copy = the_case.get();
+  return shown(unlocked([&](const study::PartProgress& progress_of) {
+    const designs::Sweep all(copy, designs::sweep_plan(request, copy));
+    return std::make_shared<const designs::SweepResult>(
+        designs::compute_in_memory(all, threads, progress_of("sweep")));
+  }));
+}
+
+std::map<std::size_t, std::string> infeasible(const Sweep& self) {
+  std::map<std::size_t, std::string> reasons;
+  for (const auto& [design, reason] : self.result->infeasible)
+    reasons.emplace(design, in_python(reason));
+  return reasons;
+}
+
+std::vector<std::filesystem::path> report(const Sweep& self, const std::filesystem::path& folder) {
+  return unlocked([&](const study::PartProgress&) {
+    return write_report(folder, "bentaxis.sweep", {&self.result->base},
+                        designs::sweep_document(*self.result, versions()), {},
+                        {{"sweep.csv", self.csv()}});
+  });
+}
+
+}  // namespace
+
+void add_sweep(py::module_& module) {
+  py::class_<SweepCheck>(module, "SweepCheck", "A design that the other model computed too.")
+      .def_readonly("design", &SweepCheck::design, "Its row.")
+      .def_readonly("own", &SweepCheck::own, "Outputs of the sweep's model.")
+      .def_readonly("values", &SweepCheck::values, "Outputs of the other one.")
+      .def_readonly("scales", &SweepCheck::scales, "What differences are over; 0: not compared.")
+      .def_property_readonly(
+          "agrees", [](const SweepCheck& self) { return self.agrees(designs::kCheckTolerance); },
+          "Whether both refuse it or all outputs are within 1e-9 of their scales.");
+  py::class_<Sweep, Table, std::shared_ptr<Sweep>>(
+      module, "Sweep",
+      "A table of designs: parameters that vary, in the units of the case file, and outputs. A "
+      "choice "
+      "is the place of its word, from 0.")
+      .def_property_readonly("infeasible", &infeasible,
+                             "Why designs have no outputs, by their rows.")
+      .def_property_readonly(
+          "checks", [](const Sweep& self) { return self.result->checks; },
+          "Designs that the other model computed too.")
+      .def_property_readonly(
+          "agrees", [](const Sweep& self) { return self.result->agrees(); },
+          "Whether all that were checked do.")
+      .def_property_readonly(
+          "headline", [](const Sweep& self) { return designs::headline(*self.result); },
+          "What came out, in a line.")
+      .def_property_readonly(
+          "seconds", [](const Sweep& self) { return self.result->seconds; },
+          "What the computation took.")
+      .def("report", &report, py::arg("folder"),
+           "Writes report.html, report.json and sweep.csv as the program does; returns their "
+           "paths.");
+  module.def(
+      "sweep", &sweep, py::arg("case"), py::arg("vary"), py::arg("outputs"), py::kw_only(),
+      py::arg("sampling") = "grid", py::arg("samples") = 0, py::arg("seed") = 1,
+      py::arg("model") = "analytic", py::arg("check") = 0.0, py::arg("minimise") = py::none(),
+      py::arg("maximise") = py::none(), py::arg("threads") = 0,
+      "Outputs of many designs (docs/sweeps.md), on all processors or `threads` of them. `vary`: "
+      "values by parameter, a list, an array or a text as \"20:40:5\" or, where they are sampled, "
+      "\"normal(40, 0.1)\". `outputs`: \"max:Rb1_z1\", \"mean:Td\". `sampling`: \"grid\", or "
+      "\"lhs\", "
+      "\"sobol\", \"random\" with a number of `samples`. `check`: share of the designs that the "
+      "other "
+      "model computes too.");
+}
+
+}  // namespace bentaxis::python

@@ -1,0 +1,163 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "bentaxis/files/output_folder.h"
+#include "bentaxis/pump/error.h"
+#include "binding.h"
+#include "call.h"
+#include "table.h"
+#include "values.h"
+
+namespace bentaxis::python {
+namespace {
+
+namespace py = pybind11;
+using Array = py::array_t<double>;
+
+// A look at memory that `owner` keeps; the array keeps `owner`.
+Array view(const py::object& owner, const double* first, std::vector<py::ssize_t> shape,
+           std::vector<py::ssize_t> strides) {
+  Array array(std::move(shape), std::move(strides), first, owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+py::ssize_t bytes(std::size_t numbers) {
+  return static_cast<py::ssize_t>(numbers * sizeof(double));
+}
+
+Array column(const py::object& self, const std::string& name) {
+  const auto& table = self.cast<const Table&>();
+  const Column& one = table.column(name);
+  return view(self, one.first, {static_cast<py::ssize_t>(table.rows)}, {bytes(one.stride)});
+}
+
+std::vector<std::string> names(const Table& table) {
+  std::vector<std::string> names;
+  for (const Column& one : table.columns) names.push_back(one.name);
+  return names;
+}
+
+// All that lies in one block of memory, row by row.
+Array values(const py::object& self) {
+  const auto& table = self.cast<const Table&>();
+  const std::size_t width = table.columns.size() - table.first_of_block;
+  if (width == 0) return Array(std::vector<py::ssize_t>{static_cast<py::ssize_t>(table.rows), 0});
+  const Column& one = table.columns[table.first_of_block];
+  return view(self, one.first,
+              {static_cast<py::ssize_t>(table.rows), static_cast<py::ssize_t>(width)},
+              {bytes(one.stride), bytes(1)});
+}
+
+DataFrame to_pandas(const py::object& self) {
+  const auto& table = self.cast<const Table&>();
+  py::dict columns, units;
+  for (const Column& one : table.columns) {
+    columns[py::str(one.name)] = column(self, one.name);
+    units[py::str(one.name)] = one.unit;
+  }
+  py::object frame = py::module_::import("pandas").attr("DataFrame")(columns);
+  if (table.first_is_index && !table.columns.empty())
+    frame = frame.attr("set_index")(table.columns.front().name);
+  frame.attr("attrs")["units"] = units;
+  return frame;
+}
+
+void write_csv(const Table& table, const std::filesystem::path& path) {
+  unlocked([&](const study::PartProgress&) {
+    const std::filesystem::path file = std::filesystem::absolute(path);
+    OutputFolder folder(file.parent_path());
+    folder.add(file.filename(), table.csv());
+    folder.commit();
+  });
+}
+
+void add_channel(py::module_& module) {
+  py::class_<Channel>(
+      module, "Channel",
+      "One scalar result: of what, on which body, by which body, at which point, in "
+      "which frame and unit.")
+      .def_readonly("name", &Channel::name, "Name of the column: \"Rs_1_x2_N\".")
+      .def_readonly("quantity", &Channel::quantity, "\"Rs\".")
+      .def_readonly("meaning", &Channel::meaning, "In words.")
+      .def_readonly("equation", &Channel::equation, "Of Roccatello and Nervegna (2009).")
+      .def_readonly("piston", &Channel::piston, "From 1; 0 where it belongs to none.")
+      .def_readonly("axis", &Channel::axis, "\"x2\".")
+      .def_readonly("frame", &Channel::frame, "\"S2\".")
+      .def_readonly("on_body", &Channel::on_body, "Body that it acts on.")
+      .def_readonly("by_body", &Channel::by_body, "Body that it comes from.")
+      .def_readonly("point", &Channel::point, "Where it acts.")
+      .def_readonly("unit", &Channel::unit, "\"N\".")
+      .def_readonly("group", &Channel::group, "Channels of one group share one peak.")
+      .def(
+          "__repr__", [](const Channel& self) { return "<bentaxis.Channel " + self.name + ">"; },
+          "Its name.");
+}
+
+}  // namespace
+
+void add_tables(py::module_& module) {
+  add_channel(module);
+  py::class_<Table, std::shared_ptr<Table>>(module, "Table",
+                                            "Columns of numbers by name. They are looks at the "
+                                            "memory that the computation filled: nothing "
+                                            "is copied, nothing can be written, and it stays as "
+                                            "long as any array does. NaN: not computed.")
+      .def("__getitem__", &column, py::arg("name"),
+           "A column as an array; its name may lack the unit and, of a quantity of one "
+           "component, the axis: \"Td_z1_Nm\", \"Td_z1\", \"Td_Nm\", \"Td\".")
+      .def(
+          "__contains__",
+          [](const Table& self, const std::string& name) {
+            for (const Column& one : self.columns)
+              if (one.name == name) return true;
+            return false;
+          },
+          py::arg("name"), "Whether there is such a column.")
+      .def(
+          "__iter__", [](const Table& self) { return py::iter(py::cast(names(self))); },
+          "Over names.")
+      .def(
+          "__len__", [](const Table& self) { return self.rows; }, "Number of rows.")
+      .def("keys", &names, "As names.")
+      .def_property_readonly(
+          "names", &names, "Names of the columns; the first says where a row is, by angle or time.")
+      .def_readonly("name", &Table::name, "Who computed it.")
+      .def_property_readonly("values", &values,
+                             "All columns of `channels` as one array, row by row.")
+      .def_property_readonly(
+          "channels",
+          [](const Table& self) {
+            std::vector<std::string> names;
+            for (std::size_t i = self.first_of_block; i < self.columns.size(); ++i)
+              names.push_back(self.columns[i].name);
+            return names;
+          },
+          "Names of the columns of `values`.")
+      .def(
+          "unit", [](const Table& self, const std::string& name) { return self.column(name).unit; },
+          py::arg("name"), "Unit of a column.")
+      .def(
+          "meaning",
+          [](const Table& self, const std::string& name) { return self.column(name).meaning; },
+          py::arg("name"), "What a column is: on which body, by which, where, in which frame.")
+      .def(
+          "channel",
+          [](const Table& self, const std::string& name) { return self.column(name).channel; },
+          py::arg("name"), "The same by parts; None where it is no result of a model.")
+      .def("to_pandas", &to_pandas,
+           "A pandas.DataFrame over angle or time, units in its attrs. Needs pandas.")
+      .def("write_csv", &write_csv, py::arg("path"),
+           "Writes the file that the program writes: the shortest text that reads back to the same "
+           "numbers.")
+      .def(
+          "__repr__",
+          [](const Table& self) {
+            return "<bentaxis.Table \"" + self.name + "\", " + std::to_string(self.rows) +
+                   " rows of " + std::to_string(self.columns.size()) + " columns>";
+          },
+          "Name and size.");
+}
+
+}  // namespace bentaxis::python

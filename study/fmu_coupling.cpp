@@ -1,0 +1,210 @@
+#include "bentaxis/study/fmu_coupling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/files/input_log.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/time_signal.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/results/trajectory.h"
+#include "fmu_connections.h"
+
+namespace bentaxis::study {
+
+struct UnitCoupling::Said {
+  std::vector<std::string> lines;
+  void add(const std::vector<std::string>& more) {
+    for (const std::string& line : more)
+      if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+};
+
+namespace {
+
+constexpr double kMostPoints = 1e6;
+
+// An instance of the unit, always a communication step ahead of the pump.
+class Partner {
+ public:
+  Partner(std::unique_ptr<fmu::Slave> slave, std::vector<Connection> connections, double step,
+          double end, std::string place)
+      : slave_(std::move(slave)),
+        connections_(std::move(connections)),
+        step_(step),
+        end_(end),
+        place_(std::move(place)) {
+    for (const Connection& c : connections_) {
+      speed_given_ = speed_given_ || (c.to_pump && c.pump == "drive_speed");
+      acceleration_given_ = acceleration_given_ || (c.to_pump && c.pump == "drive_acceleration");
+    }
+  }
+
+  // What acts from a communication point on.
+  Surroundings at(const coupled::PumpOutputs& pump) {
+    if (points_ == 0) slave_->enter_initialisation(0, end_);
+    for (const Connection& c : connections_)
+      if (!c.to_pump) tell(c, pump);
+    if (points_ == 0) slave_->exit_initialisation();
+    Surroundings outside;
+    for (const Connection& c : connections_)
+      if (c.to_pump) take(c, pump.time, outside);
+    slave_->step(step_ * static_cast<double>(points_), step_);
+    ++points_;
+    // Without an acceleration the speed goes straight to where the unit gets.
+    if (speed_given_ && !acceleration_given_) {
+      Surroundings later;
+      for (const Connection& c : connections_)
+        if (c.to_pump && c.pump == "drive_speed") take(c, pump.time + step_, later);
+      outside.shaft->acceleration = (later.shaft->speed - outside.shaft->speed) / step_;
+    }
+    return outside;
+  }
+
+  const std::vector<std::string>& log() const { return slave_->log(); }
+
+ private:
+  void tell(const Connection& c, const coupled::PumpOutputs& pump) {
+    double value = pump[c.pump];
+    if (!is_computed(value))
+      throw ComputationError(fmt::format("{}: input \"{}\" at {} s: {} is not computed", place_,
+                                         c.unit.name, rounded_text(pump.time), c.pump));
+    value = fmu::converted(value, c.from, c.to);
+    // What counts takes the nearest number.
+    const bool counts = c.unit.type != "Real" && c.unit.type.rfind("Float", 0) != 0;
+    slave_->set(c.unit, counts ? std::round(value) : value);
+  }
+
+  void take(const Connection& c, double time, Surroundings& outside) {
+    const double value = fmu::converted(slave_->get(c.unit), c.from, c.to);
+    if (c.pump == "load_share") {
+      if (value < 0)
+        throw ComputationError(
+            fmt::format("{}: output \"{}\" at {} s: load_share = {}: must be "
+                        ">= 0",
+                        place_, c.unit.name, rounded_text(time), number_text(value)));
+      outside.load_share = value;
+    }
+    if (c.pump == "suction_pressure") outside.suction = value;
+    if (c.pump == "delivery_pressure") outside.delivery = value;
+    if (c.pump == "drive_torque") outside.torque = value;
+    if (c.pump != "drive_speed" && c.pump != "drive_acceleration") return;
+    if (!outside.shaft) outside.shaft.emplace();
+    (c.pump == "drive_speed" ? outside.shaft->speed : outside.shaft->acceleration) = value;
+  }
+
+  std::unique_ptr<fmu::Slave> slave_;
+  std::vector<Connection> connections_;
+  double step_, end_;
+  std::string place_;
+  bool speed_given_ = false, acceleration_given_ = false;
+  long points_ = 0;
+};
+
+}  // namespace
+
+UnitCoupling::UnitCoupling(const UnitChoice& choice, const Case& the_case, bool oil_follows)
+    : driven_(the_case), said_(std::make_shared<Said>()) {
+  drive_of(the_case);
+  unit_ = std::make_shared<fmu::ImportedUnit>(choice.file);
+  InputLog::note(choice.file);
+  connections_ = connect(unit_->description(), pump_side(the_case, oil_follows), choice.connect,
+                         choice.file.string());
+  find_step(choice);
+  find_drive();
+}
+
+UnitCoupling::~UnitCoupling() = default;
+
+bool UnitCoupling::drives(const char* input) const {
+  return std::any_of(connections_.begin(), connections_.end(),
+                     [&](const Connection& c) { return c.to_pump && c.pump == input; });
+}
+
+void UnitCoupling::find_step(const UnitChoice& choice) {
+  const DriveSpec& drive = *driven_.drive;
+  double step =
+      choice.step.value_or(unit_->description().step_size.value_or(drive.duration / drive.samples));
+  if (!(step > 0)) step = drive.duration / drive.samples;
+  if (choice.step && step > drive.duration)
+    throw InputError(fmt::format("--communication-step {}: must be <= {}, [drive] duration_s",
+                                 number_text(step), number_text(drive.duration)));
+  // As rounding has it, not one more.
+  constexpr double kWhole = 1e-9;
+  const double points = std::max(1.0, std::ceil(drive.duration / step - kWhole));
+  if (points > kMostPoints)
+    throw InputError(
+        fmt::format("{} {}: {:.3g} steps would be made in [drive] duration_s = {}: at most {:g}",
+                    choice.step ? "--communication-step" : choice.file.string() + ": stepSize",
+                    number_text(step), points, number_text(drive.duration), kMostPoints));
+  step_ = drive.duration / points;
+}
+
+// [drive] as the unit wants it, begun as the unit begins.
+void UnitCoupling::find_drive() {
+  DriveSpec& drive = *driven_.drive;
+  const bool torque = drives("drive_torque"), speed = drives("drive_speed");
+  if (!torque && !speed) return;
+  const double usual = rad_per_second(driven_.operation.speed_rpm);
+  const bool by_curve = drive.kind == DriveKind::speed && !drive.curve.time.empty();
+  const double start =
+      by_curve ? TimeSignal(drive.curve).value(0) : drive.start_speed.value_or(usual);
+  drive.kind = torque ? DriveKind::torque : DriveKind::speed;
+  drive.motor.reset();
+  drive.curve = {};
+  drive.start_speed.reset();
+
+  const auto slave = unit_->instantiate("start");
+  slave->enter_initialisation(0, drive.duration);
+  slave->exit_initialisation();
+  for (const Connection& c : connections_) {
+    if (!c.to_pump || (c.pump != "drive_torque" && c.pump != "drive_speed")) continue;
+    const double value = fmu::converted(slave->get(c.unit), c.from, c.to);
+    if (torque) {
+      drive.torque = value;
+    } else if (value != usual) {
+      // A speed that stands: what is at the start counts.
+      drive.curve = {unit_->file(), {0, 1, 2, 3}, {value, value, value, value}};
+    }
+  }
+  if (torque) drive.start_speed = start;
+  said_->add(slave->log());
+}
+
+std::vector<std::string> UnitCoupling::loose_inputs() const {
+  std::vector<std::string> names;
+  for (const auto& v : unit_->description().variables)
+    if (v.causality == "input" &&
+        std::none_of(connections_.begin(), connections_.end(),
+                     [&](const Connection& c) { return !c.to_pump && c.unit.name == v.name; }))
+      names.push_back(v.name);
+  return names;
+}
+
+std::vector<std::string> UnitCoupling::loose_outputs() const {
+  std::vector<std::string> names;
+  for (const auto& v : unit_->description().variables)
+    if (v.causality == "output" &&
+        std::none_of(connections_.begin(), connections_.end(),
+                     [&](const Connection& c) { return c.to_pump && c.unit.name == v.name; }))
+      names.push_back(v.name);
+  return names;
+}
+
+coupled::Exchange UnitCoupling::exchange(int parts) const {
+  const double step = step_ / parts;
+  const auto partner = std::make_shared<Partner>(unit_->instantiate("drive"), connections_, step,
+                                                 driven_.drive->duration, unit_->file().string());
+  return {step, [partner, said = said_](const coupled::PumpOutputs& pump) {
+            const Surroundings outside = partner->at(pump);
+            if (partner->log().size() > 0) said->add(partner->log());
+            return outside;
+          }};
+}
+
+std::vector<std::string> UnitCoupling::log() const { return said_->lines; }
+
+}  // namespace bentaxis::study

@@ -1,0 +1,102 @@
+#include "fmu_section.h"
+
+#include <fmt/format.h>
+
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr double kMuch = 1e-2;  // of peak
+constexpr std::size_t kMostLines = 20;
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string arrow(const Connection& c) {
+  const auto with_unit = [](const std::string& name, const std::string& unit) {
+    return unit.empty() || unit == "?" ? name : name + " (" + unit + ")";
+  };
+  const std::string unit =
+      with_unit(c.unit.name, c.unit.unit.empty() && !c.pump_unit.empty() ? c.pump_unit + ", assumed"
+                                                                         : c.unit.unit);
+  const std::string pump = with_unit(c.pump, c.pump_unit);
+  return (c.to_pump ? unit + " -> " + pump : pump + " -> " + unit) +
+         (c.automatic ? ", by equal names" : "");
+}
+
+std::string drive_in_words(const UnitCoupling& coupling) {
+  for (const Connection& c : coupling.connections()) {
+    if (c.to_pump && c.pump == "drive_torque") return "a torque by the unit, instead of [drive]";
+    if (c.to_pump && c.pump == "drive_speed")
+      return "a speed by the unit, instead of [drive]; between points it changes by the "
+             "acceleration";
+  }
+  return "as [drive] of the case says";
+}
+
+}  // namespace
+
+report::Section coupling_section(const SimulationResult& r) {
+  const UnitCoupling& coupling = *r.choice.unit;
+  const fmu::UnitDescription& unit = coupling.unit().description();
+  report::Section section;
+  section.title = "Coupling to a unit";
+  section.text =
+      "A Functional Mock-up Unit acts on the pump: at every communication point it is told of the "
+      "pump, and what it then says stands until the next. Each model has an instance of its own. "
+      "The change is that of a run with half the communication step; as the error falls with the "
+      "step, twice the change is the estimated error of the results shown.";
+  section.facts = {
+      {"unit", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
+                           unit.model_name, unit.version,
+                           unit.tool.empty() ? "" : ", made by " + unit.tool)},
+      {"communication step", fmt::format("{:.6g} s", coupling.step())},
+      {"what turns the shaft", drive_in_words(coupling)}};
+  int number = 0;
+  for (const Connection& c : coupling.connections())
+    section.facts.emplace_back(fmt::format("connection {}", ++number), arrow(c));
+  if (const auto loose = coupling.loose_inputs(); !loose.empty())
+    section.facts.emplace_back("inputs of the unit left as they start", listed(loose));
+  if (const auto loose = coupling.loose_outputs(); !loose.empty())
+    section.facts.emplace_back("outputs of the unit that are not used", listed(loose));
+  const std::vector<std::string> said = coupling.log();
+  for (std::size_t i = 0; i < said.size() && i < kMostLines; ++i)
+    section.facts.emplace_back("the unit says", said[i]);
+  section.table.columns = {"group", "unit",
+                           "peak",  "change at half the step, of peak",
+                           "at, s", "estimated error, of peak"};
+  for (const CouplingChange& change : r.coupling)
+    section.table.rows.push_back(
+        {change.group, change.unit, change.peak, change.change, change.time_s, change.error()});
+  return section;
+}
+
+std::vector<report::Warning> coupling_warnings(const SimulationResult& r) {
+  if (r.coupling.empty() || !(r.coupling.front().error() > kMuch)) return {};
+  const CouplingChange& worst = r.coupling.front();
+  return {{"coarse coupling",
+           fmt::format("exchanging values every {:.3g} s alone makes an estimated error of {:.1e} "
+                       "of peak ({}, at {:.4g} s): choose a smaller --communication-step",
+                       r.choice.unit->step(), worst.error(), worst.group, worst.time_s)}};
+}
+
+std::string coupling_text(const SimulationResult& r) {
+  const UnitCoupling& coupling = *r.choice.unit;
+  std::string text;
+  for (const Connection& c : coupling.connections()) text += "unit: " + arrow(c) + "\n";
+  if (r.coupling.empty()) return text;
+  text += fmt::format(
+      "unit: at half the communication step of {:.3g} s results change, of peak, by (estimated "
+      "error: twice that)\n",
+      coupling.step());
+  for (const CouplingChange& change : r.coupling)
+    text +=
+        fmt::format("  {:<13} {:>8.1e} at {:.4g} s\n", change.group, change.change, change.time_s);
+  return text;
+}
+
+}  // namespace bentaxis::study
