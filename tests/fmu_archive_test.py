@@ -56,7 +56,7 @@ ATTRIBUTES = {
                                   "canReturnEarlyAfterIntermediateUpdate", "hasEventMode",
                                   "providesEvaluateDiscreteStates"}}}
 IDENTITY = {"name", "valueReference", "description", "causality", "variability", "initial"}
-NUMBER = {"unit", "displayUnit", "min", "max", "nominal", "start", "derivative", "reinit", "unbounded", "quantity"}
+NUMBER = {"declaredType", "unit", "displayUnit", "min", "max", "nominal", "start", "derivative", "reinit", "unbounded", "quantity"}
 
 # Names of the structured convention: identifiers joined by dots, with indices, derivatives in der( ).
 IDENTIFIER = r"[A-Za-z_][A-Za-z_0-9]*(\[\d+(,\d+)*\])?"
@@ -149,8 +149,8 @@ class Archives(unittest.TestCase):
             self.assertEqual(it.root.find(kind).get("needsExecutionTool"), "false")
         self.assertRegex(it.root.get("fmiVersion"), r"^[23]\.0$")
         tags = [child.tag for child in it.root]
-        self.assertEqual(tags, ["ModelExchange", "CoSimulation", "UnitDefinitions", "LogCategories", "DefaultExperiment",
-                                "ModelVariables", "ModelStructure"])
+        self.assertEqual(tags, ["ModelExchange", "CoSimulation", "UnitDefinitions", "TypeDefinitions", "LogCategories",
+                                "DefaultExperiment", "ModelVariables", "ModelStructure"])
         for v in it.variables:
             self.assertIn(v.type, ("Real", "Boolean") if it.version == 2 else ("Float64", "Boolean"))
             self.assertLessEqual(set(v.all), IDENTITY | (NUMBER if v.real else {"start"}), v.name)
@@ -180,6 +180,22 @@ class Archives(unittest.TestCase):
             base = unit.find("BaseUnit")
             self.assertGreater(float(base.get("factor", 1)), 0)
             self.assertLessEqual(set(base.attrib), {"kg", "m", "s", "A", "K", "mol", "cd", "rad", "factor", "offset"})
+
+    @of_every_unit
+    def test_types_are_defined_and_have_the_unit_of_their_variables(self, it):
+        types = {}
+        for node in it.root.find("TypeDefinitions"):
+            self.assertEqual(node.tag, {2: "SimpleType", 3: "Float64Type"}[it.version])
+            facts = node[0].attrib if it.version == 2 else node.attrib
+            self.assertLessEqual(set(facts), {"name", "quantity", "unit", "displayUnit"})
+            self.assertNotIn(node.get("name"), types)
+            types[node.get("name")] = facts
+        self.assertFalse(set(types) & {v.name for v in it.variables})
+        for v in it.variables:
+            if "unit" in v.all:
+                declared = types[v.all["declaredType"]]
+                self.assertEqual([v.all["unit"], v.all.get("displayUnit")], [declared["unit"], declared.get("displayUnit")])
+        self.assertEqual(set(types), {v.all["declaredType"] for v in it.variables if "declaredType" in v.all})
 
     @of_every_unit
     def test_causality_variability_initial_and_start_go_together(self, it):
