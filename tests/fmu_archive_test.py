@@ -386,6 +386,12 @@ class Refusals(unittest.TestCase):
         self.refused(*jumps, "--drive", "torque", says="regularization_m_per_s")
         self.refused("--set", "assumptions.analytic.gear=imposed", says="gear")
 
+    def test_a_curve_that_a_unit_cannot_read(self):
+        book = self.folder / "pressure.xlsx"
+        source = next((REPO / "tests/imports").rglob("*.xlsx"))
+        book.write_bytes(source.read_bytes())
+        self.refused("--set", "pressure.kind=curve", "--set", f'pressure.file="{book}"', says="xlsx")
+
     def test_a_unit_is_replaced_whole(self):
         file = self.folder / "pump.fmu"
         for _ in range(2):

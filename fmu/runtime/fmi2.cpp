@@ -69,8 +69,7 @@ fmi2Status call(fmi2Component c, const char* function, Kind kind, unsigned modes
                 Body body) noexcept {
   if (c == nullptr) return fmi2Error;
   Instance& it = *static_cast<Instance*>(c);
-  const Status right =
-      it.call(function, kAny, [&] { it.require(kind); });
+  const Status right = it.call(function, kAny, [&] { it.require(kind); });
   if (right != Status::ok) return fmi2Error;
   return call(c, function, modes, body);
 }
@@ -308,8 +307,7 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
                                        size_t count, const fmi2Integer /*order*/[],
                                        const fmi2Real /*value*/[]) {
   return call(c, __func__, Kind::co_simulation, kSet, [&](Instance& /*it*/) {
-    if (count > 0)
-      throw Refused("inputs are not interpolated: canInterpolateInputs is false");
+    if (count > 0) throw Refused("inputs are not interpolated: canInterpolateInputs is false");
   });
 }
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference /*vr*/[],
@@ -346,9 +344,8 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, fmi2StatusKind kind, fmi2Real* val
               });
 }
 fmi2Status fmi2GetIntegerStatus(fmi2Component c, fmi2StatusKind /*kind*/, fmi2Integer* /*value*/) {
-  return call(c, __func__, Kind::co_simulation, kAny, [](Instance& /*it*/) {
-    throw Refused("there is no integer status");
-  });
+  return call(c, __func__, Kind::co_simulation, kAny,
+              [](Instance& /*it*/) { throw Refused("there is no integer status"); });
 }
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, fmi2StatusKind kind, fmi2Boolean* value) {
   return call(c, __func__, Kind::co_simulation, kStep | kTerminated, [&](Instance& /*it*/) {

@@ -133,12 +133,14 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token,
                      log_to(log, environment, logging_on));
 }
 
-fmi3Instance fmi3InstantiateCoSimulation(
-    fmi3String name, fmi3String token, fmi3String resource_path, fmi3Boolean /*visible*/,
-    fmi3Boolean logging_on, fmi3Boolean event_mode_used, fmi3Boolean /*early_return_allowed*/,
-    const fmi3ValueReference /*intermediate*/[], size_t intermediates,
-    fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
-    fmi3IntermediateUpdateCallback /*update*/) {
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token,
+                                         fmi3String resource_path, fmi3Boolean /*visible*/,
+                                         fmi3Boolean logging_on, fmi3Boolean event_mode_used,
+                                         fmi3Boolean /*early_return_allowed*/,
+                                         const fmi3ValueReference /*intermediate*/[],
+                                         size_t intermediates, fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback log,
+                                         fmi3IntermediateUpdateCallback /*update*/) {
   const Log sink = log_to(log, environment, logging_on);
   if (intermediates > 0)
     sink.say(Status::warning, std::string(__func__) +
@@ -214,14 +216,14 @@ fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], 
 }
 
 // Types that no variable has.
-#define BENTAXIS_NO_TYPE(Type)                                                                    \
-  fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,    \
-                           fmi3##Type /*values*/[], size_t /*value_count*/) {                     \
-    return no_values(instance, __func__, kGet, vr, count, #Type);                                 \
-  }                                                                                               \
-  fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,    \
-                           const fmi3##Type /*values*/[], size_t /*value_count*/) {               \
-    return no_values(instance, __func__, kSetDiscrete, vr, count, #Type);                         \
+#define BENTAXIS_NO_TYPE(Type)                                                                 \
+  fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
+                           fmi3##Type /*values*/[], size_t /*value_count*/) {                  \
+    return no_values(instance, __func__, kGet, vr, count, #Type);                              \
+  }                                                                                            \
+  fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
+                           const fmi3##Type /*values*/[], size_t /*value_count*/) {            \
+    return no_values(instance, __func__, kSetDiscrete, vr, count, #Type);                      \
   }
 BENTAXIS_NO_TYPE(Float32)
 BENTAXIS_NO_TYPE(Int8)

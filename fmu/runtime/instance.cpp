@@ -49,8 +49,8 @@ Instance::Instance(const std::filesystem::path& resources, const std::string& to
                    Log log)
     : kind_(kind), log_(std::move(log)), resources_(read_resources(resources)) {
   if (token != resources_.token)
-    throw Refused("the token " + token + " is that of another unit than its resources: " +
-                  resources_.token);
+    throw Refused("the token " + token +
+                  " is that of another unit than its resources: " + resources_.token);
   variables_ = variables_of(resources_.the_case, resources_.choice);
   for (const Variable& it : variables_)
     first_parameters_.push_back(it.role == Role::parameter ? it.start.value() : 0);
@@ -106,8 +106,8 @@ void Instance::set_up(std::optional<double> tolerance, double start_time,
   if (stop_time) {
     require_finite(*stop_time, "the stop time");
     if (!(*stop_time > start_time))
-      throw Refused("the stop time " + number_text(*stop_time) + " s must be after the start time " +
-                    number_text(start_time) + " s");
+      throw Refused("the stop time " + number_text(*stop_time) +
+                    " s must be after the start time " + number_text(start_time) + " s");
   }
   if (tolerance && !(*tolerance > 0 && std::isfinite(*tolerance)))
     throw Refused("the tolerance must be a number > 0");

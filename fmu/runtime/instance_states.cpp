@@ -34,8 +34,9 @@ void Instance::put_state(void** place, SavedState state) {
   if (*place != nullptr) {  // of the same instance: to be used again
     const auto found = saved_.find(*place);
     if (found == saved_.end())
-      throw Refused("the state to be written is none that this instance has given; a new one is "
-                    "asked for by a null pointer");
+      throw Refused(
+          "the state to be written is none that this instance has given; a new one is "
+          "asked for by a null pointer");
     *found->second = std::move(state);
     return;
   }
@@ -103,7 +104,8 @@ void Instance::serialize(void* state, char* bytes, std::size_t size) const {
 
 void Instance::deserialize(const char* bytes, std::size_t size, void** state) {
   SavedState read = state_of(bytes, size, resources_.token);
-  const bool one_mode = read.mode != 0 && (read.mode & (read.mode - 1)) == 0 && read.mode <= kFailed;
+  const bool one_mode =
+      read.mode != 0 && (read.mode & (read.mode - 1)) == 0 && read.mode <= kFailed;
   const unsigned foreign =
       kind_ == Kind::co_simulation ? unsigned{kEvent} | kContinuous : unsigned{kStep};
   if (one_mode && (read.mode & foreign) != 0)

@@ -15,9 +15,8 @@ const Variable& Instance::variable(Reference reference) const {
 }
 
 std::size_t Instance::count_of(Role role) const {
-  return static_cast<std::size_t>(
-      std::count_if(variables_.begin(), variables_.end(),
-                    [&](const Variable& it) { return it.role == role; }));
+  return static_cast<std::size_t>(std::count_if(
+      variables_.begin(), variables_.end(), [&](const Variable& it) { return it.role == role; }));
 }
 
 double& Instance::input(Input which) {
@@ -43,8 +42,8 @@ Plant& Instance::open_plant() {
   if (!plant_) throw Refused("the pump has not been started");
   if (kind_ == Kind::model_exchange) return *plant_;
   if (!open_) {
-    auto open = std::make_unique<Plant>(case_as_set(parameters_), resources_.choice,
-                                        Kind::model_exchange);
+    auto open =
+        std::make_unique<Plant>(case_as_set(parameters_), resources_.choice, Kind::model_exchange);
     open->set_state(plant_->state());
     open_ = std::move(open);
   }

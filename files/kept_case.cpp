@@ -1,4 +1,4 @@
-#include "kept_case.h"
+#include "bentaxis/files/kept_case.h"
 
 #include <algorithm>
 #include <fstream>
@@ -8,27 +8,17 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
 
-namespace bentaxis::fmu {
+namespace bentaxis {
 namespace {
 
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream bytes;
-  if (!in || !(bytes << in.rdbuf())) throw InputError(file.string() + ": cannot be read");
-  std::string all = std::move(bytes).str();
-  if (all.find('\0') != std::string::npos)
-    throw InputError(file.string() +
-                     ": is a workbook or a .mat file, which a unit cannot read: save it as CSV");
-  return all;
-}
+constexpr const char* kRoot = "/bentaxis-kept-case/";  // a path that no file has
 
-constexpr const char* kRoot = "/bentaxis-unit/";  // a path that no file has
-
-// A name in the archive that no other curve has; the same file has one name.
-std::string name_for(const std::filesystem::path& file, const std::vector<ArchiveFile>& others) {
+// A name that no other curve has.
+std::string name_for(const std::filesystem::path& file,
+                     const std::vector<KeptCase::Curve>& others) {
   const auto taken = [&](const std::string& name) {
     return std::any_of(others.begin(), others.end(),
-                       [&](const ArchiveFile& other) { return other.name == name; });
+                       [&](const KeptCase::Curve& other) { return other.name == name; });
   };
   std::string name = "curves/" + file.filename().string();
   for (int i = 2; taken(name); ++i)
@@ -38,10 +28,17 @@ std::string name_for(const std::filesystem::path& file, const std::vector<Archiv
 
 }  // namespace
 
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream bytes;
+  if (!in || !(bytes << in.rdbuf()))
+    throw InputError(file.string() + ": cannot be read: no such file, or no permission");
+  return bytes.str();
+}
+
 KeptCase kept_case(const Case& the_case) {
   KeptCase kept;
   Case copy = the_case;
-  copy.uncertainty = {};  // a unit has one value of each
   const View view = view_of(copy);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters) {
@@ -62,4 +59,4 @@ KeptCase kept_case(const Case& the_case) {
   return kept;
 }
 
-}  // namespace bentaxis::fmu
+}  // namespace bentaxis
