@@ -11,6 +11,8 @@
 namespace bentaxis {
 namespace {
 
+constexpr const char* kRoot = "/bentaxis-kept-case/";  // a path that no file has
+
 // A name that no other curve has.
 std::string name_for(const std::filesystem::path& file,
                      const std::vector<KeptCase::Curve>& others) {
@@ -46,9 +48,14 @@ KeptCase kept_case(const Case& the_case) {
       std::filesystem::path* file = curve->file.write(view);
       if (file == nullptr || file->empty()) continue;
       kept.curves.push_back({name_for(*file, kept.curves), bytes_of(*file)});
-      *file = kept.curves.back().name;
+      *file = kRoot + kept.curves.back().name;
     }
   kept.text = case_text(copy);
+  // The writer names curves by their whole paths.
+  const std::string whole = std::string("\"") + kRoot;
+  for (std::size_t at = kept.text.find(whole); at != std::string::npos;
+       at = kept.text.find(whole, at))
+    kept.text.replace(at, whole.size(), "\"");
   return kept;
 }
 

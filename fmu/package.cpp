@@ -3,6 +3,7 @@
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/kept_case.h"
 #include "bentaxis/fmu/unit.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "documentation.h"
 #include "embedded.h"
@@ -58,6 +59,14 @@ Description description_of(const Case& the_case, const UnitOptions& options) {
   return it;
 }
 
+// A unit has no libraries of these formats.
+void require_text(const KeptCase& kept) {
+  for (const KeptCase::Curve& curve : kept.curves)
+    if (curve.bytes.find('\0') != std::string::npos)
+      throw InputError(curve.name.substr(curve.name.find('/') + 1) +
+                       ": is a workbook or a .mat file, which a unit cannot read: save it as CSV");
+}
+
 const char* folder_of_library(Version version) {
   return version == Version::fmi2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
 }
@@ -69,6 +78,7 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
   Case alone = the_case;
   alone.uncertainty = {};  // a unit has one value of each
   const KeptCase kept = kept_case(alone);
+  require_text(kept);
   const std::string choice = choice_text(options);
   description.token = token_of(identity(kept, choice, description.variables));
   std::vector<ArchiveFile> files;
