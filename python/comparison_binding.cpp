@@ -38,9 +38,9 @@ Comparison compare_cases(const PythonCase& the_case, const CaseValues& multibody
                          const CaseValues& analytic, const PythonCase* multibody_case,
                          const Texts& channels, std::optional<double> tolerance) {
   if (tolerance && !(*tolerance > 0)) throw InputError("tolerance: must be a positive number");
-  Case first = the_case.get();
+  Case first = the_case.copy();
   std::optional<Case> second;
-  if (multibody_case != nullptr) second = multibody_case->get();
+  if (multibody_case != nullptr) second = multibody_case->copy();
   assume(analytic, "analytic", first.pump, first.analytic);
   Case& of_multibody = second ? *second : first;
   assume(multibody, "multibody", of_multibody.pump, of_multibody.multibody);

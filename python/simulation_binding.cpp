@@ -36,7 +36,7 @@ Simulation simulate(const PythonCase& the_case, const std::optional<std::string>
     throw InputError("oil " + oil + ": must be coupled or periodic");
   if (oil == "periodic") choice.oil = study::OilInTime::periodic;
   choice.steady = steady;
-  Case copy = the_case.get();
+  Case copy = the_case.copy();
   return {unlocked([&](const study::PartProgress& progress_of) {
     drive_of(copy);
     return std::make_shared<const study::SimulationResult>(study::simulate(

@@ -84,7 +84,7 @@ Sweep sweep(const PythonCase& the_case, const Variations& vary, const Texts& out
     throw InputError("check = " + number_text(check) + ": must be a share of the designs, 0 to 1");
   request.check_share = check;
   if (threads < 0) throw InputError("threads = " + std::to_string(threads) + ": must be >= 0");
-  const Case copy = the_case.get();
+  const Case copy = the_case.copy();
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     const designs::Sweep all(copy, designs::sweep_plan(request, copy));
     return std::make_shared<const designs::SweepResult>(

@@ -7,6 +7,7 @@
 #include "binding.h"
 #include "call.h"
 #include "table.h"
+#include "table_pickle.h"
 #include "values.h"
 
 namespace bentaxis::python {
