@@ -75,7 +75,7 @@ class TableTest(ModuleTest):
 
     def test_pickles_are_copies(self):
         turn = bentaxis.run(self.case())
-        states = bentaxis.run_states(self.case(), {**motion(), "time_s": numpy.arange(40)}, channels="Rs")
+        states = bentaxis.run_states(self.case(), {**motion(), "time_s": numpy.linspace(0, 0.04, 40)}, channels="Rs")
         for table in (turn, states):
             other = pickle.loads(pickle.dumps(table))
             self.assertEqual((other.name, other.names, other.channels), (table.name, table.names, table.channels))
