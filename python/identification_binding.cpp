@@ -138,7 +138,7 @@ std::optional<Table> bands(const Identification& self) {
   return table;
 }
 
-std::vector<fs::path> report(const Identification& self, const fs::path& folder) {
+std::vector<fs::path> report_identification(const Identification& self, const fs::path& folder) {
   return unlocked([&](const study::PartProgress&) {
     const Found& found = *self.found;
     std::vector<cli::TextFile> files = {
@@ -205,7 +205,7 @@ void add_identification(py::module_& module) {
           "The identified pump.")
       .def_property_readonly("bands", &bands,
                              "Reactions over the turn with their bands; None with fit_only.")
-      .def("report", &report, py::arg("folder"),
+      .def("report", &report_identification, py::arg("folder"),
            "Writes what the program writes; returns the files' paths.")
       .def(
           "__repr__",

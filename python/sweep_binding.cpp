@@ -99,7 +99,8 @@ std::map<std::size_t, std::string> infeasible(const Sweep& self) {
   return reasons;
 }
 
-std::vector<std::filesystem::path> report(const Sweep& self, const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> report_sweep(const Sweep& self,
+                                                const std::filesystem::path& folder) {
   return unlocked([&](const study::PartProgress&) {
     return write_report(folder, "bentaxis.sweep", {&self.result->base},
                         designs::sweep_document(*self.result, versions()), {},
@@ -137,7 +138,7 @@ void add_sweep(py::module_& module) {
       .def_property_readonly(
           "seconds", [](const Sweep& self) { return self.result->seconds; },
           "What the computation took.")
-      .def("report", &report, py::arg("folder"),
+      .def("report", &report_sweep, py::arg("folder"),
            "Writes report.html, report.json and sweep.csv as the program does; returns their "
            "paths.");
   module.def(
