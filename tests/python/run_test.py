@@ -173,7 +173,7 @@ class RunTest(ModuleTest):
 
 
 class LockTest(ModuleTest):
-    LONG = {"operation__samples_per_revolution": 20000}
+    LONG = {"operation__samples_per_revolution": 10000}
 
     def test_other_threads_go_on_during_a_run(self):
         ticks = []
@@ -195,7 +195,7 @@ class LockTest(ModuleTest):
         during = [tick for tick in ticks if start < tick < end]
         self.assertGreater(end - start, 0.2)
         # With the lock held there would be none but at its looks at signals.
-        self.assertGreater(len(during), 100 * (end - start))
+        self.assertGreater(len(during), 40 * (end - start))
 
     def test_two_threads_run_at_once(self):
         alone = bentaxis.run(self.case(), model="multibody")["Td_z1_Nm"]
@@ -230,9 +230,9 @@ class LockTest(ModuleTest):
 
     def test_ctrl_c_ends_a_computation(self):
         case = self.case(operation__samples_per_revolution=500000)
-        self.assertLess(self.interrupted(lambda: bentaxis.run(case, model="multibody")), 2)
+        self.assertLess(self.interrupted(lambda: bentaxis.run(case, model="multibody")), 5)
         vary = {"pump.tilt_deg": "20:40:#1000", "pressure.delivery_bar": "50:400:#1000"}
-        self.assertLess(self.interrupted(lambda: bentaxis.sweep(self.case(), vary, "max:Rb1_z1")), 2)
+        self.assertLess(self.interrupted(lambda: bentaxis.sweep(self.case(), vary, "max:Rb1_z1")), 5)
         self.assertEqual(len(bentaxis.run(self.case())), 720)  # and all is well after it
 
     def test_what_a_handler_raises_comes_through(self):
