@@ -3,6 +3,8 @@
 #include <limits>
 #include <thread>
 
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/pump/number.h"
 #include "fmu_support.h"
 
 namespace bentaxis::fmu {
@@ -43,6 +45,48 @@ TEST(Fmi2, ParametersAreThoseOfTheCaseWithTheSameWords) {
   unit.done = 0;
   unit.start();
   unit.steps(1, 1e-3);
+}
+
+// The case with one number changed, as --set changes it.
+std::string change_of(const Resources& resources, const Variable& it, double value) {
+  const std::string name = it.table + "." + it.key;
+  if (it.name == name) return name + "=" + number_text(value);
+  double pair[] = {value, value};
+  const std::size_t other = 1 - it.place;
+  pair[other] = *resources.variables()[resources[name + (other == 0 ? "[1]" : "[2]")]].start;
+  return name + "=[" + number_text(pair[0]) + ", " + number_text(pair[1]) + "]";
+}
+
+TEST(Fmi2, EveryParameterDoesWhatSetDoes) {
+  for (const char* name : {kRated, "bap63_teeth.toml"}) {
+    const Resources resources(name);
+    const auto changed_case = [&](const std::string& change) {
+      return case_text(read_case(BENTAXIS_SOURCE_DIR "/cases/" + std::string(name), {change}));
+    };
+    const auto outputs_of = [](Unit2& unit) {
+      unit.start();
+      unit.steps(2, 1e-4);
+      return unit.outputs();
+    };
+    Unit2 as_it_is(resources);
+    const auto before = outputs_of(as_it_is);
+    int with_effect = 0, parameters = 0;
+    for (const Variable& it : resources.variables()) {
+      if (it.role != Role::parameter) continue;
+      SCOPED_TRACE(it.name);
+      ++parameters;
+      const double value = *it.start == 0 ? 1 : *it.start * 0.999;
+      Unit2 unit(resources);
+      ASSERT_EQ(unit.set(it.name, value), fmi2OK) << unit.messages.text;
+      const auto values = outputs_of(unit);
+      const Resources changed(name);
+      changed.write("case.toml", changed_case(change_of(resources, it, value)));
+      Unit2 other(changed);
+      expect_near(values, outputs_of(other), 1e-13);
+      if (values != before) ++with_effect;
+    }
+    EXPECT_GT(with_effect, parameters / 2) << "of " << parameters;
+  }
 }
 
 TEST(Fmi2, TunableParametersChangeWhileItRuns) {

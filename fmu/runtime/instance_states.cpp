@@ -1,5 +1,5 @@
 // Saved states of an instance.
-#include <cstring>
+#include <algorithm>
 
 #include "bentaxis/pump/error.h"
 #include "instance.h"
@@ -53,8 +53,8 @@ void Instance::save(void** state) {
   put_state(state, present());
 }
 
-void Instance::restore(void* saved) {
-  const SavedState state = known_state(saved);
+void Instance::restore(void* state_given) {
+  const SavedState state = known_state(state_given);
   // In initialization mode the start is looked for anew: it may be that of other values.
   const bool goes_on = state.started && (state.mode & (kInstantiated | kInitialization)) == 0;
   const bool as_built = plant_ && state.parameters == parameters_ && state.tolerance == tolerance_;
@@ -106,7 +106,7 @@ void Instance::serialize(void* state, char* bytes, std::size_t size) const {
   if (size < text.size())
     throw Refused("the state takes " + std::to_string(text.size()) + " bytes, not " +
                   std::to_string(size));
-  std::memcpy(bytes, text.data(), text.size());
+  std::copy(text.begin(), text.end(), bytes);
 }
 
 void Instance::deserialize(const char* bytes, std::size_t size, void** state) {
