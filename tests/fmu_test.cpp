@@ -52,14 +52,14 @@ struct Truth {
 };
 const Truth& simulated(const Case& c) {
   static std::map<std::string, Truth> kept;
-  const auto [place, is_new] = kept.try_emplace(c.name);
-  if (!is_new) return place->second;
-  place->second.columns = [&] {
+  if (const auto found = kept.find(c.name); found != kept.end()) return found->second;
+  Truth& truth = kept[c.name];
+  truth.columns = [&] {
     study::SimulationChoice choice;
     choice.only = study::Model::analytic;
     choice.error = 1e-8;
     const auto r = study::simulate(study::prepare_simulation(c, choice), choice);
-    place->second.touches = r.analytic->record.events.size();
+    truth.touches = r.analytic->record.events.size();
     const Trajectory& t = *r.analytic;
     Columns made;
     for (std::size_t row = 0; row < t.lag.size(); ++row) {
@@ -75,7 +75,7 @@ const Truth& simulated(const Case& c) {
     }
     return made;
   }();
-  return place->second;
+  return truth;
 }
 
 // A unit in a file that goes.
