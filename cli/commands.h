@@ -31,6 +31,7 @@ Command add_fig34_command(CommandParser program);
 Command add_fmu_command(CommandParser program);
 Command add_hardcases_command(CommandParser program);
 Command add_identify_command(CommandParser program);
+Command add_init_command(CommandParser program);
 Command add_index_command(CommandParser program);
 Command add_inertia_command(CommandParser program);
 Command add_life_command(CommandParser program);

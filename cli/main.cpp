@@ -73,7 +73,8 @@ int run_program(int argc, char** argv) {
       add_merge_command(program),       add_uncertainty_command(program),
       add_sensitivity_command(program), add_life_command(program),
       add_identify_command(program),    add_index_command(program),
-      add_paper_command(program),       add_fmu_command(program)};
+      add_paper_command(program),       add_fmu_command(program),
+      add_init_command(program)};
   return guarded([&]() -> int {
     if (!parser.parse(argc, argv)) return kDone;
     watch_for_interruption();

@@ -57,6 +57,10 @@ void add_case(CommandParser command, CaseOption& the_case, const std::string& ot
     file.required().text("CASE");
   else
     file.text("CASE [" + otherwise + "]");
+  add_changes(command, the_case);
+}
+
+void add_changes(CommandParser command, CaseOption& the_case) {
   command
       .option("--set", the_case.changes,
               "change a key of the case, as if its file said so; can be given again")

@@ -32,6 +32,8 @@ struct CaseOption {
 /// CASE, --set and --strict.
 /// @param otherwise  what the command takes where no CASE is given; empty: it must be
 void add_case(CommandParser command, CaseOption& the_case, const std::string& otherwise = {});
+/// --set and --strict alone.
+void add_changes(CommandParser command, CaseOption& the_case);
 void add_out(CommandParser command, std::string& folder, const std::string& what);
 /// --threads.
 void add_threads(CommandParser command, int& threads, const std::string& what);

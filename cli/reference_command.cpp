@@ -3,9 +3,8 @@
 #include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
 
-#include "bentaxis/files/output_folder.h"
+#include "bentaxis/files/kept_case.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/reference_maker.h"
 #include "commands.h"
@@ -25,14 +24,6 @@ struct Options {
   int samples = study::kGoldenSamples;
 };
 
-std::string read_mapping(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file + ": cannot be read: no such file, or no permission");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 int make_new(const Options& options) {
   const std::string stem = "reference_" + fs::path(options.the_case.file).stem().string();
   const fs::path out = options.out.empty() ? stem : options.out;
@@ -41,7 +32,7 @@ int make_new(const Options& options) {
   std::string description, proposals;
   if (!options.mapping.empty()) {
     if (options.accept) throw InputError("--accept takes the guess: it excludes --mapping");
-    description = read_mapping(options.mapping);
+    description = bytes_of(options.mapping);
   } else {
     const study::MappingGuess guess = study::guess_reference(the_case, options.from, options.sheet);
     proposals = study::proposal_text(guess) + std::to_string(guess.recognised()) + " of " +

@@ -36,7 +36,8 @@ class Stepper::Implementation {
   }
 
   void step_to(double time) {
-    // Beyond the end another one is expected as far away, so that steps go on over points there too.
+    // Beyond the end another one is expected as far away, so that steps go on over points there
+    // too.
     if (time > end_) end_ = std::max(time, end_ + span_);
     try {
       advance_to(time, end_);

@@ -297,8 +297,7 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const std::string& name = table.header[c];
     if (known.count(name) == 0)
-      throw InputError(head + ": unknown column \"" + name + "\"" +
-                       suggestion(name, known));
+      throw InputError(head + ": unknown column \"" + name + "\"" + suggestion(name, known));
     if (!columns.emplace(name, c).second)
       throw InputError(head + ": column \"" + name + "\" stands there twice");
   }

@@ -76,6 +76,7 @@ std::string description_fmi2(const Description& description) {
                     [](const Variable& variable) { return variable.role == Role::indicator; }));
   add_kinds(root);
   add_units(root, variables);
+  add_types(root, variables, Version::fmi2);
   add_log_categories(root);
   add_experiment(root, description);
   add_variables(root, variables);

@@ -56,6 +56,7 @@ std::string description_fmi3(const Description& description) {
   pugi::xml_node root = add_root(document, description, "3.0", "instantiationToken");
   add_kinds(root);
   add_units(root, description.variables);
+  add_types(root, description.variables, Version::fmi3);
   add_log_categories(root);
   add_experiment(root, description);
   add_variables(root, description.variables);

@@ -50,6 +50,18 @@ void add_base(pugi::xml_node unit, const UnitDefinition& definition) {
   if (definition.offset != 0) set(base, "offset", definition.offset);
 }
 
+void set_unit(pugi::xml_node node, const UnitDefinition& unit) {
+  set(node, "unit", unit.name);
+  if (!unit.display.empty()) set(node, "displayUnit", unit.display);
+}
+
+std::vector<const UnitDefinition*> definitions_for(const std::vector<Variable>& variables) {
+  std::vector<std::string> used;
+  for (const Variable& variable : variables)
+    if (!variable.boolean) used.push_back(variable.unit);
+  return unit_definitions(used);
+}
+
 }  // namespace
 
 Initial initial_of(const Variable& variable) {
@@ -103,10 +115,7 @@ pugi::xml_node add_root(pugi::xml_document& document, const Description& descrip
 }
 
 void add_units(pugi::xml_node root, const std::vector<Variable>& variables) {
-  std::vector<std::string> used;
-  for (const Variable& variable : variables)
-    if (!variable.boolean) used.push_back(variable.unit);
-  const auto definitions = unit_definitions(used);
+  const auto definitions = definitions_for(variables);
   if (definitions.empty()) return;
   pugi::xml_node all = root.append_child("UnitDefinitions");
   for (const UnitDefinition* definition : definitions) {
@@ -117,6 +126,20 @@ void add_units(pugi::xml_node root, const std::vector<Variable>& variables) {
     pugi::xml_node display = unit.append_child("DisplayUnit");
     set(display, "name", definition->display);
     set(display, "factor", definition->display_factor);
+  }
+}
+
+void add_types(pugi::xml_node root, const std::vector<Variable>& variables, Version version) {
+  const auto definitions = definitions_for(variables);
+  if (definitions.empty()) return;
+  pugi::xml_node all = root.append_child("TypeDefinitions");
+  for (const UnitDefinition* definition : definitions) {
+    const bool nested = version == Version::fmi2;
+    pugi::xml_node type = all.append_child(nested ? "SimpleType" : "Float64Type");
+    set(type, "name", type_name(*definition));
+    if (nested) type = type.append_child("Real");
+    set(type, "quantity", definition->quantity);
+    set_unit(type, *definition);
   }
 }
 
@@ -163,8 +186,8 @@ void set_values(pugi::xml_node node, const Variable& variable) {
     return;
   }
   if (const UnitDefinition* unit = unit_definition(variable.unit)) {
-    set(node, "unit", unit->name);
-    if (!unit->display.empty()) set(node, "displayUnit", unit->display);
+    set(node, "declaredType", type_name(*unit));
+    set_unit(node, *unit);
   }
   if (variable.least) set(node, "min", *variable.least);
   if (variable.most) set(node, "max", *variable.most);

@@ -19,11 +19,13 @@ void set(pugi::xml_node node, const char* name, const char* value) = delete;  //
 pugi::xml_node add_root(pugi::xml_document& document, const Description& description,
                         const char* version, const char* token_name);
 void add_units(pugi::xml_node root, const std::vector<Variable>& variables);
+/// A type for each unit: quantity, unit, displayUnit. @param version  names their elements
+void add_types(pugi::xml_node root, const std::vector<Variable>& variables, Version version);
 void add_log_categories(pugi::xml_node root);
 void add_experiment(pugi::xml_node root, const Description& description);
 /// name, valueReference, description, causality, variability, initial.
 void set_identity(pugi::xml_node node, const Variable& variable);
-/// unit, displayUnit, min, max, nominal, start of a number; start of a flag.
+/// declaredType, unit, displayUnit, min, max, nominal, start of a number; start of a flag.
 void set_values(pugi::xml_node node, const Variable& variable);
 
 std::string to_text(const pugi::xml_document& document);

@@ -1,11 +1,12 @@
 // The archive of a unit.
 #include "archive.h"
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/files/kept_case.h"
 #include "bentaxis/fmu/unit.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "documentation.h"
 #include "embedded.h"
-#include "kept_case.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -38,7 +39,7 @@ std::string choice_text(const UnitOptions& options) {
 std::string identity(const KeptCase& kept, const std::string& choice,
                      const std::vector<Variable>& variables) {
   std::string all = BENTAXIS_VERSION "\n" + choice + kept.text;
-  for (const ArchiveFile& curve : kept.curves) all += curve.name + "\n" + curve.bytes;
+  for (const KeptCase::Curve& curve : kept.curves) all += curve.name + "\n" + curve.bytes;
   for (const Variable& variable : variables) all += variable.name + " " + variable.unit + "\n";
   return all;
 }
@@ -58,6 +59,14 @@ Description description_of(const Case& the_case, const UnitOptions& options) {
   return it;
 }
 
+// A unit has no libraries of these formats.
+void require_text(const KeptCase& kept) {
+  for (const KeptCase::Curve& curve : kept.curves)
+    if (curve.bytes.find('\0') != std::string::npos)
+      throw InputError(curve.name.substr(curve.name.find('/') + 1) +
+                       ": is a workbook or a .mat file, which a unit cannot read: save it as CSV");
+}
+
 const char* folder_of_library(Version version) {
   return version == Version::fmi2 ? "binaries/linux64/" : "binaries/x86_64-linux/";
 }
@@ -66,7 +75,10 @@ const char* folder_of_library(Version version) {
 
 std::string unit_archive(const Case& the_case, const UnitOptions& options) {
   Description description = description_of(the_case, options);
-  const KeptCase kept = kept_case(the_case);
+  Case alone = the_case;
+  alone.uncertainty = {};  // a unit has one value of each
+  const KeptCase kept = kept_case(alone);
+  require_text(kept);
   const std::string choice = choice_text(options);
   description.token = token_of(identity(kept, choice, description.variables));
   std::vector<ArchiveFile> files;
@@ -74,7 +86,7 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
   files.push_back({folder_of_library(options.version) + std::string(kModelIdentifier) + ".so",
                    embedded_library(), true});
   files.push_back({"resources/case.toml", kept.text});
-  for (const ArchiveFile& curve : kept.curves)
+  for (const KeptCase::Curve& curve : kept.curves)
     files.push_back({"resources/" + curve.name, curve.bytes});
   files.push_back({"resources/unit.txt", choice + "token " + description.token + "\n"});
   files.push_back({"documentation/index.html", documentation_page(description, options)});

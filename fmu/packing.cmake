@@ -2,7 +2,7 @@
 # variables is what that has.
 bentaxis_library(fmu STANDARD 20
   SOURCES archive.cpp description_fmi2.cpp description_fmi3.cpp description_parts.cpp documentation.cpp
-    embedded.cpp kept_case.cpp package.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
+    embedded.cpp package.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
 target_link_libraries(bentaxis_fmu PUBLIC bentaxis::pump
   PRIVATE bentaxis::analytic bentaxis::coupled bentaxis::files bentaxis::hydraulics bentaxis::results
     pugixml::pugixml zip)
@@ -10,14 +10,8 @@ target_compile_definitions(bentaxis_fmu PRIVATE BENTAXIS_VERSION="${PROJECT_VERS
 bentaxis_compile_fast(bentaxis_fmu)
 
 # What the archive carries: the library of the unit, the licence, and those of what is joined to the library.
-if(TARGET bentaxis_fmu_library)
-  set(library ${CMAKE_CURRENT_BINARY_DIR}/bentaxis_fmu.so)
-  add_dependencies(bentaxis_fmu bentaxis_fmu_library)
-else()
-  set(library ${CMAKE_CURRENT_BINARY_DIR}/stand_in.so)
-  string(ASCII 127 delete)
-  file(WRITE ${library} "${delete}ELF, not: a stand-in")
-endif()
+set(library ${CMAKE_CURRENT_BINARY_DIR}/bentaxis_fmu.so)
+add_dependencies(bentaxis_fmu bentaxis_fmu_library)
 set(notices ${CMAKE_CURRENT_BINARY_DIR}/third_party.txt)
 file(READ ${CMAKE_CURRENT_SOURCE_DIR}/third_party.txt text)
 foreach(package libsundials-dev libtomlplusplus-dev)

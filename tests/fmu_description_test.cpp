@@ -132,9 +132,10 @@ TEST(Description, ElementsStandInTheOrderOfTheSchemas) {
   const auto fmi2 = parsed(description_fmi2(small_unit()));
   const auto fmi3 = parsed(description_fmi3(small_unit()));
   for (const auto* document : {&fmi2, &fmi3})
-    EXPECT_THAT(children(document->child("fmiModelDescription")),
-                ElementsAre("ModelExchange", "CoSimulation", "UnitDefinitions", "LogCategories",
-                            "DefaultExperiment", "ModelVariables", "ModelStructure"));
+    EXPECT_THAT(
+        children(document->child("fmiModelDescription")),
+        ElementsAre("ModelExchange", "CoSimulation", "UnitDefinitions", "TypeDefinitions",
+                    "LogCategories", "DefaultExperiment", "ModelVariables", "ModelStructure"));
 }
 
 TEST(Description, NamesOfPeopleAreEscapedAndOnOneLine) {

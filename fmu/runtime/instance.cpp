@@ -181,7 +181,7 @@ UnitChoice Instance::present_choice() const {
 void Instance::start() {
   const Case the_case = case_as_set(wanted_);
   auto plant = std::make_unique<Plant>(the_case, present_choice(), kind_);
-  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 1);
+  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 0);
   plant_ = std::move(plant);
   parameters_ = wanted_;
   started_ = true;
@@ -198,10 +198,7 @@ void Instance::settle() {
   }
   if (changed) {
     try {
-      // Anew, so that what is refused leaves the old one as it was.
-      auto plant = std::make_unique<Plant>(case_as_set(wanted_), present_choice(), kind_);
-      plant->set_state(plant_->state());
-      plant_ = std::move(plant);
+      plant_->change(case_as_set(wanted_));  // what is refused leaves it as it was
       parameters_ = wanted_;
     } catch (...) {
       wanted_ = parameters_;

@@ -1,4 +1,4 @@
-#include "kept_case.h"
+#include "bentaxis/files/kept_case.h"
 
 #include <algorithm>
 #include <fstream>
@@ -8,21 +8,17 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
 
-namespace bentaxis::fmu {
+namespace bentaxis {
 namespace {
 
-std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream bytes;
-  if (!in || !(bytes << in.rdbuf())) throw InputError(file.string() + ": cannot be read");
-  return bytes.str();
-}
+constexpr const char* kRoot = "/bentaxis-kept-case/";  // a path that no file has
 
-// A name in the archive that no other curve has; the same file has one name.
-std::string name_for(const std::filesystem::path& file, const std::vector<ArchiveFile>& others) {
+// A name that no other curve has.
+std::string name_for(const std::filesystem::path& file,
+                     const std::vector<KeptCase::Curve>& others) {
   const auto taken = [&](const std::string& name) {
     return std::any_of(others.begin(), others.end(),
-                       [&](const ArchiveFile& other) { return other.name == name; });
+                       [&](const KeptCase::Curve& other) { return other.name == name; });
   };
   std::string name = "curves/" + file.filename().string();
   for (int i = 2; taken(name); ++i)
@@ -32,10 +28,17 @@ std::string name_for(const std::filesystem::path& file, const std::vector<Archiv
 
 }  // namespace
 
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream bytes;
+  if (!in || !(bytes << in.rdbuf()))
+    throw InputError(file.string() + ": cannot be read: no such file, or no permission");
+  return bytes.str();
+}
+
 KeptCase kept_case(const Case& the_case) {
   KeptCase kept;
   Case copy = the_case;
-  copy.uncertainty = {};  // a unit has one value of each
   const View view = view_of(copy);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters) {
@@ -45,10 +48,15 @@ KeptCase kept_case(const Case& the_case) {
       std::filesystem::path* file = curve->file.write(view);
       if (file == nullptr || file->empty()) continue;
       kept.curves.push_back({name_for(*file, kept.curves), bytes_of(*file)});
-      *file = kept.curves.back().name;
+      *file = kRoot + kept.curves.back().name;
     }
   kept.text = case_text(copy);
+  // The writer names curves by their whole paths.
+  const std::string whole = std::string("\"") + kRoot;
+  for (std::size_t at = kept.text.find(whole); at != std::string::npos;
+       at = kept.text.find(whole, at))
+    kept.text.replace(at, whole.size(), "\"");
   return kept;
 }
 
-}  // namespace bentaxis::fmu
+}  // namespace bentaxis

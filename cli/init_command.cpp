@@ -1,0 +1,57 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/study/project.h"
+#include "commands.h"
+#include "console.h"
+#include "data_folder.h"
+#include "options.h"
+
+namespace bentaxis::cli {
+namespace {
+
+struct Options {
+  CaseOption the_case;
+  std::string folder;
+  std::string ci = "both";
+};
+
+std::string shipped_case() {
+  if (const auto data = shipped_reference_data())
+    return (data->parent_path() / "cases" / "bap63_rated.toml").string();
+  throw InputError("no case came with this program: --case CASE names one");
+}
+
+int init(const Options& options) {
+  CaseOption wanted = options.the_case;
+  if (wanted.file.empty()) wanted.file = shipped_case();
+  const auto chosen = [&](const char* system) {
+    return options.ci == "both" || options.ci == system;
+  };
+  const auto files =
+      study::make_project(wanted.read(), !wanted.changes.empty(),
+                          {chosen("github"), chosen("gitlab")}, options.folder, progress_of);
+  for (const auto& file : files) std::printf("%s\n", file.c_str());
+  std::printf("now: cd %s && bentaxis regress reference\n", options.folder.c_str());
+  return kDone;
+}
+
+}  // namespace
+
+Command add_init_command(CommandParser program) {
+  auto options = std::make_shared<Options>();
+  CommandParser command = program.subcommand(
+      "init", "Write a project: a case, a reference made from it, job files for CI, a README");
+  command.option("dir", options->folder, "new folder").required().text("DIR");
+  command.option("--case", options->the_case.file, "case file (TOML)")
+      .text("CASE [the shipped bap63_rated.toml]");
+  add_changes(command, options->the_case);
+  command.option("--ci", options->ci, "for which CI systems a job file is written")
+      .one_of({"both", "github", "gitlab", "none"})
+      .text("both|github|gitlab|none [both]");
+  return {command, [options] { return init(*options); }};
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,79 @@
+#include "bentaxis/files/new_folder.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& why) {
+  throw InputError(path.string() + ": " + why);
+}
+
+}  // namespace
+
+NewFolder::NewFolder(fs::path folder) : folder_(std::move(folder)) {
+  if (folder_.empty()) throw InputError("the new folder needs a name");
+  std::error_code error;
+  const fs::path full = fs::absolute(folder_).lexically_normal();
+  const fs::path place = full.has_filename() ? full : full.parent_path();
+  if (fs::is_symlink(place, error)) refuse(folder_, "is a link; name the folder itself");
+  if (fs::exists(place, error)) {
+    if (!fs::is_directory(place, error)) refuse(folder_, "is there already, and no folder");
+    if (!fs::is_empty(place, error)) refuse(folder_, "is there already, and not empty");
+  } else if (!fs::is_directory(place.parent_path(), error)) {
+    refuse(place.parent_path(), "there is no such folder");
+  }
+  folder_ = place;
+  here_ =
+      place.parent_path() / ("." + place.filename().string() + ".part-" + std::to_string(getpid()));
+  if (!fs::create_directory(here_, error))
+    refuse(place.parent_path(), "nothing can be written there: " +
+                                    (error ? error.message() : here_.string() + " is in the way"));
+}
+
+NewFolder::~NewFolder() {
+  std::error_code error;
+  fs::remove_all(here_, error);
+}
+
+void NewFolder::add(const fs::path& name, const std::string& content) {
+  std::error_code error;
+  fs::create_directories((here_ / name).parent_path(), error);
+  std::ofstream out(here_ / name, std::ios::binary);
+  out << content;
+  out.close();
+  if (!out)
+    refuse(folder_ / name,
+           "cannot be written: " + std::error_code(errno, std::generic_category()).message());
+}
+
+void NewFolder::commit() {
+  std::error_code error;
+  if (!fs::exists(folder_, error)) {
+    fs::rename(here_, folder_, error);
+    if (error) refuse(folder_, "cannot be made: " + error.message());
+    return;
+  }
+  // It is there and empty, and may be where somebody stands: it stays, and is filled.
+  std::vector<fs::path> moved;
+  for (const fs::directory_entry& entry : fs::directory_iterator(here_)) {
+    const fs::path to = folder_ / entry.path().filename();
+    fs::rename(entry.path(), to, error);
+    if (error) {
+      for (const fs::path& path : moved) fs::remove_all(path);
+      refuse(folder_, "cannot be filled: " + error.message());
+    }
+    moved.push_back(to);
+  }
+}
+
+}  // namespace bentaxis
