@@ -25,7 +25,7 @@ namespace bentaxis::fmu {
 
 /// Every function by its name.
 struct Functions {
-#define BENTAXIS_MEMBER(name) name##TYPE* name = nullptr;
+#define BENTAXIS_MEMBER(name) name##TYPE* name = nullptr;  // NOLINT(bugprone-macro-parentheses)
   BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_MEMBER)
   BENTAXIS_FMI3_FUNCTIONS(BENTAXIS_MEMBER)
 #undef BENTAXIS_MEMBER
@@ -140,7 +140,7 @@ struct Unit2 {
   Unit2(const Unit2&) = delete;
   Unit2& operator=(const Unit2&) = delete;
 
-  void start(double stop = 1) {
+  void start(double stop = 1) const {
     ASSERT_EQ(f.fmi2SetupExperiment(it, fmi2False, 0, 0, fmi2True, stop), fmi2OK) << messages.text;
     ASSERT_EQ(f.fmi2EnterInitializationMode(it), fmi2OK) << messages.text;
     ASSERT_EQ(f.fmi2ExitInitializationMode(it), fmi2OK) << messages.text;
@@ -189,7 +189,7 @@ struct Unit3 {
   Unit3(const Unit3&) = delete;
   Unit3& operator=(const Unit3&) = delete;
 
-  void start(double stop = 1) {
+  void start(double stop = 1) const {
     ASSERT_EQ(f.fmi3EnterInitializationMode(it, false, 0, 0, true, stop), fmi3OK) << messages.text;
     ASSERT_EQ(f.fmi3ExitInitializationMode(it), fmi3OK) << messages.text;
   }
