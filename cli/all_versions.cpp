@@ -19,8 +19,8 @@ std::vector<std::pair<std::string, std::string>> versions() {
 
 std::string optional_parts() {
   const std::string ceres = designs::least_squares_library();
-  return "Ceres " + (ceres.empty() ? "none" : ceres) + ", HDF5 " + designs::hdf5_version() +
-         ", MPI " + mpi_library() + ", OpenTURNS " + designs::openturns_version() +
+  return (ceres.empty() ? "Ceres none" : ceres) + ", HDF5 " + designs::hdf5_version() + ", MPI " +
+         mpi_library() + ", OpenTURNS " + designs::openturns_version() +
          ", Python module " BENTAXIS_PYTHON;
 }
 

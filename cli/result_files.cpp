@@ -37,6 +37,8 @@ std::vector<TextFile> simulation_files(const study::SimulationResult& result) {
       curves.emplace_back(std::string("teeth_") + name + ".csv",
                           to_csv(teeth_table_of(**run, result.ready.the_case.pump.gear)));
     if ((*run)->oil) curves.emplace_back(std::string("oil_") + name + ".csv", oil_csv(**run));
+    if (const auto& told = result.exchanged[run == &result.multibody]; told)
+      curves.emplace_back(std::string("unit_") + name + ".csv", told->csv());
   }
   return curves;
 }

@@ -9,6 +9,7 @@
 #include "options.h"
 #include "report_files.h"
 #include "result_files.h"
+#include "unit_option.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -20,27 +21,8 @@ struct Options {
   std::string model;  ///< "": both
   std::string oil;    ///< "": it follows the motion
   study::SimulationChoice choice;
-  study::UnitChoice unit;
-  std::string fmu;
+  UnitOption unit;
 };
-
-// What acts on the pump beside its case.
-void couple(const Options& options, const CommandParser& command, const Case& read,
-            study::SimulationChoice& choice) {
-  for (const char* option : {"--connect", "--communication-step"})
-    if (command.given(option) && !command.given("--fmu"))
-      throw InputError(std::string(option) + ": changes nothing: there is no --fmu");
-  if (!command.given("--fmu")) return;
-  if (choice.steady)
-    throw InputError(
-        "--steady: not with --fmu: what a unit does need not repeat itself; simulate from the "
-        "start");
-  study::UnitChoice unit = options.unit;
-  unit.file = options.fmu;
-  choice.unit = std::make_shared<study::UnitCoupling>(
-      unit, read,
-      read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows);
-}
 
 int simulate(const Options& options, const CommandParser& command) {
   study::SimulationChoice choice = options.choice;
@@ -56,14 +38,16 @@ int simulate(const Options& options, const CommandParser& command) {
   drive_of(read);
   const bool one_method =
       (read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows) ||
-      read.pump.gear.contact == ToothContact::teeth || command.given("--fmu");
+      read.pump.gear.contact == ToothContact::teeth || options.unit.given();
   for (const char* option : {"--integrator", "--accuracy"})
     if (command.given(option) && (one_method || choice.steady))
       throw InputError(std::string(option) +
                        ": changes nothing: with oil, with a unit, of teeth and for a periodic "
                        "motion, one method "
                        "integrates what both models find; --error sets its tolerance");
-  couple(options, command, read, choice);
+  choice.unit = options.unit.coupling(
+      command, read,
+      read.pressure.kind == PressureKind::hydraulic && choice.oil == study::OilInTime::follows);
   ReportFolders folders(options.place);
   const study::SimulationResult result = study::simulate(
       study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);
@@ -71,27 +55,6 @@ int simulate(const Options& options, const CommandParser& command) {
                                    study::simulation_curves(result), simulation_files(result));
   print_result(study::simulation_text(result), paths);
   return result.agrees() ? kDone : kOutOfTolerance;
-}
-
-void add_unit(CommandParser command, Options& options) {
-  command
-      .option("--fmu", options.fmu,
-              "a drive or load as a Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that "
-              "acts on the pump; both models get an instance of their own")
-      .text("FILE");
-  command
-      .option("--connect", options.unit.connect,
-              "A gets the value of B: an input of the pump (drive_speed, drive_acceleration, "
-              "drive_torque, suction_pressure, delivery_pressure, load_share) that of an output of "
-              "the unit, or an input of the unit that of a column of the CSV files; equal names "
-              "are connected anyhow")
-      .repeatable()
-      .text("A=B");
-  command
-      .option("--communication-step", options.unit.step,
-              "s between the points at which pump and unit exchange values")
-      .positive_number()
-      .text("SECONDS [that of the unit, or between rows]");
 }
 
 }  // namespace
@@ -114,7 +77,7 @@ Command add_simulate_command(CommandParser program) {
   command.flag("--steady", options->choice.steady,
                "find the motion that repeats itself every N-th of a turn, and its stability, "
                "instead of what follows the start; rows over one turn");
-  add_unit(command, *options);
+  options->unit.add_to(command);
   Option accuracy = command.option("--accuracy", options->choice.accuracy,
                                    "multibody: relative accuracy per step of Simbody's integrator");
   accuracy.accuracy().text("NUMBER [found for --error]");

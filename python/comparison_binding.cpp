@@ -38,9 +38,9 @@ Comparison compare_cases(const PythonCase& the_case, const CaseValues& multibody
                          const CaseValues& analytic, const PythonCase* multibody_case,
                          const Texts& channels, std::optional<double> tolerance) {
   if (tolerance && !(*tolerance > 0)) throw InputError("tolerance: must be a positive number");
-  Case first = the_case.get();
+  Case first = the_case.copy();
   std::optional<Case> second;
-  if (multibody_case != nullptr) second = multibody_case->get();
+  if (multibody_case != nullptr) second = multibody_case->copy();
   assume(analytic, "analytic", first.pump, first.analytic);
   Case& of_multibody = second ? *second : first;
   assume(multibody, "multibody", of_multibody.pump, of_multibody.multibody);
@@ -58,8 +58,8 @@ Comparison compare_cases(const PythonCase& the_case, const CaseValues& multibody
   })};
 }
 
-std::vector<std::filesystem::path> report(const Comparison& self,
-                                          const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> report_comparison(const Comparison& self,
+                                                     const std::filesystem::path& folder) {
   return unlocked([&](const study::PartProgress&) {
     const study::ComparisonResult& result = *self.result;
     const report::Document document = study::comparison_document(result, versions());
@@ -90,7 +90,7 @@ Table table(const Comparison& self, const ResultTable& part) {
   return table_of(part_of(self.result, part));
 }
 
-void add_pieces(py::module_& module) {
+void add_comparison_pieces(py::module_& module) {
   py::class_<ChannelComparison>(module, "ChannelComparison",
                                 "How far apart both models are in one channel. Differences are "
                                 "multibody minus analytic, in the channel's unit.")
@@ -133,7 +133,7 @@ void add_pieces(py::module_& module) {
 }  // namespace
 
 void add_comparison(py::module_& module) {
-  add_pieces(module);
+  add_comparison_pieces(module);
   py::class_<Comparison>(module, "Comparison",
                          "Both models on one case, and how far they are apart.")
       .def_property_readonly(
@@ -184,7 +184,7 @@ void add_comparison(py::module_& module) {
             return texts;
           },
           "What is doubtful about the results.")
-      .def("report", &report, py::arg("folder"),
+      .def("report", &report_comparison, py::arg("folder"),
            "Writes report.html, report.json and the curves as the program does; returns their "
            "paths.")
       .def(

@@ -43,6 +43,7 @@ void add_errors(py::module_& module) {
                 "A result can be computed but is doubtful: digits that rounding takes, a port's "
                 "timing beyond its limits, states that are hardly meant.",
                 PyExc_UserWarning);
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 wants it so
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

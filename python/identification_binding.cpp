@@ -53,22 +53,33 @@ designs::IdentifyOptions options_of(int starts, std::uint64_t seed, int steps, i
   return options;
 }
 
+// Lowest and highest values as the option --unknown has them.
+std::vector<std::string> bounds_of(const Bounds& unknowns) {
+  std::vector<std::string> bounds;
+  for (const auto& [name, pair] : items_of(unknowns, "unknowns")) {
+    std::pair<double, double> ends;
+    try {
+      ends = pair.cast<std::pair<double, double>>();
+    } catch (const py::cast_error&) {
+      throw InputError("unknowns: " + name + ": must be a pair, its lowest and its highest value");
+    }
+    bounds.push_back(name + "=" + number_text(ends.first) + ":" + number_text(ends.second));
+  }
+  return bounds;
+}
+
 Identification identify(const PythonCase& the_case, const Paths& data, const Bounds& unknowns,
                         int starts, std::uint64_t seed, int steps, int draws, double measured,
                         bool fit_only, int threads) {
   const std::vector<std::string> files = paths_of(data, "data");
-  std::vector<std::string> bounds;
-  for (const auto& [name, pair] : items_of(unknowns, "unknowns")) {
-    const auto [low, high] = pair.cast<std::pair<double, double>>();
-    bounds.push_back(name + "=" + number_text(low) + ":" + number_text(high));
-  }
+  const std::vector<std::string> bounds = bounds_of(unknowns);
   const designs::IdentifyOptions options =
       options_of(starts, seed, steps, draws, measured, fit_only, threads);
   if (designs::least_squares_library().empty())
     throw InputError(
         "identify: this module was built without Ceres; install libceres-dev (scripts/setup full) "
         "and build again");
-  const Case copy = the_case.get();
+  const Case copy = the_case.copy();
   return {unlocked([&](const study::PartProgress& progress_of) {
             designs::IdentificationData all;
             for (const std::string& file : files) designs::read_identification(file, copy, all);
@@ -138,7 +149,7 @@ std::optional<Table> bands(const Identification& self) {
   return table;
 }
 
-std::vector<fs::path> report(const Identification& self, const fs::path& folder) {
+std::vector<fs::path> report_identification(const Identification& self, const fs::path& folder) {
   return unlocked([&](const study::PartProgress&) {
     const Found& found = *self.found;
     std::vector<cli::TextFile> files = {
@@ -205,7 +216,7 @@ void add_identification(py::module_& module) {
           "The identified pump.")
       .def_property_readonly("bands", &bands,
                              "Reactions over the turn with their bands; None with fit_only.")
-      .def("report", &report, py::arg("folder"),
+      .def("report", &report_identification, py::arg("folder"),
            "Writes what the program writes; returns the files' paths.")
       .def(
           "__repr__",

@@ -29,6 +29,8 @@ class PythonCase {
   void change(const Changes& changes);
 
   const Case& get() const { return case_; }
+  /// For a computation, during which Python may change this one.
+  Case copy() const { return case_; }
   const std::string& text() const { return text_; }
   const std::filesystem::path& file() const { return file_; }
   const Changes& changes() const { return changes_; }

@@ -80,7 +80,7 @@ std::optional<Table> table(const Held& self, const std::string& model, bool refe
   return table_of(part_of(self.outcome, reference ? held->second.reference : held->second.result));
 }
 
-void add_pieces(py::module_& module) {
+void add_regression_pieces(py::module_& module) {
   py::class_<GroupLine>(module, "ReferenceGroup",
                         "A group of channels of one model, held against one reference.")
       .def_readonly("reference", &GroupLine::reference, "Name of the reference.")
@@ -137,7 +137,7 @@ void add_pieces(py::module_& module) {
 }  // namespace
 
 void add_regression(py::module_& module) {
-  add_pieces(module);
+  add_regression_pieces(module);
   py::class_<Regression>(module, "Regression", "Both models held to stored curves.")
       .def_property_readonly(
           "agrees",

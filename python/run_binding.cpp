@@ -70,7 +70,7 @@ Warned<ResultTable> turn(const Case& the_case, study::Model model,
 Table run(const PythonCase& the_case, const std::string& model, const Texts& channels) {
   const study::ChannelChoice wanted(texts_of(channels, "channels"));
   const study::Model which = model_called(model);
-  const Case copy = the_case.get();
+  const Case copy = the_case.copy();
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     return turn(copy, which, wanted, progress_of);
   }));
@@ -118,7 +118,7 @@ Table run_states(const PythonCase& the_case, const Motion& states, const std::st
   const bool arrays = py::hasattr(states, "items");
   const NumericTable given = arrays ? numeric_table(states) : NumericTable{};
   const std::string file = arrays ? "states" : paths_of(states, "states").at(0);
-  const Case copy = the_case.get();
+  const Case copy = the_case.copy();
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     Warned<MotionTable> found;
     std::vector<Channel> there = ChannelLayout(copy.pump.geometry.pistons).channels();

@@ -36,7 +36,7 @@ Simulation simulate(const PythonCase& the_case, const std::optional<std::string>
     throw InputError("oil " + oil + ": must be coupled or periodic");
   if (oil == "periodic") choice.oil = study::OilInTime::periodic;
   choice.steady = steady;
-  Case copy = the_case.get();
+  Case copy = the_case.copy();
   return {unlocked([&](const study::PartProgress& progress_of) {
     drive_of(copy);
     return std::make_shared<const study::SimulationResult>(study::simulate(
@@ -65,8 +65,8 @@ std::optional<Table> teeth(const Simulation& self, Run run) {
       teeth_table_of(*of, self.result->ready.the_case.pump.gear)));
 }
 
-std::vector<std::filesystem::path> report(const Simulation& self,
-                                          const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> report_simulation(const Simulation& self,
+                                                     const std::filesystem::path& folder) {
   return unlocked([&](const study::PartProgress&) {
     const study::SimulationResult& result = *self.result;
     return write_report(folder, "bentaxis.simulate", {&result.ready.the_case},
@@ -75,7 +75,7 @@ std::vector<std::filesystem::path> report(const Simulation& self,
   });
 }
 
-void add_pieces(py::module_& module) {
+void add_simulation_pieces(py::module_& module) {
   py::class_<GroupDifference>(module, "GroupDifference",
                               "How far apart the models are in a group of channels, over its peak.")
       .def_readonly("group", &GroupDifference::group, "Which channels.")
@@ -99,7 +99,7 @@ void add_pieces(py::module_& module) {
 }  // namespace
 
 void add_simulation(py::module_& module) {
-  add_pieces(module);
+  add_simulation_pieces(module);
   constexpr Run kAnalytic = &study::SimulationResult::analytic;
   constexpr Run kMultibody = &study::SimulationResult::multibody;
   const auto periodic = [](int model) {
@@ -148,7 +148,7 @@ void add_simulation(py::module_& module) {
       .def_property_readonly(
           "judged_until_s", [](const Simulation& self) { return self.result->judged_until_s; },
           "Later a disturbance of the wanted error would change results altogether.")
-      .def("report", &report, py::arg("folder"),
+      .def("report", &report_simulation, py::arg("folder"),
            "Writes report.html, report.json and the curves as the program does; returns their "
            "paths.")
       .def(

@@ -84,7 +84,7 @@ Sweep sweep(const PythonCase& the_case, const Variations& vary, const Texts& out
     throw InputError("check = " + number_text(check) + ": must be a share of the designs, 0 to 1");
   request.check_share = check;
   if (threads < 0) throw InputError("threads = " + std::to_string(threads) + ": must be >= 0");
-  const Case copy = the_case.get();
+  const Case copy = the_case.copy();
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     const designs::Sweep all(copy, designs::sweep_plan(request, copy));
     return std::make_shared<const designs::SweepResult>(
@@ -99,7 +99,8 @@ std::map<std::size_t, std::string> infeasible(const Sweep& self) {
   return reasons;
 }
 
-std::vector<std::filesystem::path> report(const Sweep& self, const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> report_sweep(const Sweep& self,
+                                                const std::filesystem::path& folder) {
   return unlocked([&](const study::PartProgress&) {
     return write_report(folder, "bentaxis.sweep", {&self.result->base},
                         designs::sweep_document(*self.result, versions()), {},
@@ -137,7 +138,7 @@ void add_sweep(py::module_& module) {
       .def_property_readonly(
           "seconds", [](const Sweep& self) { return self.result->seconds; },
           "What the computation took.")
-      .def("report", &report, py::arg("folder"),
+      .def("report", &report_sweep, py::arg("folder"),
            "Writes report.html, report.json and sweep.csv as the program does; returns their "
            "paths.");
   module.def(

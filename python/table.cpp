@@ -6,6 +6,7 @@
 #include <set>
 
 #include "bentaxis/files/csv.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis::python {
@@ -141,6 +142,34 @@ Table oil_table_of(std::shared_ptr<const Trajectory> of, const std::string& name
   }
   table.csv = [of] { return oil_csv(*of); };
   table.owner = std::move(of);
+  return table;
+}
+
+Table table_of(std::string name, std::vector<Column> columns, std::vector<double> numbers,
+               std::size_t rows, bool first_is_index, std::size_t first_of_block) {
+  const auto memory = std::make_shared<const std::vector<double>>(std::move(numbers));
+  Table table;
+  table.name = std::move(name);
+  table.rows = rows;
+  table.columns = std::move(columns);
+  table.first_is_index = first_is_index;
+  table.first_of_block = first_of_block;
+  const std::size_t width = table.columns.size();
+  std::string head;
+  for (std::size_t i = 0; i < width; ++i) {
+    table.columns[i].first = memory->data() + i;
+    table.columns[i].stride = width;
+    head += (i == 0 ? "" : ",") + table.columns[i].name;
+  }
+  table.csv = [memory, head, width] {
+    std::string text = head + "\n";
+    for (std::size_t i = 0; i < memory->size(); ++i) {
+      append_number(text, (*memory)[i]);
+      text += (i + 1) % width == 0 ? '\n' : ',';
+    }
+    return text;
+  };
+  table.owner = memory;
   return table;
 }
 

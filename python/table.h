@@ -40,6 +40,10 @@ Table table_of(std::shared_ptr<const MotionTable> of);
 /// What the oil of a simulation does.
 Table oil_table_of(std::shared_ptr<const Trajectory> of, const std::string& name);
 
+/// A table with memory of its own, of numbers row by row: what a pickle becomes.
+Table table_of(std::string name, std::vector<Column> columns, std::vector<double> numbers,
+               std::size_t rows, bool first_is_index, std::size_t first_of_block);
+
 /// A part of what `whole` keeps.
 template <class Part, class Whole>
 std::shared_ptr<const Part> part_of(const std::shared_ptr<Whole>& whole, const Part& part) {

@@ -7,6 +7,7 @@
 #include "binding.h"
 #include "call.h"
 #include "table.h"
+#include "table_pickle.h"
 #include "values.h"
 
 namespace bentaxis::python {
@@ -152,12 +153,20 @@ void add_tables(py::module_& module) {
            "Writes the file that the program writes: the shortest text that reads back to the same "
            "numbers.")
       .def(
+          "__reduce__",
+          [](const py::object& self) {
+            const py::object make = py::module_::import("bentaxis").attr("_table");
+            return py::make_tuple(make, py::make_tuple(state_of(self.cast<const Table&>())));
+          },
+          "For pickles, which have a copy.")
+      .def(
           "__repr__",
           [](const Table& self) {
             return "<bentaxis.Table \"" + self.name + "\", " + std::to_string(self.rows) +
                    " rows of " + std::to_string(self.columns.size()) + " columns>";
           },
           "Name and size.");
+  module.def("_table", &table_in, py::arg("state"), "A table from a pickle.");
 }
 
 }  // namespace bentaxis::python

@@ -7,7 +7,7 @@ namespace bentaxis::python {
 namespace {
 
 // Options whose arguments are called otherwise here; others lose their dashes.
-const std::map<std::string, std::string>& names() {
+const std::map<std::string, std::string>& argument_names() {
   static const std::map<std::string, std::string> known = {
       {"output", "outputs"}, {"unknown", "unknowns"}, {"multibody-case", "multibody_case"}};
   return known;
@@ -23,9 +23,9 @@ std::string in_python(const std::string& message) {
   std::smatch found;
   while (std::regex_search(text, found, option)) {
     const std::string name = found[2];
-    const auto other = names().find(name);
-    result +=
-        found.prefix().str() + found[1].str() + (other == names().end() ? name : other->second);
+    const auto other = argument_names().find(name);
+    result += found.prefix().str() + found[1].str() +
+              (other == argument_names().end() ? name : other->second);
     text = found.suffix();
   }
   return result + text;

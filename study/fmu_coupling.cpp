@@ -31,13 +31,18 @@ constexpr double kMostPoints = 1e6;
 class Partner {
  public:
   Partner(std::unique_ptr<fmu::Slave> slave, std::vector<Connection> connections, double step,
-          double end, std::string place)
+          double end, std::string place, std::shared_ptr<UnitRecord> record)
       : slave_(std::move(slave)),
         connections_(std::move(connections)),
         step_(step),
         end_(end),
-        place_(std::move(place)) {
+        place_(std::move(place)),
+        record_(std::move(record)) {
+    if (record_) record_->columns.emplace_back("time_s");
     for (const Connection& c : connections_) {
+      if (record_)
+        record_->columns.push_back(c.unit.unit.empty() ? c.unit.name
+                                                       : c.unit.name + " (" + c.unit.unit + ")");
       speed_given_ = speed_given_ || (c.to_pump && c.pump == "drive_speed");
       acceleration_given_ = acceleration_given_ || (c.to_pump && c.pump == "drive_acceleration");
     }
@@ -52,6 +57,10 @@ class Partner {
     Surroundings outside;
     for (const Connection& c : connections_)
       if (c.to_pump) take(c, pump.time, outside);
+    if (record_) {
+      record_->values.push_back(pump.time);
+      for (const Connection& c : connections_) record_->values.push_back(slave_->get(c.unit));
+    }
     slave_->step(step_ * static_cast<double>(points_), step_);
     ++points_;
     // Without an acceleration the speed goes straight to where the unit gets.
@@ -100,6 +109,7 @@ class Partner {
   std::vector<Connection> connections_;
   double step_, end_;
   std::string place_;
+  std::shared_ptr<UnitRecord> record_;
   bool speed_given_ = false, acceleration_given_ = false;
   long points_ = 0;
 };
@@ -113,6 +123,7 @@ UnitCoupling::UnitCoupling(const UnitChoice& choice, const Case& the_case, bool 
   InputLog::note(choice.file);
   connections_ = connect(unit_->description(), pump_side(the_case, oil_follows), choice.connect,
                          choice.file.string());
+  find_parameters(choice.parameters);
   find_step(choice);
   find_drive();
 }
@@ -122,6 +133,30 @@ UnitCoupling::~UnitCoupling() = default;
 bool UnitCoupling::drives(const char* input) const {
   return std::any_of(connections_.begin(), connections_.end(),
                      [&](const Connection& c) { return c.to_pump && c.pump == input; });
+}
+
+void UnitCoupling::find_parameters(const std::vector<std::string>& wanted) {
+  for (const std::string& text : wanted) {
+    const std::string option = "--fmu-set " + text;
+    const auto sign = text.find('=');
+    const auto value = sign == std::string::npos ? std::nullopt : number_in(text.substr(sign + 1));
+    if (!value) throw InputError(option + ": must be NAME=VALUE, a number");
+    const fmu::UnitVariable* v = unit_->description().find(text.substr(0, sign));
+    if (v == nullptr || v->causality != "parameter") {
+      std::string names;
+      for (const auto& other : unit_->description().variables)
+        if (other.causality == "parameter") names += (names.empty() ? "" : ", ") + other.name;
+      throw InputError(option + ": the unit has no such parameter: it has " +
+                       (names.empty() ? "none" : names));
+    }
+    parameters_.emplace_back(*v, *value);
+  }
+}
+
+std::unique_ptr<fmu::Slave> UnitCoupling::instance(const std::string& name) const {
+  auto slave = unit_->instantiate(name);
+  for (const auto& [variable, value] : parameters_) slave->set(variable, value);
+  return slave;
 }
 
 void UnitCoupling::find_step(const UnitChoice& choice) {
@@ -157,7 +192,7 @@ void UnitCoupling::find_drive() {
   drive.curve = {};
   drive.start_speed.reset();
 
-  const auto slave = unit_->instantiate("start");
+  const auto slave = instance("start");
   slave->enter_initialisation(0, drive.duration);
   slave->exit_initialisation();
   for (const Connection& c : connections_) {
@@ -194,15 +229,36 @@ std::vector<std::string> UnitCoupling::loose_outputs() const {
   return names;
 }
 
-coupled::Exchange UnitCoupling::exchange(int parts) const {
+coupled::Exchange UnitCoupling::exchange(int parts, std::shared_ptr<UnitRecord> record) const {
   const double step = step_ / parts;
-  const auto partner = std::make_shared<Partner>(unit_->instantiate("drive"), connections_, step,
-                                                 driven_.drive->duration, unit_->file().string());
+  const auto partner =
+      std::make_shared<Partner>(instance("drive"), connections_, step, driven_.drive->duration,
+                                unit_->file().string(), std::move(record));
   return {step, [partner, said = said_](const coupled::PumpOutputs& pump) {
             const Surroundings outside = partner->at(pump);
-            if (partner->log().size() > 0) said->add(partner->log());
+            said->add(partner->log());
             return outside;
           }};
+}
+
+std::string UnitRecord::csv() const {
+  std::string text;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (c > 0) text += ',';
+    if (columns[c].find_first_of(",\"") == std::string::npos) {
+      text += columns[c];
+      continue;
+    }
+    text += '"';
+    for (const char letter : columns[c]) text += letter == '"' ? "\"\"" : std::string(1, letter);
+    text += '"';
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    append_number(text, values[i]);
+    text += (i + 1) % columns.size() == 0 ? '\n' : ',';
+  }
+  return text;
 }
 
 std::vector<std::string> UnitCoupling::log() const { return said_->lines; }

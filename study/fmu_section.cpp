@@ -56,6 +56,10 @@ report::Section coupling_section(const SimulationResult& r) {
                            unit.tool.empty() ? "" : ", made by " + unit.tool)},
       {"communication step", fmt::format("{:.6g} s", coupling.step())},
       {"what turns the shaft", drive_in_words(coupling)}};
+  for (const auto& [variable, value] : coupling.parameters())
+    section.facts.emplace_back(
+        "parameter " + variable.name,
+        number_text(value) + (variable.unit.empty() ? "" : " " + variable.unit));
   int number = 0;
   for (const Connection& c : coupling.connections())
     section.facts.emplace_back(fmt::format("connection {}", ++number), arrow(c));

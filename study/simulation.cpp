@@ -200,8 +200,8 @@ class Study {
     const bool analytic = r_.choice.only != Model::multibody;
     const Model first = analytic ? Model::analytic : Model::multibody;
     double tolerance = this->tolerance();
-    Trajectory run = integrate(first, tolerance, r_.oil_follows ? "with oil" : "motion");
     Trajectory loose = integrate(first, kLooser * tolerance, "looser");
+    Trajectory run = integrate(first, tolerance, r_.oil_follows ? "with oil" : "motion");
     peaks_ = peaks_of(run);
     coupled::Options disturbed = options_for(tolerance);
     r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
@@ -237,6 +237,11 @@ class Study {
     coupled::Options options = options_for(tolerance);
     tolerance_ = tolerance;
     options.body_loads = true;
+    if (r_.choice.unit) {
+      std::shared_ptr<UnitRecord>& record = r_.exchanged[static_cast<int>(model)];
+      record = std::make_shared<UnitRecord>();
+      options.exchange = r_.choice.unit->exchange(1, record);
+    }
     return pump_->simulate(model, options, progress_of_(to_string(model) + ", " + part));
   }
 

@@ -70,7 +70,7 @@ class FmuImportTest : public testing::Test {
   }
 
   fs::path archive(const Entries& entries) const {
-    const fs::path file = folder_ / "made.fmu";
+    fs::path file = folder_ / "made.fmu";
     int error = 0;
     zip_t* zip = zip_open(file.c_str(), ZIP_CREATE | ZIP_TRUNCATE, &error);
     for (const auto& [name, text] : entries)

@@ -398,6 +398,36 @@ TEST(Exchange, BalancesCloseWhileAPartnerSteers) {
   EXPECT_EQ(rows_of(after).apart(rows_of(fresh)), 0);
 }
 
+// Either model: the same partner, the same motion.
+TEST(Exchange, BothModelsAreSteeredAlike) {
+  Case c = rated(0.002, 4);
+  c.drive->kind = DriveKind::torque;
+  c.drive->torque = 250;
+  c.pump.shaft.axial_inertia = c.pump.block.axial_inertia = 2e-3;
+  PumpInTime pump(c);
+  coupled::Options options;
+  options.exchange = coupled::Exchange{5e-4, [](const coupled::PumpOutputs& outputs) {
+                                         Surroundings outside;
+                                         outside.torque = 300 + outputs["p_1_bar"];
+                                         outside.suction = 1e5 * outputs.time / 0.002;
+                                         return outside;
+                                       }};
+  const Trajectory analytic = pump.simulate(options);
+  const auto mechanics = multibody::mechanics(c, c.multibody);
+  const Trajectory other = coupled::simulate("multibody", *mechanics, *pump.oil, *c.drive, options);
+  const ResultTable &a = analytic.table.results, &b = other.table.results;
+  ASSERT_EQ(a.rows(), b.rows());
+  const std::size_t torque = a.find("Td_z1_Nm");
+  EXPECT_GT(std::abs(a.at(4, torque) - a.at(0, torque)), 1);
+  for (std::size_t row = 0; row < a.rows(); ++row)
+    for (std::size_t column = 0; column < analytic.table.state_names.size(); ++column)
+      EXPECT_NEAR(analytic.table.state(row, column), other.table.state(row, column),
+                  1e-7 * (1 + std::abs(analytic.table.state(row, column))));
+  for (std::size_t i = 0; i < analytic.oil->values.size(); ++i)
+    EXPECT_NEAR(analytic.oil->values[i], other.oil->values[i],
+                1e-6 * (1 + std::abs(analytic.oil->values[i])));
+}
+
 // A speed in steps: bodies that are taken along are work of what turns the shaft.
 TEST(Exchange, SpeedInStepsKeepsTheBalances) {
   Case c = rated(0.02, 40);

@@ -152,7 +152,7 @@ class Reader {
 
 bool UnitVariable::numeric() const {
   if (array) return false;
-  return type != "" && type != "String" && type != "Binary" && type != "Clock";
+  return !type.empty() && type != "String" && type != "Binary" && type != "Clock";
 }
 
 const UnitVariable* UnitDescription::find(std::string_view name) const {

@@ -14,6 +14,7 @@ namespace bentaxis::fmu {
 namespace {
 
 struct Functions {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared
 #define BENTAXIS_MEMBER(name) name##TYPE* name = nullptr;
   BENTAXIS_FMI2_FUNCTIONS(BENTAXIS_MEMBER)
 #undef BENTAXIS_MEMBER

@@ -23,6 +23,7 @@ namespace {
   X(Boolean)
 
 struct Functions {
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a name that is declared
 #define BENTAXIS_MEMBER(name) name##TYPE* name = nullptr;
   BENTAXIS_FMI3_FUNCTIONS(BENTAXIS_MEMBER)
 #undef BENTAXIS_MEMBER

@@ -26,7 +26,7 @@ class Unpacked {
   const std::vector<std::string>& platforms() const { return platforms_; }
 
  private:
-  void unpack(const std::filesystem::path& archive, std::uint64_t most);
+  void unpack(const std::filesystem::path& file, std::uint64_t most);
   void remove() noexcept;
 
   std::filesystem::path file_, folder_;

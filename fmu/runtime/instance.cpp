@@ -172,12 +172,16 @@ Case Instance::case_as_set(const std::vector<double>& parameters) const {
   return validate(changed);
 }
 
-void Instance::start() {
-  const Case the_case = case_as_set(wanted_);
+UnitChoice Instance::present_choice() const {
   UnitChoice choice = resources_.choice;
   choice.tolerance = tolerance_;
-  auto plant = std::make_unique<Plant>(the_case, choice, kind_);
-  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 1);
+  return choice;
+}
+
+void Instance::start() {
+  const Case the_case = case_as_set(wanted_);
+  auto plant = std::make_unique<Plant>(the_case, present_choice(), kind_);
+  plant->start(inputs_, stops_ ? stop_time_ - start_time_ : 0);
   plant_ = std::move(plant);
   parameters_ = wanted_;
   started_ = true;
@@ -194,9 +198,9 @@ void Instance::settle() {
   }
   if (changed) {
     try {
-      plant_->change(case_as_set(wanted_));
+      plant_->change(case_as_set(wanted_));  // what is refused leaves it as it was
       parameters_ = wanted_;
-    } catch (const InputError&) {
+    } catch (...) {
       wanted_ = parameters_;
       throw;
     }

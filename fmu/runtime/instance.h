@@ -116,7 +116,7 @@ class Instance {
 
   // Saved states. A pointer that this instance has not given is refused.
   void save(void** state);
-  void restore(void* state);
+  void restore(void* state_given);
   void free_state(void** state);
   std::size_t serialized_size(void* state) const;
   void serialize(void* state, char* bytes, std::size_t size) const;
@@ -130,12 +130,13 @@ class Instance {
   std::size_t count_of(Role role) const;
   double number(Reference reference);
   bool flag(Reference reference);
-  void require_settable(const Variable& variable, double value) const;
+  void require_settable(const Variable& it, double value) const;
   double& input(Input which);
 
   /// The case with the parameters as they are set.
   /// @throws InputError where a file that says the same would be refused
   Case case_as_set(const std::vector<double>& parameters) const;
+  UnitChoice present_choice() const;
   /// What has been set takes effect.
   void settle();
   void start();

@@ -1,5 +1,5 @@
 // Saved states of an instance.
-#include <cstring>
+#include <algorithm>
 
 #include "bentaxis/pump/error.h"
 #include "instance.h"
@@ -53,21 +53,29 @@ void Instance::save(void** state) {
   put_state(state, present());
 }
 
-void Instance::restore(void* saved) {
-  const SavedState state = known_state(saved);
-  std::unique_ptr<Plant> plant;
-  const bool initializing = (state.mode & (kInstantiated | kInitialization)) != 0;
+void Instance::restore(void* state_given) {
+  const SavedState state = known_state(state_given);
   // In initialization mode the start is looked for anew: it may be that of other values.
-  if (state.started && !initializing) {
+  const bool goes_on = state.started && (state.mode & (kInstantiated | kInitialization)) == 0;
+  const bool as_built = plant_ && state.parameters == parameters_ && state.tolerance == tolerance_;
+  if (goes_on && as_built) {
+    try {
+      plant_->set_state(state.plant);
+    } catch (...) {  // it stands nowhere then
+      plant_.reset();
+      started_ = false;
+      mode_ = kFailed;
+      throw;
+    }
+  } else if (goes_on) {
     UnitChoice choice = resources_.choice;
     choice.tolerance = state.tolerance;
-    if (plant_ && state.parameters == parameters_ && state.tolerance == tolerance_)
-      plant_->set_state(state.plant);
-    else
-      plant = std::make_unique<Plant>(case_as_set(state.parameters), choice, kind_);
-    if (plant) plant->set_state(state.plant);
+    auto plant = std::make_unique<Plant>(case_as_set(state.parameters), choice, kind_);
+    plant->set_state(state.plant);
+    plant_ = std::move(plant);
+  } else {
+    plant_.reset();
   }
-  if (plant) plant_ = std::move(plant);
   mode_ = state.mode;
   start_time_ = state.start_time;
   stop_time_ = state.stop_time;
@@ -77,10 +85,9 @@ void Instance::restore(void* saved) {
   set_up_ = state.set_up;
   parameters_ = wanted_ = state.parameters;
   inputs_ = state.inputs;
-  started_ = state.started && !initializing;
+  started_ = goes_on;
   inputs_changed_ = false;
   open_.reset();
-  if (!started_) plant_.reset();
 }
 
 void Instance::free_state(void** state) {
@@ -99,7 +106,7 @@ void Instance::serialize(void* state, char* bytes, std::size_t size) const {
   if (size < text.size())
     throw Refused("the state takes " + std::to_string(text.size()) + " bytes, not " +
                   std::to_string(size));
-  std::memcpy(bytes, text.data(), text.size());
+  std::copy(text.begin(), text.end(), bytes);
 }
 
 void Instance::deserialize(const char* bytes, std::size_t size, void** state) {
@@ -110,7 +117,8 @@ void Instance::deserialize(const char* bytes, std::size_t size, void** state) {
       kind_ == Kind::co_simulation ? unsigned{kEvent} | kContinuous : unsigned{kStep};
   if (one_mode && (read.mode & foreign) != 0)
     throw InputError("the bytes are a state of the other kind of instance");
-  if (!one_mode || read.parameters.size() != variables_.size())
+  const bool runs = (read.mode & kRunning) != 0;
+  if (!one_mode || read.parameters.size() != variables_.size() || (runs && !read.started))
     throw InputError("the bytes are no state of this unit");
   put_state(state, std::move(read));
 }

@@ -12,10 +12,10 @@
 namespace bentaxis::fmu {
 
 struct Machine {
-  /// @param the_case  with a [drive]
-  /// @param start     of the oil, of a hydraulic case
+  /// @param given  with a [drive]
+  /// @param start  of the oil, of a hydraulic case
   /// @throws InputError
-  Machine(const Case& the_case, const hydraulics::OilStart& start);
+  Machine(const Case& given, const hydraulics::OilStart& start);
   Machine(const Machine&) = delete;
   Machine& operator=(const Machine&) = delete;
 

@@ -106,7 +106,7 @@ class Plant::Implementation {
     started_ = scales_of(c);
     build(c, oil);
     time_ = 0;
-    end_ = end;
+    end_ = end > 0 ? end : c.drive->duration;
     inputs_ = inputs;
     speed_changed_ = false;
     state_ = {machine_->mechanics->start(), machine_->oil->start()};
@@ -116,12 +116,18 @@ class Plant::Implementation {
 
   void change(const Case& the_case) {
     PlantState now = state();
-    const std::vector<double> before = scales_of(case_);
-    case_ = with_drive(the_case, choice_.drive);
-    const std::vector<double> after = scales_of(case_);
+    const std::vector<double> started = started_;
+    const Case before = std::exchange(case_, with_drive(the_case, choice_.drive));
+    const std::vector<double> old_scales = scales_of(before), new_scales = scales_of(case_);
     for (std::size_t i = 0; i < now.started.size(); ++i)
-      if (after[i] != before[i]) now.started[i] = after[i];
-    go_on_from(now, true);
+      if (new_scales[i] != old_scales[i]) now.started[i] = new_scales[i];
+    try {
+      go_on_from(now, true);
+    } catch (...) {
+      case_ = before;
+      started_ = started;
+      throw;
+    }
   }
 
   void set_inputs(const Inputs& inputs) {
@@ -318,9 +324,10 @@ class Plant::Implementation {
   }
 
   void build(const Case& the_case, const hydraulics::OilStart& start) {
+    auto machine = std::make_unique<Machine>(the_case, start);  // refused: all stays
     stepper_.reset();
     open_.reset();
-    machine_ = std::make_unique<Machine>(the_case, start);
+    machine_ = std::move(machine);
     places_ = output_places(*machine_);
     rules_ = flag_rules(*machine_);
     oil_columns_ = machine_->oil->columns().size();
@@ -334,7 +341,8 @@ class Plant::Implementation {
     if (kind_ == Kind::co_simulation) {
       stepper_ = std::make_unique<coupled::Stepper>("analytic", *machine_->mechanics,
                                                     *machine_->oil, choice_.tolerance);
-      stepper_->start(time_, state_, std::max(end_, time_));
+      const double beyond = time_ + machine_->the_case.drive->duration;
+      stepper_->start(time_, state_, end_ > time_ ? end_ : beyond);
       stepper_->surround(outside_);
       return;
     }

@@ -51,9 +51,12 @@ class Plant {
 
   /// Finds the start (of a hydraulic case that begins in its periodic state: that state). Long.
   /// @throws InputError, ComputationError
-  /// @param end  s, at which it is expected to end
-  void start(const Inputs& inputs, double end = 1);
+  /// @param end  s, at which it is expected to end; 0: after the duration that [drive] has, as
+  ///             simulate does
+  void start(const Inputs& inputs, double end = 0);
   /// Other numbers of the case while it runs: the state stays. Of tunable parameters.
+  /// @throws InputError where a case file that says the same would be refused; all is then as it
+  /// was
   void change(const Case& the_case);
   /// From the present time on.
   void set_inputs(const Inputs& inputs);

@@ -109,6 +109,7 @@ void go_through_state(Stream& stream, State& state) {
   stream.part(plant.shaft.speed);
   stream.part(plant.shaft.acceleration);
   stream.part(plant.load_size);
+  stream.part(plant.started);
   stream.part(plant.speed_changed);
   go_through(stream, plant.inputs);
 }

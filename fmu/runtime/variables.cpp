@@ -20,6 +20,15 @@ bool is_of_other_commands(const Table& table, const Parameter& parameter) {
   return name == "drive.duration_s" || name == "hydraulics.curve_error";
 }
 
+// Masses of a piston that its inertia, as this model assumes it, does not go by.
+bool is_of_other_inertia(const std::string& name, PistonInertia inertia) {
+  if (name == "piston.joint_mass_fraction") return inertia != PistonInertia::lumped;
+  const bool real = name == "piston.centre_of_mass_mm" ||
+                    name == "piston.transverse_inertia_kg_mm2" ||
+                    name == "piston.axial_inertia_kg_mm2" || name == "piston.spin_rpm";
+  return real && inertia == PistonInertia::lumped;
+}
+
 // Numbers that an input stands for.
 bool is_replaced(const std::string& name, const Case& the_case, const TakesFromOutside& takes) {
   if (name == "operation.speed_rpm") return takes.shaft;
@@ -91,7 +100,8 @@ class List {
       for (const Parameter& parameter : table.parameters) {
         const std::string name = table.name + "." + parameter.key;
         if (!is_active(table, parameter, registry, view) ||
-            is_of_other_commands(table, parameter) || is_replaced(name, the_case, takes))
+            is_of_other_commands(table, parameter) || is_replaced(name, the_case, takes) ||
+            is_of_other_inertia(name, the_case.analytic.inertia))
           continue;
         const std::optional<Value> value = value_of(parameter, view);
         if (!value) continue;

@@ -141,6 +141,8 @@ class IdentificationTest(ModuleTest):
         except bentaxis.InputError as error:
             self.assertIn("Ceres", str(error))
             self.skipTest("built without Ceres")
+        self.assertIn("must be a pair", self.refused(
+            bentaxis.InputError, lambda: self.identify(unknowns={"pump.tilt_deg": 3})))
         self.assertEqual(found.unknowns, ["pump.bore_diameter_mm", "pump.tilt_deg"])
         low, high = found.intervals["pump.tilt_deg"]
         self.assertLess(low, high)

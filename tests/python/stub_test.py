@@ -13,7 +13,7 @@ STUB = REPO / "python/bentaxis/__init__.pyi"
 
 def of(cls):
     """Public members of a class, and the special methods that it defines with a text."""
-    hidden = ("__init__", "__new__", "__getstate__", "__setstate__", "__module__", "__doc__", "__hash__", "__weakref__",
+    hidden = ("__init__", "__new__", "__getstate__", "__reduce__", "__setstate__", "__module__", "__doc__", "__hash__", "__weakref__",
               "__qualname__", "__entries")
     return {name: member for name, member in vars(cls).items()
             if name not in hidden and not name.startswith("_pybind11") and not name.startswith("__dict")}

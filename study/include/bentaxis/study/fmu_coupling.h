@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bentaxis/coupled/simulation.h"
@@ -15,9 +16,10 @@
 namespace bentaxis::study {
 
 struct UnitChoice {
-  std::filesystem::path file;        ///< the .fmu
-  std::vector<std::string> connect;  ///< "A=B": A gets B; equal names need none
-  std::optional<double> step;        ///< s, between communication points
+  std::filesystem::path file;                ///< the .fmu
+  std::vector<std::string> connect;          ///< "A=B": A gets B; equal names need none
+  std::optional<double> step;                ///< s, between communication points
+  std::vector<std::string> parameters = {};  ///< of the unit: "NAME=VALUE", in its own units
 };
 
 /// A value that goes from the unit to the pump or back.
@@ -37,6 +39,13 @@ struct PumpInput {
 };
 const std::vector<PumpInput>& pump_inputs();
 
+/// What was exchanged at the communication points of a simulation, in the unit's own units.
+struct UnitRecord {
+  std::vector<std::string> columns;  ///< "time_s", then variables of the unit: "level (m)"
+  std::vector<double> values;        ///< row by row
+  std::string csv() const;
+};
+
 /// A unit and how it is connected to the pump of a case. Each simulation gets an instance of its
 /// own.
 class UnitCoupling {
@@ -55,24 +64,32 @@ class UnitCoupling {
   double step() const { return step_; }
   const std::vector<Connection>& connections() const { return connections_; }
   const fmu::ImportedUnit& unit() const { return *unit_; }
+  /// Parameters of the unit that were set, with their values in its own units.
+  const std::vector<std::pair<fmu::UnitVariable, double>>& parameters() const {
+    return parameters_;
+  }
   /// Inputs and outputs of the unit that are not connected.
   std::vector<std::string> loose_inputs() const;
   std::vector<std::string> loose_outputs() const;
 
   /// A new instance of the unit as the partner of a simulation. What it says is added to log().
-  /// @param parts  of the communication step that are stepped one by one
-  coupled::Exchange exchange(int parts = 1) const;
+  /// @param parts   of the communication step that are stepped one by one
+  /// @param record  if given: filled as the simulation goes on
+  coupled::Exchange exchange(int parts = 1, std::shared_ptr<UnitRecord> record = nullptr) const;
   /// What instances have said, without repetition.
   std::vector<std::string> log() const;
 
  private:
   struct Said;
   bool drives(const char* input) const;
+  void find_parameters(const std::vector<std::string>& wanted);
+  std::unique_ptr<fmu::Slave> instance(const std::string& name) const;
   void find_step(const UnitChoice& choice);
   void find_drive();
 
   std::shared_ptr<fmu::ImportedUnit> unit_;
   std::vector<Connection> connections_;
+  std::vector<std::pair<fmu::UnitVariable, double>> parameters_;
   Case driven_;
   double step_ = 0;
   std::shared_ptr<Said> said_;

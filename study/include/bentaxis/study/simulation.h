@@ -107,8 +107,9 @@ struct SimulationResult {
   EventMatch events;
   std::vector<compare::Check> checks;
   std::vector<Effort> effort;
-  std::vector<CouplingChange> coupling;  ///< with a unit, in the judged time, largest first
-  std::string multibody_choice;          ///< how Simbody's accuracy was found
+  std::shared_ptr<UnitRecord> exchanged[2];  ///< by model, with a unit
+  std::vector<CouplingChange> coupling;      ///< with a unit, in the judged time, largest first
+  std::string multibody_choice;              ///< how Simbody's accuracy was found
 
   /// Allowed difference at a row, of peak: the wanted error, grown as disturbances grow.
   double allowed(std::size_t row) const { return choice.error * growth[row]; }

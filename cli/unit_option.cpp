@@ -1,0 +1,45 @@
+#include "unit_option.h"
+
+#include "bentaxis/pump/error.h"
+
+namespace bentaxis::cli {
+
+void UnitOption::add_to(CommandParser command) {
+  command
+      .option("--fmu", file_,
+              "a drive or load as a Functional Mock-up Unit (FMI 2.0 or 3.0, co-simulation) that "
+              "acts on the pump; both models get an instance of their own")
+      .text("FILE");
+  command
+      .option("--fmu-set", choice_.parameters,
+              "a parameter of the unit, in the unit it is declared in")
+      .repeatable()
+      .text("NAME=VALUE");
+  command
+      .option("--connect", choice_.connect,
+              "A gets the value of B: an input of the pump (drive_speed, drive_acceleration, "
+              "drive_torque, suction_pressure, delivery_pressure, load_share) that of an output of "
+              "the unit, or an input of the unit that of a column of the CSV files; equal names "
+              "are connected anyhow")
+      .repeatable()
+      .text("A=B");
+  command
+      .option("--communication-step", choice_.step,
+              "s between the points at which pump and unit exchange values")
+      .positive_number()
+      .text("SECONDS [that of the unit, or between rows]");
+}
+
+std::shared_ptr<const study::UnitCoupling> UnitOption::coupling(const CommandParser& command,
+                                                                const Case& the_case,
+                                                                bool oil_follows) const {
+  for (const char* option : {"--fmu-set", "--connect", "--communication-step"})
+    if (command.given(option) && !given())
+      throw InputError(std::string(option) + ": changes nothing: there is no --fmu");
+  if (!given()) return nullptr;
+  study::UnitChoice choice = choice_;
+  choice.file = file_;
+  return std::make_shared<study::UnitCoupling>(choice, the_case, oil_follows);
+}
+
+}  // namespace bentaxis::cli

@@ -1,0 +1,418 @@
+// What instances of a unit do: parameters, states, threads, steps, model exchange, derivatives.
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/pump/number.h"
+#include "fmu_support.h"
+
+namespace bentaxis::fmu {
+namespace {
+
+constexpr const char* kRated = "bap63_rated.toml";
+constexpr const char* kHydraulic = "bap63_rated_hydraulic.toml";
+
+TEST(Fmi2, ParametersAreThoseOfTheCaseWithTheSameWords) {
+  const Resources resources(kRated);
+  Unit2 unit(resources);
+  EXPECT_EQ(unit.get("pump.tilt_deg"), 40);
+  EXPECT_EQ(unit.set("pump.tilt_deg", 95), fmi2Error);
+  EXPECT_TRUE(unit.messages.has("pump.tilt_deg = 95: must be in [0, 90)")) << unit.messages.text;
+  EXPECT_EQ(unit.set("pump.tilt_deg", 35), fmi2OK);
+  EXPECT_EQ(unit.get("pump.tilt_deg"), 35);
+  unit.start();
+  EXPECT_EQ(unit.set("pump.tilt_deg", 36), fmi2Error);
+  EXPECT_TRUE(unit.messages.has("fixed"));
+  unit.steps(7, 1e-3);
+
+  const Resources changed(kRated);
+  changed.replace("tilt_deg = 40", "tilt_deg = 35");
+  Unit2 other(changed);
+  other.start();
+  other.steps(7, 1e-3);
+  EXPECT_EQ(unit.outputs(), other.outputs());
+
+  // One that only others refuse is refused when it takes effect.
+  EXPECT_EQ(unit.f.fmi2Reset(unit.it), fmi2OK);
+  EXPECT_EQ(unit.get("pump.tilt_deg"), 40);
+  EXPECT_EQ(unit.set("pump.piston_length_mm", 1), fmi2OK);
+  EXPECT_EQ(unit.f.fmi2EnterInitializationMode(unit.it), fmi2OK);
+  EXPECT_EQ(unit.f.fmi2ExitInitializationMode(unit.it), fmi2Error);
+  EXPECT_TRUE(unit.messages.has("cannot be assembled")) << unit.messages.text;
+  EXPECT_EQ(unit.f.fmi2DoStep(unit.it, 0, 1e-3, 1), fmi2Error);
+  EXPECT_EQ(unit.f.fmi2Reset(unit.it), fmi2OK);
+  unit.done = 0;
+  unit.start();
+  unit.steps(1, 1e-3);
+}
+
+// The case with one number changed, as --set changes it.
+std::string change_of(const Resources& resources, const Variable& it, double value) {
+  const std::string name = it.table + "." + it.key;
+  if (it.name == name) return name + "=" + number_text(value);
+  double pair[] = {value, value};
+  const std::size_t other = 1 - it.place;
+  pair[other] = *resources.variables()[resources[name + (other == 0 ? "[1]" : "[2]")]].start;
+  return name + "=[" + number_text(pair[0]) + ", " + number_text(pair[1]) + "]";
+}
+
+TEST(Fmi2, EveryParameterDoesWhatSetDoes) {
+  for (const char* name : {kRated, "bap63_teeth.toml"}) {
+    const Resources resources(name);
+    const auto changed_case = [&](const std::string& change) {
+      return case_text(read_case(BENTAXIS_SOURCE_DIR "/cases/" + std::string(name), {change}));
+    };
+    const auto outputs_of = [](Unit2& unit) {
+      unit.start();
+      unit.steps(2, 1e-4);
+      return unit.outputs();
+    };
+    Unit2 as_it_is(resources);
+    const auto before = outputs_of(as_it_is);
+    int with_effect = 0, parameters = 0;
+    for (const Variable& it : resources.variables()) {
+      if (it.role != Role::parameter) continue;
+      SCOPED_TRACE(it.name);
+      ++parameters;
+      const double value = *it.start == 0 ? 1 : *it.start * 0.999;
+      Unit2 unit(resources);
+      ASSERT_EQ(unit.set(it.name, value), fmi2OK) << unit.messages.text;
+      const auto values = outputs_of(unit);
+      const Resources changed(name);
+      changed.write("case.toml", changed_case(change_of(resources, it, value)));
+      Unit2 other(changed);
+      expect_near(values, outputs_of(other), 1e-13);
+      if (values != before) ++with_effect;
+    }
+    EXPECT_GT(with_effect, parameters / 2) << "of " << parameters;
+  }
+}
+
+TEST(Fmi2, TunableParametersChangeWhileItRuns) {
+  const Resources resources(kRated);
+  Unit2 unit(resources);
+  unit.start();
+  unit.steps(3, 1e-3);
+  const double before = unit.get("Td_z1_Nm"), angle = unit.get("theta_deg");
+  EXPECT_EQ(unit.set("friction.piston_viscous_N_s_per_m", 200), fmi2OK);
+  EXPECT_GT(unit.get("Td_z1_Nm"), before + 1);
+  EXPECT_NEAR(unit.get("theta_deg"), angle, 1e-12 * angle);
+  EXPECT_EQ(unit.set("friction.piston_viscous_N_s_per_m", -1), fmi2Error);
+  EXPECT_EQ(unit.set("friction.piston_viscous_N_s_per_m", 0), fmi2OK);
+  EXPECT_NEAR(unit.get("Td_z1_Nm"), before, 1e-9 * std::abs(before));
+  unit.steps(3, 1e-3);
+}
+
+TEST(Fmi2, DebugMessagesAreOfTheirCategories) {
+  const Resources resources(kRated);
+  Unit2 unit(resources, fmi2ModelExchange);
+  const auto events = [&] {
+    unit.messages.text.clear();
+    EXPECT_EQ(unit.f.fmi2EnterEventMode(unit.it), fmi2OK);
+    return unit.messages.has("logEvents");
+  };
+  unit.start();
+  EXPECT_FALSE(events());
+  const fmi2String wanted[] = {"logEvents"}, other[] = {"logStatusWarning"}, none[] = {"logX"};
+  EXPECT_EQ(unit.f.fmi2SetDebugLogging(unit.it, fmi2True, 1, wanted), fmi2OK);
+  EXPECT_TRUE(events());
+  EXPECT_EQ(unit.f.fmi2SetDebugLogging(unit.it, fmi2True, 1, other), fmi2OK);
+  EXPECT_FALSE(events());
+  EXPECT_EQ(unit.f.fmi2SetDebugLogging(unit.it, fmi2True, 0, nullptr), fmi2OK);
+  EXPECT_TRUE(events());
+  EXPECT_EQ(unit.f.fmi2SetDebugLogging(unit.it, fmi2True, 1, none), fmi2Error);
+  EXPECT_TRUE(events());
+}
+
+std::vector<double> course(Unit2& unit, int steps, double size) {
+  std::vector<double> all;
+  for (int i = 0; i < steps; ++i) {
+    unit.steps(1, size);
+    for (const double value : unit.outputs()) all.push_back(value);
+  }
+  return all;
+}
+
+TEST(Fmi2, TwoInstancesInterleavedOrInThreadsAreTwoAlone) {
+  const Resources oil(kHydraulic), ideal(kRated);
+  constexpr int kSteps = 20;
+  constexpr double kSize = 2e-4;
+  const auto alone = [&](const Resources& resources, double speed) {
+    Unit2 unit(resources);
+    EXPECT_EQ(unit.set("drive_speed", speed), fmi2OK);
+    unit.start();
+    return course(unit, kSteps, kSize);
+  };
+  const auto one = alone(oil, 157), two = alone(ideal, 100);
+  {
+    Unit2 a(oil), b(ideal);
+    a.set("drive_speed", 157);
+    b.set("drive_speed", 100);
+    b.start();
+    a.start();
+    std::vector<double> of_a, of_b;
+    for (int i = 0; i < kSteps; ++i) {
+      for (const double value : course(a, 1, kSize)) of_a.push_back(value);
+      for (const double value : course(b, 1, kSize)) of_b.push_back(value);
+    }
+    expect_near(of_a, one, 0);
+    expect_near(of_b, two, 0);
+  }
+  std::vector<double> in_one, in_two;
+  std::thread first([&] { in_one = alone(oil, 157); });
+  std::thread second([&] { in_two = alone(ideal, 100); });
+  first.join();
+  second.join();
+  expect_near(in_one, one, 0);
+  expect_near(in_two, two, 0);
+}
+
+TEST(Fmi2, AStateCanBeTakenUpAgain) {
+  const Resources resources(kHydraulic);
+  Unit2 unit(resources);
+  const Functions& f = library();
+  unit.start();
+  unit.steps(10, 1e-4);
+  fmi2FMUstate state = nullptr;
+  ASSERT_EQ(f.fmi2GetFMUstate(unit.it, &state), fmi2OK);
+  const auto here = unit.outputs();
+  const auto there = course(unit, 10, 1e-4);
+  EXPECT_EQ(unit.set("hydraulics.leakage_l_per_min_per_bar", 1), fmi2Error) << "fixed";
+  unit.set("drive_speed", 50);
+  unit.steps(2, 1e-4);
+  ASSERT_EQ(f.fmi2SetFMUstate(unit.it, state), fmi2OK) << unit.messages.text;
+  unit.done = 10;
+  expect_near(unit.outputs(), here, 1e-12);
+  expect_near(course(unit, 10, 1e-4), there, 1e-6);
+
+  // As bytes, in another instance.
+  std::size_t size = 0;
+  ASSERT_EQ(f.fmi2SerializedFMUstateSize(unit.it, state, &size), fmi2OK);
+  std::vector<char> bytes(size);
+  EXPECT_EQ(f.fmi2SerializeFMUstate(unit.it, state, bytes.data(), size - 1), fmi2Error);
+  ASSERT_EQ(f.fmi2SerializeFMUstate(unit.it, state, bytes.data(), size), fmi2OK);
+  Unit2 other(resources);
+  fmi2FMUstate read = nullptr;
+  EXPECT_EQ(f.fmi2SetFMUstate(other.it, state), fmi2Error) << "of another instance";
+  ASSERT_EQ(f.fmi2DeSerializeFMUstate(other.it, bytes.data(), size, &read), fmi2OK)
+      << other.messages.text;
+  ASSERT_EQ(f.fmi2SetFMUstate(other.it, read), fmi2OK) << other.messages.text;
+  other.done = 10;
+  expect_near(other.outputs(), here, 1e-12);
+  expect_near(course(other, 10, 1e-4), there, 1e-6);
+
+  // Bytes that are none are refused, wherever they are wrong.
+  fmi2FMUstate none = nullptr;
+  for (std::size_t i = 0; i < size; i += 7) {
+    std::vector<char> wrong = bytes;
+    wrong[i] = static_cast<char>(wrong[i] ^ 0x10);
+    EXPECT_EQ(f.fmi2DeSerializeFMUstate(other.it, wrong.data(), size, &none), fmi2Error) << i;
+    EXPECT_EQ(f.fmi2DeSerializeFMUstate(other.it, bytes.data(), i, &none), fmi2Error) << i;
+  }
+  Unit2 exchange(resources, fmi2ModelExchange);
+  EXPECT_EQ(f.fmi2DeSerializeFMUstate(exchange.it, bytes.data(), size, &none), fmi2Error);
+  EXPECT_EQ(none, nullptr);
+  EXPECT_EQ(f.fmi2FreeFMUstate(unit.it, &state), fmi2OK);
+  EXPECT_EQ(state, nullptr);
+  EXPECT_EQ(f.fmi2FreeFMUstate(unit.it, &state), fmi2OK);
+}
+
+TEST(Fmi2, AStateOfTheStartIsAStartAgain) {
+  const Resources resources(kRated);
+  Unit2 unit(resources);
+  const Functions& f = library();
+  fmi2FMUstate state = nullptr;
+  unit.set("drive_speed", 120);
+  ASSERT_EQ(f.fmi2GetFMUstate(unit.it, &state), fmi2OK);
+  unit.start();
+  const auto first = course(unit, 5, 1e-3);
+  ASSERT_EQ(f.fmi2SetFMUstate(unit.it, state), fmi2OK);
+  unit.done = 0;
+  unit.start();
+  EXPECT_EQ(unit.get("drive_speed"), 120);
+  expect_near(course(unit, 5, 1e-3), first, 0);
+}
+
+TEST(Fmi2, ResultsDoNotDependOnTheSizeOfSteps) {
+  const Resources resources(kHydraulic);
+  Unit2 unit(resources), finer(resources);
+  unit.start();
+  finer.start();
+  unit.steps(7, 1e-3);
+  finer.steps(700, 1e-5);
+  expect_near(finer.outputs(), unit.outputs(), 1e-8);
+}
+
+// Model exchange by a method of order four; both versions share everything below their calls.
+TEST(Fmi2, ModelExchangeFollowsCoSimulation) {
+  const Resources resources(kRated, "torque");
+  const Functions& f = library();
+  Unit2 unit(resources, fmi2ModelExchange), other(resources);
+  const double torque = 290;
+  for (Unit2* it : {&unit, &other}) {
+    it->set("drive_torque", torque);
+    it->start();
+  }
+  fmi2EventInfo info;
+  ASSERT_EQ(f.fmi2NewDiscreteStates(unit.it, &info), fmi2OK);
+  EXPECT_FALSE(info.newDiscreteStatesNeeded);
+  ASSERT_EQ(f.fmi2EnterContinuousTimeMode(unit.it), fmi2OK);
+  const auto n = static_cast<std::size_t>(
+      std::count_if(resources.variables().begin(), resources.variables().end(),
+                    [](const Variable& it) { return it.role == Role::state; }));
+  std::vector<double> x(n), at(n), sum(n), rate(n);
+  ASSERT_EQ(f.fmi2GetContinuousStates(unit.it, x.data(), n), fmi2OK);
+  EXPECT_EQ(f.fmi2GetContinuousStates(unit.it, x.data(), n + 1), fmi2Error);
+  constexpr double kStep = 2e-5, kEnd = 4e-3;
+  for (int i = 0; i < 200; ++i) {
+    sum = x;
+    at = x;
+    const double part[] = {0, 0.5, 0.5, 1}, weight[] = {1, 2, 2, 1};
+    for (int k = 0; k < 4; ++k) {
+      for (std::size_t j = 0; j < n; ++j) at[j] = x[j] + part[k] * kStep * rate[j];
+      ASSERT_EQ(f.fmi2SetTime(unit.it, (i + part[k]) * kStep), fmi2OK);
+      ASSERT_EQ(f.fmi2SetContinuousStates(unit.it, at.data(), n), fmi2OK);
+      ASSERT_EQ(f.fmi2GetDerivatives(unit.it, rate.data(), n), fmi2OK) << unit.messages.text;
+      for (std::size_t j = 0; j < n; ++j) sum[j] += kStep / 6 * weight[k] * rate[j];
+    }
+    x = sum;
+    ASSERT_EQ(f.fmi2SetTime(unit.it, (i + 1) * kStep), fmi2OK);
+    ASSERT_EQ(f.fmi2SetContinuousStates(unit.it, x.data(), n), fmi2OK);
+    fmi2Boolean event = 0, end = 0;
+    ASSERT_EQ(f.fmi2CompletedIntegratorStep(unit.it, 1, &event, &end), fmi2OK);
+    if (event == 0) continue;
+    ASSERT_EQ(f.fmi2EnterEventMode(unit.it), fmi2OK);
+    ASSERT_EQ(f.fmi2NewDiscreteStates(unit.it, &info), fmi2OK);
+    ASSERT_EQ(f.fmi2EnterContinuousTimeMode(unit.it), fmi2OK);
+  }
+  other.steps(1, kEnd);
+  EXPECT_NEAR(unit.get("shaft_rpm"), other.get("shaft_rpm"), 1e-3);
+  EXPECT_NEAR(unit.get("theta_deg"), other.get("theta_deg"), 1e-4);
+  // States and rates of co-simulation, where they are asked for, are those of model exchange.
+  EXPECT_NEAR(other.get("der(state.shaft_angle)"), unit.get("der(state.shaft_angle)"), 1e-3);
+}
+
+TEST(Fmi2, DirectionalDerivativesAreDifferences) {
+  const Resources resources(kHydraulic);
+  const Functions& f = library();
+  Unit2 unit(resources);
+  unit.start();
+  unit.steps(3, 1e-3);
+  const unsigned unknown = resources["Td_z1_Nm"], known = resources["drive_acceleration"];
+  const double seed = 2;
+  double slope = 0;
+  ASSERT_EQ(f.fmi2GetDirectionalDerivative(unit.it, &unknown, 1, &known, 1, &seed, &slope), fmi2OK)
+      << unit.messages.text;
+  const double before = unit.get("Td_z1_Nm");
+  unit.set("drive_acceleration", 1000);
+  EXPECT_NEAR(slope, seed * (unit.get("Td_z1_Nm") - before) / 1000, 1e-6 * std::abs(slope));
+  const unsigned parameter = resources["pump.tilt_deg"];
+  EXPECT_EQ(f.fmi2GetDirectionalDerivative(unit.it, &unknown, 1, &parameter, 1, &seed, &slope),
+            fmi2Error);
+  EXPECT_EQ(f.fmi2GetDirectionalDerivative(unit.it, &known, 1, &known, 1, &seed, &slope),
+            fmi2Error);
+}
+
+TEST(Fmi3, IsFmi2ByOtherNames) {
+  const Resources resources(kHydraulic);
+  Unit2 two(resources);
+  Unit3 three(resources);
+  two.start();
+  three.start();
+  EXPECT_EQ(three.outputs(), two.outputs());
+  for (int i = 0; i < 5; ++i) {
+    two.steps(1, 1e-4);
+    ASSERT_EQ(three.step(i * 1e-4, 1e-4), fmi3OK) << three.messages.text;
+    EXPECT_FALSE(three.event || three.terminate || three.early);
+    EXPECT_NEAR(three.last, (i + 1) * 1e-4, 1e-15);
+  }
+  EXPECT_EQ(three.outputs(), two.outputs());
+  EXPECT_EQ(three.step(0.4, 1e-4), fmi3Error);
+  EXPECT_NEAR(three.last, 5e-4, 1e-15);
+  const Functions& f = library();
+  fmi3FMUState state = nullptr;
+  std::size_t size = 0;
+  ASSERT_EQ(f.fmi3GetFMUState(three.it, &state), fmi3OK);
+  ASSERT_EQ(f.fmi3SerializedFMUStateSize(three.it, state, &size), fmi3OK);
+  std::vector<fmi3Byte> bytes(size);
+  ASSERT_EQ(f.fmi3SerializeFMUState(three.it, state, bytes.data(), size), fmi3OK);
+  ASSERT_EQ(f.fmi3FreeFMUState(three.it, &state), fmi3OK);
+  ASSERT_EQ(f.fmi3DeserializeFMUState(three.it, bytes.data(), size, &state), fmi3OK);
+  ASSERT_EQ(f.fmi3SetFMUState(three.it, state), fmi3OK);
+  expect_near(three.outputs(), two.outputs(), 1e-12);
+  const unsigned reference = resources["Td_z1_Nm"];
+  double values[2];
+  EXPECT_EQ(f.fmi3GetFloat64(three.it, &reference, 1, values, 2), fmi3Error);
+  const unsigned flag = resources["valid_film"];
+  bool is = false;
+  EXPECT_EQ(f.fmi3GetBoolean(three.it, &flag, 1, &is, 1), fmi3OK);
+  EXPECT_EQ(f.fmi3SetBoolean(three.it, &flag, 1, &is, 1), fmi3Error);
+#define BENTAXIS_NONE(Type)                                                            \
+  EXPECT_EQ(f.fmi3Get##Type(three.it, &reference, 1, nullptr, 1), fmi3Error) << #Type; \
+  EXPECT_EQ(f.fmi3Set##Type(three.it, &reference, 1, nullptr, 1), fmi3Error) << #Type; \
+  EXPECT_EQ(f.fmi3Get##Type(three.it, nullptr, 0, nullptr, 0), fmi3OK) << #Type;
+  BENTAXIS_NONE(Float32)
+  BENTAXIS_NONE(Int8)
+  BENTAXIS_NONE(UInt8)
+  BENTAXIS_NONE(Int16)
+  BENTAXIS_NONE(UInt16)
+  BENTAXIS_NONE(Int32)
+  BENTAXIS_NONE(UInt32)
+  BENTAXIS_NONE(Int64)
+  BENTAXIS_NONE(UInt64)
+  BENTAXIS_NONE(String)
+#undef BENTAXIS_NONE
+  EXPECT_EQ(f.fmi3GetBinary(three.it, &reference, 1, nullptr, nullptr, 1), fmi3Error);
+  EXPECT_EQ(f.fmi3SetBinary(three.it, &reference, 1, nullptr, nullptr, 1), fmi3Error);
+  EXPECT_EQ(f.fmi3GetClock(three.it, &reference, 1, nullptr), fmi3Error);
+  EXPECT_EQ(f.fmi3SetClock(three.it, &reference, 1, nullptr), fmi3Error);
+  EXPECT_EQ(f.fmi3GetOutputDerivatives(three.it, &reference, 1, nullptr, nullptr, 1), fmi3Error);
+  EXPECT_EQ(f.fmi3Terminate(three.it), fmi3OK);
+  EXPECT_EQ(three.step(5e-4, 1e-4), fmi3Error);
+  EXPECT_EQ(f.fmi3Reset(three.it), fmi3OK);
+}
+
+TEST(Fmi3, ModelExchangeHasItsModes) {
+  const Resources resources(kHydraulic);
+  const Functions& f = library();
+  Unit3 unit(resources, true);
+  std::size_t states = 0, indicators = 0;
+  ASSERT_EQ(f.fmi3GetNumberOfContinuousStates(unit.it, &states), fmi3OK);
+  ASSERT_EQ(f.fmi3GetNumberOfEventIndicators(unit.it, &indicators), fmi3OK);
+  EXPECT_EQ(states, 7);
+  EXPECT_EQ(indicators, 2);
+  EXPECT_EQ(f.fmi3EnterContinuousTimeMode(unit.it), fmi3Error);
+  EXPECT_EQ(unit.step(0, 1e-3), fmi3Error);
+  unit.start();
+  bool again = true, end = true, nominals = true, changed = true, timed = true;
+  double next = 0;
+  EXPECT_EQ(f.fmi3EvaluateDiscreteStates(unit.it), fmi3OK);
+  EXPECT_EQ(f.fmi3UpdateDiscreteStates(unit.it, nullptr, &end, &nominals, &changed, &timed, &next),
+            fmi3Error);
+  ASSERT_EQ(f.fmi3UpdateDiscreteStates(unit.it, &again, &end, &nominals, &changed, &timed, &next),
+            fmi3OK);
+  EXPECT_FALSE(again || end || nominals);
+  ASSERT_EQ(f.fmi3EnterContinuousTimeMode(unit.it), fmi3OK);
+  std::vector<double> x(states), rates(states), z(indicators);
+  ASSERT_EQ(f.fmi3GetContinuousStates(unit.it, x.data(), states), fmi3OK);
+  ASSERT_EQ(f.fmi3GetNominalsOfContinuousStates(unit.it, rates.data(), states), fmi3OK);
+  ASSERT_EQ(f.fmi3GetEventIndicators(unit.it, z.data(), indicators), fmi3OK);
+  ASSERT_EQ(f.fmi3GetContinuousStateDerivatives(unit.it, rates.data(), states), fmi3OK);
+  EXPECT_NEAR(rates[0], 157.07963, 1e-4);
+  // The angle goes past an edge: an event.
+  x[0] += 0.3;
+  ASSERT_EQ(f.fmi3SetTime(unit.it, 0.3 / rates[0]), fmi3OK);
+  ASSERT_EQ(f.fmi3SetContinuousStates(unit.it, x.data(), states), fmi3OK);
+  bool event = false;
+  ASSERT_EQ(f.fmi3CompletedIntegratorStep(unit.it, true, &event, &end), fmi3OK);
+  EXPECT_TRUE(event);
+  EXPECT_EQ(f.fmi3EnterEventMode(unit.it), fmi3OK);
+  x[0] = kNan;
+  EXPECT_EQ(f.fmi3SetContinuousStates(unit.it, x.data(), states), fmi3Error);
+  EXPECT_EQ(f.fmi3SetTime(unit.it, kNan), fmi3Error);
+  EXPECT_EQ(f.fmi3Terminate(unit.it), fmi3OK);
+}
+
+}  // namespace
+}  // namespace bentaxis::fmu

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Fails where the library of a unit needs more than libc and libm, shows more than FMI's functions, or names a
+# path of the computer that built it.
+# usage: fmu_library_test.sh LIBRARY SOURCE_FOLDER
+set -euo pipefail
+library=$1
+sources=$2
+status=0
+say() { echo "error: $1"; status=1; }
+
+needed=$(readelf -d "$library" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
+for name in $needed; do
+  case $name in
+    libc.so.6 | libm.so.6 | ld-linux-*) ;;
+    *) say "needs $name" ;;
+  esac
+done
+[ -n "$needed" ] || say "nothing is needed, not even libc: is this the library?"
+if readelf -d "$library" | grep -qE 'RPATH|RUNPATH|TEXTREL'; then say "has a run path or text relocations"; fi
+
+shown=$(nm -D --defined-only "$library" | awk '{print $NF}' | sed 's/@.*//')
+others=$(grep -vE '^fmi[23][A-Z]' <<< "$shown" || true)
+[ -z "$others" ] || say "shows $others"
+for version in 2 3; do
+  for name in $(grep -oE "X\(fmi${version}[A-Za-z0-9]+\)" "$sources/fmu/interface/fmi$version.h" | tr -d 'X()'); do
+    grep -qx "$name" <<< "$shown" || say "lacks $name"
+  done
+done
+unknown=$(nm -D --undefined-only "$library" | awk '$1 == "U" {print $2}' | grep -v '@GLIBC_' || true)
+[ -z "$unknown" ] || say "needs symbols that are not libc's: $unknown"
+if strings -a "$library" | grep -F "$sources/"; then say "names paths of the sources"; fi
+if [ -n "$(nm "$library" 2>/dev/null)" ]; then say "has symbols that are for debuggers"; fi
+[ $status = 0 ] && echo "libc and libm, $(wc -l <<< "$shown") functions of FMI"
+exit $status
