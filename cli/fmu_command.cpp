@@ -48,7 +48,7 @@ std::string sentence_of(fmu::Drive drive) {
 }
 
 fs::path checked_place(const std::string& out) {
-  const fs::path place = out;
+  fs::path place = out;
   if (place.extension() != ".fmu" || place.stem().empty())
     throw InputError("--out " + out + ": must be a file that ends in .fmu");
   if (fs::is_directory(place)) throw InputError("--out " + out + ": is a folder");

@@ -64,7 +64,7 @@ std::string zip_archive(const std::vector<ArchiveFile>& files) {
   zip_source_keep(target.get());  // the archive gives its own hold back when it is closed
   for (const ArchiveFile& file : files) add(archive.get(), file);
   if (zip_close(archive.get()) != 0) fail(zip_strerror(archive.get()));
-  archive.release();
+  static_cast<void>(archive.release());  // closed, it is gone
   return bytes_of(target.get());
 }
 

@@ -3,12 +3,17 @@
 // The assembler reads the files: as a text in this source they would take the compiler minutes.
 #define BENTAXIS_EMBED(name, file)                                                 \
   asm(".pushsection .rodata\n.balign 16\n" #name ":\n.incbin \"" file "\"\n" #name \
-      "_end:\n.byte 0\n.popsection\n");                                            \
-  extern "C" __attribute__((visibility("hidden"))) const char name[], name##_end[]
+      "_end:\n.byte 0\n.popsection\n")
 
 BENTAXIS_EMBED(bentaxis_fmu_library, BENTAXIS_FMU_LIBRARY);
 BENTAXIS_EMBED(bentaxis_fmu_licence, BENTAXIS_FMU_LICENCE);
 BENTAXIS_EMBED(bentaxis_fmu_notices, BENTAXIS_FMU_NOTICES);
+
+extern "C" {
+extern const char bentaxis_fmu_library[], bentaxis_fmu_library_end[];
+extern const char bentaxis_fmu_licence[], bentaxis_fmu_licence_end[];
+extern const char bentaxis_fmu_notices[], bentaxis_fmu_notices_end[];
+}
 
 namespace bentaxis::fmu {
 
