@@ -242,7 +242,7 @@ class Network {
   // A pressure that is held: at the tank (or the charge supply) and at the end of the delivery
   // side.
   struct Held {
-    Held(const Fluid& fluid, double gauge);
+    Held(const Fluid& fluid, double pressure);
     double gauge, s;
     Fluid::State state;
     double potential;  // J/kg
