@@ -18,7 +18,7 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 # What is linked is found by dpkg-shlibdeps; librsvg is loaded when a PNG is wanted.
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "librsvg2-2")
-if(TARGET _bentaxis)
+if(BENTAXIS_PYTHON)
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3 (>= 3.11), python3-numpy")
 endif()
 # For those who build programs with the library: what its headers' users link.

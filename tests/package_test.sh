@@ -26,7 +26,7 @@ field() { dpkg-deb -f "$package" "$1"; }
 [[ $(field Package) == bentaxis ]]
 [[ $(field Version) == $(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt") ]]
 # What is linked, and what is loaded at run time.
-for library in libsimbody librsvg2-2 libtbb libpugixml; do
+for library in libsimbody librsvg2-2 libtbb libpugixml $(grep -q dist-packages content && echo python3-numpy); do
   field Depends | grep -q "$library" || { echo "Depends lacks $library: $(field Depends)"; exit 1; }
 done
 # Sanitized or not, the program of the package runs where it lies.
