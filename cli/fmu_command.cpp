@@ -83,7 +83,7 @@ int make_unit(Options& options) {
 Command add_fmu_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
-      "fmu", "write the pump of a case as a Functional Mock-up Unit for system simulators");
+      "fmu", "Write the pump of a case as a Functional Mock-up Unit for system simulators");
   add_case(command, options->the_case);
   command.option("--out", options->out, "the unit; its folder is made where it is missing")
       .required()
