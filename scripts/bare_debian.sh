@@ -24,7 +24,8 @@ make_bare_debian() {
   cp /etc/resolv.conf /etc/hosts "$bare/etc/" 2> /dev/null || true
   chroot "$bare" update-ca-certificates > /dev/null 2>&1 || true
   mount -t proc proc "$bare/proc"
-  mount --rbind /sys "$bare/sys" 2> /dev/null || true
+  # A slave: what is unmounted there stays on this machine.
+  mount --rbind --make-rslave /sys "$bare/sys" 2> /dev/null || true
   mkdir -p "$bare/dev/shm" && mount -t tmpfs shm "$bare/dev/shm" || true
   # A machine has terminals.
   mkdir -p "$bare/dev/pts" && mount -t devpts -o newinstance,ptmxmode=0666 devpts "$bare/dev/pts" || true
