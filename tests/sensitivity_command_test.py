@@ -38,8 +38,8 @@ class Sensitivity(unittest.TestCase):
 
     def test_every_pair_is_written_and_the_check_agrees(self):
         # What is named twice is there once.
-        self.run_program("--output", "mean:Td,peak:Rb1,mean:Td", "--parameter",
-                         "pump.tilt_deg,pressure.delivery_bar,pump.tilt_deg", "--check")
+        done = self.run_program("--output", "mean:Td,peak:Rb1,mean:Td", "--parameter",
+                                "pump.tilt_deg,pressure.delivery_bar,pump.tilt_deg", "--check")
         rows = rows_of(self.out / "sensitivity.csv")
         self.assertEqual([(r["output"], r["parameter"]) for r in rows],
                          [(o, p) for o in ("mean:Td", "peak:Rb1") for p in ("pump.tilt_deg", "pressure.delivery_bar")])
@@ -48,6 +48,7 @@ class Sensitivity(unittest.TestCase):
             self.assertAlmostEqual(float(row["derivative"]) * float(row["parameter_value"]) / float(row["output_value"]),
                                    float(row["elasticity"]), 12)
             self.assertLess(float(row["difference"]), 1e-7)
+        self.assertNotIn("more in sensitivity.csv", done.stdout)
         report = json.loads((self.out / "sensitivity.json").read_text())
         self.assertTrue(report["verdict"]["agrees"])
         self.assertTrue((self.out / "sensitivity.html").exists())
@@ -78,10 +79,13 @@ class Sensitivity(unittest.TestCase):
         self.assertIn("forward sensitivities (CVODES)", (self.out / "sensitivity.json").read_text())
 
     def test_without_names_every_number_of_the_case(self):
-        self.run_program()
+        done = self.run_program()
         rows = rows_of(self.out / "sensitivity.csv")
         parameters = {r["parameter"] for r in rows}
         self.assertGreater(len(parameters), 40)
+        # The console shows eight of an output, and says of how many it is silent.
+        outputs = len({r["output"] for r in rows})
+        self.assertEqual(done.stdout.count(f"and {len(parameters) - 8} more in sensitivity.csv\n"), outputs)
         self.assertLessEqual({"pump.tilt_deg", "port_plate.inner_land_mm.2", "operation.speed_rpm"}, parameters)
 
     def test_what_is_no_number_is_refused(self):
