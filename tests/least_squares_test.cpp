@@ -142,6 +142,26 @@ TEST(LeastSquares, ABoundIsKeptAndItsDerivativesAreOneSided) {
   EXPECT_NEAR(fit.jacobian[0], 2, 1e-9);
 }
 
+// What lies beyond a bound may have no value, or one of another law.
+TEST(LeastSquares, DerivativesAskForNothingBeyondABound) {
+  LeastSquaresProblem problem;
+  problem.parameters = problem.residuals = 1;
+  problem.low = {1};
+  problem.high = {2};
+  int beyond = 0;
+  problem.evaluate = [&](std::span<const double> x, std::span<double> r) {
+    if (x[0] < 1 || x[0] > 2) ++beyond;
+    r[0] = x[0] * x[0];
+    return true;
+  };
+  for (const double x : {1.0, 1.5, 2.0}) {
+    Numbers slope(1);
+    ASSERT_TRUE(derivatives_of(problem, Numbers{x}, slope));
+    EXPECT_NEAR(slope[0], 2 * x, 1e-8) << "at " << x;
+  }
+  EXPECT_EQ(beyond, 0);
+}
+
 // Rounding leaves a parameter a hair off 0: a step of its own size would move nothing.
 TEST(LeastSquares, AParameterThatIsAlmostZeroHasItsDerivatives) {
   LeastSquaresProblem problem;

@@ -78,6 +78,55 @@ class UncertaintyTest(ProgramTest):
         self.assertEqual(len(figures["band_Rb1"]["bands"]), 3)
         self.assertEqual(len(figures["contributions_1"]["bars"]), 2)  # the bearing's place moves no torque
 
+    def test_the_report_says_what_the_files_say(self):
+        case = self.uncertain()
+        result = self.run_program("uncertainty", case, "--output", "mean:Td,peak:Rb1", "--samples", 300, "--level", 0.9,
+                                  "--out", "out")
+        tables = {}
+        for section in self.report()["runs"]:
+            table = section["table"]
+            tables[section["title"]] = [dict(zip(table["columns"], row)) for row in table["rows"]]
+        near = lambda text, value: self.assertAlmostEqual(float(text), float(value), delta=2e-3 * abs(float(value)))
+        for said, row in zip(tables["Outputs"], self.table("outputs.csv"), strict=True):
+            self.assertEqual(said["output"], row["output"])
+            near(said["nominal"], row["nominal"])
+            for words, key in (("mean", "mean"), ("standard deviation", "deviation")):
+                value, error = said[words].split(" +- ")
+                near(value, row[key])
+                self.assertAlmostEqual(float(error), float(row[key + "_error"]), delta=0.06 * float(error))
+            for words, key in (("5 % quantile", "low"), ("median", "median"), ("95 % quantile", "high")):
+                numbers = said[words].replace("(", "").replace(")", "").replace("..", "").split()
+                for text, end in zip(numbers, ("", "_from", "_to"), strict=True):
+                    near(text, row[key + end])
+        for said, row in zip(tables["First order beside it"], self.table("outputs.csv"), strict=True):
+            self.assertEqual([said[c] for c in ("value at the means", "combined standard uncertainty", "of Monte Carlo",
+                                                "standard error of that")],
+                             [float(row[k]) for k in ("first_order_value", "first_order_deviation", "deviation",
+                                                      "deviation_error")])
+        deviations = {row["parameter"]: row["standard deviation"] for row in tables["What is not known"]}
+        self.assertAlmostEqual(deviations["pressure.delivery_bar"], 10 / math.sqrt(12), 12)
+        parts = {}
+        for row in tables["Where it comes from, to first order"]:
+            parts[row["output"], row["parameter"]] = row["contribution"]
+            self.assertAlmostEqual(row["contribution"], row["derivative"] * deviations[row["parameter"]],
+                                   delta=1e-12 * abs(row["contribution"]))
+        for row in tables["First order beside it"]:
+            tilt, place, bar = (parts[row["output"], p] for p in ("pump.tilt_deg", "bearings.tapered_z_mm", "pressure.delivery_bar"))
+            self.assertAlmostEqual(row["combined standard uncertainty"],
+                                   math.sqrt(tilt**2 + place**2 + bar**2 + 2 * 0.5 * tilt * place), 9)
+        bands = self.table("bands.csv")
+        rows = {s["title"]: s for s in self.report()["runs"]}["Bands on reactions"]["table"]["rows"]
+        self.assertEqual(len(rows), len([c for c in bands[0] if c.endswith("_low")]))
+        shares = {}
+        for name, _, peak, half, share, _, edge_share, within in rows:
+            wide = max(float(row[f"{name}_high"]) - float(row[f"{name}_low"]) for row in bands) / 2
+            self.assertAlmostEqual(half, wide, delta=1e-9 * wide)
+            self.assertAlmostEqual(share, 100 * half / peak, delta=1e-9 * share)
+            self.assertLess(edge_share, max(share, 1e-9))
+            self.assertTrue(60 < within <= 90, f"{name}: {within} % within throughout")  # of each angle by itself 90 are
+            shares[name] = share
+        self.assert_mentions(result.out, "90 % of the pumps in", f"widest band: {max(shares, key=shares.get)}, ")
+
     def test_the_same_whatever_the_threads(self):
         case = self.uncertain()
         for threads in (1, 2):
