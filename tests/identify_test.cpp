@@ -116,6 +116,63 @@ TEST_F(Identify, WordsNameWhatIsDeterminedOnlyTogether) {
   EXPECT_THAT(fit(nothing).information.words, Contains("the data say nothing of block.mass_kg"));
 }
 
+// What is said where the data notice everything but moves along one direction (in the unknowns'
+// units), however that came about.
+std::vector<std::string> words_where_open(const DataModel& model, std::vector<double> direction) {
+  const std::vector<double> x = model.start();
+  const std::size_t n = x.size();
+  const std::vector<double> spread =
+      information_of(model, x, std::vector<double>(n * n)).spread;  // whatever the data
+  double square = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    direction[i] /= spread[i];
+    square += direction[i] * direction[i];
+  }
+  std::vector<double> jacobian(n * n);
+  for (std::size_t r = 0; r < n; ++r)
+    for (std::size_t i = 0; i < n; ++i)
+      jacobian[r * n + i] =
+          1000 * ((r == i ? 1 : 0) - direction[r] * direction[i] / square) / spread[i];
+  return information_of(model, x, jacobian).words;
+}
+
+TEST_F(Identify, WordsFollowTheDirectionThatIsOpen) {
+  const Case base = base_case();
+  const std::vector<Datum> data = {number(base, "mean:Td", value_of(base, "mean:Td"), 0.1)};
+  const DataModel two(
+      base,
+      data_of(base, {"pressure.delivery_bar=250:300", "operation.speed_rpm=1000:2000"}, data));
+  const std::string names = "pressure.delivery_bar and operation.speed_rpm are determined only ";
+  EXPECT_THAT(words_where_open(two, {275, 1500}), ElementsAre(names + "through their ratio"));
+  EXPECT_THAT(words_where_open(two, {275, -1500}), ElementsAre(names + "through their product"));
+  // Along (10, 60) the sum of -60 times the one and 10 times the other stays; lengths are those of
+  // a direction of length 1 in spreads, 50 and 1000 over the root of 12.
+  EXPECT_THAT(words_where_open(two, {10, 60}),
+              ElementsAre(names + "together: through 83 x pressure.delivery_bar - 13.8 x "
+                                  "operation.speed_rpm"));
+  EXPECT_THAT(words_where_open(two, {10, -60}),
+              ElementsAre(names + "together: through 83 x pressure.delivery_bar + 13.8 x "
+                                  "operation.speed_rpm"));
+  const DataModel bars(
+      base, data_of(base, {"pressure.delivery_bar=250:300", "pressure.suction_bar=-0.9:20"}, data));
+  EXPECT_THAT(words_where_open(bars, {1, -1}),
+              ElementsAre("pressure.delivery_bar and pressure.suction_bar are determined only "
+                          "through their sum"));
+  // The largest share first; less than a seventh of the direction is not named.
+  const DataModel four(base, data_of(base,
+                                     {"pressure.delivery_bar=250:300", "pressure.suction_bar=0:20",
+                                      "block.mass_kg=1:2", "operation.speed_rpm=1000:2000"},
+                                     data));
+  const double root = std::sqrt(12.0);
+  EXPECT_THAT(
+      words_where_open(four, {0.45 * 50 / root, 0.8 * 20 / root, -0.384 / root, 0.1 * 1000 / root}),
+      ElementsAre("nearly unnoticed together: pressure.suction_bar +4.62 bar, "
+                  "pressure.delivery_bar +6.5 bar, block.mass_kg -0.111 kg"));
+  EXPECT_THAT(words_where_open(
+                  four, {0.45 * 50 / root, 0.8 * 20 / root, -0.352 / root, 0.18 * 1000 / root}),
+              ElementsAre(testing::EndsWith(", operation.speed_rpm +52 rpm")));
+}
+
 // Where the fit ends is right to rounding; the words are those of the place.
 TEST_F(Identify, WordsDoNotDependOnRounding) {
   for (const char* suction : {"0", "1e-15", "-1e-13", "1e-9"}) {

@@ -23,6 +23,7 @@
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/reference_set.h"
+#include "bentaxis/study/regression.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/tradeoff.h"
 #include "bentaxis/study/tradeoff_study.h"
@@ -40,6 +41,53 @@ Case shipped_case() {
   the_case.pump.piston.real = PistonMass::Real{0.019, 24e-6, 5e-6, 0};
   the_case.operation.samples_per_revolution = 120;
   return the_case;
+}
+
+// Of a group in one model: channels by how much of what is allowed they differ.
+study::GroupLine line_of(const std::string& model, const std::string& group,
+                         const std::vector<double>& severities) {
+  study::GroupLine line;
+  line.model = model;
+  line.group = group;
+  for (std::size_t i = 0; i < severities.size(); ++i) {
+    compare::ReferenceChannel channel;
+    channel.comparison.channel.name = group + "_" + "xyz"[i] + "1_N";
+    channel.comparison.channel.unit = "N";
+    channel.comparison.peak = 1000;
+    channel.comparison.allowed = 10;
+    channel.comparison.largest = 10 * severities[i];
+    channel.finding = severities[i] > 1 ? compare::Finding::differs : compare::Finding::agrees;
+    line.failed += channel.failed() ? 1 : 0;
+    ++line.compared;
+    line.channels.push_back(channel);
+  }
+  return line;
+}
+
+TEST(Regression, TheWorstIsThatFurthestBeyondOrNearestToItsLimit) {
+  study::Outcome outcome;
+  outcome.lines = {line_of("analytic", "Rb1", {0.1, 0.3, 0.2}), line_of("multibody", "Rb1", {0.6}),
+                   line_of("analytic", "Td", {0.5, 0.4}), line_of("multibody", "Td", {0.1})};
+  EXPECT_EQ(outcome.lines[0].worst()->comparison.channel.name, "Rb1_y1_N");
+  EXPECT_EQ(outcome.worst_line("Rb1")->model, "multibody");
+  EXPECT_EQ(outcome.worst_line("Td")->model, "analytic");
+  EXPECT_EQ(outcome.worst_line("Rcs"), nullptr);
+  EXPECT_EQ(study::held_text(outcome),
+            "2 of 2 reactions compared agree. Worst: Rb1 agrees: 0.6 % of peak (6 N), 1 % allowed; "
+            "Rb1_x1_N at 0 deg (multibody).");
+  // Both models differ in the one group: it is one reaction.
+  outcome.lines[0] = line_of("analytic", "Rb1", {2, 7, 3});
+  outcome.lines[1] = line_of("multibody", "Rb1", {1.5});
+  EXPECT_EQ(
+      study::held_text(outcome),
+      "1 of 2 reactions compared differ. Worst: Rb1 differs: 7 % of peak (70 N), 1 % allowed; "
+      "Rb1_y1_N at 0 deg and 2 more (analytic).");
+  // What lacks values is worse than any number.
+  outcome.lines[3].channels[0].finding = compare::Finding::incomplete;
+  outcome.lines[3].channels[0].hint = "no value at 3 deg";
+  outcome.lines[3].failed = 1;
+  EXPECT_THAT(study::held_text(outcome),
+              testing::StartsWith("2 of 2 reactions compared differ. Worst: Td incomplete"));
 }
 
 // Smallest and largest magnitude of a vector of piston 1 over the turn, and its mean.
