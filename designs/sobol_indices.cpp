@@ -135,8 +135,7 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
   SobolIndices all;
   all.evaluations = base * rows;
   all.left_out = base - kept.size();
-  constexpr std::size_t kFewest = 16;
-  if (kept.size() < kFewest)
+  if (kept.size() < kFewestBasePoints)
     throw ComputationError("Sobol indices: only " + std::to_string(kept.size()) + " of " +
                            std::to_string(base) + " base points have outputs at all their points");
   std::vector<double> ordered(kept.size() * rows * n), column(kept.size() * rows);

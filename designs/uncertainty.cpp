@@ -153,6 +153,9 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
   result.options = options;
   result.variables = uncertain_variables(the_case);
   const UncertainVariables& variables = result.variables;
+  if (options.sobol > 0 && options.sobol < kFewestBasePoints)
+    throw InputError("--sobol: " + std::to_string(options.sobol) + ": must be at least " +
+                     std::to_string(kFewestBasePoints) + ", or 0: none");
   if (options.sobol > 0 && !variables.independent())
     throw InputError("--sobol: needs independent parameters: [uncertainty] correlates some");
   const Designs designs(the_case, variables, options);

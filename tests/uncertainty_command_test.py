@@ -149,6 +149,7 @@ class UncertaintyTest(ProgramTest):
 
     def test_sobol_indices(self):
         self.run_program("uncertainty", self.uncertain(), "--samples", 150, "--no-curves", "--out", "plain")
+        self.assert_mentions(self.refused("uncertainty", self.uncertain(), "--sobol", 15), "--sobol: 15: must be at least 16, or 0: none")
         version = dict(self.report("plain")["program"])
         case = self.uncertain(TABLE.split("correlation")[0])
         command = ("uncertainty", case, "--output", "peak:Rb1", "--no-curves", "--samples", 150, "--sobol", 256)

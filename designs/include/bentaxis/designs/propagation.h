@@ -91,6 +91,7 @@ struct SobolIndices {
   std::size_t evaluations = 0;
   std::size_t left_out = 0;  ///< base points, for one of whose points had no outputs
 };
+inline constexpr std::size_t kFewestBasePoints = 16;  ///< below them there are no intervals
 /// @param base  number of base points: (numbers + 2) times as many evaluations
 /// @throws InputError where numbers are correlated, or there is no OpenTURNS
 SobolIndices sobol_indices(const Response& response, std::size_t outputs,
