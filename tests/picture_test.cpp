@@ -376,6 +376,16 @@ TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
       at = point[0];
     }
   EXPECT_NEAR(at, 82 + 622 * 225.0 / 360, 0.3);
+  // What is level is there as a whole or not at all: 1 up to 90 deg, -4 from 180 to 270.
+  curves = curves_of({{"R", {1, 1, -4, -4, 1}}}, 90);
+  double first = 1e9;
+  for (const auto& part : drawn(svg_of({"id", "t", "", content}, curves)))
+    for (const auto& point : part) {
+      const double angle = (point[0] - 82) * 360 / 622;
+      first = std::min(first, angle);
+      EXPECT_TRUE(angle < 145 || angle > 305) << angle;
+    }
+  EXPECT_NEAR(first, 0, 0.2);
 }
 
 TEST(Picture, AnAxisOfAPlaneEndsWhereItIsTold) {
