@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string folder, junit, html, figures, filter;
+  std::string folder, junit, html, json, figures, filter;
 };
 
 ExitStatus status_of(study::Outcome::State state) {
@@ -74,11 +74,14 @@ int regress(const Options& options) {
     for (const auto& outcome : outcomes) suites.push_back(study::suite_of(outcome));
     write(options.junit, report::junit_xml("bentaxis regress", suites));
   }
-  if (options.html.empty() && options.figures.empty()) return status;
+  if (options.html.empty() && options.json.empty() && options.figures.empty()) return status;
   const std::string name = fs::absolute(root / ".").parent_path().filename();
   report::Document document = study::regression_document(outcomes, name, versions());
   add_provenance(document);
+  for (const std::string& file : {options.html, options.json})
+    if (!file.empty()) document.files.push_back(fs::path(file).filename());
   if (!options.html.empty()) write(options.html, report::render_page(document));
+  if (!options.json.empty()) write(options.json, report::json_text(document));
   if (!options.figures.empty()) {
     OutputFolder folder(options.figures);
     add_figure_files(folder, document);
@@ -99,6 +102,10 @@ Command add_regress_command(CommandParser program) {
   command
       .option("--html", options->html,
               "write a page with the curves that fail and every external curve, over both models")
+      .text("FILE");
+  command
+      .option("--json", options->json,
+              "write the same as JSON (docs/report_json.md); beside the page, for `bentaxis index`")
       .text("FILE");
   add_figures(command, options->figures);
   command.option("--filter", options->filter, "only cases whose name contains this text")

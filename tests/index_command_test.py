@@ -56,12 +56,17 @@ class Index(unittest.TestCase):
         for name, more in {ODD: [], "deep/er/differs": ["--multibody-case", other]}.items():
             cls.status[name] = run("compare", case, *few, *more, "--out", cls.folder / name).returncode
         run("pressure", REPO / "cases/bap63_rated_hydraulic.toml", "--out", cls.folder / "deep")
+        run("reference", "golden", case, "--samples", "36", "--out", cls.folder.with_name(cls.folder.name + "_golden"))
+        done = run("regress", cls.folder.with_name(cls.folder.name + "_golden"), "--html", cls.folder / "deep/regress.html", "--json",
+                   cls.folder / "deep/regress.json")
+        assert done.returncode == 0, done.stderr
         (cls.folder / "no_report.json").write_text('{"schema": 1}')
         (cls.folder / "broken.json").write_text('{"schema"')
 
     @classmethod
     def tearDownClass(cls):
         shutil.rmtree(cls.folder)
+        shutil.rmtree(cls.folder.with_name(cls.folder.name + "_golden"))
 
     def test_worst_first_with_verdict_link_and_picture(self):
         self.assertEqual(self.status, {ODD: 0, "deep/er/differs": 1})
@@ -70,6 +75,7 @@ class Index(unittest.TestCase):
         page = Page((self.folder / "index.html").read_text())
         self.assertEqual([(urllib.parse.unquote(link), word) for link, word in page.rows],
                          [("deep/er/differs/report.html", "Differs"), (f"{ODD}/report.html", "Agrees"),
+                          ("deep/regress.html", "Agrees"),
                           ("deep/pressure.html", "No verdict")])
         for link, _ in page.rows:
             self.assertTrue((self.folder / urllib.parse.unquote(link)).is_file(), link)
@@ -93,7 +99,7 @@ class Index(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder / "site")
         self.assertEqual(run("index", "deep", "--out", "site/pages", cwd=self.folder).returncode, 0)
         links = [urllib.parse.unquote(link) for link, _ in Page((place / "index.html").read_text()).rows]
-        self.assertEqual(len(links), 2)
+        self.assertEqual(len(links), 3)
         for link in links:
             self.assertTrue((place / link).is_file(), link)
 

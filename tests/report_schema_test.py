@@ -89,7 +89,7 @@ class SchemaTest(unittest.TestCase):
 
     @classmethod
     def page_of_a_regression(cls):
-        """regress writes a page only; its JSON is in it. A changed curve brings figures."""
+        """A changed curve brings figures. What is in the page is what --json writes."""
         cls.run_program("reference", "golden", "bap63_rated.toml", "--out", "golden")
         stored = cls.folder / "golden" / "analytic.csv"
         lines = stored.read_text().splitlines()
@@ -97,9 +97,12 @@ class SchemaTest(unittest.TestCase):
         fields[1:4] = [str(float(value) + 1) for value in fields[1:4]]
         lines[5] = ",".join(fields)
         stored.write_text("\n".join(lines) + "\n")
-        cls.run_program("regress", "golden", "--html", "regress.html", status=None)
+        cls.run_program("regress", "golden", "--html", "regress.html", "--json", "regress.json", status=None)
         text = (cls.folder / "regress.html").read_text()
-        return json.loads(re.search(r'<script type="application/json" id="report">(.*?)</script>', text, re.S).group(1))
+        page = json.loads(re.search(r'<script type="application/json" id="report">(.*?)</script>', text, re.S).group(1))
+        written = json.loads((cls.folder / "regress.json").read_text())
+        assert written == page, "regress --json is not what is in the page"
+        return written
 
     def test_every_report_follows_the_schema(self):
         for name, report in self.reports.items():
