@@ -497,6 +497,12 @@ TEST(Picture, AShadeOfADrawingSaysItsValue) {
   EXPECT_THAT(fills, testing::ElementsAre(keys[0], keys[4], keys[2]));  // the ground lies below
   EXPECT_THAT(svg, HasSubstr("pressure: 0 bar"));
   EXPECT_THAT(svg, HasSubstr("time (ms) 4"));
+  // Five shades from end to end, be the lower one no 0.
+  DrawingFigure above = drawing;
+  above.shades->low = 40;
+  const std::string keyed = svg_of({"id", "t", "", above});
+  for (const char* words : {"pressure: 40 bar", ">80 bar<", ">120 bar<", ">160 bar<", ">200 bar<"})
+    EXPECT_THAT(keyed, HasSubstr(words));
   EXPECT_THAT(csv_of(figure),
               testing::StartsWith("time (ms),panel,look,shape,x,y\n,1,port,1,1,1\n"));
 }

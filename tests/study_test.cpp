@@ -449,6 +449,42 @@ TEST(HardOutcome, WorstRatioIsTheFarthestFromOneOfNoticeableLosses) {
   EXPECT_NEAR(outcome.worst_ratio().value(), 0.1, 1e-12);
 }
 
+// Where the ring touches off B there are no multipliers: refused as input, by that way alone.
+TEST(HardCases, ARefusalCountsAsOneWhereItIsExpected) {
+  const Scratch scratch;
+  const std::filesystem::path folder = scratch.path();
+  std::ifstream shipped(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml");
+  std::string text((std::istreambuf_iterator<char>(shipped)), {});
+  text.replace(text.find("[piston]\n"), 9, "[piston]\ncontact_mm = 41.5\n");
+  const auto at = text.find("samples_per_revolution");
+  text.replace(at, text.find('\n', at) - at, "samples_per_revolution = 12");
+  std::ofstream(folder / "case.toml") << text;
+  const Case the_case = read_case(folder / "case.toml");
+  const ResultTable table = analytic::run(the_case, the_case.analytic, one_turn(the_case));
+  std::string reference = "theta_deg";
+  for (const Channel& c : table.channels)
+    if (c.kind == ChannelKind::reaction) reference += "," + c.name;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    reference += "\n" + number_text(table.theta_deg[row]);
+    for (std::size_t c = 0; c < table.columns(); ++c)
+      if (table.channels[c].kind == ChannelKind::reaction)
+        reference += "," + number_text(table.at(row, c));
+  }
+  std::ofstream(folder / "reference.csv") << reference << "\n";
+  using study::HardVerdict;
+  for (const bool expected : {true, false}) {
+    study::HardCase hard{"ring", "contact", "off B", {}, {}, folder};
+    if (expected) hard.refused = {"multibody"};
+    const auto outcomes =
+        study::run_hard_case(hard, [](const std::string&) { return Progress(); });
+    ASSERT_EQ(outcomes.size(), 3U);
+    EXPECT_EQ(outcomes[0].verdict, HardVerdict::as_predicted) << outcomes[0].message;
+    EXPECT_EQ(outcomes[1].verdict, expected ? HardVerdict::refused : HardVerdict::wrong);
+    EXPECT_THAT(outcomes[1].message, testing::HasSubstr("contact_mm = 41.5"));
+    EXPECT_EQ(outcomes[2].verdict, HardVerdict::as_predicted) << outcomes[2].message;
+  }
+}
+
 TEST(HardCases, TableIsInItsUnits) {
   study::HardCaseStudy study;
   study::HardOutcome outcome;
