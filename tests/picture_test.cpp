@@ -216,6 +216,34 @@ TEST(Picture, LegendNamesWhatIsShownAndStaysOnThePage) {
   EXPECT_EQ(named, 13);
 }
 
+// The first of two models is drawn pale and broad below the second, here and in the legend; a
+// model alone is not.
+TEST(Picture, TheFirstOfTwoModelsIsPale) {
+  const auto pale = [](const Curves& curves) {
+    const auto document = read(svg_of({"id", "t", "", ChannelFigure{"N", {"R"}}}, curves));
+    return std::pair{document.select_nodes("//line[@opacity='0.4']").size(),
+                     document.select_nodes("//path[@fill='none'][@opacity='0.4']").size()};
+  };
+  Curves curves = curves_of({{"R", {0, 1, 0}}}, 180);
+  EXPECT_EQ(pale(curves), (std::pair{std::size_t{0}, std::size_t{0}}));
+  curves.tables.push_back({"multibody", {{"R", {0, 1, 0}}}});
+  EXPECT_EQ(pale(curves), (std::pair{std::size_t{1}, std::size_t{1}}));
+}
+
+// Where one points at a mark it says what it is; those of the legend say nothing.
+TEST(Picture, MarksOfPointsSayTheirValues) {
+  ScatterSeries series;
+  series.name = "designs";
+  series.points = {{1, 20, "the best"}, {2, 30, ""}};
+  const Figure figure{"id", "t", "", ScatterFigure{{"mass", "kg"}, {"loss", "W"}, {series}}};
+  const auto document = read(svg_of(figure));
+  std::vector<std::string> said;
+  for (const auto& found : document.select_nodes("//*[@class='mark']"))
+    said.emplace_back(found.node().child("title").text().get());
+  EXPECT_THAT(said, testing::UnorderedElementsAre("", "the best, mass 1, loss 20",
+                                                  "mass 2, loss 30"));
+}
+
 // Everything that a document can hold without being refused.
 std::vector<Figure> odd_figures() {
   const double gap = not_computed(), inf = std::numeric_limits<double>::infinity();
@@ -368,7 +396,8 @@ TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
               testing::ElementsAre("beyond the axis: 4 at 90", "beyond the axis: -4 at 270"));
   // Cut where it crosses: half way between 180 and 270 deg it is at -2.
   content.ends = Ends{-2, 5};
-  const auto pieces = drawn(svg_of({"id", "t", "", content}, curves))[0];
+  const std::string cut_curve = svg_of({"id", "t", "", content}, curves);
+  const auto pieces = drawn(cut_curve)[0];
   double lowest = -1e9, at = 0;
   for (const auto& point : pieces)
     if (point[1] > lowest + 1e-9) {
@@ -376,6 +405,11 @@ TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
       at = point[0];
     }
   EXPECT_NEAR(at, 82 + 622 * 225.0 / 360, 0.3);
+  // What lies within hangs together: one stretch before it leaves, one after.
+  const auto document = read(cut_curve);
+  const std::string path =
+      document.select_node("//path[@fill='none']").node().attribute("d").value();
+  EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 2) << path;
   // What is level is there as a whole or not at all: 1 up to 90 deg, -4 from 180 to 270.
   curves = curves_of({{"R", {1, 1, -4, -4, 1}}}, 90);
   double first = 1e9;
@@ -503,6 +537,9 @@ TEST(Picture, AShadeOfADrawingSaysItsValue) {
   const std::string keyed = svg_of({"id", "t", "", above});
   for (const char* words : {"pressure: 40 bar", ">80 bar<", ">120 bar<", ">160 bar<", ">200 bar<"})
     EXPECT_THAT(keyed, HasSubstr(words));
+  // Three digits, of small numbers too.
+  above.shades = DrawingFigure::Shades{"wear", "um", 0, 1.0 / 3};
+  EXPECT_THAT(svg_of({"id", "t", "", above}), HasSubstr(">0.0833 um<"));
   EXPECT_THAT(csv_of(figure),
               testing::StartsWith("time (ms),panel,look,shape,x,y\n,1,port,1,1,1\n"));
 }
@@ -641,6 +678,12 @@ TEST(Picture, ParallelAxesAreScaledEachByItself) {
             std::string(designs[2].node().attribute("stroke").as_string()));
   EXPECT_STREQ(designs[3].node().child("title").text().get(), "a 2 mm, b 10 h, c no, d 7");
   EXPECT_THAT(svg, HasSubstr(">best<"));
+  // Five colours of one axis, equally far apart on it.
+  Figure by_hours = figure;
+  std::get<ParallelFigure>(by_hours.content).colour_by = 1;
+  const std::string keyed = svg_of(by_hours);
+  for (const char* words : {">b: 1 h<", ">5.62 h<", ">31.6 h<", ">178 h<", ">1000 h<"})
+    EXPECT_THAT(keyed, HasSubstr(words));
   EXPECT_EQ(csv_of(figure), "a (mm),b (h),c,d,marked\n1,1,yes,5,0\n2,10,no,7,1\n3,1000,yes,,0\n");
 }
 

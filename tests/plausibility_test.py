@@ -6,6 +6,7 @@ usage: plausibility_test.py BENTAXIS REPO_ROOT [options of unittest]
 
 import fnmatch
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -265,6 +266,16 @@ class PictureTest(unittest.TestCase):
         _, side = self.drawn(picture, "side")
         edge = next(p for p in side.iter(SVG + "path") if p.get("class") == "edge")
         self.assertEqual(edge.get("d"), "M0 -24.92L0 24.92")
+
+    def test_pitch_cones_touch_where_teeth_do(self):
+        for tilt in (40, 25):
+            _, side = self.drawn(self.picture("--set", f"pump.tilt_deg={tilt}"), "side")
+            dot = next(c for c in side.iter(SVG + "circle") if c.get("class") == "gear")
+            at = float(dot.get("cx")), float(dot.get("cy"))
+            ends = [tuple(map(float, e.get("d").split("L")[1].split())) for e in side.iter(SVG + "path")
+                    if e.get("class") == "gear"]
+            self.assertEqual(len(ends), 4)
+            self.assertEqual(sum(math.dist(end, at) < 0.02 for end in ends), 2, (at, ends))
 
     def test_short_dimensions_have_no_arrow_heads(self):
         """Of Ra, Rd and b1: where a line is short they would cover it."""
