@@ -240,8 +240,8 @@ TEST(Picture, MarksOfPointsSayTheirValues) {
   std::vector<std::string> said;
   for (const auto& found : document.select_nodes("//*[@class='mark']"))
     said.emplace_back(found.node().child("title").text().get());
-  EXPECT_THAT(said, testing::UnorderedElementsAre("", "the best, mass 1, loss 20",
-                                                  "mass 2, loss 30"));
+  EXPECT_THAT(said,
+              testing::UnorderedElementsAre("", "the best, mass 1, loss 20", "mass 2, loss 30"));
 }
 
 // Everything that a document can hold without being refused.

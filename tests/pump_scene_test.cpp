@@ -381,6 +381,69 @@ TEST(PumpScene, ManyRowsAreThinned) {
   EXPECT_EQ(pressure->at(700), table.at(2100, table.find("p_1_bar")));
 }
 
+// What stands where is said by the case: seats on the joints' circle and bores on theirs, where
+// pistons are at theta = 0; ports between their radii and angles.
+TEST(PumpScene, SeatsBoresAndPortsAreWhereTheCaseSays) {
+  const Case the_case = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml");
+  const auto scene = study::analytic_scene(the_case);
+  ASSERT_TRUE(scene);
+  const auto prisms = [&](const std::string& body) {
+    std::vector<report::Prism> found;
+    for (const report::SceneBody& b : scene->bodies)
+      if (b.name == body)
+        for (const report::Shape& shape : b.shapes)
+          if (const auto* prism = std::get_if<report::Prism>(&shape.form)) found.push_back(*prism);
+    return found;
+  };
+  using Hole = std::vector<std::array<double, 2>>;
+  const auto expect_circle = [](const Hole& hole, double x, double y, double radius) {
+    double mean_x = 0, mean_y = 0;
+    for (const auto& point : hole) {
+      mean_x += point[0] / static_cast<double>(hole.size());
+      mean_y += point[1] / static_cast<double>(hole.size());
+      EXPECT_NEAR(std::hypot(point[0] - x, point[1] - y), radius, 1e-12);
+    }
+    EXPECT_NEAR(mean_x, x, 1e-12);
+    EXPECT_NEAR(mean_y, y, 1e-12);
+  };
+  // Piston k + 1 is 72 k degrees behind the first, which is at y = R.
+  std::vector<std::array<double, 2>> at;
+  for (int k = 0; k < 5; ++k) at.push_back({std::sin(radians(72 * k)), std::cos(radians(72 * k))});
+  std::vector<Hole> bores, seats;
+  for (const report::Prism& prism : prisms("block"))
+    bores.insert(bores.end(), prism.holes.begin(), prism.holes.end());
+  for (const report::Prism& prism : prisms("shaft"))
+    seats.insert(seats.end(), prism.holes.begin(), prism.holes.end());
+  ASSERT_EQ(bores.size(), 5U);
+  ASSERT_EQ(seats.size(), 5U);
+  const double seat = std::hypot(seats[0][0][0], seats[0][0][1] - 0.02492);
+  EXPECT_GT(seat, 0.004);
+  for (std::size_t k = 0; k < 5; ++k) {
+    expect_circle(bores[k], 0.022 * at[k][0], 0.022 * at[k][1],
+                  the_case.pump.geometry.bore_diameter / 2);
+    expect_circle(seats[k], 0.02492 * at[k][0], 0.02492 * at[k][1], seat);
+  }
+  // Angles about z from y on, of delivery and of suction.
+  const std::vector<Hole> ports = prisms("plate").at(0).holes;
+  ASSERT_EQ(ports.size(), 2U);
+  const std::array<std::array<double, 2>, 2> arcs = {{{189, 345}, {12, 168}}};
+  for (std::size_t port = 0; port < 2; ++port) {
+    double least = 1e9, most = -1e9, inner = 1e9, outer = 0;
+    for (const auto& [x, y] : ports[port]) {
+      double angle = std::atan2(-x, y) * 180 / kPi;
+      if (angle < 0) angle += 360;
+      least = std::min(least, angle);
+      most = std::max(most, angle);
+      inner = std::min(inner, std::hypot(x, y));
+      outer = std::max(outer, std::hypot(x, y));
+    }
+    EXPECT_NEAR(least, arcs[port][0], 1e-9);
+    EXPECT_NEAR(most, arcs[port][1], 1e-9);
+    EXPECT_NEAR(inner, 0.019, 1e-12);
+    EXPECT_NEAR(outer, 0.0242, 1e-12);
+  }
+}
+
 // Shapes of any pump: finite, and meshes of corners that there are.
 TEST(PumpScene, ShapesOfOddPumps) {
   for (const std::string name : {"pistons_1", "pistons_15", "pump_of_1_mm", "pump_of_1_m",

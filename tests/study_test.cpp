@@ -475,8 +475,7 @@ TEST(HardCases, ARefusalCountsAsOneWhereItIsExpected) {
   for (const bool expected : {true, false}) {
     study::HardCase hard{"ring", "contact", "off B", {}, {}, folder};
     if (expected) hard.refused = {"multibody"};
-    const auto outcomes =
-        study::run_hard_case(hard, [](const std::string&) { return Progress(); });
+    const auto outcomes = study::run_hard_case(hard, [](const std::string&) { return Progress(); });
     ASSERT_EQ(outcomes.size(), 3U);
     EXPECT_EQ(outcomes[0].verdict, HardVerdict::as_predicted) << outcomes[0].message;
     EXPECT_EQ(outcomes[1].verdict, expected ? HardVerdict::refused : HardVerdict::wrong);
