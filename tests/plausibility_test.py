@@ -75,6 +75,37 @@ class DoubtTest(unittest.TestCase):
                     self.assertRegex(text, r"[a-z]+_[a-z]+|mass_kg|revolutions|points|pistons|stroke|block balance|tooth"
                                      r"|\[pressure\] file", "no key")
 
+    def test_values_in_warnings_are_those_of_the_case(self):
+        seen = set()
+        for case in implausible():
+            if case.name == "meant.toml":
+                continue
+            tables = tomllib.loads(case.read_text())
+            for code, text in WARNING.findall(run("show", case).stderr):
+                for table, key, value in re.findall(r"(?:\[(\w+)\] )?\b([a-z]\w+) = (-?[0-9][0-9.e+-]*)", text):
+                    values = [t[key] for name, t in tables.items() if isinstance(t, dict) and table in ("", name)
+                              and isinstance(t.get(key), (int, float))]
+                    if not values:
+                        continue  # not the case's: a limit, a default, what is derived
+                    with self.subTest(case=case.stem, code=code, key=key):
+                        self.assertTrue(any(abs(float(value) - v) <= 6e-6 * abs(v) for v in values), (text, values))
+                        seen.add(key)
+        self.assertGreater(len(seen), 40)
+
+    def test_limits_in_warnings_follow_from_the_pump(self):
+        """Of the rated pump: Ra 24.92, Rd 22, Dpi 22.5 mm, 5 pistons, 40 deg."""
+        for change, words in (
+                ("pump.bore_diameter_mm=27", f"is not below {2 * 22 * math.sin(math.pi / 5):.4g}, the distance of 5 neighbours on Rd"),
+                ("pump.bore_diameter_mm=25.2", f"a wall of {2 * 22 * math.sin(math.pi / 5) - 25.2:.3g} mm to the next bore"),
+                ("pump.axis_offset_mm=15", "is above 12.46 mm"),
+                ("bearings.tapered_z_mm=26", "is above -6.23 mm"),
+                ("bearings.tapered_z_mm=-26000", f"is below {-10 * 24.92:.4g} mm: 10 Ra"),
+                ("bearings.tapered_z_mm=-67", "are 1 mm apart, less than a quarter of Ra = 24.92"),
+                ("pump.piston_length_mm=400", f"is above {4 * 24.92:.4g} mm"),
+                ("friction.block_viscous_Nm_per_rpm=0.0516", f"takes {0.0516 * 1500:.4g} Nm at 1500 rpm")):
+            with self.subTest(change):
+                self.assertIn(words, run("show", self.rated, "--set", change).stderr)
+
     def test_shipped_stored_and_hard_cases_are_doubted_for_stated_reasons_only(self):
         entries = tomllib.loads((REPO / "tests" / "implausible" / "meant.toml").read_text())["meant"]
         data = REPO / "reference_data"
