@@ -106,6 +106,20 @@ class DoubtTest(unittest.TestCase):
             with self.subTest(change):
                 self.assertIn(words, run("show", self.rated, "--set", change).stderr)
 
+    def test_push_of_the_lands_is_the_integral_over_them(self):
+        """Pressure falls evenly over each land; ports of 156 degrees, 1000 rings between r1 and r4."""
+        r1, r2, r3, r4, n = 17.2, 19.0, 24.2, 26.0, 1000
+        area = 0
+        for i in range(n):
+            r = r1 + (i + 0.5) * (r4 - r1) / n
+            area += min((r - r1) / (r2 - r1), 1, (r4 - r) / (r4 - r3)) * r * (r4 - r1) / n * math.radians(156)
+        for suction in (0, 15):
+            push = area * (275 + suction) / 10
+            text = run("show", self.rated, "--set", "block.bottom_area_mm2=2.5", "--set", f"pressure.suction_bar={suction}").stderr
+            said = re.search(r"\(lands (\S+) N", text)
+            self.assertIsNotNone(said, text)
+            self.assertAlmostEqual(float(said[1]), push, delta=6e-4 * push)
+
     def test_shipped_stored_and_hard_cases_are_doubted_for_stated_reasons_only(self):
         entries = tomllib.loads((REPO / "tests" / "implausible" / "meant.toml").read_text())["meant"]
         data = REPO / "reference_data"
