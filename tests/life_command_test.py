@@ -68,6 +68,47 @@ class LifeTest(ProgramTest):
         self.assertAlmostEqual(sum(float(row["tapered_life_share"]) for row in rows), 1, 12)
         self.assertAlmostEqual(float(rows[1]["revolution_share"]), 500 / (500 + 1125), 12)
 
+    def test_the_report_says_what_the_files_say(self):
+        result = self.run_program(*self.life(*self.duty("share,speed_rpm,pressure.delivery_bar\n3,1500,275\n1,2000,120\n")))
+        report = json.loads((self.folder / "out" / "life.json").read_text())
+        sections = {s["title"]: s for s in report["runs"]}
+        tables = {name: [dict(zip(s["table"]["columns"], row)) for row in s["table"]["rows"]] for name, s in sections.items()}
+        rows, bearings = self.rows("life.csv"), tables["Bearings"]
+        said = result.out.splitlines()
+        lives = []
+        for name, bearing in zip(("tapered", "cylindrical"), bearings, strict=True):
+            # Mean load and life of the rows by the definition, exponent 10/3, by shares of revolutions.
+            mean = sum(float(r["revolution_share"]) * float(r[f"{name}_P_N"]) ** (10 / 3) for r in rows) ** 0.3
+            self.assertAlmostEqual(bearing["P_m, N"], mean, delta=1e-9 * mean)
+            self.assertAlmostEqual(bearing["P_m by Simbody, N"], mean, delta=1e-9 * mean)
+            self.assertAlmostEqual(bearing["C / P_m"], bearing["C, N"] / mean, 9)
+            life = (bearing["C, N"] / mean) ** (10 / 3)
+            self.assertAlmostEqual(bearing["L10, million revolutions"], life, delta=1e-9 * life)
+            self.assertAlmostEqual(bearing["L10h, h"], life * 1e6 / 60 / 1625, delta=1e-9 * bearing["L10h, h"])
+            worst = max(float(r["tapered_P0_N" if name == "tapered" else "cylindrical_P_N"]) for r in self.rows("life_loads.csv"))
+            self.assertAlmostEqual(bearing["static safety C0 / P0"], bearing["C0, N"] / worst, delta=1e-9)
+            lives.append(life)
+            line = next(text for text in said if text.startswith(f"{name} ("))
+            for word, number in zip(line.split()[-6:], (105 if name == "tapered" else 106, bearing["C0, N"] / 1e3, mean / 1e3, life,
+                                                        bearing["L10h, h"], bearing["static safety C0 / P0"]), strict=True):
+                self.assertAlmostEqual(float(word), number, delta=1e-3 * number)
+        # Both together, by the exponent of roller bearings, 9/8.
+        both = sum(life ** (-9 / 8) for life in lives) ** (-8 / 9)
+        facts = dict(sections["Bearings"]["facts"])
+        self.assertAlmostEqual(float(facts["both together, million revolutions"]), both, delta=3e-3 * both)
+        self.assertAlmostEqual(float(facts["both together"].split()[0]), both * 1e6 / 60 / 1625, delta=3e-3 * both * 1e6 / 60 / 1625)
+        self.assertEqual(facts["mean speed"], "1625 rpm")
+        for row, stored in zip(tables["Duty cycle"], rows, strict=True):
+            for column, key, factor in (("time, %", "time_share", 100), ("revolutions, %", "revolution_share", 100),
+                                        ("tapered P_m, N", "tapered_P_N", 1), ("tapered life, %", "tapered_life_share", 100),
+                                        ("cylindrical P_m, N", "cylindrical_P_N", 1), ("cylindrical life, %", "cylindrical_life_share", 100)):
+                self.assertAlmostEqual(row[column], factor * float(stored[key]), delta=1e-12 * abs(row[column]))
+            self.assertEqual(row["operation.speed_rpm, rpm"], stored["operation.speed_rpm"])
+            words = next(text for text in said if text.endswith(f"row {row['row']}: speed_rpm {stored['operation.speed_rpm']}, "
+                                                                f"delivery_bar {stored['pressure.delivery_bar']}")).split()
+            for word, column in zip(words, ("time, %", "revolutions, %", "tapered life, %", "cylindrical life, %")):
+                self.assertAlmostEqual(float(word), row[column], delta=6e-3 * row[column])
+
     def test_standstill_wears_nothing(self):
         result = self.run_program(*self.life("--set", "operation.speed_rpm=0"))
         self.assertIn("no rating life", result.out)

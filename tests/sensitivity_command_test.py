@@ -53,6 +53,47 @@ class Sensitivity(unittest.TestCase):
         self.assertTrue(report["verdict"]["agrees"])
         self.assertTrue((self.out / "sensitivity.html").exists())
 
+    def test_the_report_says_what_the_file_says(self):
+        done = self.run_program("--output", "mean:Td,peak:Rb1", "--check", "--parameter",
+                                "pump.tilt_deg,pressure.delivery_bar,block.mass_kg,friction.piston_coulomb_N")
+        rows = {(r["output"], r["parameter"]): r for r in rows_of(self.out / "sensitivity.csv")}
+        report = json.loads((self.out / "sensitivity.json").read_text())
+        sections = {s["title"]: s for s in report["runs"]}
+        tables = {name: [dict(zip(s["table"]["columns"], row)) for row in s["table"]["rows"]] for name, s in sections.items()}
+        figures = {f["title"]: f for f in report["figures"]}
+        for output in tables["Outputs"]:
+            name, unit, value = output["output"], output["unit"], output["value"]
+            effects = []
+            said = done.stdout.split(f"\n{name} = ")[1].split("\n\n")[0].splitlines()
+            self.assertAlmostEqual(float(said[0].split()[0]), value, delta=1e-6 * value)
+            for place, row in enumerate(tables[f"Derivatives of {name}"]):
+                stored = rows[name, row["parameter"]]
+                self.assertEqual(row["derivative"], float(stored["derivative"]))
+                self.assertEqual((row["value"], row["unit"], row["found by"]),
+                                 (float(stored["parameter_value"]), stored["parameter_unit"], stored["found_by"]))
+                effect = row["derivative"] * row["value"] / 100
+                self.assertAlmostEqual(row[f"by +1 % ({unit})"], effect, delta=1e-12 * abs(effect))
+                self.assertAlmostEqual(row["elasticity (%/%)"], 100 * effect / value, delta=1e-9)
+                effects.append(abs(effect))
+                bar = figures[f"What moves {name}"]["bars"][place]
+                self.assertEqual(bar["label"], row["parameter"])
+                self.assertAlmostEqual(bar["low"] + bar["high"], effect, delta=1e-12 * abs(effect))
+                words = said[2 + place].split()
+                self.assertEqual(words[0], row["parameter"])
+                for word, number in zip(words[1:4], (row["value"], row["derivative"], row["elasticity (%/%)"])):
+                    self.assertAlmostEqual(float(word), number, delta=1e-5 * abs(number))
+            self.assertEqual(effects, sorted(effects, reverse=True))
+            self.assertEqual(len(effects), 3)
+            self.assertEqual(sections[f"Derivatives of {name}"]["text"], "No influence: block.mass_kg.")
+        against = tables["Against Simbody"]
+        self.assertEqual(len(against), 8)
+        for row in against:
+            stored = rows[row["output"], row["parameter"]]
+            self.assertEqual((row["derivative"], row["by the other model"], row["difference"]),
+                             tuple(float(stored[k]) for k in ("derivative", "derivative_of_other_model", "difference")))
+        worst = max(against, key=lambda r: r["difference"])
+        self.assertIn(f"({worst['output']} by {worst['parameter']})", done.stdout)
+
     def test_a_derivative_predicts_a_run(self):
         """What a small change does, by two runs of the program."""
         def mean_torque(change):
