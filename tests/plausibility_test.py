@@ -312,6 +312,24 @@ class PictureTest(unittest.TestCase):
         edge = next(p for p in side.iter(SVG + "path") if p.get("class") == "edge")
         self.assertEqual(edge.get("d"), "M0 -24.92L0 24.92")
 
+    def test_ports_and_lands_are_between_their_radii_and_angles(self):
+        _, block = self.drawn(self.picture(), "block")
+        paths = {p.get("class"): p.get("d") for p in block.iter(SVG + "path")}
+        for port, angles in (("delivery", (189, 345)), ("suction", (12, 168))):
+            for look, inner, outer in ((port, 19.0, 24.2), (port + " land", 17.2, 26.0)):
+                number = r"(-?[\d.]+)"
+                pair = number + " " + number
+                found = re.fullmatch(f"M{pair}A{pair} 0 0 1 {pair}L{pair}A{pair} 0 0 0 {pair}Z", paths[look])
+                self.assertIsNotNone(found, paths[look])
+                n = [float(v) for v in found.groups()]
+                self.assertEqual(n[2:4] + n[8:10], [outer, outer, inner, inner])
+                # From y towards -x.
+                corners = [(n[0], n[1], outer, angles[0]), (n[4], n[5], outer, angles[1]),
+                           (n[6], n[7], inner, angles[1]), (n[10], n[11], inner, angles[0])]
+                for x, y, radius, angle in corners:
+                    self.assertAlmostEqual(x, -radius * math.sin(math.radians(angle)), 3)
+                    self.assertAlmostEqual(y, radius * math.cos(math.radians(angle)), 3)
+
     def test_pitch_cones_touch_where_teeth_do(self):
         for tilt in (40, 25):
             _, side = self.drawn(self.picture("--set", f"pump.tilt_deg={tilt}"), "side")
