@@ -15,6 +15,7 @@
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/coupled/prescribed_oil.h"
 #include "bentaxis/coupled/simulation.h"
+#include "bentaxis/coupled/tooth_watch.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/hydraulics/steady_state.h"
@@ -1029,6 +1030,22 @@ TEST(PumpWithOil, SimulationsInTwoThreadsAreAsAlone) {
   both(analytic, by_analytic, multibody, by_multibody);
   both(analytic, by_analytic, analytic, by_analytic);
   both(multibody, by_multibody, multibody, by_multibody);
+}
+
+TEST(ToothStretch, TwoAsOneHaveTheirSumsAndTheLargerForce) {
+  const coupled::ToothStretch a{0.1, 0.02, 0.05, 0.03, 900, 7, 3, 2, 0.4};
+  const coupled::ToothStretch b{0.2, 0.01, 0.15, 0.04, 700, 5, 4, 6, 0.9};
+  for (const auto& sum : {a + b, b + a}) {
+    EXPECT_DOUBLE_EQ(sum.duration, 0.3);
+    EXPECT_DOUBLE_EQ(sum.apart, 0.03);
+    EXPECT_DOUBLE_EQ(sum.plus, 0.2);
+    EXPECT_DOUBLE_EQ(sum.minus, 0.07);
+    EXPECT_EQ(sum.largest, 900);
+    EXPECT_EQ(sum.impulse, 12);
+    EXPECT_EQ(sum.separations, 7);
+    EXPECT_EQ(sum.impacts, 8);
+    EXPECT_EQ(sum.largest_hit, 0.9);
+  }
 }
 
 }  // namespace
