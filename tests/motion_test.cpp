@@ -435,6 +435,27 @@ TEST(HardStates, ARowNeedsAMotionAndAPressureForEachPiston) {
   EXPECT_THROW(states.instant(2, instant), InputError);
 }
 
+// The state is named that has no finite value; what is not computed has none by right.
+TEST(HardStates, WhatIsNotFiniteIsNamedWithItsState) {
+  States states;
+  states.pistons = 1;
+  states.motion.resize(3);
+  states.chamber_pressure.assign(3, 1e7);
+  const ChannelLayout layout(1);
+  for (const double bad : {std::numeric_limits<double>::infinity(), std::nan("")}) {
+    int calls = 0;
+    const auto evaluate = [&](const Instant&, std::vector<double>& row, MotionChecks&) {
+      row.assign(row.size(), ++calls == 2 ? bad : not_computed());
+    };
+    try {
+      tabulate_states("analytic", layout, states, evaluate, {});
+      ADD_FAILURE() << "accepted " << bad;
+    } catch (const ComputationError& error) {
+      EXPECT_STREQ(error.what(), "analytic model: Rs_1_x2_N is not finite in state 2");
+    }
+  }
+}
+
 TEST(HardStates, PressuresOfAFileAreThoseOfTheirPistons) {
   const Case the_case = read_case(motion_folder() / "free_block" / "case.toml");
   const auto file = std::filesystem::temp_directory_path() /
