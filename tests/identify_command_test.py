@@ -6,6 +6,7 @@ usage: identify_command_test.py BENTAXIS REPO_ROOT [options of unittest]
 
 import csv
 import json
+import math
 import pathlib
 import sys
 import unittest
@@ -65,6 +66,52 @@ class IdentifyTest(ProgramTest):
         self.assertLess(float(row["profile_low"]), float(row["identified"]))
         # The case's bore, 22.5 mm, gives 292.5 Nm; 1 Nm is 0.04 mm.
         self.assertAlmostEqual(float(row["identified"]), 22.5, delta=0.05)
+
+    def test_the_report_says_what_the_files_say(self):
+        result = self.identify(DATA)
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        tables = {run["title"]: [dict(zip(run["table"]["columns"], row)) for row in run["table"]["rows"]] for run in report["runs"]}
+        with open(self.folder / "out" / "unknowns.csv", newline="") as file:
+            [row] = csv.DictReader(file)
+        [said] = tables["Unknowns"]
+        for column, key in (("identified", "identified"), ("linear", "linear_deviation"), ("profile from", "profile_low"),
+                            ("profile to", "profile_high"), ("2.5 % from", "q025"), ("97.5 % to", "q975")):
+            self.assertEqual(said[column], float(row[key]), column)
+        self.assertEqual((said["unknown"], said["unit"], said["bounds"]), ("pump.bore_diameter_mm", "mm", "20 to 25"))
+        share = (float(row["q975"]) - float(row["q025"])) / 5
+        self.assertGreater(said["share of bounds left"], 0)
+        self.assertLessEqual(said["share of bounds left"], 1.1 * share)
+        # One unknown, one number: torque goes with the bore's area, 1 Nm of 292.5 is half of 1/292.5 of the bore, and the
+        # bounds, 5 mm over the root of 12, count as a prior.
+        alone = 22.5 / (2 * 292.5)
+        spread = 5 / math.sqrt(12)
+        self.assertAlmostEqual(said["linear"], 1 / math.hypot(1 / alone, 1 / spread), delta=0.06 * alone)
+        [direction] = tables["What the data determine"]
+        self.assertAlmostEqual(direction["times narrower than the bounds"], spread / said["linear"], delta=1e-6 * spread / said["linear"])
+        self.assertEqual(direction["mostly along"], "+1.00 pump.bore_diameter_mm")
+        number, window = tables["Data that unknowns are fitted to"]
+        self.assertEqual((number["given"], number["model"], window["given"], window["residual"]),
+                         ("292.5 +- 1", "292.5", "below 12000", 0))
+        self.assertLess(abs(number["residual"]), 1e-6)
+        # Without the number the window alone is left: the whole width of the bounds.
+        self.assertAlmostEqual(number["+-"], spread / alone, delta=0.08 * spread / alone)
+        with open(self.folder / "out" / "bands.csv", newline="") as file:
+            bands = list(csv.DictReader(file))
+        widths = {}
+        for known in tables["How well each reaction is known"]:
+            name = known["reaction"]
+            low, middle, high = ([float(b[f"{name}_{q}"]) for b in bands] for q in ("q025", "q500", "q975"))
+            peak = max(abs(v) for v in middle)
+            width = max(h - l for l, h in zip(low, high)) / 2
+            widths[name] = known["half width, % of peak"]
+            self.assertAlmostEqual(widths[name], 100 * width / peak, delta=1e-9 * widths[name], msg=name)
+        least, most = min(widths, key=widths.get), max(widths, key=widths.get)
+        self.assertIn(f"{widths[least]:.2g} % ({least}) .. {widths[most]:.2g} % ({most}) of peak", result.out)
+        self.assertRegex(result.out, rf"pump\.bore_diameter_mm +{float(row['identified']):.6g} mm")
+        best = tables["Which measurement would help most"]
+        gains = [m["all bands narrower by, %"] for m in best]
+        self.assertEqual(gains, sorted(gains, reverse=True))
+        self.assertIn(f"most useful further measurement: {best[0]['measurement']}\n", result.out)
 
     def test_the_identified_pump_is_a_case_that_runs(self):
         self.identify(DATA, "--fit-only")
