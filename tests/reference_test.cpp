@@ -307,6 +307,14 @@ TEST_F(ReferenceFolder, HintsNameWhatHappened) {
   EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("shifted by about +0.37 deg"));
   j = judged([](double a) -> Row { return {a, x_of(a) + wave(a, 7), y_of(a), t_of(a)}; });
   EXPECT_EQ(hint(j, "X_x_N"), "");
+  // A rig's noise, within what is allowed, hides no exchange of columns.
+  write_curve(72, [](double a) -> Row {
+    return {a, y_of(a) + 3 * wave(a, 7), x_of(a) - 3 * wave(a, 9), t_of(a)};
+  });
+  const auto noisy = description(72, "", "relative = 0.04");
+  j = judge(noisy, {curve(noisy)}, result(72), {});
+  EXPECT_THAT(hint(j, "X_x_N"), HasSubstr("as X_y_N"));
+  EXPECT_THAT(hint(j, "X_y_N"), HasSubstr("as X_x_N"));
 }
 
 // Of two turns the one that was asked for, and nothing of the other.
