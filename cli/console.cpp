@@ -3,12 +3,12 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 
 #include "bentaxis/pump/error.h"
+#include "time_left.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -18,16 +18,6 @@ volatile std::sig_atomic_t interrupted = 0;
 void on_signal(int signal) {
   interrupted = 1;
   std::signal(signal, SIG_DFL);  // a second one ends the program at once
-}
-
-// As if the rest went as fast as what is done; nothing where too little is done to say.
-std::string time_left(double passed, double fraction) {
-  if (passed < 2 || fraction < 0.01) return "";
-  const auto seconds = static_cast<long>(std::ceil(passed / fraction - passed));
-  if (seconds < 60) return ", " + std::to_string(seconds) + " s left";
-  if (seconds < 3600) return ", " + std::to_string(seconds / 60 + 1) + " min left";
-  return ", " + std::to_string(seconds / 3600) + " h " + std::to_string(seconds % 3600 / 60) +
-         " min left";
 }
 
 }  // namespace
