@@ -359,12 +359,39 @@ TEST_F(ReferenceFolder, NotesAPartThatTheModelsLack) {
 // By their definitions: pound-force 0.45359237 kg x 9.80665 m/s2, inch 25.4 mm.
 TEST(ForeignUnits, HaveTheirSizeInSi) {
   constexpr double kPound = 0.45359237 * 9.80665, kInch = 0.0254;
-  EXPECT_NEAR(find_unit("psi")->si, kPound / (kInch * kInch), 1e-9);
-  EXPECT_EQ(find_unit("kN")->si, 1e3);
-  EXPECT_EQ(degrees_per("turn"), 360);
-  EXPECT_EQ(degrees_per("deg"), 1);
-  EXPECT_NEAR(degrees_per("rad"), 180 / kPi, 1e-13);
+  const std::map<std::string, std::map<std::string, double>> families = {
+      {"N", {{"N", 1}, {"kN", 1e3}, {"MN", 1e6}, {"daN", 10}, {"kgf", 9.80665}, {"lbf", kPound}}},
+      {"Nm",
+       {{"Nm", 1},
+        {"kNm", 1e3},
+        {"Nmm", 1e-3},
+        {"lbf in", kPound * kInch},
+        {"lbf ft", kPound * 0.3048}}},
+      {"mm", {{"m", 1}, {"cm", 0.01}, {"mm", 1e-3}, {"um", 1e-6}, {"in", kInch}}},
+      {"bar",
+       {{"Pa", 1},
+        {"kPa", 1e3},
+        {"MPa", 1e6},
+        {"bar", 1e5},
+        {"mbar", 100},
+        {"psi", kPound / (kInch * kInch)}}}};
+  for (const auto& [family, units] : families)
+    for (const auto& [unit, si] : units) {
+      ASSERT_NE(find_unit(unit), nullptr) << unit;
+      EXPECT_EQ(find_unit(unit)->family, family) << unit;
+      EXPECT_NEAR(find_unit(unit)->si, si, 1e-14 * si) << unit;
+    }
   EXPECT_EQ(find_unit("furlong"), nullptr);
+  for (const auto& [unit, degrees] : std::map<std::string, double>{{"deg", 1},
+                                                                   {"rad", 180 / kPi},
+                                                                   {"mrad", 0.18 / kPi},
+                                                                   {"turn", 360},
+                                                                   {"gon", 0.9},
+                                                                   {"s", 0}})
+    EXPECT_NEAR(degrees_per(unit), degrees, 1e-13) << unit;
+  for (const auto& [unit, seconds] :
+       std::map<std::string, double>{{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}, {"deg", 0}})
+    EXPECT_NEAR(seconds_per(unit), seconds, 1e-16) << unit;
 }
 
 TEST(CurveDescriptions, SayWhatWasAssumedOfTheAngle) {
