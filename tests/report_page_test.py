@@ -179,13 +179,15 @@ PROBE = r"""
     // Curves are drawn when they come near; the contents stay where they are.
     const canvases = () => [...document.querySelectorAll(".plot")].filter(e => e.querySelector("canvas")).length;
     const atFirst = canvases(), walked = [];
+    const says = () => document.querySelector("#contents .where").textContent;
     for (const e of document.querySelectorAll("main > section, figure")) {
       e.scrollIntoView({ behavior: "instant" });
       await wait(120);
+      for (let i = 0; i < 40 && !says(); ++i) await wait(100);  // it is told by frames: a busy machine shows few
       const box = document.getElementById("contents").getBoundingClientRect();
       const at = e.getBoundingClientRect();
       walked.push({ id: e.id, top: at.top, contents: [box.top, box.bottom],
-                    says: document.querySelector("#contents .where").textContent });
+                    says: says() });
     }
     // Chromium shows no frames while it only dumps the page, so that nothing comes near: as for print, all are drawn.
     dispatchEvent(new Event("beforeprint"));
