@@ -183,7 +183,8 @@ PROBE = r"""
     for (const e of document.querySelectorAll("main > section, figure")) {
       e.scrollIntoView({ behavior: "instant" });
       await wait(120);
-      for (let i = 0; i < 40 && !says(); ++i) await wait(100);  // it is told by frames: a busy machine shows few
+      // It is told by frames, of which a busy machine shows few.
+      for (let i = 0; i < 30 && !says() && walked.length === 0; ++i) await wait(100);
       const box = document.getElementById("contents").getBoundingClientRect();
       const at = e.getBoundingClientRect();
       walked.push({ id: e.id, top: at.top, contents: [box.top, box.bottom],
