@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -199,6 +200,14 @@ TEST_F(ForeignTableTest, AFaultIsNamedByItsColumn) {
   };
   EXPECT_THAT(said("1;2;0\n2;3;0\n3;many;0\n4;5;0\n"), testing::HasSubstr("column 2 = "));
   EXPECT_THAT(said("t;F;m\n1;2;0\n2;3;0\n3;many;0\n4;5;0\n"), testing::HasSubstr("F = "));
+  // A cell as it is, of a long one its beginning.
+  for (const auto& [length, end] :
+       std::map<int, std::string>{{4, ""}, {60, ""}, {61, ".."}, {500, ".."}}) {
+    const std::string cell(static_cast<std::size_t>(length), 'x');
+    EXPECT_THAT(said("1;2;0\n2;3;0\n3;" + cell + ";0\n4;5;0\n"),
+                testing::HasSubstr(" = \"" + cell.substr(0, 60) + end + "\": must"))
+        << length;
+  }
 }
 
 TEST(ForeignUnits, AreKnownByAnySpelling) {
