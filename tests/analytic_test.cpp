@@ -141,6 +141,24 @@ TEST(HandSolved, ParallelPistonsCarryPressureStraightThrough) {
   EXPECT_NEAR(v[at.Rb1(1)], -force * 0.03 / 0.05, 1e-9);
 }
 
+// The block's weight tilts it, and nothing presses it to the plate: a moment without a force has no
+// point where it acts.
+TEST(HandSolved, WithoutForceOnTheFilmThereIsNoCentreOfIt) {
+  PumpParameters p = plain_pump(3);
+  p.geometry.tilt = 0;  // the weight has no part along the block's axis
+  p.gravity = 10;
+  p.block.mass = 2;
+  p.block.centre_of_mass_z = 0.02;
+  const Model model(p, {});
+  const ChannelLayout& at = model.layout();
+  std::vector<double> v(at.size());
+  model.evaluate(still(3), v);
+  EXPECT_EQ(v[at.Fh()], 0);
+  EXPECT_GT(std::abs(v[at.Th(0)]), 0.1);
+  EXPECT_FALSE(is_computed(v[at.xh()]));
+  EXPECT_FALSE(is_computed(v[at.yh()]));
+}
+
 // Only the block's viscous torque acts: the gear carries it with its arm (d/2) cos(ap).
 TEST(HandSolved, GearCarriesTheBlocksFriction) {
   for (const double omega : {150.0, -150.0}) {

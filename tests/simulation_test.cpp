@@ -283,6 +283,54 @@ TEST(Simulation, AGivenSpeedIsFollowed) {
   EXPECT_LT(std::abs(t.record.worst_work_residual), scaled(1e-6));
 }
 
+// Rigid teeth at a given speed, over three turns: the rows are those of the model at these angles,
+// in every turn.
+TEST(Simulation, AtConstantSpeedItIsTheModelInEveryTurn) {
+  for (const double rpm : {1500.0, -1500.0}) {
+    Case the_case = motion_case("rattle");
+    the_case.pump.gear.contact = ToothContact::rigid;
+    the_case.operation.speed_rpm = rpm;
+    the_case.drive->duration = 0.12;
+    the_case.drive->samples = 480;  // 2.25 deg apart: within each rise of pressure, 20 deg
+    const Trajectory t = run(the_case);
+    const analytic::Model model(the_case.pump, the_case.analytic);
+    const PressureTrace pressure(the_case.pressure);
+    const ResultTable& table = t.table.results;
+    ASSERT_GT(table.rows(), 480U);
+    EXPECT_NEAR(std::abs(column(t, "psi_deg").back()), 1080, 1e-9);
+    std::vector<double> v(model.layout().size());
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const double theta = column(t, "theta_deg")[row];
+      Instant i;
+      i.turn(radians(theta), rpm * kRadPerSecondPerRpm);
+      i.ports = the_case.pressure.ports;
+      for (int k = 1; k <= 5; ++k)
+        i.chamber_pressure.push_back(pressure(piston_angle_deg(theta, k, 5)));
+      model.evaluate(i, v);
+      for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
+        const Channel& channel = model.layout().channels()[c];
+        ASSERT_NEAR(table.at(row, c), v[c] / channel.unit_in_si, 1e-9 * table.peak(channel.group))
+            << channel.name << " at " << theta;
+      }
+    }
+  }
+}
+
+// Where the pressure jumps steps end, in later turns as in the first, which has the start beside.
+TEST(Simulation, StepsEndAtEdgesOfPressureInEveryTurn) {
+  Case the_case = motion_case("rattle");
+  the_case.pump.gear.contact = ToothContact::rigid;
+  the_case.pressure.transition_deg = 0;
+  const auto steps = [&](int turns) {
+    the_case.drive->duration = 0.04 * turns;
+    the_case.drive->samples = 4 * turns;
+    return static_cast<double>(run(the_case).record.steps);
+  };
+  const double first = steps(1);
+  EXPECT_GE(first, 10);  // an edge of five pistons each
+  EXPECT_LE(steps(4), 4 * first);
+}
+
 TEST(Simulation, ACurveOfConstantTorqueIsAConstantTorque) {
   Case the_case = motion_case("constant_torque");
   const Trajectory constant = run(the_case);

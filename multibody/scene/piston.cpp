@@ -67,8 +67,7 @@ PistonBody rigid_body(const PistonMass& mass) {
 PistonBody piston_body(const PumpParameters& pump, PistonInertia inertia) {
   const PistonMass& mass = pump.piston;
   if (inertia == PistonInertia::lumped) return lumped_body(mass, pump.geometry.piston_length);
-  if (mass.mass == 0 && mass.real &&
-      (mass.real->transverse_inertia > 0 || mass.real->axial_inertia > 0))
+  if (mass.mass == 0 && mass.real && mass.real->transverse_inertia > 0)  // axial <= 2 transverse
     throw ComputationError(
         "multibody model: a piston with inertia (transverse_ or axial_inertia_kg_mm2) but without "
         "mass "
