@@ -437,10 +437,11 @@ std::string unit_in_name(const std::string& name) {
   if (last == std::string::npos || last + 1 >= name.size()) return "";
   const std::string end = name.substr(last + 1);
   // Single letters are rather an axis or a number; the last words of our own names are units.
-  if (end == "m" || end == "s" || end == "n" || end == "in" || end == "min")
-    return name[last] == '/' || name.find(" in ") != std::string::npos ? end
-           : end == "s" || end == "m"                                  ? end
-                                                                       : "";
+  if (end == "n" || end == "in" || end == "min") {
+    const auto before = name.find_last_not_of(' ', last);
+    const bool said = before != std::string::npos && name[before] == '/';
+    return said || name.find(" in ") != std::string::npos ? end : "";
+  }
   return known_unit(end).empty() ? "" : end;
 }
 

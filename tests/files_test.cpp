@@ -210,6 +210,19 @@ TEST_F(ForeignTableTest, AFaultIsNamedByItsColumn) {
   }
 }
 
+TEST(ForeignUnits, StandInTheNamesOfColumns) {
+  const std::map<std::string, std::string> units = {
+      {"torque_Nmm", "Nmm"}, {"Kraft in kN", "kN"},
+      {"F / N", "N"},        {"Rs (kN) [measured]", "kN"},
+      {"travel_m", "m"},     {"t_s", "s"},
+      {"t / min", "min"},    {"Zeit in min", "min"},
+      {"p_min", ""},         {"Rs_n", ""},
+      {"bearing_in", ""},    {"travel / in", "in"},
+      {"Rcs", ""},           {"gear_", ""},
+      {"angle [deg]", "deg"}};
+  for (const auto& [name, unit] : units) EXPECT_EQ(unit_in_name(name), unit) << name;
+}
+
 TEST(ForeignUnits, AreKnownByAnySpelling) {
   EXPECT_EQ(known_unit("N.m"), "Nm");
   EXPECT_EQ(known_unit("N*m"), "Nm");

@@ -10,6 +10,7 @@ import os
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -99,6 +100,18 @@ class ExportTest(ImportTest):
 
 class OwnRecordTest(ImportTest):
     """Records made of the program's own curves, so that what a mapping must say is known."""
+
+    def test_matlab_4(self):
+        # 20 bytes (little-endian doubles, full), name, values: no word in it says what it is.
+        self.run_program("run", base.REPO / "cases" / "bap63_rated.toml", "--model", "analytic", "--out", "own")
+        with (self.folder / "own" / "analytic.csv").open() as file:
+            rows = list(csv.DictReader(file))
+        with (self.folder / "old.mat").open("wb") as file:
+            for name, column in (("angle_deg", "theta_deg"), ("torque_Nm", "Td_z1_Nm"), ("Rb1_y_N", "Rb1_y1_N"), ("Rb2_y_N", "Rb2_y1_N")):
+                file.write(struct.pack("<5i", 0, len(rows), 1, 0, len(name) + 1) + name.encode() + b"\0")
+                file.write(struct.pack(f"<{len(rows)}d", *(float(row[column]) for row in rows)))
+        self.new(self.folder / "old.mat", "--accept")
+        self.assert_mentions(self.regress(DONE), "torque_Nm", "Rb1_y_N")
 
     def record(self, heading, columns, shift_deg=0, digits=17):
         """Writes columns (names with their signs) of the analytic turn, begun shift_deg later."""

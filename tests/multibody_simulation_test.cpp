@@ -424,6 +424,46 @@ TEST(HardMotion, DryFrictionThatJumpsAndPressureThatSteps) {
   EXPECT_LT(run.record.steps, 5000);
 }
 
+// Where the pressure jumps steps end: three turns of jumps cost little more than three smooth ones.
+TEST(HardMotion, StepsEndAtEdgesOfPressureInEveryTurn) {
+  Case the_case = stored_case("rattle", 4);
+  the_case.pump.gear.contact = ToothContact::rigid;
+  the_case.drive->duration = 0.12;
+  const auto steps = [&](double transition_deg) {
+    the_case.pressure.transition_deg = transition_deg;
+    return simulate(the_case, 1e-7).record.steps;
+  };
+  const long smooth = steps(20);
+  const long jumping = steps(0);
+  EXPECT_GE(jumping, 30);  // an edge of five pistons each, twice a turn
+  EXPECT_LE(jumping, 2 * smooth);
+}
+
+// A pressure over the angle from a file has no edges: smooth all round.
+TEST(SimulatedMotion, APressureCurveIsFollowed) {
+  Case the_case = stored_case("rattle", 20);
+  the_case.pump.gear.contact = ToothContact::rigid;
+  const PressureTrace ideal(the_case.pressure);
+  PressureSpec curve;
+  curve.kind = PressureKind::curve;
+  curve.ports = the_case.pressure.ports;
+  for (int i = 0; i < 360; ++i) {
+    curve.curve.theta_deg.push_back(i);
+    curve.curve.pressure.push_back(ideal(i));
+  }
+  const Trajectory smooth = simulate(the_case, 1e-8);
+  the_case.pressure = curve;
+  const Trajectory followed = simulate(the_case, 1e-8);
+  const ResultTable& table = smooth.table.results;
+  for (std::size_t c = 0; c < table.columns(); ++c) {
+    if (table.channels[c].kind != ChannelKind::reaction) continue;
+    for (std::size_t row = 0; row < table.rows(); ++row)  // the curve is read between its degrees
+      EXPECT_NEAR(table.at(row, c), followed.table.results.at(row, c),
+                  1e-3 * table.peak(table.channels[c].group))
+          << table.channels[c].name << ", row " << row;
+  }
+}
+
 TEST(HardMotion, WhatWouldNotEndIsGivenUp) {
   const auto gives_up = [](const Case& the_case, long steps, const std::string& what) {
     EXPECT_THAT(
