@@ -300,13 +300,14 @@ namespace {
 
 template <class Rows>
 BodyLoadTable run_rows(const Case& the_case, const Assumptions& assumptions, const Rows& rows,
-                       std::size_t count) {
+                       std::size_t count, const Progress& progress) {
   BodyLoads loads(validate(the_case).pump, assumptions);
   BodyLoadTable table;
   Instant instant;
   for (std::size_t row = 0; row < count; ++row) {
     rows.instant(row, instant);
     table.append(loads.evaluate(instant));
+    if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(count));
   }
   return table;
 }
@@ -314,13 +315,13 @@ BodyLoadTable run_rows(const Case& the_case, const Assumptions& assumptions, con
 }  // namespace
 
 BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumptions,
-                             const Samples& samples) {
-  return run_rows(the_case, assumptions, samples, samples.theta_deg.size());
+                             const Samples& samples, const Progress& progress) {
+  return run_rows(the_case, assumptions, samples, samples.theta_deg.size(), progress);
 }
 
 BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumptions,
-                             const States& states) {
-  return run_rows(the_case, assumptions, states, states.rows());
+                             const States& states, const Progress& progress) {
+  return run_rows(the_case, assumptions, states, states.rows(), progress);
 }
 
 }  // namespace bentaxis::analytic

@@ -192,14 +192,16 @@ bool BudgetModel::has_ring() const { return implementation_->off_the_ring(); }
 
 Budget BudgetModel::evaluate(const Instant& instant) { return implementation_->evaluate(instant); }
 
-ResultTable run_budget(const Case& the_case, const Assumptions& assumptions,
-                       const Samples& samples) {
+ResultTable run_budget(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
+                       const Progress& progress) {
   BudgetModel model(the_case.pump, assumptions);
   ResultTable table = budget_table("analytic", model.has_ring());
   Instant instant;
-  for (std::size_t row = 0; row < samples.theta_deg.size(); ++row) {
+  const std::size_t count = samples.theta_deg.size();
+  for (std::size_t row = 0; row < count; ++row) {
     samples.instant(row, instant);
     append_budget(table, samples.theta_deg[row], model.evaluate(instant));
+    if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(count));
   }
   return table;
 }

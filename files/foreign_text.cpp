@@ -226,10 +226,8 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   grid.blanks = best->separator == ' ';
   grid.fixed_width = true;
   std::vector<std::string_view> fields;
-  bool all_end = true;  // every line ends with a separator: no column behind it
   for (const Line& line : lines) {
     split(line.text, best->separator, fields);
-    all_end = all_end && (fields.size() < 3 || fields.back().empty());
     Row row{line.number, {}};
     for (const auto field : fields) {
       Cell cell{field};
@@ -238,9 +236,6 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
     }
     grid.rows.push_back(std::move(row));
   }
-  if (all_end && !grid.blanks)
-    for (Row& row : grid.rows)
-      if (row.cells.size() > 2) row.cells.pop_back();
   fill(grid, table);
   return table;
 }

@@ -131,8 +131,12 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
     if (options.teeth) result.teeth.emplace();
     result.table = analytic::run(the_case, assumptions, samples, progress_of("analytic"),
                                  options.teeth ? &*result.teeth : nullptr);
-    if (options.budget) result.budget = analytic::run_budget(the_case, assumptions, samples);
-    if (options.loads) result.loads = analytic::run_body_loads(the_case, assumptions, samples);
+    if (options.budget)
+      result.budget =
+          analytic::run_budget(the_case, assumptions, samples, progress_of("budget of the torque"));
+    if (options.loads)
+      result.loads = analytic::run_body_loads(the_case, assumptions, samples,
+                                              progress_of("loads on the bodies"));
   } else if (options.way == Way::driven) {
     if (options.budget) result.budget.emplace();
     if (options.teeth) result.teeth.emplace();
@@ -172,7 +176,9 @@ MotionTable run_states(const ReadyCase& ready, const States& states, const RunOp
   const Assumptions& assumptions =
       options.assumptions ? *options.assumptions : ready.assumptions(options.model);
   if (options.model == Model::analytic) {
-    if (loads != nullptr) *loads = analytic::run_body_loads(ready.the_case, assumptions, states);
+    if (loads != nullptr)
+      *loads = analytic::run_body_loads(ready.the_case, assumptions, states,
+                                        progress_of("loads on the bodies"));
     return analytic::run_states(ready.the_case, assumptions, states, progress_of("analytic"),
                                 teeth);
   }

@@ -230,6 +230,33 @@ TEST(Verdict, WithinABandOnlyTheDistanceFromItCounts) {
   EXPECT_EQ(compared(991.5).verdict, Verdict::differs);
 }
 
+// A record that had to be resampled is uncertain by its own amount at each angle: only there.
+TEST(Verdict, AnUncertaintyExcusesWhereItIsAndByItsSize) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto at_90 = [](double most, double elsewhere) {
+    return [=](double t) { return t == 90 ? most : elsewhere; };
+  };
+  const auto a = table("a", channels, {[](double) { return 100; }});
+  const auto b = table("b", channels, {at_90(103, 100.5)});
+  Options options;
+  options.tolerance = 1e-2;  // 1 N
+  const auto judged = [&](double there, double elsewhere) {
+    const ResultTable uncertainty = table("u", channels, {at_90(there, elsewhere)});
+    options.uncertainty = &uncertainty;
+    return compare_tables(a, b, options).channels.at(0);
+  };
+  EXPECT_EQ(judged(0, 0).verdict, Verdict::differs);
+  EXPECT_EQ(judged(1.99, 0).verdict, Verdict::differs);
+  EXPECT_EQ(judged(0, 5).verdict, Verdict::differs);
+  const ChannelComparison excused = judged(2.01, 0);
+  EXPECT_EQ(excused.verdict, Verdict::agrees);
+  EXPECT_EQ(excused.largest, 3);
+  EXPECT_EQ(excused.theta_of_largest_deg, 90);
+  EXPECT_NEAR(excused.allowed, 3.01, 1e-12);
+  // What is left of it is largest elsewhere.
+  EXPECT_EQ(judged(2.9, 0.1).largest, 0.5);
+}
+
 TEST(Verdict, DigitsAreThoseOfTheLargestDifferenceOverThePeak) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto a = table("a", channels, {[](double) { return 1e3; }});

@@ -189,6 +189,15 @@ TEST_F(ForeignTableTest, UnitsStandNextToTheNames) {
   EXPECT_THAT(table("time;force\n[s];[N]\n1;2\n2;3\n").units, ElementsAre("s", "N"));
 }
 
+TEST_F(ForeignTableTest, ASeparatorBehindEveryLineIsNoColumn) {
+  using testing::ElementsAre;
+  const ForeignTable ended = table("time;force;\n1;2;\n2;3;\n3;4;\n");
+  EXPECT_THAT(ended.header, ElementsAre("time", "force"));
+  EXPECT_THAT(ended.rows, ElementsAre(ElementsAre(1, 2), ElementsAre(2, 3), ElementsAre(3, 4)));
+  EXPECT_EQ(table("1;2;\n2;3;\n3;4;\n").header.size(), 2U);
+  EXPECT_EQ(table("time;force\n1;\n2;3\n3;4\n").header.size(), 2U);
+}
+
 TEST_F(ForeignTableTest, AFaultIsNamedByItsColumn) {
   const auto said = [&](const std::string& text) {
     try {

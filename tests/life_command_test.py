@@ -11,7 +11,7 @@ import sys
 import unittest
 
 import command_line_test as program
-from command_line_test import ProgramTest
+from command_line_test import OUT_OF_TOLERANCE, ProgramTest
 
 FILES = {"life.html", "life.json", "life.csv", "life_loads.csv"}
 IDEAL = ("--set", "pressure.kind=ideal", "--set", "operation.samples_per_revolution=72")
@@ -67,6 +67,18 @@ class LifeTest(ProgramTest):
         self.assertEqual([row["operation.speed_rpm"] for row in rows], ["1500", "2000"])
         self.assertAlmostEqual(sum(float(row["tapered_life_share"]) for row in rows), 1, 12)
         self.assertAlmostEqual(float(rows[1]["revolution_share"]), 500 / (500 + 1125), 12)
+
+    def test_loads_carry_the_name_of_their_model(self):
+        unequal = ("--set", "assumptions.analytic.inertia=real", "--set", "assumptions.multibody.inertia=lumped")
+        self.run_program(*self.life(*unequal), status=OUT_OF_TOLERANCE)
+        report = json.loads((self.folder / "out" / "life.json").read_text())
+        table = {s["title"]: s for s in report["runs"]}["Bearings"]["table"]
+        tapered = dict(zip(table["columns"], table["rows"][0]))
+        self.assertGreater(abs(tapered["P_m, N"] / tapered["P_m by Simbody, N"] - 1), 1e-6)
+        for model, column in (("analytic", "P_m, N"), ("multibody", "P_m by Simbody, N")):
+            loads = [float(row["tapered_P_N"]) for row in self.rows("life_loads.csv") if row["model"] == model]
+            mean = (sum(load ** (10 / 3) for load in loads) / len(loads)) ** 0.3
+            self.assertAlmostEqual(tapered[column], mean, delta=1e-9 * mean)
 
     def test_the_report_says_what_the_files_say(self):
         result = self.run_program(*self.life(*self.duty("share,speed_rpm,pressure.delivery_bar\n3,1500,275\n1,2000,120\n")))

@@ -362,6 +362,23 @@ TEST(Picture, AnArrowOfRoundOffIsNotDrawn) {
   EXPECT_EQ(std::distance(std::sregex_iterator(svg.begin(), svg.end(), head), {}), 1);
 }
 
+TEST(Picture, ABandThatWasNotComputedLeavesTheOthers) {
+  const double gap = not_computed();
+  const auto curves = [&](const Values& second) {
+    return drawn(svg_of({"id", "t", "",
+                         BandFigure{{"time", "s"},
+                                    {"R", "N"},
+                                    false,
+                                    {0, 1},
+                                    {{"none", {gap, gap}, {gap, gap}, {gap, gap}},
+                                     {"one", second, second, second}}}}));
+  };
+  const auto all = curves({1, 2});
+  EXPECT_TRUE(
+      std::any_of(all.begin(), all.end(), [](const auto& curve) { return curve.size() == 2; }));
+  EXPECT_TRUE(curves({gap, gap}).empty());
+}
+
 // Places of the curve's ends and marks are counted in pixels: 622 across from 82, 185 or 230 up.
 TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
   Curves curves = curves_of({{"R", {0, 4, 0, -4, 0}}}, 90);
@@ -429,6 +446,24 @@ TEST(Picture, AnAxisOfAPlaneEndsWhereItIsTold) {
   EXPECT_NEAR(curve[0][0], 82, 0.06);
   EXPECT_NEAR(curve[1][0], 704, 0.06);
   EXPECT_NEAR(curve[0][1] - curve[1][1], 250, 0.06);
+}
+
+// A straight line that comes in from beyond one corner and leaves beyond the other.
+TEST(Picture, ALineIsCutWhereItCrossesTheFrame) {
+  XyFigure content{
+      {"a", "m", false, 0.0, 10.0}, {"b", "N", false, 0.0, 4.0}, {{"s", {-10, 30}, {-1, 7}}}};
+  const auto curve = drawn(svg_of({"id", "t", "", content})).at(0);  // b = 1 + a / 5
+  ASSERT_EQ(curve.size(), 2U);
+  const auto height = [&](std::size_t i) { return 4 * (curve[0][1] - curve[i][1]) / 250; };
+  EXPECT_NEAR(curve[0][0], 82, 0.5);
+  EXPECT_NEAR(curve[1][0], 704, 0.5);
+  EXPECT_NEAR(height(1), 2, 0.02);
+  content.series[0] = {"s", {30, -10}, {11, -5}};  // b = 0.4 a - 1, the other way
+  const auto back = drawn(svg_of({"id", "t", "", content})).at(0);
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_NEAR(back[0][0], 704, 0.5);
+  EXPECT_NEAR(back[1][0], 82 + 622 * 0.25, 1);
+  EXPECT_NEAR(back[1][1] - back[0][1], 250 * 3.0 / 4, 0.5);
 }
 
 TEST(Picture, EqualAxesDrawACircleRound) {
@@ -613,8 +648,33 @@ TEST(Picture, BarsStandOnZeroInTheirOrder) {
   const auto interval = document.select_node("//line[@class='interval']").node();
   EXPECT_NEAR(number(interval, "x1"), zero + 3 * width(1), 0.11);
   EXPECT_NEAR(number(interval, "x2"), zero + 5 * width(1), 0.11);
+  // Each end that is not 0 has its number outside of it, a bar of nothing its 0.
+  const auto numbers = document.select_nodes("//text[@font-size='11']");
+  std::map<std::string, double> places;
+  for (const auto& found : numbers) places[found.node().text().get()] = number(found.node(), "x");
+  EXPECT_LT(places.at("-2"), left(0));
+  EXPECT_GT(places.at("1"), left(1) + width(1));
+  EXPECT_GT(places.at("4"), left(2) + width(2));
+  EXPECT_EQ(places.count("0"), 1U);
   EXPECT_EQ(csv_of(figure),
             "change (%),low,high,from,to,note\ntilt,-2,1,,,n\npitch,0,4,3,5,\nother,0,0,,,\n");
+}
+
+TEST(Picture, NumbersHaveThreeDigitsAndPowersOfTenFarFromOne) {
+  const Figure figure{"id", "t", "",
+                      BarsFigure{{"change", "%"},
+                                 {{"a", -2.5e-4, 0},
+                                  {"b", 0, 1.23456e6},
+                                  {"c", 0, 12.3456},
+                                  {"d", 0, 1e-3},
+                                  {"e", 0, 999999.4},
+                                  {"f", 0, 0.5}}}};
+  std::vector<std::string> numbers;
+  const auto document = read(svg_of(figure));
+  for (const auto& found : document.select_nodes("//text[@font-size='11']"))
+    numbers.emplace_back(found.node().text().get());
+  EXPECT_THAT(numbers,
+              testing::IsSupersetOf({"-2.5e-4", "1.23e6", "12.3", "0.001", "999999", "0.5"}));
 }
 
 TEST(Picture, BandsLieAboutTheirCurves) {

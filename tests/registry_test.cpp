@@ -470,6 +470,19 @@ TEST(Validate, HydraulicsToo) {
               HasSubstr("port's arc and notches must not exceed 360 deg"));
   EXPECT_THAT(after([](Case& c) { c.hydraulics->case_pressure = -c.hydraulics->atmosphere; }),
               HasSubstr("case_bar = -1.01325: must be > -1.01325"));
+  // Oil boils where the pressure is lowest: in the suction port or in the case.
+  const auto boiling = [&](double suction, double in_case) {
+    return after([=](Case& c) {
+      c.hydraulics->cavitation = Cavitation::equilibrium;
+      c.hydraulics->atmosphere = 1e5;
+      c.hydraulics->vapour_pressure = 0.7e5;
+      c.pressure.ports.suction = suction;
+      c.hydraulics->case_pressure = in_case;
+    });
+  };
+  EXPECT_EQ(boiling(-0.2e5, -0.2e5), "accepted");
+  EXPECT_THAT(boiling(-0.4e5, 1e5), HasSubstr("must be < 0.6, the smaller absolute pressure"));
+  EXPECT_THAT(boiling(1e5, -0.5e5), HasSubstr("must be < 0.5, the smaller absolute pressure"));
   EXPECT_THAT(after([](Case& c) { c.pressure.ports.suction = -2e5; }),
               HasSubstr("[hydraulics] atmosphere_bar = 1.01325: must exceed -suction_bar"));
   for (const OpeningTable& table :

@@ -155,6 +155,17 @@ class SweepTest(ProgramTest):
         (self.folder / "study.toml").write_text('samplings = "grid"\n')
         self.assert_mentions(self.refused("sweep", case, "--study", "study.toml"), "study.toml", "samplings")
 
+    def test_a_study_file_without_a_seed_has_seed_1(self):
+        (self.folder / "study.toml").write_text('sampling = "random"\nsamples = 8\noutput = ["mean:Td"]\n\n'
+                                                '[[vary]]\nparameter = "pump.tilt_deg"\nvalues = "20:40"\n')
+        tables = []
+        for seed in ((), ("--seed", "1"), ("--seed", "2")):
+            out = "seed" + "".join(seed[1:])
+            self.run_program("sweep", program.REPO / "cases/bap63_rated.toml", "--study", "study.toml", *seed, "--out", out)
+            tables.append(self.results(out)["sweep.csv"])
+        self.assertEqual(tables[0], tables[1])
+        self.assertNotEqual(tables[0], tables[2])
+
     def test_hydraulic_pressure(self):
         self.run_program(*self.command("--output", "hydraulics.flow_l_per_min,efficiency.overall,mean:Td", "--check", "1%",
                                        case="bap63_rated_hydraulic.toml", samples=60, **{"operation.speed_rpm": "1000:2000:#3"}))

@@ -49,9 +49,9 @@ class BodyLoads {
 
 /// Loads of one turn of a case under the assumptions it gives this model, as many rows as samples.
 BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumptions,
-                             const Samples& samples);
+                             const Samples& samples, const Progress& progress = {});
 /// At given states of a case's pump.
 BodyLoadTable run_body_loads(const Case& the_case, const Assumptions& assumptions,
-                             const States& states);
+                             const States& states, const Progress& progress = {});
 
 }  // namespace bentaxis::analytic

@@ -36,7 +36,7 @@ class BudgetModel {
 
 /// One turn of a case under the assumptions it gives this model, as a budget_table().
 /// @throws ComputationError where a value is not finite.
-ResultTable run_budget(const Case& the_case, const Assumptions& assumptions,
-                       const Samples& samples);
+ResultTable run_budget(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
+                       const Progress& progress = {});
 
 }  // namespace bentaxis::analytic
