@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "bentaxis/files/toml_reader.h"
@@ -135,16 +136,22 @@ int sign_changes(const std::vector<double>& curve) {
   return changes;
 }
 
-// Order of the largest harmonic.
+// Order of the largest harmonic. By Parseval's theorem the squares of all add up to those of the
+// samples: what is left says when none further can be larger.
 int main_order(const std::vector<double>& theta_deg, const std::vector<double>& curve) {
   int best = 0;
-  double largest = -1;
-  for (int order = 1; 2 * order < static_cast<int>(curve.size()); ++order) {
+  const auto count = static_cast<double>(curve.size());
+  const double mean = std::accumulate(curve.begin(), curve.end(), 0.0) / count;
+  double largest = -1, left = 0;  // squares of amplitudes
+  for (const double value : curve) left += (value - mean) * (value - mean);
+  left *= count / 2;  // of an order and its negative, half each
+  for (int order = 1; 2 * order < static_cast<int>(curve.size()) && largest < left; ++order) {
     std::complex<double> sum = 0;
     for (std::size_t i = 0; i < curve.size(); ++i)
       sum += curve[i] * std::polar(1.0, order * radians(theta_deg[i]));
-    if (std::abs(sum) > largest) {
-      largest = std::abs(sum);
+    left -= std::norm(sum);
+    if (std::norm(sum) > largest) {
+      largest = std::norm(sum);
       best = order;
     }
   }

@@ -521,6 +521,22 @@ class PublishedNumbers : public ReferenceFolder {
   std::vector<std::string> ran_;
 };
 
+// The largest of many alike, far above those before it, beside a mean of a thousand times its size.
+TEST_F(PublishedNumbers, TheMainOrderIsTheLargestOfAll) {
+  for (const int main : {1, 7, 100, 179}) {
+    for (std::size_t i = 0; i < table_.rows(); ++i) {
+      double& value = table_.values[i * table_.columns() + table_.find("T_Nm")];
+      value = 1000;
+      for (int order = 1; order < 180; ++order)
+        value +=
+            (order == main ? 1.01 : 1) * std::cos(order * radians(table_.theta_deg[i]) + order);
+    }
+    EXPECT_EQ(row("status = \"predicted\"\nchannels = [\"T_Nm\"]\nwindow = [0, 200]\nmeasure = "
+                  "\"main_order\"\n")["model"],
+              main);
+  }
+}
+
 TEST_F(PublishedNumbers, MeasuresOfACurve) {
   const std::string t =
       "status = \"predicted\"\nchannels = [\"T_Nm\"]\nwindow = [40, 60]\nmeasure = ";
