@@ -264,6 +264,17 @@ class Archives(unittest.TestCase):
             for number, v in enumerate(it.variables):
                 self.assertEqual(v.place, number + 1)
 
+    def test_the_console_counts_what_is_described(self):
+        for key, it in self.descriptions.items():
+            with self.subTest(key):
+                said = dict(re.findall(r"(outputs|states|event indicators|parameters): (\d+)", self.said[key]))
+                indicators = it.root.get("numberOfEventIndicators") if it.version == 2 else len(it.lists.get("Indicators", []))
+                self.assertEqual({name: int(number) for name, number in said.items()},
+                                 {"outputs": sum(v.causality == "output" for v in it.variables),
+                                  "states": sum(v.derivative is not None for v in it.variables),
+                                  "event indicators": int(indicators),
+                                  "parameters": sum(v.causality == "parameter" for v in it.variables)})
+
     @of_every_unit
     def test_initial_unknowns_are_exactly_those_of_the_rule(self, it):
         listed = it.lists["InitialUnknowns"]

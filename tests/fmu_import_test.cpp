@@ -185,6 +185,68 @@ TEST_F(FmuImportTest, ReadsVariablesWithUnits) {
   }
 }
 
+// Units that are known by their name, each of those it is made of.
+TEST_F(FmuImportTest, UnitsAreWhatTheyAreMadeOf) {
+  struct Made {
+    const char* name;
+    double factor;
+    std::vector<std::pair<const char*, int>> of;
+  };
+  const double turn = 2 * kPi;
+  const std::vector<Made> all = {{"1", 1, {}},
+                                 {"-", 1, {}},
+                                 {"%", 0.01, {}},
+                                 {"mm", 1e-3, {{"m", 1}}},
+                                 {"m/s", 1, {{"m", 1}, {"s", -1}}},
+                                 {"N", 1, {{"kg", 1}, {"m", 1}, {"s", -2}}},
+                                 {"kN", 1e3, {{"N", 1}}},
+                                 {"N.m", 1, {{"N", 1}, {"m", 1}}},
+                                 {"Nm", 1, {{"N", 1}, {"m", 1}}},
+                                 {"N*m", 1, {{"N", 1}, {"m", 1}}},
+                                 {"J", 1, {{"N", 1}, {"m", 1}}},
+                                 {"W", 1, {{"N", 1}, {"m", 1}, {"s", -1}}},
+                                 {"kW", 1e3, {{"W", 1}}},
+                                 {"Pa", 1, {{"N", 1}, {"m", -2}}},
+                                 {"kPa", 1e3, {{"Pa", 1}}},
+                                 {"MPa", 1e6, {{"Pa", 1}}},
+                                 {"bar", 1e5, {{"Pa", 1}}},
+                                 {"deg", turn / 360, {{"rad", 1}}},
+                                 {"rad/s", 1, {{"rad", 1}, {"s", -1}}},
+                                 {"deg/s", 1, {{"deg", 1}, {"s", -1}}},
+                                 {"rpm", turn / 60, {{"rad", 1}, {"s", -1}}},
+                                 {"rev/min", 1, {{"rpm", 1}}},
+                                 {"rad/s2", 1, {{"rad", 1}, {"s", -2}}},
+                                 {"rad/s^2", 1, {{"rad", 1}, {"s", -2}}},
+                                 {"m3", 1, {{"m", 3}}},
+                                 {"m3/s", 1, {{"m", 3}, {"s", -1}}},
+                                 {"m^3/s", 1, {{"m", 3}, {"s", -1}}},
+                                 {"L/min", 1e-3 / 60, {{"m", 3}, {"s", -1}}},
+                                 {"l/min", 1, {{"L/min", 1}}},
+                                 {"kg/s", 1, {{"kg", 1}, {"s", -1}}},
+                                 {"1/s", 1, {{"s", -1}}},
+                                 {"Hz", 1, {{"s", -1}}},
+                                 {"1/min", 1.0 / 60, {{"s", -1}}}};
+  for (const Made& made : all) {
+    Measure product;
+    product.factor = made.factor;
+    for (const auto& [part, power] : made.of) {
+      const Measure unit = measure_named(part).value();
+      product.factor *= std::pow(unit.factor, power);
+      for (std::size_t i = 0; i < product.exponents.size(); ++i)
+        product.exponents[i] += power * unit.exponents[i];
+    }
+    const auto named = measure_named(made.name);
+    ASSERT_TRUE(named) << made.name;
+    EXPECT_TRUE(same_quantity(*named, product)) << made.name;
+    EXPECT_NEAR(named->factor / product.factor, 1, 1e-14) << made.name;
+    EXPECT_EQ(named->offset, 0) << made.name;
+  }
+  const std::vector<const char*> base = {"kg", "m", "s", "rad"};
+  for (const char* a : base)
+    for (const char* b : base)
+      EXPECT_EQ(same_quantity(*measure_named(a), *measure_named(b)), a == b) << a << ' ' << b;
+}
+
 TEST_F(FmuImportTest, TakesUnitsFromTypes) {
   const UnitDescription two = read_description(
       "<fmiModelDescription fmiVersion='2.0' guid='g'><TypeDefinitions><SimpleType name='P'><Real "
