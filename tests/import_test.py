@@ -6,6 +6,7 @@ BENTAXIS_MAKE_EXPORTS=1 has make_exports.py write the files anew first (packages
 """
 
 import csv
+import json
 import os
 import pathlib
 import re
@@ -60,6 +61,15 @@ class ExportTest(ImportTest):
                 # A tight tolerance, and what was guessed is said.
                 self.assertLessEqual(float(re.search(r"^relative = (\S+)", self.description(), re.M)[1]), 1e-4)
                 self.assert_mentions(report, "assumed", "phase shift of the whole file", "times")
+
+    def test_the_report_shows_what_agrees(self):
+        self.new(self.exports / "good" / "bench.csv", "--accept")
+        self.run_program("regress", "ref", "--json", "r.json")
+        figures = json.loads((self.folder / "r.json").read_text())["figures"]
+        self.assertEqual({name for figure in figures for name in figure["channels"]},
+                         {f"Rs_1_{axis}2_N" for axis in "xyz"} | {f"Rb1_{axis}1_N" for axis in "xyz"} | {"Rb2_x1_N", "Rb2_y1_N"}
+                         | {"Rc_1_x2_N", "Rc_1_y2_N", "Td_z1_Nm"})
+        self.assertEqual([figure["id"] for figure in figures], [f"held-{i}" for i in range(1, 6)])
 
     def test_what_is_wrong_differs(self):
         for file in self.files("bad"):

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <tuple>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -823,6 +824,26 @@ TEST(MappingRecords, AWrongSignOfOneComponentIsComparedNotLeftOut) {
   }
   EXPECT_NEAR(found.proposals[0].difference, std::sqrt(wrong / all), 1e-5);
   EXPECT_LT(found.proposals[1].difference, 1e-5);
+}
+
+// The same pump a million times smaller: sizes mean nothing.
+TEST(MappingRecords, AWrongSignIsComparedInASmallPumpToo) {
+  constexpr double kSize = 1e-6;
+  ResultTable small = model();
+  for (double& value : small.values) value *= kSize;
+  std::vector<Column> columns;
+  for (const auto& [theirs, name, sign] :
+       std::vector<std::tuple<std::string, std::string, int>>{{"Rb1x", "Rb1_x1_N", -1},
+                                                              {"Rb1y", "Rb1_y1_N", 1},
+                                                              {"Rb1z", "Rb1_z1_N", 1},
+                                                              {"f1_x", "Rs_1_x2_N", 1},
+                                                              {"f1_y", "Rs_1_y2_N", 1},
+                                                              {"f3_x", "Rs_3_x2_N", 1},
+                                                              {"f3_y", "Rs_3_y2_N", 1}})
+    columns.push_back({theirs, "N", of(name, sign * kSize)});
+  const MappingGuess found = guess_mapping(record(1, 40, columns), small, frames(), 3600);
+  EXPECT_EQ(found.recognised(), 7U);
+  EXPECT_EQ(found.proposals.at(0).remark, "differs by its signs, or only its name says so");
 }
 
 // Rs of pistons, each of which is number(k) of ours.
