@@ -213,6 +213,7 @@ class UsageTest(ProgramTest):
             (["hardcases", "--filter", "absent"], ["hard/catalogue.toml", "absent"]),
             (["tradeoff", case, "--samples", "100001"], ["--samples", "100000"]),
             (["run", case, "--model", "multibody", "--way", "integrated", "--error", "0.1004"], ["--error", "0.1"]),
+            (["run", case, "--model", "multibody", "--way", "integrated", "--error", "9.96e-12"], ["--error", "1e-11"]),
         ):
             with self.subTest(arguments):
                 line = self.refused(*arguments)

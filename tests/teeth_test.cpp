@@ -910,6 +910,10 @@ TEST(ToothedModel, RunWritesWhatTheTeethDo) {
     EXPECT_NEAR(teeth.at(row, teeth.find("transmission_error_um")),
                 teeth.at(row, teeth.find("lag_urad")) * arm, 1e-9);
   }
+  for (const auto& [flank, way] : {std::pair{"plus", "+psi"}, {"minus", "-psi"}}) {
+    const Channel& force = teeth.channels[teeth.find(flank + std::string("_force_N"))];
+    EXPECT_EQ(force.meaning.substr(force.meaning.size() - 4), way);
+  }
   // No teeth, no table.
   Case rigid = the_case;
   rigid.pump.gear.contact = ToothContact::rigid;
