@@ -364,6 +364,10 @@ class PictureTest(unittest.TestCase):
         self.assertTrue(touches())
         self.assertFalse(touches("--set", "pump.joint_circle_radius_mm=22", "--set", "pump.bore_circle_radius_mm=24.92"))
 
+    def test_a_little_more_tilt_takes_little_more_room(self):
+        scales = [self.drawn(self.picture("--set", f"pump.tilt_deg={tilt}"), "side")[0] for tilt in (40, 44.9)]
+        self.assertTrue(0.8 < scales[1] / scales[0] < 1.1, scales)
+
     def test_any_case_is_drawn(self):
         """Within the sheet, however absurd the case, and with text that is no markup."""
         cases = [*implausible(), *(REPO / "reference_data").rglob("case.toml")]
