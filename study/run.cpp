@@ -133,7 +133,7 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
                                  options.teeth ? &*result.teeth : nullptr);
     if (options.budget)
       result.budget =
-          analytic::run_budget(the_case, assumptions, samples, progress_of("budget of the torque"));
+          analytic::run_budget(the_case, assumptions, samples, progress_of("torque budget"));
     if (options.loads)
       result.loads = analytic::run_body_loads(the_case, assumptions, samples,
                                               progress_of("loads on the bodies"));

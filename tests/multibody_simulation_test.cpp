@@ -166,18 +166,12 @@ TEST(SimulatedMotion, AtConstantSpeedItIsTheDrivenModel) {
     the_case.operation.speed_rpm = rpm;
     const Trajectory run = simulate(the_case, 1e-8);
     multibody::Model model(the_case.pump, the_case.multibody, rpm);
-    const PressureTrace pressure(the_case.pressure);
     std::vector<double> v(model.layout().size());
     for (std::size_t row = 0; row < run.table.results.rows(); ++row) {
       const double theta = run.table.state(row, 1);
       EXPECT_NEAR(theta, rpm * 6 * run.table.state(row, 0), 1e-6);  // 1e-9 m of arc
       EXPECT_NEAR(run.table.state(row, 2), theta, 1e-6);
-      Instant i;
-      i.turn(radians(theta), rpm * kRadPerSecondPerRpm);
-      i.ports = the_case.pressure.ports;
-      for (int k = 1; k <= 5; ++k)
-        i.chamber_pressure.push_back(pressure(piston_angle_deg(theta, k, 5)));
-      model.evaluate(i, v);
+      model.evaluate(instant_at(the_case, theta, rad_per_second(rpm)), v);
       for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
         const Channel& channel = model.layout().channels()[c];
         EXPECT_NEAR(run.table.results.at(row, c), v[c] / channel.unit_in_si, 2e-2)  // N of 3e4
@@ -197,15 +191,10 @@ TEST(SimulatedMotion, APistonAtADeadCentreHasNoDryFriction) {
   the_case.pump.geometry.axis_offset = 0;  // a dead centre there, to the last digit
   const Trajectory run = simulate(the_case, 1e-8);
   multibody::Model model(the_case.pump, the_case.multibody, 1);
-  const PressureTrace pressure(the_case.pressure);
   std::vector<double> v(model.layout().size());
   const ResultTable& table = run.table.results;
   for (const std::size_t row : {0U, 40U}) {
-    Instant i;
-    i.turn(radians(run.table.state(row, 1)), rad_per_second(1500));
-    i.ports = the_case.pressure.ports;
-    for (int k = 1; k <= 5; ++k)
-      i.chamber_pressure.push_back(pressure(piston_angle_deg(run.table.state(row, 1), k, 5)));
+    Instant i = instant_at(the_case, run.table.state(row, 1), rad_per_second(1500));
     i.turn(row == 0 ? 0 : kPi, rad_per_second(1500));
     model.evaluate(i, v);
     EXPECT_NEAR(table.at(row, table.find("Rs_1_z2_N")), v[model.layout().Rs(0, 2)], 1e-2) << row;

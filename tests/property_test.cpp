@@ -29,16 +29,11 @@ using analytic::RoundingEstimate;
 using Failure = std::optional<std::string>;
 
 Instant instant_at(const Case& c, double theta_deg, const Lead& lead = {}) {
-  const PressureTrace trace(c.pressure);
-  Instant i;
-  i.turn(radians(std::fmod(theta_deg, 360.0)), rad_per_second(c.operation.speed_rpm));
+  Instant i =
+      test::instant_at(c, std::fmod(theta_deg, 360.0), rad_per_second(c.operation.speed_rpm));
   i.shaft.acceleration = lead.shaft_acceleration;
   i.block = {i.shaft.angle + lead.angle, i.shaft.speed + lead.speed,
              i.shaft.acceleration + lead.acceleration};
-  i.ports = c.pressure.ports;
-  const int n = c.pump.geometry.pistons;
-  for (int k = 1; k <= n; ++k)
-    i.chamber_pressure.push_back(trace(piston_angle_deg(theta_deg, k, n)));
   return i;
 }
 

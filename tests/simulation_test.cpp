@@ -294,19 +294,14 @@ TEST(Simulation, AtConstantSpeedItIsTheModelInEveryTurn) {
     the_case.drive->samples = 480;  // 2.25 deg apart: within each rise of pressure, 20 deg
     const Trajectory t = run(the_case);
     const analytic::Model model(the_case.pump, the_case.analytic);
-    const PressureTrace pressure(the_case.pressure);
     const ResultTable& table = t.table.results;
+    const std::vector<double> theta_deg = column(t, "theta_deg");
     ASSERT_GT(table.rows(), 480U);
     EXPECT_NEAR(std::abs(column(t, "psi_deg").back()), 1080, 1e-9);
     std::vector<double> v(model.layout().size());
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      const double theta = column(t, "theta_deg")[row];
-      Instant i;
-      i.turn(radians(theta), rpm * kRadPerSecondPerRpm);
-      i.ports = the_case.pressure.ports;
-      for (int k = 1; k <= 5; ++k)
-        i.chamber_pressure.push_back(pressure(piston_angle_deg(theta, k, 5)));
-      model.evaluate(i, v);
+      const double theta = theta_deg[row];
+      model.evaluate(instant_at(the_case, theta, rad_per_second(rpm)), v);
       for (std::size_t c = 0; c < model.layout().reactions(); ++c) {
         const Channel& channel = model.layout().channels()[c];
         ASSERT_NEAR(table.at(row, c), v[c] / channel.unit_in_si, 1e-9 * table.peak(channel.group))

@@ -40,6 +40,18 @@ inline Case reference_case(const std::string& name) {
   return read_case(reference_folder() / name / "case.toml");
 }
 
+/// The pump at a constant speed, rad/s, under the case's pressure; the block turns with the shaft.
+inline Instant instant_at(const Case& the_case, double theta_deg, double speed) {
+  const PressureTrace pressure(the_case.pressure);
+  const int pistons = the_case.pump.geometry.pistons;
+  Instant instant;
+  instant.turn(radians(theta_deg), speed);
+  instant.ports = the_case.pressure.ports;
+  for (int k = 1; k <= pistons; ++k)
+    instant.chamber_pressure.push_back(pressure(piston_angle_deg(theta_deg, k, pistons)));
+  return instant;
+}
+
 /// One channel's values.
 inline std::vector<double> column(const ResultTable& table, const std::string& name) {
   std::vector<double> values;

@@ -764,17 +764,6 @@ Case toothed_case() {
 }
 
 // The instant of a run's row.
-Instant instant_at(const Case& the_case, double theta_deg, double speed) {
-  const PressureTrace trace(the_case.pressure);
-  Instant instant;
-  instant.turn(radians(theta_deg), speed);
-  instant.ports = the_case.pressure.ports;
-  for (int k = 1; k <= the_case.pump.geometry.pistons; ++k)
-    instant.chamber_pressure.push_back(
-        trace(piston_angle_deg(theta_deg, k, the_case.pump.geometry.pistons)));
-  return instant;
-}
-
 TEST(ToothedModel, FreeBodiesBalanceUnderTheForcesOfThePairs) {
   Case the_case = toothed_case();
   the_case.pump.gear.teeth = imperfect().gear.teeth;
