@@ -3,6 +3,7 @@
 #include <array>
 #include <set>
 
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "foreign_grid.h"
 
@@ -194,7 +195,10 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   const auto starts = [&](std::string_view what) {
     return std::string_view(content).substr(0, what.size()) == what;
   };
-  if (starts("\xFF\xFE") || starts("\xFE\xFF")) content = as_utf8(content, starts("\xFE\xFF"));
+  if (starts("\xFF\xFE") || starts("\xFE\xFF"))
+    content = as_utf8(content, starts("\xFE\xFF"));
+  else if (!is_utf8(content))
+    content = utf8_of_windows_1252(content);
   if (starts("\xEF\xBB\xBF")) content.erase(0, 3);
   if (content.find('\0') != std::string::npos)
     throw InputError(file.string() +
@@ -226,9 +230,15 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   grid.blanks = best->separator == ' ';
   grid.fixed_width = true;
   std::vector<std::string_view> fields;
+  std::size_t cells = 0;
   for (const Line& line : lines) {
     split(line.text, best->separator, fields);
     Row row{line.number, {}};
+    cells += fields.size();
+    if (fields.size() > kMostColumns || cells > kMostCells)
+      throw InputError(grid.place(row, 0) + ": a table has at most " +
+                       std::to_string(kMostColumns) + " columns and " + std::to_string(kMostCells) +
+                       " fields");
     for (const auto field : fields) {
       Cell cell{field};
       cell.number = parse_number(field, best->decimal, cell.value, cell.digits);
