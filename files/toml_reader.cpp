@@ -154,32 +154,6 @@ std::string literal(const std::string& text, std::size_t at, double value) {
   return same ? word : "";
 }
 
-// Places of positions in a text; columns count characters, which are one byte or more. Goes on from
-// the position before where it can: values are asked for in their order, more or less.
-class Offsets {
- public:
-  std::size_t of(const std::string& text, const toml::source_position& position) {
-    if (position.line < line_ || (position.line == line_ && position.column < column_)) *this = {};
-    for (; line_ < position.line; ++line_) {
-      const std::size_t end = text.find('\n', at_);
-      if (end == std::string::npos) return text.size();
-      at_ = end + 1;
-      column_ = 1;
-    }
-    const auto starts_character = [&](std::size_t i) {
-      return (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
-    };
-    for (; column_ < position.column && at_ < text.size(); ++column_) do
-        ++at_;
-      while (at_ < text.size() && !starts_character(at_));
-    return at_;
-  }
-
- private:
-  std::size_t at_ = 0;
-  toml::source_index line_ = 1, column_ = 1;
-};
-
 std::string quoted(const toml::node& node) {
   std::ostringstream out;
   out << toml::default_formatter(node, toml::format_flags::none);
@@ -227,6 +201,32 @@ std::string one_line(const std::string& text) {
       std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   return plain ? text : toml_text(text);
 }
+
+// Places of positions in a text; columns count characters, which are one byte or more. Goes on from
+// the position before where it can: values are asked for in their order, more or less.
+class Offsets {
+ public:
+  std::size_t of(const std::string& text, const toml::source_position& position) {
+    if (position.line < line_ || (position.line == line_ && position.column < column_)) *this = {};
+    for (; line_ < position.line; ++line_) {
+      const std::size_t end = text.find('\n', at_);
+      if (end == std::string::npos) return text.size();
+      at_ = end + 1;
+      column_ = 1;
+    }
+    const auto starts_character = [&](std::size_t i) {
+      return (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+    };
+    for (; column_ < position.column && at_ < text.size(); ++column_) do
+        ++at_;
+      while (at_ < text.size() && !starts_character(at_));
+    return at_;
+  }
+
+ private:
+  std::size_t at_ = 0;
+  toml::source_index line_ = 1, column_ = 1;
+};
 
 // A parsed file, and what was changed in it: "pump.tilt_deg" -> the value as given.
 struct Document {
