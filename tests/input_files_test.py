@@ -31,25 +31,34 @@ class InputTest(ProgramTest):
     def readers(self, file):
         """Every way in for a file: a name and a command that reads it."""
         rated = base.REPO / "cases" / "bap63_rated.toml"
-        hydraulic = (base.REPO / "cases" / "bap63_rated_hydraulic.toml").read_text()
         Case(**{"pressure.kind": '"curve"', "pressure.file": f'"{file}"'}).write(self.folder / "curve_case.toml")
-        opening = hydraulic.replace("[hydraulics]", f'[hydraulics]\nopening = "table"\ndelivery_opening_file = "{file}"\nsuction_opening_file = "{file}"', 1)
-        (self.folder / "opening_case.toml").write_text(opening)
-        sets = lambda *changes: [word for change in changes for word in ("--set", change)]
-        drive = sets("drive.kind=torque", "drive.start_rpm=1500", "drive.duration_s=0.005", "drive.samples=100",
-                     "drive.torque=curve", f"drive.file={file}")
+
+        def with_key(name, shipped, table, line):
+            text = (base.REPO / "cases" / shipped).read_text()
+            text = re.sub(rf"^{line.split()[0]} = .*\n", "", text, flags=re.M)
+            self.assertIn(f"[{table}]\n", text)
+            (self.folder / name).write_text(text.replace(f"[{table}]\n", f"[{table}]\n{line}\n", 1))
+        with_key("opening_case.toml", "bap63_rated_hydraulic.toml", "hydraulics", f'delivery_opening_file = "{file}"')
+        with_key("drive_case.toml", "bap63_start_up.toml", "drive", f'file = "{file}"')
+        share = (base.REPO / "cases" / "bap63_load_step.toml").read_text().replace("curves/load_step_share.csv", str(file))
+        (self.folder / "share_case.toml").write_text(share.replace("curves/", str(base.REPO / "cases" / "curves") + "/"))
+        with_key("pitch_case.toml", "bap63_teeth.toml", "gear", f'pitch_error_file = "{file}"')
         return {
             "case": ("show", file),
             "case of a reference": ("reference", "new", file, "--from", file),
-            "pressure curve": ("run", "curve_case.toml", "--out", "out"),
-            "states": ("run", rated, "--states", file, "--out", "out"),
+            "pressure curve": ("run", "curve_case.toml", "--model", "analytic", "--out", "out"),
+            "opening": ("show", "opening_case.toml"),
+            "drive": ("show", "drive_case.toml"),
+            "share": ("show", "share_case.toml"),
+            "pitch errors": ("show", "pitch_case.toml"),
+            "states": ("run", rated, "--model", "analytic", "--states", file, "--out", "out"),
             "duty cycle": ("life", rated, "--duty", file, "--out", "out"),
             "record": ("reference", "new", rated, "--from", file, "--out", "ref"),
             "mapping": ("reference", "new", rated, "--from", base.REPO / "tests/imports/good/bench.csv", "--mapping", file, "--out", "ref"),
             "study": ("sweep", rated, "--study", file, "--out", "out"),
             "data": ("identify", rated, "--data", file, "--out", "out"),
             "published": ("pressure", base.REPO / "cases/bap63_rated_hydraulic.toml", "--published", file, "--out", "out"),
-            "FMU": ("simulate", rated, "--fmu", file, "--out", "out"),
+            "FMU": ("simulate", base.REPO / "cases/bap63_load_step.toml", "--fmu", file, "--out", "out"),
         }
 
     def try_all(self, file, *words):
@@ -142,7 +151,7 @@ class CharacterTest(InputTest):
 
     def test_arguments(self):
         rated = base.REPO / "cases" / "bap63_rated.toml"
-        for arguments in (("show", self.ESCAPE + ".toml"), ("run", rated, "--out", "out" + self.ESCAPE),
+        for arguments in (("show", self.ESCAPE + ".toml"), ("run", rated, "--model", "analytic", "--out", "out" + self.ESCAPE),
                           ("show", rated, "--set", "pump.tilt_deg=" + self.ESCAPE), ("show", rated, "--set", "\u009b31m=1")):
             self.refused_with(["control character", "\\u00"], *arguments)
 
@@ -164,11 +173,11 @@ class CharacterTest(InputTest):
                 file.write_bytes(bench.replace(b"Antriebsmoment", name))
                 self.refused_with(["record.csv", "control character", "Moment"], "reference", "new", rated, "--from", file, "--out", "ref")
         (self.folder / "states.csv").write_bytes(b"theta_deg,\x1b[31mpsi_deg\n0,0\n")
-        self.refused_with(["states.csv:1", "control character"], "run", rated, "--states", "states.csv", "--out", "out")
+        self.refused_with(["states.csv:1", "control character"], "run", rated, "--model", "analytic", "--states", "states.csv", "--out", "out")
         (self.folder / "states.csv").write_bytes(b"theta_deg,psi_deg\n0,\x1b[31m0\n")
-        self.refused_with(["states.csv:2", "\\u001B"], "run", rated, "--states", "states.csv", "--out", "out")
+        self.refused_with(["states.csv:2", "\\u001B"], "run", rated, "--model", "analytic", "--states", "states.csv", "--out", "out")
         (self.folder / "states.csv").write_bytes(b"theta_deg,psi_deg\n0,0\x00garbage\n")
-        self.refused_with(["states.csv:2", "byte 0"], "run", rated, "--states", "states.csv", "--out", "out")
+        self.refused_with(["states.csv:2", "byte 0"], "run", rated, "--model", "analytic", "--states", "states.csv", "--out", "out")
 
     def test_windows_1252_becomes_utf8(self):
         """What regress reads is what reference new wrote."""
@@ -183,7 +192,6 @@ class CharacterTest(InputTest):
         folder.mkdir(parents=True)
         (folder / "description.toml").write_text("schema = 1\n")
         self.refused_with(["control character", "\\u001B"], "regress", "set")
-        self.run_program("run", base.REPO / "cases" / "bap63_rated.toml", "--out", "out")
         self.run_program("compare", base.REPO / "cases" / "bap63_rated.toml", "--set", "operation.samples_per_revolution=36", "--out", "reports")
         report = json.loads((self.folder / "reports" / "report.json").read_text())
         report["verdict"]["headline"] = "headline" + self.ESCAPE
