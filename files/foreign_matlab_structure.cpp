@@ -54,7 +54,7 @@ struct Damage {
 
 [[noreturn]] void damaged(const std::string& why) { throw Damage{why}; }
 [[noreturn]] void truncated(const std::string& what, std::uint64_t needed, std::uint64_t there) {
-  damaged("is truncated: " + what + " takes " + std::to_string(needed) + " bytes, " +
+  damaged("is a truncated MATLAB file: " + what + " takes " + std::to_string(needed) + " bytes, " +
           std::to_string(there) + " are there");
 }
 
@@ -129,11 +129,11 @@ class Version5 {
         Elements inner(plain, swapped_, false);
         const Element only = inner.next(what);
         if (only.type != kMatrix || !inner.at_end())
-          damaged("is damaged: " + what + " is compressed and holds no variable");
+          damaged("is a damaged MATLAB file: " + what + " is compressed and holds no variable");
         check_matrix(only.data, what, 0);
       } else {
-        damaged("is damaged: " + what + " is of no known kind (" + std::to_string(element.type) +
-                ")");
+        damaged("is a damaged MATLAB file: " + what + " is of no known kind (" +
+                std::to_string(element.type) + ")");
       }
     }
   }
@@ -159,7 +159,7 @@ class Version5 {
       out.append(piece.data(), count);
       if (state == Z_STREAM_END) return out;
       if (state != Z_OK || (count == 0 && stream.avail_in == 0))
-        damaged("is damaged: " + what + " cannot be unpacked");
+        damaged("is a damaged MATLAB file: " + what + " cannot be unpacked");
     }
   }
 
@@ -167,7 +167,7 @@ class Version5 {
   void check_values(const Element& element, std::uint64_t count, const std::string& what) const {
     const std::uint64_t size = size_of(element.type);
     if (size == 0)
-      damaged("is damaged: the values of " + what + " are of no known type (" +
+      damaged("is a damaged MATLAB file: the values of " + what + " are of no known type (" +
               std::to_string(element.type) + ")");
     if (const std::uint64_t needed = times(count, size); element.data.size() < needed)
       truncated(what, needed, element.data.size());
@@ -181,7 +181,7 @@ class Version5 {
     Elements parts(bytes, swapped_, false);
     const Element flags = parts.next(what);
     if (flags.type != kUint32 || flags.data.size() != 8)
-      damaged("is damaged: " + what + " does not say what it is");
+      damaged("is a damaged MATLAB file: " + what + " does not say what it is");
     const std::uint32_t word = word_at(flags.data, 0, swapped_);
     const std::uint32_t kind = word & 0xFFU;
     const bool complex = (word & 0x800U) != 0;
@@ -189,16 +189,17 @@ class Version5 {
     const Element dimensions = parts.next(what);
     if (dimensions.type != kInt32 || dimensions.data.size() < 8 ||
         dimensions.data.size() % 4 != 0 || dimensions.data.size() > 32 * 4)
-      damaged("is damaged: " + what + " has no dimensions");
+      damaged("is a damaged MATLAB file: " + what + " has no dimensions");
     std::uint64_t count = 1;
     for (std::size_t i = 0; i < dimensions.data.size(); i += 4) {
       const std::uint32_t size = word_at(dimensions.data, i, swapped_);
       if (size > static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max()))
-        damaged("is damaged: " + what + " has a negative dimension");
+        damaged("is a damaged MATLAB file: " + what + " has a negative dimension");
       count = times(count, size);
     }
     const Element name = parts.next(what);
-    if (name.type != kInt8 && name.type != kUint8) damaged("is damaged: " + what + " has no name");
+    if (name.type != kInt8 && name.type != kUint8)
+      damaged("is a damaged MATLAB file: " + what + " has no name");
     const std::string called =
         name.data.empty() ? what : "\"" + without_control_characters(std::string(name.data)) + "\"";
     if (kind >= kFirstNumeric || kind == kChar) {
@@ -211,26 +212,30 @@ class Version5 {
       const Element length = parts.next(called);
       const Element names = parts.next(called);
       if (length.type != kInt32 || length.data.size() != 4 || names.type != kInt8)
-        damaged("is damaged: " + called + " has no names of its fields");
+        damaged("is a damaged MATLAB file: " + called + " has no names of its fields");
       const std::uint32_t one = word_at(length.data, 0, swapped_);
       if (one == 0 || one > names.data.size() + 1 || names.data.size() % one != 0)
-        damaged("is damaged: the names of the fields of " + called + " are not of one length");
+        damaged("is a damaged MATLAB file: the names of the fields of " + called +
+                " are not of one length");
       for (std::size_t at = 0; at < names.data.size(); at += one)
         if (names.data.substr(at, one).find('\0') == std::string_view::npos)
-          damaged("is damaged: a name of a field of " + called + " has no end");
+          damaged("is a damaged MATLAB file: a name of a field of " + called + " has no end");
       check_below(parts, times(count, names.data.size() / one), called, depth);
     } else if (kind == kSparse) {
       damaged("holds the sparse matrix " + called + ": save it as full(..)");
     } else {
-      damaged("is damaged: " + called + " is of no known class (" + std::to_string(kind) + ")");
+      damaged("is a damaged MATLAB file: " + called + " is of no known class (" +
+              std::to_string(kind) + ")");
     }
-    if (!parts.at_end()) damaged("is damaged: " + called + " is longer than its values");
+    if (!parts.at_end())
+      damaged("is a damaged MATLAB file: " + called + " is longer than its values");
   }
 
   void check_below(Elements& parts, std::uint64_t count, const std::string& what, int depth) {
     for (std::uint64_t i = 0; i < count; ++i) {
       const Element element = parts.next(what);
-      if (element.type != kMatrix) damaged("is damaged: " + what + " holds what is no variable");
+      if (element.type != kMatrix)
+        damaged("is a damaged MATLAB file: " + what + " holds what is no variable");
       check_matrix(element.data, what, depth + 1);
     }
   }
@@ -288,7 +293,7 @@ void check_hdf5(std::string_view content) {
   const unsigned version = byte(8);
   const std::size_t width = byte(version < 2 ? 13 : 9);
   if (version > 3 || (width != 2 && width != 4 && width != 8))
-    damaged("is damaged: its beginning is no HDF5 of a known version");
+    damaged("is a damaged MATLAB file: its beginning is no HDF5 of a known version");
   // Base address, another one, then where the file ends.
   const std::size_t place = (version == 0 ? 24 : version == 1 ? 28 : 12) + 2 * width;
   std::uint64_t end = 0;

@@ -1,6 +1,7 @@
 // Text tables: what parts the fields, how numbers are written, request files.
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <set>
 
 #include "bentaxis/pump/characters.h"
@@ -124,6 +125,18 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
   std::vector<Block> blocks;
   std::vector<std::string_view> fields;
   std::size_t width = 0;
+  // Once three times have been as long as each other this is a request file, and nothing else.
+  const auto established = [&] {
+    if (blocks.size() < 4 || width < 4) return false;
+    const std::size_t length = blocks[blocks.size() - 2].lines.size();
+    return length > 0 && blocks[blocks.size() - 3].lines.size() == length &&
+           blocks[blocks.size() - 4].lines.size() == length;
+  };
+  const auto refuse = [&](const Line& line) {
+    throw InputError(grid.place({line.number, {}}, 0) + ": " + std::to_string(fields.size()) +
+                     " fields, other lines have " + std::to_string(width) +
+                     " numbers, the first of them a request's: is the file truncated?");
+  };
   for (const Line& line : lines) {
     split(line.text, ' ', fields);
     double value = 0;
@@ -132,6 +145,7 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
       return parse_number(field, '.', value, digits);
     });
     if (!all) {
+      if (!fields.empty() && established()) refuse(line);
       if (!fields.empty() && blocks.size() > 2) return false;
       if (!fields.empty()) blocks.clear();
       continue;
@@ -142,8 +156,10 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
       if (blocks.empty()) continue;
       if (width == 0) width = fields.size();
       if (fields.size() != width ||
-          fields.front().find_first_not_of("0123456789") != std::string_view::npos)
+          fields.front().find_first_not_of("0123456789") != std::string_view::npos) {
+        if (established()) refuse(line);
         return false;
+      }
       blocks.back().lines.push_back(line);
     }
   }
@@ -185,6 +201,31 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
     grid.rows.push_back(std::move(row));
   }
   return true;
+}
+
+// Characters behind the decimal point; 0 without one.
+std::size_t decimals(std::string_view field, char decimal) {
+  const auto point = field.rfind(decimal);
+  return point == std::string_view::npos ? 0 : field.size() - point;
+}
+
+// Whether the last number of a text that does not end its last line is cut: it is shorter behind
+// its point than those above it, which all have one length.
+bool ends_in_a_number(const Grid& grid, char decimal) {
+  constexpr std::size_t kTelling = 6;  // numbers of one length above
+  std::size_t count = 0;
+  std::optional<std::size_t> length;
+  const Row& last = grid.rows.back();
+  if (last.cells.empty() || !last.cells.back().number) return false;
+  for (std::size_t i = grid.rows.size() - 1; i-- > 0;) {
+    const Row& row = grid.rows[i];
+    if (row.cells.size() != last.cells.size() || !row.cells.back().number) break;
+    const std::size_t one = decimals(row.cells.back().text, decimal);
+    if (length && *length != one) return false;
+    length = one;
+    ++count;
+  }
+  return count >= kTelling && decimals(last.cells.back().text, decimal) < *length;
 }
 
 }  // namespace
@@ -246,6 +287,10 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
     }
     grid.rows.push_back(std::move(row));
   }
+  if (content.back() != '\n' && ends_in_a_number(grid, best->decimal))
+    throw InputError(grid.place(grid.rows.back(), 0) +
+                     ": the last line does not end, and its last number has fewer decimals than "
+                     "those above it: the file is truncated");
   fill(grid, table);
   return table;
 }
