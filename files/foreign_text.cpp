@@ -1,7 +1,6 @@
 // Text tables: what parts the fields, how numbers are written, request files.
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <set>
 
 #include "bentaxis/pump/characters.h"
@@ -115,9 +114,32 @@ std::string as_utf8(const std::string& content, bool big_endian) {
   return out;
 }
 
+// Characters behind the decimal point, with an exponent; 0 without one.
+std::size_t decimals(std::string_view field, char decimal) {
+  const auto point = field.rfind(decimal);
+  return point == std::string_view::npos ? 0 : field.size() - point;
+}
+
+// Whether the last of some numbers is cut: those before it all have one length behind their point,
+// and it has less. Asked where a text does not end its last line.
+bool last_is_cut(const std::vector<std::string_view>& numbers, char decimal) {
+  constexpr std::size_t kTelling = 7;  // as few as these show no format
+  if (numbers.size() < kTelling) return false;
+  const std::size_t length = decimals(numbers.front(), decimal);
+  return std::all_of(numbers.begin(), numbers.end() - 1,
+                     [&](auto number) { return decimals(number, decimal) == length; }) &&
+         decimals(numbers.back(), decimal) < length;
+}
+
+[[noreturn]] void refuse_cut_number(const std::string& place) {
+  throw InputError(place +
+                   ": the last line does not end, and its last number is shorter than those above "
+                   "it: the file is truncated");
+}
+
 // A request file: a line with the time alone, then a line per request with its number and values;
 // the same requests at each time. Becomes one row per time. False where the text is none.
-bool requests(const std::vector<Line>& lines, Grid& grid) {
+bool requests(const std::vector<Line>& lines, bool ended, Grid& grid) {
   struct Block {
     Line time;
     std::vector<Line> lines;
@@ -171,6 +193,16 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
                        std::string(trimmed(block.time.text)) + " has " +
                        std::to_string(block.lines.size()) + " requests, others have " +
                        std::to_string(blocks.front().lines.size()));
+  if (!ended) {
+    std::vector<std::string_view> last_numbers;
+    for (const Block& block : blocks)
+      for (const Line& line : block.lines) {
+        split(line.text, ' ', fields);
+        last_numbers.push_back(fields.back());
+      }
+    if (last_is_cut(last_numbers, '.'))
+      refuse_cut_number(grid.place({blocks.back().lines.back().number, {}}, 0));
+  }
   // The eight values of a request of forces, displacements or functions.
   constexpr std::array<const char*, 8> kComponents = {"MAG",  "X",  "Y",  "Z",
                                                       "RMAG", "RX", "RY", "RZ"};
@@ -203,31 +235,6 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
   return true;
 }
 
-// Characters behind the decimal point; 0 without one.
-std::size_t decimals(std::string_view field, char decimal) {
-  const auto point = field.rfind(decimal);
-  return point == std::string_view::npos ? 0 : field.size() - point;
-}
-
-// Whether the last number of a text that does not end its last line is cut: it is shorter behind
-// its point than those above it, which all have one length.
-bool ends_in_a_number(const Grid& grid, char decimal) {
-  constexpr std::size_t kTelling = 6;  // numbers of one length above
-  std::size_t count = 0;
-  std::optional<std::size_t> length;
-  const Row& last = grid.rows.back();
-  if (last.cells.empty() || !last.cells.back().number) return false;
-  for (std::size_t i = grid.rows.size() - 1; i-- > 0;) {
-    const Row& row = grid.rows[i];
-    if (row.cells.size() != last.cells.size() || !row.cells.back().number) break;
-    const std::size_t one = decimals(row.cells.back().text, decimal);
-    if (length && *length != one) return false;
-    length = one;
-    ++count;
-  }
-  return count >= kTelling && decimals(last.cells.back().text, decimal) < *length;
-}
-
 }  // namespace
 
 ForeignTable read_text(const std::filesystem::path& file, std::string content) {
@@ -252,7 +259,8 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   grid.place = [&](const Row& row, std::size_t) {
     return file.string() + ":" + std::to_string(row.line);
   };
-  if (requests(lines, grid)) {
+  const bool ended = content.back() == '\n';
+  if (requests(lines, ended, grid)) {
     table.format = "ADAMS request file";
     fill(grid, table);
     return table;
@@ -287,10 +295,16 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
     }
     grid.rows.push_back(std::move(row));
   }
-  if (content.back() != '\n' && ends_in_a_number(grid, best->decimal))
-    throw InputError(grid.place(grid.rows.back(), 0) +
-                     ": the last line does not end, and its last number has fewer decimals than "
-                     "those above it: the file is truncated");
+  if (!ended) {
+    const std::size_t width = grid.rows.back().cells.size();
+    std::vector<std::string_view> last_numbers;
+    for (const Row& row : grid.rows)
+      if (row.cells.size() == width && width > 0 && row.cells.back().number)
+        last_numbers.push_back(row.cells.back().text);
+    if (width > 0 && grid.rows.back().cells.back().number &&
+        last_is_cut(last_numbers, best->decimal))
+      refuse_cut_number(grid.place(grid.rows.back(), 0));
+  }
   fill(grid, table);
   return table;
 }

@@ -897,10 +897,11 @@ TEST(MappingRecords, AVectorWithoutAPistonShowsNoNumbering) {
 TEST(MappingRecords, ACorrelationBelowTheLeastIsNotRecognised) {
   const auto with = [](double correlation) {
     const double other = std::sqrt(1 - correlation * correlation);
-    // Of the same size as Td, and without correlation to it: both are sums of harmonics.
-    double own = 0, mixed = 0;
+    // As large as Td about its mean, and without correlation to it: a harmonic that it lacks.
+    double own = 0, mixed = 0, mean = 0;
+    for (int i = 0; i < 360; ++i) mean += ours("Td_z1_Nm", i) / 360;
     for (int i = 0; i < 360; ++i) {
-      own += std::pow(ours("Td_z1_Nm", i), 2);
+      own += std::pow(ours("Td_z1_Nm", i) - mean, 2);
       mixed += std::pow(std::cos(radians(61 * i)), 2);
     }
     const double size = std::sqrt(own / mixed);
@@ -910,7 +911,7 @@ TEST(MappingRecords, ACorrelationBelowTheLeastIsNotRecognised) {
                          {"Fz", "N", of("Rb1_z1_N")},
                          {"f1_x", "N", of("Rs_1_x2_N")},
                          {"f1_y", "N", of("Rs_1_y2_N")},
-                         {"Td", "Nm", [=](double t) {
+                         {"Td_z1", "Nm", [=](double t) {
                             return correlation * ours("Td_z1_Nm", t) +
                                    other * size * std::cos(radians(61 * t));
                           }}}));
@@ -920,9 +921,9 @@ TEST(MappingRecords, ACorrelationBelowTheLeastIsNotRecognised) {
   EXPECT_EQ(good.recognised(), 6U);
   for (const double correlation : {kLeastCorrelation - 0.02, 0.54}) {
     const MappingGuess found = with(correlation);
-    EXPECT_THAT(found.unrecognised, ElementsAre("Td")) << correlation;
+    EXPECT_THAT(found.unrecognised, ElementsAre("Td_z1")) << correlation;
     EXPECT_EQ(found.recognised(), 5U);
-    EXPECT_THAT(found.curve.ignored, ElementsAre("Td"));
+    EXPECT_THAT(found.curve.ignored, ElementsAre("Td_z1"));
     ASSERT_EQ(found.ignored.size(), 1U);
     EXPECT_THAT(found.ignored[0].second, testing::HasSubstr("not recognised: looks like Td_z1_Nm"));
     EXPECT_THAT(found.ignored[0].second, testing::HasSubstr("less than 0.8"));
