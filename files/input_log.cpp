@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bentaxis/files/input_file.h"
+#include "bentaxis/pump/error.h"
 
 namespace bentaxis {
 namespace {
@@ -44,7 +45,10 @@ void InputLog::note(const std::filesystem::path& file) {
     const std::lock_guard lock(the_log().mutex);
     if (!the_log().files) return;
   }
-  note(file, read_input_file(file, {"an input file", kLargestReport}));
+  try {
+    note(file, read_input_file(file, {"an input file", kLargestReport}));
+  } catch (const InputError&) {  // it has gone since it was read
+  }
 }
 
 void InputLog::note(const std::filesystem::path& file, const std::string& content) {

@@ -24,7 +24,7 @@ class InputLog {
   /// In the order in which they were read first.
   static std::vector<InputFile> files();
   /// For readers: notes a file, once for each content it was found with. Without a content it is
-  /// read for that. @throws InputError where it cannot be
+  /// read for that; what cannot be read is not noted.
   static void note(const std::filesystem::path& file);
   static void note(const std::filesystem::path& file, const std::string& content);
 };
