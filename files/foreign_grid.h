@@ -53,7 +53,7 @@ class DifferentNames {
   std::string different(const std::string& name) {
     if (taken_.insert(name).second) return name;
     for (int& again = next_.emplace(name, 2).first->second;; ++again)
-      if (const std::string other = name + " (" + std::to_string(again) + ")";
+      if (std::string other = name + " (" + std::to_string(again) + ")";
           taken_.insert(other).second)
         return other;
   }

@@ -31,12 +31,12 @@ std::vector<fs::path> files_of(const Case& the_case) {
   const ConstView view = view_of(the_case);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters) {
-      if (!std::holds_alternative<CurveField>(parameter.field)) continue;
-      const auto value = value_of(parameter, view);
-      const std::string file = value ? std::get<std::string>(*value) : "";
-      if (file == the_case.pressure.file && the_case.pressure.kind != PressureKind::curve) continue;
-      if (!file.empty() && std::find(files.begin(), files.end(), fs::path(file)) == files.end())
-        files.emplace_back(file);
+      const auto* const curve = std::get_if<CurveField>(&parameter.field);
+      const fs::path* const file = curve == nullptr ? nullptr : curve->file.read(view);
+      if (file == nullptr || file->empty()) continue;
+      if (file == &the_case.pressure.file && the_case.pressure.kind != PressureKind::curve)
+        continue;
+      if (std::find(files.begin(), files.end(), *file) == files.end()) files.push_back(*file);
     }
   return files;
 }
