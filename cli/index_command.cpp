@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/output_folder.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/report/index.h"
 #include "commands.h"
@@ -40,9 +40,11 @@ std::vector<fs::path> json_files(const fs::path& folder) {
 
 // Nothing where it cannot be read: it is then no report.
 std::string text_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
+  try {
+    return read_input_file(file, {"a report", kLargestReport});
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 int index(const Options& options) {
@@ -81,7 +83,8 @@ int index(const Options& options) {
                 !e.agrees   ? "-"
                 : *e.agrees ? "agrees"
                             : "differs",
-                e.json.c_str(), e.headline.empty() ? e.title.c_str() : e.headline.c_str());
+                without_control_characters(e.json).c_str(),
+                without_control_characters(e.headline.empty() ? e.title : e.headline).c_str());
   if (!skipped.empty())
     std::printf("%zu JSON files are no report and were left out\n", skipped.size());
   std::printf("%s\n", paths.front().c_str());

@@ -4,9 +4,11 @@
 #include <functional>
 #include <iostream>
 #include <new>
+#include <string>
 #include <vector>
 
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "commands.h"
 #include "console.h"
@@ -22,7 +24,7 @@ int guarded(const std::function<int()>& job) {
   try {
     return job();
   } catch (const InputError& error) {
-    std::fprintf(stderr, "bentaxis: %s\n", error.what());
+    std::fprintf(stderr, "bentaxis: %s\n", without_control_characters(error.what(), false).c_str());
     return kBadInput;
   } catch (const Interrupted&) {
     std::fprintf(stderr, "bentaxis: interrupted; nothing was written\n");
@@ -31,7 +33,7 @@ int guarded(const std::function<int()>& job) {
     std::fprintf(stderr, "bentaxis: not enough memory; fewer samples or revolutions take less\n");
     return kComputationFailed;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "bentaxis: %s\n", error.what());
+    std::fprintf(stderr, "bentaxis: %s\n", without_control_characters(error.what(), false).c_str());
     return kComputationFailed;
   }
 }
@@ -45,6 +47,14 @@ int checked_output(int status) {
   std::fprintf(stderr, "bentaxis: standard output cannot be written%s%s\n", errno != 0 ? ": " : "",
                errno != 0 ? std::strerror(errno) : "");
   return kBadInput;
+}
+
+// File names and texts of the arguments come back in what is printed: a terminal would act on them.
+void refuse_control_characters(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (has_control_characters(argv[i], false))
+      throw InputError("argument " + std::to_string(i) + ", \"" + argv[i] +
+                       "\": holds a control character");
 }
 
 ProgramParser::Texts texts() {
@@ -76,6 +86,7 @@ int run_program(int argc, char** argv) {
       add_paper_command(program),       add_fmu_command(program),
       add_init_command(program)};
   return guarded([&]() -> int {
+    refuse_control_characters(argc, argv);
     if (!parser.parse(argc, argv)) return kDone;
     watch_for_interruption();
     for (const Command& command : commands)

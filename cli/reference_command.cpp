@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/files/kept_case.h"
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/reference_maker.h"
 #include "commands.h"
@@ -32,12 +32,23 @@ int make_new(const Options& options) {
   std::string description, proposals;
   if (!options.mapping.empty()) {
     if (options.accept) throw InputError("--accept takes the guess: it excludes --mapping");
-    description = bytes_of(options.mapping);
+    description = read_input_file(options.mapping, {"a mapping", kLargestSettings});
   } else {
     const study::MappingGuess guess = study::guess_reference(the_case, options.from, options.sheet);
     proposals = study::proposal_text(guess) + std::to_string(guess.recognised()) + " of " +
                 std::to_string(guess.recognised() + guess.ignored.size()) + " columns recognised\n";
     description = study::description_of(guess, options.source, options.tolerance);
+    if (options.accept && !guess.unrecognised.empty()) {
+      std::string names;
+      for (const std::string& name : guess.unrecognised)
+        names += (names.empty() ? "\"" : ", \"") + name + "\"";
+      throw InputError(
+          options.from + ": " + names +
+          (guess.unrecognised.size() > 1 ? ": these columns are" : ": this column is") +
+          " not recognised, although the names or sizes say a channel: --accept takes "
+          "no such guess. Run the command without --accept, edit the proposal and "
+          "give it by --mapping");
+    }
     if (!options.accept) {
       const fs::path proposal = out.parent_path() / (out.filename().string() + "_mapping.toml");
       if (fs::exists(proposal))
@@ -53,7 +64,8 @@ int make_new(const Options& options) {
       return kDone;
     }
   }
-  const auto paths = study::make_reference(the_case, changed, options.from, description, out);
+  const auto paths = study::make_reference(the_case, changed, options.from, description, out,
+                                           options.mapping, progress_of);
   std::printf("%s", proposals.c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   std::printf("now: bentaxis regress %s\n", out.c_str());

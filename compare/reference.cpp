@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
@@ -12,6 +11,7 @@
 
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/foreign_table.h"
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -225,10 +225,7 @@ CurveDescription read_curve(TableReader in, const fs::path& folder) {
 }
 
 bool ends_its_last_line(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in || in.tellg() <= 0) return false;
-  in.seekg(-1, std::ios::end);
-  return in.get() == '\n';
+  return read_input_file(file, {"a curve", kLargestTable}).ends_with('\n');
 }
 
 // Index of an angle among rising ones, or their number.

@@ -15,6 +15,7 @@
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
@@ -33,11 +34,7 @@ constexpr const char* kPlanFile = "plan.toml";
 constexpr std::size_t kHash = 64;  // hexadecimal digits of a SHA-256
 
 std::optional<std::string> content_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::nullopt;
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  return read_input_file_if_there(file, {"a file of a sweep", kLargestReport});
 }
 
 // Under another name first, which no other process or thread has; then renamed.

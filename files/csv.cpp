@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string_view>
 
 #include "bentaxis/files/foreign_table.h"
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -41,20 +42,29 @@ std::vector<std::string_view> split(std::string_view line) {
 }  // namespace
 
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty) {
-  if (std::filesystem::is_directory(file))
-    throw InputError(file.string() + ": is a folder, not a CSV file");
-  if (!std::ifstream(file))
-    throw InputError(file.string() + ": cannot be read: no such file, or no permission");
-  InputLog::note(file);
+  return numeric_csv_of(read_input_file(file, {"a CSV file", kLargestTable}), file, allow_empty);
+}
+
+NumericTable numeric_csv_of(const std::string& content, const std::filesystem::path& file,
+                            bool allow_empty) {
+  InputLog::note(file, content);
+  if (const auto at = content.find('\0'); at != std::string::npos)
+    throw InputError(file.string() + ":" +
+                     std::to_string(1 + std::count(content.data(), content.data() + at, '\n')) +
+                     ": holds a byte 0: must be text");
   NumericTable table;
   try {
-    io::LineReader reader(file.string());
+    io::LineReader reader(file.string(), content.data(), content.data() + content.size());
     while (char* text = reader.next_line()) {
       const std::string where = file.string() + ":" + std::to_string(reader.get_file_line());
       if (trimmed(text).empty()) continue;
       const auto fields = split(text);
       if (table.header.empty()) {
         table.header.assign(fields.begin(), fields.end());
+        for (const std::string& name : table.header)
+          if (has_control_characters(name, true))
+            throw InputError(where + ": the column name \"" + without_control_characters(name) +
+                             "\" holds a control character");
         continue;
       }
       if (fields.size() != table.header.size())
@@ -66,7 +76,8 @@ NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empt
         const auto field = fields[i];
         const auto value = number_in(field);
         if (!value && !(field.empty() && allow_empty))
-          throw InputError(where + ": " + table.header[i] + " = \"" + std::string(field) +
+          throw InputError(where + ": " + table.header[i] + " = \"" +
+                           without_control_characters(std::string(field)) +
                            "\": must be a finite number");
         row.push_back(value.value_or(not_computed()));
       }
@@ -124,14 +135,14 @@ PressureColumn find_column(const ForeignTable& table, const std::map<std::string
 PressureCurve read_pressure_curve(const std::filesystem::path& file) {
   // A file with our own heading is held to it line by line.
   ForeignTable table;
-  std::string heading;
-  std::getline(std::ifstream(file), heading);
+  const std::string content = read_input_file(file, {"a pressure curve", kLargestTable});
+  const auto heading = std::string_view(content).substr(0, content.find('\n'));
   if (trimmed(heading) == "theta_deg,pressure_bar") {
-    static_cast<NumericTable&>(table) = read_numeric_csv(file);
+    static_cast<NumericTable&>(table) = numeric_csv_of(content, file, false);
     table.file = file;
     table.units = {"deg", "bar"};
   } else {
-    table = read_table(file);
+    table = table_of(content, file);
   }
   const auto angle =
       find_column(table, {{"deg", 1}, {"rad", 1 / kRadPerDegree}, {"turn", 360}, {"gon", 0.9}},

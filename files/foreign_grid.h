@@ -4,6 +4,8 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,8 +44,37 @@ bool parse_number(std::string_view text, char decimal, double& value, int& digit
 
 std::string_view trimmed(std::string_view text);
 
+/// Makes names differ from those before them: "F", "F (2)", "F (3)".
+class DifferentNames {
+ public:
+  DifferentNames() = default;
+  explicit DifferentNames(const std::vector<std::string>& taken)
+      : taken_(taken.begin(), taken.end()) {}
+  std::string different(const std::string& name) {
+    if (taken_.insert(name).second) return name;
+    for (int& again = next_.emplace(name, 2).first->second;; ++again)
+      if (std::string other = name + " (" + std::to_string(again) + ")";
+          taken_.insert(other).second)
+        return other;
+  }
+
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> next_;
+};
+
 ForeignTable read_text(const std::filesystem::path& file, std::string content);
-ForeignTable read_workbook(const std::filesystem::path& file, const std::string& sheet);
-ForeignTable read_matlab(const std::filesystem::path& file, const std::string& wanted);
+ForeignTable read_workbook(const std::filesystem::path& file, const std::string& content,
+                           const std::string& sheet);
+ForeignTable read_matlab(const std::filesystem::path& file, const std::string& content,
+                         const std::string& wanted);
+/// That a MATLAB file is as long as its own structure says, with every element inside the one that
+/// holds it: versions 4, 5 to 7.2 and 7.3, of which HDF5's own end is looked at.
+/// @throws InputError naming file, byte and what is missing
+void check_matlab_structure(const std::filesystem::path& file, const std::string& content);
+
+/// A table has at most this many columns, and a sheet or text this many cells.
+inline constexpr std::size_t kMostColumns = 20000;
+inline constexpr std::size_t kMostCells = 20'000'000;
 
 }  // namespace bentaxis::foreign

@@ -144,8 +144,10 @@ int digits_of(double value, bool single) {
 
 }  // namespace
 
-ForeignTable read_matlab(const std::filesystem::path& file, const std::string& wanted) {
+ForeignTable read_matlab(const std::filesystem::path& file, const std::string& content,
+                         const std::string& wanted) {
   const auto fail = [&](const std::string& why) { throw InputError(file.string() + ": " + why); };
+  check_matlab_structure(file, content);
   Mat_LogInit("bentaxis");
   Mat_LogInitFunc("bentaxis", [](int, char*) {});  // what is wrong is said below
   const std::unique_ptr<mat_t, int (*)(mat_t*)> in(Mat_Open(file.c_str(), MAT_ACC_RDONLY),
@@ -170,6 +172,9 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& w
     if (length >= 3 && list.size() >= 2 && (columns == nullptr || list.size() >= columns->size()))
       columns = &list;
   if (columns == nullptr) fail("has no two vectors of the same length; its variables: " + names);
+  if (columns->size() > kMostColumns)
+    fail("has " + std::to_string(columns->size()) + " vectors of the same length: at most " +
+         std::to_string(kMostColumns) + " are read");
   ForeignTable table;
   table.file = file;
   table.sheet = wanted;
@@ -204,11 +209,8 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& w
     table.rows.push_back(std::move(values));
     table.lines.push_back(static_cast<unsigned>(row + 1));
   }
-  // Names must differ.
-  for (std::size_t i = 0; i < table.header.size(); ++i)
-    for (int again = 2; std::count(table.header.begin(), table.header.end(), table.header[i]) > 1;
-         ++again)
-      table.header[i] += " (" + std::to_string(again) + ")";
+  DifferentNames names_so_far;
+  for (std::string& name : table.header) name = names_so_far.different(name);
   return table;
 }
 

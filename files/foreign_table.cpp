@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/toml_reader.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "foreign_grid.h"
@@ -195,15 +195,13 @@ void read_run(const Grid& grid, const Run& run, std::size_t top, const std::stri
                     [&](const Row& row) { return c < row.cells.size() && row.cells[c].number; }))
       columns.push_back(c);
   const bool first = table.rows.empty();
+  DifferentNames names(table.header);
   for (const std::size_t c : columns) {
     if (!first && c == columns.front()) continue;  // the same in every table
     std::string name =
         heading.names[c].empty() ? "column " + std::to_string(c + 1) : heading.names[c];
     if (!title.empty() && c != columns.front()) name.insert(0, title + ".");
-    const std::string stem = name;
-    for (int again = 2;
-         std::find(table.header.begin(), table.header.end(), name) != table.header.end(); ++again)
-      name = stem + " (" + std::to_string(again) + ")";
+    name = names.different(name);
     table.header.push_back(name);
     table.units.push_back(heading.units[c].empty() ? unit_in_name(name) : heading.units[c]);
   }
@@ -313,8 +311,8 @@ void fill(const Grid& grid, ForeignTable& table) {
                      ": holds no table of numbers");
   const Run main = *longest;
   // Lines of a title may hold numbers too; of the table's own width they are rows.
-  std::erase_if(runs, [&](const Run& run) {
-    return run.begin < main.begin && width_of(grid, run) != width_of(grid, main) && run.rows < 3;
+  std::erase_if(runs, [&, width = width_of(grid, main)](const Run& run) {
+    return run.begin < main.begin && run.rows < 3 && width_of(grid, run) != width;
   });
   const bool several = runs.size() > 1 && std::all_of(runs.begin(), runs.end(), [&](const Run& r) {
                          return same_first_column(grid, runs.front(), r);
@@ -446,24 +444,23 @@ std::string unit_in_name(const std::string& name) {
 }
 
 ForeignTable read_table(const std::filesystem::path& file, const std::string& sheet) {
-  if (std::filesystem::is_directory(file))
-    throw InputError(file.string() + ": is a folder, not a table");
-  InputLog::note(file);
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
-  std::ostringstream whole;
-  whole << in.rdbuf();
-  std::string content = std::move(whole).str();
+  return table_of(read_input_file(file, {"a table", kLargestTable}), file, sheet);
+}
+
+namespace {
+
+ForeignTable unchecked_table_of(std::string content, const std::filesystem::path& file,
+                                const std::string& sheet) {
   const auto starts = [&](std::string_view what) {
     return std::string_view(content).substr(0, what.size()) == what;
   };
-  if (starts("PK\x03\x04")) return foreign::read_workbook(file, sheet);
+  if (starts("PK\x03\x04")) return foreign::read_workbook(file, content, sheet);
   std::string extension = file.extension();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (starts("MATLAB ") || starts("\x89HDF") ||
       (extension == ".mat" && content.find('\0') != std::string::npos))
-    return foreign::read_matlab(file, sheet);
+    return foreign::read_matlab(file, content, sheet);
   if (starts("\xD0\xCF\x11\xE0"))
     throw InputError(file.string() + ": is an .xls of before 2007: save it as .xlsx or as CSV");
   if (starts("# Created by Octave"))
@@ -471,6 +468,28 @@ ForeignTable read_table(const std::filesystem::path& file, const std::string& sh
   if (!sheet.empty())
     throw InputError(file.string() + ": is text and has no sheet \"" + sheet + "\"");
   return foreign::read_text(file, std::move(content));
+}
+
+// Tab and line feed become blanks, as in a workbook's cell of two lines.
+std::string plain_name(std::string name, const std::filesystem::path& file, const char* what) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  if (!is_utf8(name)) name = utf8_of_windows_1252(name);
+  if (has_control_characters(name, true))
+    throw InputError(file.string() + ": the " + what + " \"" + without_control_characters(name) +
+                     "\" holds a control character");
+  return name;
+}
+
+}  // namespace
+
+ForeignTable table_of(const std::string& content, const std::filesystem::path& file,
+                      const std::string& sheet) {
+  InputLog::note(file, content);
+  ForeignTable table = unchecked_table_of(content, file, sheet);
+  for (std::string& name : table.header) name = plain_name(name, file, "column name");
+  for (std::string& unit : table.units) unit = plain_name(unit, file, "unit");
+  return table;
 }
 
 }  // namespace bentaxis

@@ -3,6 +3,7 @@
 #include <array>
 #include <set>
 
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "foreign_grid.h"
 
@@ -113,9 +114,32 @@ std::string as_utf8(const std::string& content, bool big_endian) {
   return out;
 }
 
+// Characters behind the decimal point, with an exponent; 0 without one.
+std::size_t decimals(std::string_view field, char decimal) {
+  const auto point = field.rfind(decimal);
+  return point == std::string_view::npos ? 0 : field.size() - point;
+}
+
+// Whether the last of some numbers is cut: those before it all have one length behind their point,
+// and it has less. Asked where a text does not end its last line.
+bool last_is_cut(const std::vector<std::string_view>& numbers, char decimal) {
+  constexpr std::size_t kTelling = 7;  // as few as these show no format
+  if (numbers.size() < kTelling) return false;
+  const std::size_t length = decimals(numbers.front(), decimal);
+  return std::all_of(numbers.begin(), numbers.end() - 1,
+                     [&](auto number) { return decimals(number, decimal) == length; }) &&
+         decimals(numbers.back(), decimal) < length;
+}
+
+[[noreturn]] void refuse_cut_number(const std::string& place) {
+  throw InputError(place +
+                   ": the last line does not end, and its last number is shorter than those above "
+                   "it: the file is truncated");
+}
+
 // A request file: a line with the time alone, then a line per request with its number and values;
 // the same requests at each time. Becomes one row per time. False where the text is none.
-bool requests(const std::vector<Line>& lines, Grid& grid) {
+bool requests(const std::vector<Line>& lines, bool ended, Grid& grid) {
   struct Block {
     Line time;
     std::vector<Line> lines;
@@ -123,6 +147,18 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
   std::vector<Block> blocks;
   std::vector<std::string_view> fields;
   std::size_t width = 0;
+  // Once three times have been as long as each other this is a request file, and nothing else.
+  const auto established = [&] {
+    if (blocks.size() < 4 || width < 4) return false;
+    const std::size_t length = blocks[blocks.size() - 2].lines.size();
+    return length > 0 && blocks[blocks.size() - 3].lines.size() == length &&
+           blocks[blocks.size() - 4].lines.size() == length;
+  };
+  const auto refuse = [&](const Line& line) {
+    throw InputError(grid.place({line.number, {}}, 0) + ": " + std::to_string(fields.size()) +
+                     " fields, other lines have " + std::to_string(width) +
+                     " numbers, the first of them a request's: is the file truncated?");
+  };
   for (const Line& line : lines) {
     split(line.text, ' ', fields);
     double value = 0;
@@ -131,6 +167,7 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
       return parse_number(field, '.', value, digits);
     });
     if (!all) {
+      if (!fields.empty() && established()) refuse(line);
       if (!fields.empty() && blocks.size() > 2) return false;
       if (!fields.empty()) blocks.clear();
       continue;
@@ -141,8 +178,10 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
       if (blocks.empty()) continue;
       if (width == 0) width = fields.size();
       if (fields.size() != width ||
-          fields.front().find_first_not_of("0123456789") != std::string_view::npos)
+          fields.front().find_first_not_of("0123456789") != std::string_view::npos) {
+        if (established()) refuse(line);
         return false;
+      }
       blocks.back().lines.push_back(line);
     }
   }
@@ -154,6 +193,16 @@ bool requests(const std::vector<Line>& lines, Grid& grid) {
                        std::string(trimmed(block.time.text)) + " has " +
                        std::to_string(block.lines.size()) + " requests, others have " +
                        std::to_string(blocks.front().lines.size()));
+  if (!ended) {
+    std::vector<std::string_view> last_numbers;
+    for (const Block& block : blocks)
+      for (const Line& line : block.lines) {
+        split(line.text, ' ', fields);
+        last_numbers.push_back(fields.back());
+      }
+    if (last_is_cut(last_numbers, '.'))
+      refuse_cut_number(grid.place({blocks.back().lines.back().number, {}}, 0));
+  }
   // The eight values of a request of forces, displacements or functions.
   constexpr std::array<const char*, 8> kComponents = {"MAG",  "X",  "Y",  "Z",
                                                       "RMAG", "RX", "RY", "RZ"};
@@ -194,7 +243,10 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   const auto starts = [&](std::string_view what) {
     return std::string_view(content).substr(0, what.size()) == what;
   };
-  if (starts("\xFF\xFE") || starts("\xFE\xFF")) content = as_utf8(content, starts("\xFE\xFF"));
+  if (starts("\xFF\xFE") || starts("\xFE\xFF"))
+    content = as_utf8(content, starts("\xFE\xFF"));
+  else if (!is_utf8(content))
+    content = utf8_of_windows_1252(content);
   if (starts("\xEF\xBB\xBF")) content.erase(0, 3);
   if (content.find('\0') != std::string::npos)
     throw InputError(file.string() +
@@ -207,7 +259,8 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   grid.place = [&](const Row& row, std::size_t) {
     return file.string() + ":" + std::to_string(row.line);
   };
-  if (requests(lines, grid)) {
+  const bool ended = content.back() == '\n';
+  if (requests(lines, ended, grid)) {
     table.format = "ADAMS request file";
     fill(grid, table);
     return table;
@@ -226,15 +279,31 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
   grid.blanks = best->separator == ' ';
   grid.fixed_width = true;
   std::vector<std::string_view> fields;
+  std::size_t cells = 0;
   for (const Line& line : lines) {
     split(line.text, best->separator, fields);
     Row row{line.number, {}};
+    cells += fields.size();
+    if (fields.size() > kMostColumns || cells > kMostCells)
+      throw InputError(grid.place(row, 0) + ": a table has at most " +
+                       std::to_string(kMostColumns) + " columns and " + std::to_string(kMostCells) +
+                       " fields");
     for (const auto field : fields) {
       Cell cell{field};
       cell.number = parse_number(field, best->decimal, cell.value, cell.digits);
       row.cells.push_back(cell);
     }
     grid.rows.push_back(std::move(row));
+  }
+  if (!ended) {
+    const std::size_t width = grid.rows.back().cells.size();
+    std::vector<std::string_view> last_numbers;
+    for (const Row& row : grid.rows)
+      if (row.cells.size() == width && width > 0 && row.cells.back().number)
+        last_numbers.push_back(row.cells.back().text);
+    if (width > 0 && grid.rows.back().cells.back().number &&
+        last_is_cut(last_numbers, best->decimal))
+      refuse_cut_number(grid.place(grid.rows.back(), 0));
   }
   fill(grid, table);
   return table;

@@ -3,9 +3,11 @@
 
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <pugixml.hpp>
 
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -15,21 +17,27 @@ namespace bentaxis::foreign {
 namespace {
 
 // A part of a workbook that is longer than this when unpacked is no table of curves.
-constexpr zip_uint64_t kLargestPart = 1ULL << 30;
+constexpr zip_uint64_t kLargestPart = 256 * kMebibyte;
 
 class Archive {
  public:
-  explicit Archive(const std::filesystem::path& file) : file_(file.string()) {
-    int error = 0;
-    archive_.reset(zip_open(file_.c_str(), ZIP_RDONLY, &error));
-    if (!archive_) fail("is a damaged zip archive");
+  /// `content` must outlive it.
+  Archive(const std::filesystem::path& file, const std::string& content) : file_(file.string()) {
+    zip_source_t* const source =
+        zip_source_buffer_create(content.data(), content.size(), 0, nullptr);
+    if (source == nullptr) throw std::bad_alloc();
+    archive_.reset(zip_open_from_source(source, ZIP_RDONLY, nullptr));
+    if (archive_) return;
+    zip_source_free(source);
+    fail("is a damaged or truncated zip archive");
   }
   [[noreturn]] void fail(const std::string& why) const { throw InputError(file_ + ": " + why); }
 
   std::optional<std::string> part(const std::string& name) const {
     zip_stat_t facts;
     if (zip_stat(archive_.get(), name.c_str(), 0, &facts) != 0) return std::nullopt;
-    if (facts.size > kLargestPart) fail(name + " is too large");
+    if ((facts.valid & ZIP_STAT_SIZE) == 0 || facts.size > kLargestPart)
+      fail(name + " is larger than 256 MiB when unpacked");
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> in(
         zip_fopen(archive_.get(), name.c_str(), 0), zip_fclose);
     std::string text(facts.size, '\0');
@@ -92,7 +100,7 @@ std::pair<std::size_t, unsigned> cell_place(std::string_view reference) {
   for (const char c : reference) {
     if (c >= 'A' && c <= 'Z') column = column * 26 + static_cast<std::size_t>(c - 'A' + 1);
     if (c >= '0' && c <= '9') row = row * 10 + static_cast<unsigned>(c - '0');
-    if (column > 20000) break;
+    if (column > kMostColumns) break;
   }
   return {column == 0 ? 0 : column - 1, row};
 }
@@ -136,6 +144,7 @@ Grid grid_of(const Archive& archive, const std::filesystem::path& file, const Sh
     return grid.storage.back();
   };
   unsigned line = 0;
+  std::size_t cells = 0;
   bool comma = false;  // numbers that are texts may have a decimal comma
   for (const auto& row : child(document->document_element(), "sheetData").children()) {
     if (local(row) != "row") continue;
@@ -147,7 +156,9 @@ Grid grid_of(const Archive& archive, const std::filesystem::path& file, const Sh
       const std::string_view reference = cell.attribute("r").value();
       const std::size_t column = reference.empty() ? next : cell_place(reference).first;
       next = column + 1;
-      if (column > 20000) archive.fail("sheet " + sheet.name + ": more than 20000 columns");
+      if (column >= kMostColumns)
+        archive.fail("sheet " + sheet.name + ": more than " + std::to_string(kMostColumns) +
+                     " columns");
       const std::string_view type = cell.attribute("t").value();
       std::string text =
           type == "inlineStr" ? text_of(child(cell, "is")) : child(cell, "v").child_value();
@@ -169,7 +180,13 @@ Grid grid_of(const Archive& archive, const std::filesystem::path& file, const Sh
                            "\": a decimal point, where others have a decimal comma");
         }
       }
-      if (out.cells.size() <= column) out.cells.resize(column + 1);
+      if (out.cells.size() <= column) {
+        cells += column + 1 - out.cells.size();
+        if (cells > kMostCells)
+          archive.fail("sheet " + sheet.name + ": more than " + std::to_string(kMostCells) +
+                       " cells");
+        out.cells.resize(column + 1);
+      }
       out.cells[column] = value;
     }
     grid.rows.push_back(std::move(out));
@@ -189,8 +206,9 @@ bool has_numbers(const Grid& grid) {
 
 }  // namespace
 
-ForeignTable read_workbook(const std::filesystem::path& file, const std::string& sheet) {
-  const Archive archive(file);
+ForeignTable read_workbook(const std::filesystem::path& file, const std::string& content,
+                           const std::string& sheet) {
+  const Archive archive(file, content);
   const auto sheets = sheets_of(archive);
   std::vector<std::string> shared;
   if (const auto texts = archive.xml("xl/sharedStrings.xml"))

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <mutex>
 #include <optional>
+
+#include "bentaxis/files/input_file.h"
+#include "bentaxis/pump/error.h"
 
 namespace bentaxis {
 namespace {
@@ -40,11 +41,21 @@ std::vector<InputFile> InputLog::files() {
 }
 
 void InputLog::note(const std::filesystem::path& file) {
+  {
+    const std::lock_guard lock(the_log().mutex);
+    if (!the_log().files) return;
+  }
+  try {
+    note(file, read_input_file(file, {"an input file", kLargestReport}));
+  } catch (const InputError&) {  // it has gone since it was read
+  }
+}
+
+void InputLog::note(const std::filesystem::path& file, const std::string& content) {
   const std::lock_guard lock(the_log().mutex);
   auto& files = the_log().files;
   if (!files) return;
-  std::ifstream in(file, std::ios::binary);
-  const InputFile read{file, sha256_of({std::istreambuf_iterator<char>(in), {}})};
+  const InputFile read{file, sha256_of(content)};
   const bool known = std::any_of(files->begin(), files->end(), [&](const InputFile& other) {
     return other.file == read.file && other.sha256 == read.sha256;
   });

@@ -1,11 +1,9 @@
 #include "bentaxis/files/kept_case.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "bentaxis/files/case_writer.h"
-#include "bentaxis/pump/error.h"
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/pump/registry.h"
 
 namespace bentaxis {
@@ -29,11 +27,7 @@ std::string name_for(const std::filesystem::path& file,
 }  // namespace
 
 std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream bytes;
-  if (!in || !(bytes << in.rdbuf()))
-    throw InputError(file.string() + ": cannot be read: no such file, or no permission");
-  return bytes.str();
+  return read_input_file(file, {"an input file", kLargestTable});
 }
 
 KeptCase kept_case(const Case& the_case) {

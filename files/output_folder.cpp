@@ -10,10 +10,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <memory>
-#include <sstream>
 
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 
@@ -134,9 +133,13 @@ std::vector<fs::path> OutputFolder::superseded(const std::string& record,
   const fs::path old_record = folder_ / record;
   const auto written = fs::last_write_time(old_record, error);
   if (record.empty() || !names_in || error) return files;
-  std::ostringstream text;
-  text << std::ifstream(old_record, std::ios::binary).rdbuf();
-  for (const fs::path name : names_in(text.str())) {
+  std::string text;
+  try {
+    text = read_input_file(old_record, {"a report", kLargestReport});
+  } catch (const InputError&) {
+    return files;  // it is no record
+  }
+  for (const fs::path name : names_in(text)) {
     if (name.empty() || name != name.filename() || name == "." || name == "..") continue;
     const fs::path file = folder_ / name;
     const bool in_this_set =

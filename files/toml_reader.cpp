@@ -5,17 +5,143 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <sstream>
 
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
 
 namespace bentaxis {
 namespace {
+
+// Tables and lists below each other. What reads, prints or frees them calls itself for each level.
+constexpr int kDeepest = 32;
+// Entries of a list, and keys of a table.
+constexpr std::size_t kLongestList = 10000;
+// A message shows no more of a value than this, in bytes.
+constexpr std::size_t kShown = 80;
+
+// The parser makes a level of each part of a dotted key and of each bracket, however many there
+// are: they are counted before it reads. What is no TOML at all is left to the parser.
+class Depth {
+ public:
+  explicit Depth(std::string_view text) : text_(text) {}
+
+  // The first line that is too deep; 0 where none is.
+  std::size_t line_too_deep() {
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+        continue;
+      }
+      if (c == '"' || c == '\'') {
+        skip_text(c);
+        continue;
+      }
+      if (c == '\n') ++line_;
+      if (c == '.') ++dots_;
+      if (c == '[' || c == '{') {
+        outside_.push_back(dots_);
+        ++depth_of_outside_;
+        depth_of_outside_ += dots_;
+        dots_ = 0;
+      } else if ((c == ']' || c == '}') && !outside_.empty()) {
+        dots_ = outside_.back();
+        depth_of_outside_ -= dots_ + 1;
+        outside_.pop_back();
+      } else if (c == ',' || c == '\n') {
+        dots_ = 0;
+      }
+      if (depth_of_outside_ + dots_ > kDeepest) return line_;
+      ++at_;
+    }
+    return 0;
+  }
+
+ private:
+  // To behind a text in quotes, of one line or of several.
+  void skip_text(char quote) {
+    const std::string three(3, quote);
+    const bool several_lines = text_.substr(at_, 3) == three;
+    at_ += several_lines ? 3 : 1;
+    for (; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '\n') {
+        if (!several_lines) return;  // the parser refuses it
+        ++line_;
+      }
+      if (text_[at_] == '\\' && quote == '"') {
+        ++at_;
+        if (at_ < text_.size() && text_[at_] == '\n') ++line_;
+      } else if (several_lines ? text_.substr(at_, 3) == three : text_[at_] == quote) {
+        at_ += several_lines ? 3 : 1;
+        return;
+      }
+    }
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0, line_ = 1;
+  int dots_ = 0, depth_of_outside_ = 0;
+  std::vector<int> outside_;
+};
+
+// Throws a text that says what is wrong with a parsed node and those below it, and its line.
+struct Refusal {
+  std::size_t line;
+  std::string why;
+};
+
+void check_text(const std::string& text, std::size_t line, const char* what) {
+  if (has_control_characters(text, false))
+    throw Refusal{line, std::string(what) + " " + toml_text(text).substr(0, kShown) +
+                            " holds a control character"};
+}
+
+void check_node(const toml::node& node, int depth) {
+  const std::size_t line = node.source().begin.line;
+  if (depth > kDeepest)
+    throw Refusal{
+        line, "tables and lists lie more than " + std::to_string(kDeepest) + " deep in each other"};
+  const auto check_length = [&](const char* what, std::size_t size) {
+    if (size > kLongestList)
+      throw Refusal{line, std::string(what) + " of " + std::to_string(size) +
+                              " entries: must have at most " + std::to_string(kLongestList)};
+  };
+  if (const toml::table* const table = node.as_table(); table != nullptr) {
+    check_length("a table", table->size());
+    for (const auto& [key, below] : *table) {
+      check_text(std::string(key.str()), below.source().begin.line, "the key");
+      check_node(below, depth + 1);
+    }
+  } else if (const toml::array* const array = node.as_array(); array != nullptr) {
+    check_length("a list", array->size());
+    for (const toml::node& below : *array) check_node(below, depth + 1);
+  } else if (const auto* const text = node.as_string(); text != nullptr) {
+    check_text(text->get(), line, "the text");
+  }
+}
+
+// The one place where TOML is parsed.
+toml::table parsed_toml(const std::string& text, const std::string& file) {
+  if (const std::size_t line = Depth(text).line_too_deep(); line > 0)
+    throw Refusal{line, "keys, tables or lists lie more than " + std::to_string(kDeepest) +
+                            " deep in each other"};
+  toml::table table = toml::parse(text, file);
+  check_node(table, 0);
+  return table;
+}
+
+std::string shortened(const std::string& text) {
+  if (text.size() <= kShown) return text;
+  std::size_t end = kShown;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return text.substr(0, end) + "..";
+}
 
 // A number at the start of a text as it is written there; empty where it is another one.
 std::string literal(const std::string& text, std::size_t at, double value) {
@@ -26,23 +152,6 @@ std::string literal(const std::string& text, std::size_t at, double value) {
   char* end = nullptr;
   const bool same = !digits.empty() && std::strtod(digits.c_str(), &end) == value && *end == 0;
   return same ? word : "";
-}
-
-// Place of a position in a text; columns count characters, which are one byte or more.
-std::size_t offset_of(const std::string& text, const toml::source_position& position) {
-  std::size_t at = 0;
-  for (toml::source_index line = 1; line < position.line; ++line) {
-    at = text.find('\n', at);
-    if (at == std::string::npos) return text.size();
-    ++at;
-  }
-  const auto starts_character = [&](std::size_t i) {
-    return (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
-  };
-  for (toml::source_index column = 1; column < position.column && at < text.size(); ++column) do
-      ++at;
-    while (at < text.size() && !starts_character(at));
-  return at;
 }
 
 std::string quoted(const toml::node& node) {
@@ -93,11 +202,38 @@ std::string one_line(const std::string& text) {
   return plain ? text : toml_text(text);
 }
 
+// Places of positions in a text; columns count characters, which are one byte or more. Goes on from
+// the position before where it can: values are asked for in their order, more or less.
+class Offsets {
+ public:
+  std::size_t of(const std::string& text, const toml::source_position& position) {
+    if (position.line < line_ || (position.line == line_ && position.column < column_)) *this = {};
+    for (; line_ < position.line; ++line_) {
+      const std::size_t end = text.find('\n', at_);
+      if (end == std::string::npos) return text.size();
+      at_ = end + 1;
+      column_ = 1;
+    }
+    const auto starts_character = [&](std::size_t i) {
+      return (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+    };
+    for (; column_ < position.column && at_ < text.size(); ++column_) do
+        ++at_;
+      while (at_ < text.size() && !starts_character(at_));
+    return at_;
+  }
+
+ private:
+  std::size_t at_ = 0;
+  toml::source_index line_ = 1, column_ = 1;
+};
+
 // A parsed file, and what was changed in it: "pump.tilt_deg" -> the value as given.
 struct Document {
   std::string text;
   toml::table table;
   std::map<std::string, std::string> changes;
+  Offsets offsets = {};
 };
 
 struct TableReader::Node {
@@ -265,7 +401,7 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
 TableReader TableReader::below(const std::string& key, const Node& node) {
   const std::string name = (name_.empty() ? "" : name_ + ".") + key;
   if (!node.node->is_table())
-    throw InputError(place(line_of(*node.node)) + name + " = " + quoted(*node.node) +
+    throw InputError(place(line_of(*node.node)) + name + " = " + shortened(quoted(*node.node)) +
                      ": must be a table [" + name + "]");
   return {file_, name, std::make_shared<const Node>(node), line_of(*node.node), entries_};
 }
@@ -322,7 +458,9 @@ std::string TableReader::label(const std::string& key) const {
 
 void TableReader::fail_at(const Node& node, const std::string& key, const std::string& why) const {
   if (change_of(key) != nullptr) throw InputError(place_of(node, key) + why);
-  throw InputError(place_of(node, key) + label(key) + " = " + written(node, key) + ": " + why);
+  // Of a list only the beginning, which is not worth the time that all of it takes.
+  throw InputError(place_of(node, key) + label(key) + " = " + shortened(written(node, key)) + ": " +
+                   why);
 }
 
 const std::string* TableReader::change_of(const std::string& key) const {
@@ -346,7 +484,8 @@ std::string TableReader::written(const Node& node, const std::string& key) const
   std::string word =
       change != nullptr
           ? literal(*change, 0, value)
-          : literal(node.file->text, offset_of(node.file->text, node.node->source().begin), value);
+          : literal(node.file->text,
+                    node.file->offsets.of(node.file->text, node.node->source().begin), value);
   if (!word.empty()) return word;
   return node.node->is_integer() || !std::isfinite(value) ? quoted(*node.node) : number_text(value);
 }
@@ -354,7 +493,7 @@ std::string TableReader::written(const Node& node, const std::string& key) const
 // Where a value comes from: file and line, or the change with the value as given.
 std::string TableReader::place_of(const Node& node, const std::string& key) const {
   if (const std::string* value = change_of(key); value != nullptr)
-    return "--set " + (name_.empty() ? "" : name_ + ".") + key + "=" + *value + ": ";
+    return "--set " + (name_.empty() ? "" : name_ + ".") + key + "=" + shortened(*value) + ": ";
   return place(line_of(*node.node));
 }
 
@@ -399,7 +538,7 @@ void TableReader::record(const std::string& key, std::string value, bool by_defa
 TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(std::move(file)) {
   try {
     const auto document =
-        std::make_shared<Document>(Document{text, toml::parse(text, file_.string()), {}});
+        std::make_shared<Document>(Document{text, parsed_toml(text, file_.string()), {}});
     root_ =
         std::make_shared<const TableReader::Node>(TableReader::Node{document, &document->table});
   } catch (const toml::parse_error& error) {
@@ -408,18 +547,17 @@ TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(
     std::replace(what.begin(), what.end(), '\n', ' ');
     throw InputError(file_.string() + ":" + std::to_string(error.source().begin.line) + ": " +
                      what);
+  } catch (const Refusal& refusal) {
+    throw InputError(file_.string() + (refusal.line > 0 ? ":" + std::to_string(refusal.line) : "") +
+                     ": " + refusal.why);
   }
 }
 
 TomlFile TomlFile::read(const std::filesystem::path& file, const std::string& what) {
-  if (std::filesystem::is_directory(file))
-    throw InputError(file.string() + ": is a folder, not a " + what);
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
-  std::ostringstream text;
-  text << in.rdbuf();
-  InputLog::note(file);
-  return {text.str(), file};
+  const std::string name = "a " + what;
+  const std::string text = read_input_file(file, {name.c_str(), kLargestSettings});
+  InputLog::note(file, text);
+  return {text, file};
 }
 
 void TomlFile::change(const std::string& table, const std::string& key, const std::string& value) {
@@ -428,14 +566,18 @@ void TomlFile::change(const std::string& table, const std::string& key, const st
   const std::string name = table.empty() ? key : table + "." + key;
   toml::table parsed;
   try {
-    parsed = toml::parse("value = " + value);
-  } catch (const toml::parse_error&) {
     try {
-      parsed = toml::parse("value = " + toml_text(value));  // a bare word
+      parsed = parsed_toml("value = " + value, "");
     } catch (const toml::parse_error&) {
+      try {
+        parsed = parsed_toml("value = " + toml_text(value), "");  // a bare word
+      } catch (const toml::parse_error&) {
+      }
+      if (parsed["value"].value<std::string>() != value)
+        throw InputError("--set " + name + ": must be text in UTF-8");
     }
-    if (parsed["value"].value<std::string>() != value)
-      throw InputError("--set " + name + ": must be text in UTF-8");
+  } catch (const Refusal& refusal) {
+    throw InputError("--set " + name + ": " + refusal.why);
   }
   if (parsed.size() != 1) throw InputError("--set " + name + ": must be one value");
   parent->insert_or_assign(key, std::move(*parsed.get("value")));

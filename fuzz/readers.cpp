@@ -1,46 +1,93 @@
 #include "readers.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
+#include <zip.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <filesystem>
+#include <list>
 #include <string>
+#include <string_view>
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/foreign_table.h"
+#include "bentaxis/fmu/slave.h"
 #include "bentaxis/pump/case.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/results/result_table.h"
+#include "scratch.h"
+#include "unpacked.h"
 
 namespace bentaxis::fuzz {
 namespace {
 
-// Fails in every build type, with a place for the fuzzer to report.
-void require(bool condition, const char* what) {
-  if (condition) return;
-  std::fprintf(stderr, "fuzz: %s\n", what);
-  std::abort();
+void check_table(const ForeignTable& table) {
+  require(table.rows.size() == table.lines.size() && table.header.size() == table.units.size() &&
+              table.header.size() == table.digits.size(),
+          "table is not complete");
+  for (const auto& row : table.rows)
+    require(row.size() == table.header.size(), "row of a table is not complete");
+  for (const auto* names : {&table.header, &table.units})
+    for (const std::string& name : *names)
+      require(is_utf8(name) && !has_control_characters(name, true), "name is no plain text");
 }
 
-// A file that holds the bytes; it lives in memory, so that the disk does not set the pace.
-std::filesystem::path file_with(const std::uint8_t* data, std::size_t size) {
-  static const int handle = memfd_create("fuzz", 0);
-  require(handle >= 0 && ftruncate(handle, 0) == 0, "no scratch file");
-  require(pwrite(handle, data, size, 0) == static_cast<ssize_t>(size), "scratch file not written");
-  return "/proc/self/fd/" + std::to_string(handle);
+// Reads a table; where it is refused, with a message of one line.
+void read_as_table(const std::filesystem::path& file) {
+  try {
+    check_table(read_table(file));
+  } catch (const InputError& error) {
+    check_message(error);
+  }
 }
 
-void check_message(const std::exception& error) {
-  const std::string what = error.what();
-  require(!what.empty(), "message is empty");
-  require(what.find('\n') == std::string::npos, "message has more than one line");
+bool is_archive(const std::uint8_t* data, std::size_t size) {
+  return size >= 2 && data[0] == 'P' && data[1] == 'K';
+}
+
+// An archive of parts, each behind a line "--- NAME".
+std::string archive_of(const std::string& parts) {
+  constexpr std::string_view kLine = "--- ";
+  zip_source_t* const target = zip_source_buffer_create(nullptr, 0, 0, nullptr);
+  require(target != nullptr, "no memory");
+  zip_source_keep(target);
+  zip_t* const archive = zip_open_from_source(target, ZIP_TRUNCATE, nullptr);
+  require(archive != nullptr, "no archive");
+  std::list<std::string> contents;  // until the archive is closed
+  for (std::size_t at = parts.find(kLine); at != std::string::npos;) {
+    const std::size_t end_of_name = std::min(parts.find('\n', at), parts.size());
+    const std::string name = parts.substr(at + kLine.size(), end_of_name - at - kLine.size());
+    const std::size_t next = parts.find("\n" + std::string(kLine), end_of_name);
+    const std::size_t begin = std::min(end_of_name + 1, parts.size());
+    contents.push_back(parts.substr(begin, std::max(next, begin) - begin));
+    zip_source_t* const content =
+        zip_source_buffer(archive, contents.back().data(), contents.back().size(), 0);
+    const zip_int64_t index = zip_file_add(archive, name.c_str(), content, ZIP_FL_ENC_GUESS);
+    if (index < 0)
+      zip_source_free(content);  // no name, or one that is there already
+    else
+      zip_set_file_compression(archive, static_cast<zip_uint64_t>(index), ZIP_CM_STORE, 0);
+    at = next == std::string::npos ? next : next + 1;
+  }
+  std::string bytes;
+  if (zip_close(archive) != 0) {
+    zip_discard(archive);
+  } else if (zip_source_open(target) == 0) {
+    zip_stat_t facts;
+    zip_source_stat(target, &facts);
+    bytes.resize(facts.size);
+    require(zip_source_read(target, bytes.data(), bytes.size()) ==
+                static_cast<zip_int64_t>(bytes.size()),
+            "archive cannot be read back");
+    zip_source_close(target);
+  }
+  zip_source_free(target);
+  return bytes;
 }
 
 }  // namespace
@@ -92,16 +139,7 @@ void read_as_csv(const std::uint8_t* data, std::size_t size) {
       check_message(error);
     }
   }
-  try {
-    const ForeignTable table = read_table(file);
-    require(table.rows.size() == table.lines.size() && table.header.size() == table.units.size() &&
-                table.header.size() == table.digits.size(),
-            "table is not complete");
-    for (const auto& row : table.rows)
-      require(row.size() == table.header.size(), "row of a table is not complete");
-  } catch (const InputError& error) {
-    check_message(error);
-  }
+  read_as_table(file);
 }
 
 void read_as_curve(const std::uint8_t* data, std::size_t size) {
@@ -178,6 +216,42 @@ void read_as_states(const std::uint8_t* data, std::size_t size) {
   } catch (const InputError& error) {
     check_message(error);
   } catch (const ComputationError& error) {
+    check_message(error);
+  }
+}
+
+void read_as_matlab(const std::uint8_t* data, std::size_t size) {
+  read_as_table(named_file_with("record.mat", data, size));
+}
+
+void read_as_workbook(const std::uint8_t* data, std::size_t size) {
+  if (is_archive(data, size)) {
+    read_as_table(file_with(data, size));
+    return;
+  }
+  const std::string archive = archive_of({reinterpret_cast<const char*>(data), size});
+  read_as_table(file_with(reinterpret_cast<const std::uint8_t*>(archive.data()), archive.size()));
+}
+
+void read_as_fmu(const std::uint8_t* data, std::size_t size) {
+  try {
+    std::string xml(reinterpret_cast<const char*>(data), size);
+    if (is_archive(data, size)) {
+      constexpr std::uint64_t kMost = 1ULL << 20U;
+      const fmu::Unpacked unpacked(file_with(data, size), kMost);
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(unpacked.folder()))
+        require(entry.is_directory() || entry.is_regular_file(), "unpacked what is no file");
+      xml = unpacked.description();
+    }
+    const fmu::UnitDescription description = fmu::read_description(xml, "fuzz.fmu");
+    require(description.version == 2 || description.version == 3, "of no known version");
+    require(description.identifier.find('/') == std::string::npos, "identifier is a path");
+    for (const fmu::UnitVariable& variable : description.variables) {
+      require(description.find(variable.name) != nullptr, "variable is not found by its name");
+      require(!has_control_characters(variable.name, true), "name is no plain text");
+      if (variable.measure) require(variable.measure->factor != 0, "unit has no size");
+    }
+  } catch (const InputError& error) {
     check_message(error);
   }
 }

@@ -28,4 +28,25 @@ void read_as_drive(const std::uint8_t* data, std::size_t size);
 /// be finite or end in a ComputationError, and their table must read back.
 void read_as_states(const std::uint8_t* data, std::size_t size);
 
+/// Reads bytes as a MATLAB file, of any version.
+void read_as_matlab(const std::uint8_t* data, std::size_t size);
+
+/// Reads bytes as an Excel workbook: as its archive where they begin as one, else as its parts in
+/// plain text, each behind a line "--- NAME", from which the archive is made.
+void read_as_workbook(const std::uint8_t* data, std::size_t size);
+
+/// Reads bytes as an FMU's archive where they begin as one, else as its modelDescription.xml.
+void read_as_fmu(const std::uint8_t* data, std::size_t size);
+
+/// Reads bytes as a finished block of a sweep. The SHA-256 at its end is made right, so that the
+/// reader does not end there.
+void read_as_block(const std::uint8_t* data, std::size_t size);
+
+/// Reads bytes as a study file of sweep. Where it is accepted, the plan is written, read again and
+/// must be the same.
+void read_as_study(const std::uint8_t* data, std::size_t size);
+
+/// Reads bytes as a file of data of identify.
+void read_as_data(const std::uint8_t* data, std::size_t size);
+
 }  // namespace bentaxis::fuzz

@@ -1,6 +1,6 @@
 // Runs a committed corpus and seeded mutations of it through a reader: a fuzzer without a compiler
 // of its own, the same every time.
-//   fuzz_replay case|csv|curve|drive|set|states FOLDER MUTATIONS
+//   fuzz_replay KIND FOLDER MUTATIONS    kinds: as the folders of the corpus
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -83,9 +83,14 @@ int main(int argc, char** argv) {
   const std::map<std::string, Reader> readers = {
       {"case", bentaxis::fuzz::read_as_case},   {"csv", bentaxis::fuzz::read_as_csv},
       {"curve", bentaxis::fuzz::read_as_curve}, {"drive", bentaxis::fuzz::read_as_drive},
-      {"set", bentaxis::fuzz::read_as_change},  {"states", bentaxis::fuzz::read_as_states}};
+      {"set", bentaxis::fuzz::read_as_change},  {"states", bentaxis::fuzz::read_as_states},
+      {"mat", bentaxis::fuzz::read_as_matlab},  {"xlsx", bentaxis::fuzz::read_as_workbook},
+      {"fmu", bentaxis::fuzz::read_as_fmu},     {"block", bentaxis::fuzz::read_as_block},
+      {"study", bentaxis::fuzz::read_as_study}, {"data", bentaxis::fuzz::read_as_data}};
   if (argc != 4 || readers.count(argv[1]) == 0) {
-    std::fprintf(stderr, "usage: fuzz_replay case|csv|curve|drive|set|states FOLDER MUTATIONS\n");
+    std::string kinds;
+    for (const auto& [kind, reader] : readers) kinds += (kinds.empty() ? "" : "|") + kind;
+    std::fprintf(stderr, "usage: fuzz_replay %s FOLDER MUTATIONS\n", kinds.c_str());
     return 2;
   }
   const Reader read = readers.at(argv[1]);

@@ -1,10 +1,9 @@
 #include "python_case.h"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "bentaxis/files/case_file.h"
+#include "bentaxis/files/input_file.h"
 
 namespace bentaxis::python {
 namespace {
@@ -36,11 +35,7 @@ Case parsed(const std::string& text, const std::filesystem::path& file,
 
 PythonCase PythonCase::read(const std::filesystem::path& file, const Changes& changes) {
   const std::filesystem::path place = std::filesystem::absolute(file).lexically_normal();
-  std::ifstream in(place, std::ios::binary);
-  std::ostringstream text;
-  if (!in || std::filesystem::is_directory(place) || !(text << in.rdbuf()))
-    read_case(file);  // says why not
-  return {text.str(), place, changes};
+  return {read_input_file(place, {"a case file", kLargestSettings}), place, changes};
 }
 
 PythonCase::PythonCase(std::string text, const std::filesystem::path& file, const Changes& changes)

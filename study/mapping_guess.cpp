@@ -634,6 +634,26 @@ struct Pairing {
   std::vector<Series> curves;  // of the model, in their unit, sign and axes
 };
 
+// Takes what is proposed for some columns out of a guess: their curves are not those of the
+// channel.
+void leave_out(MappingGuess& guess, const std::vector<std::string>& columns,
+               const std::string& ours, double correlation) {
+  const auto theirs = [&](const std::string& name) {
+    return std::find(columns.begin(), columns.end(), name) != columns.end();
+  };
+  std::erase_if(guess.curve.columns, [&](const auto& column) { return theirs(column.theirs); });
+  std::erase_if(guess.curve.vectors, [&](const auto& vector) {
+    return std::any_of(vector.theirs.begin(), vector.theirs.end(), theirs);
+  });
+  for (const std::string& column : columns) {
+    guess.ignored.emplace_back(
+        column,
+        fmt::format("not recognised: looks like {}, but the correlation is {:.2f}, less than {:g}",
+                    ours, correlation, kLeastCorrelation));
+    guess.unrecognised.push_back(column);
+  }
+}
+
 MappingGuess Guesser::finish(const Found& found) {
   // Another piston's angle is the same turn: the numbers in the names say which, else the smallest
   // shift.
@@ -786,6 +806,8 @@ MappingGuess Guesser::finish(const Found& found) {
   for (const Pairing& pairing : pairings) {
     MappingProposal proposal{pairing.theirs, pairing.ours, pairing.sign, pairing.unit, 0, 0, ""};
     double product = 0, theirs_square = 0, ours_square = 0, difference = 0, square = 0;
+    double without_signs = 0;
+    bool ours_constant = true;  // then nothing but its value says what it is
     for (std::size_t k = 0; k < pairing.columns.size(); ++k) {
       const Series theirs = sampled(pairing.columns[k], found.sign, phase, n_);
       for (std::size_t row = 0; row < n_; ++row) {
@@ -794,6 +816,8 @@ MappingGuess Guesser::finish(const Found& found) {
       }
       const Series x = centred(theirs), y = centred(pairing.curves[k]);
       product += dot(x, y);
+      without_signs += std::abs(dot(x, y));
+      ours_constant = ours_constant && is_constant(pairing.curves[k]);
       theirs_square += dot(x, x);
       ours_square += dot(y, y);
       const std::string& unit = table_.units[pairing.columns[k]];
@@ -801,15 +825,28 @@ MappingGuess Guesser::finish(const Found& found) {
           proposal.remark.empty())
         proposal.remark = "the file says " + unit;
     }
-    proposal.correlation =
-        theirs_square > 0 && ours_square > 0 ? product / std::sqrt(theirs_square * ours_square) : 0;
+    const double scale = std::sqrt(theirs_square * ours_square);
+    proposal.correlation = scale > 0 ? product / scale : 0;
+    const double followed =
+        pairing.columns.size() > 1 && scale > 0 ? without_signs / scale : proposal.correlation;
     proposal.difference = square > 0 ? std::sqrt(difference / square) : 0;
     if (proposal.difference > kNoChannel)
       proposal.remark = pairing.columns.size() > 1
                             ? "differs by its signs, or only its name says so"
                             : "its name says so, its curve does not";
+    if (!ours_constant && !(followed >= kLeastCorrelation)) {
+      std::vector<std::string> columns;
+      for (const std::size_t column : pairing.columns) columns.push_back(table_.header[column]);
+      leave_out(guess, columns, pairing.ours, proposal.correlation);
+      continue;
+    }
     guess.proposals.push_back(std::move(proposal));
   }
+  if (guess.proposals.empty())
+    throw InputError(table_.file.string() +
+                     ": no column follows any of the model's curves with a "
+                     "correlation of at least " +
+                     number_text(kLeastCorrelation) + "; is it of this case?");
   std::stable_sort(guess.proposals.begin(), guess.proposals.end(),
                    [](const auto& x, const auto& y) { return x.difference > y.difference; });
   for (const auto& [column, why] : guess.ignored) curve.ignored.push_back(column);

@@ -16,6 +16,8 @@ namespace {
 
 // A record across a wider gap is none of a turn.
 constexpr double kShortestRecord = 330;
+// From the last sample to the end of the turn there are at most so many of the widest steps.
+constexpr double kWidestGap = 2.5;
 // Another unit than the one that a column's name says is thought of beyond this factor.
 constexpr double kWrongUnit = 1.5;
 // Units that are tried where none is said: far enough apart that no error of a model leads from one
@@ -202,6 +204,11 @@ bool is_record(const ForeignTable& table, std::size_t column, double degrees_per
   for (std::size_t i = 1; i < angles.size(); ++i)
     if (rises ? !(angles[i] > angles[i - 1]) : !(angles[i] < angles[i - 1])) return false;
   const double span = std::abs(angles.back() - angles.front());
+  double widest = 0;
+  for (std::size_t i = 1; i < angles.size(); ++i)
+    widest = std::max(widest, std::abs(angles[i] - angles[i - 1]));
+  // What lacks more than a sample or two of a turn has been cut off.
+  if (span < 360 - kWidestGap * widest) return false;
   if (span < kShortestRecord || span > kMostTurns * 360 ||
       span / static_cast<double>(angles.size() - 1) > 30)
     return false;
@@ -255,7 +262,8 @@ std::vector<AngleMap> angle_choices(const ForeignTable& table, double degrees_pe
   if (by_rank.empty())
     throw InputError(table.file.string() +
                      ": no column can be the shaft's angle or the time of a whole turn: it must "
-                     "rise or fall strictly over at least 330 deg");
+                     "rise or fall strictly over at least 330 deg, and the gap to the end of the "
+                     "turn must be at most 2.5 steps wide (is the file truncated?)");
   return by_rank.begin()->second;
 }
 

@@ -22,6 +22,10 @@ using Series = std::vector<double>;  // over the turn at equal steps
 
 // A curve that differs by more than this share of itself from every channel is none of them.
 inline constexpr double kNoChannel = 0.5;
+// A column or vector whose curve has a smaller correlation with that of its channel is not
+// recognised, whatever its name says. Of a vector single components may have the other sign. At 0.8
+// the channel explains 0.8^2 = 64 % of the variance of the record.
+inline constexpr double kLeastCorrelation = 0.8;
 // The coarse search for the phase has this many angles in the turn.
 inline constexpr std::size_t kCoarse = 180;
 inline constexpr int kEulerStep = 5;  // deg

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/pump/error.h"
 
 namespace bentaxis::study {
@@ -138,8 +139,9 @@ RattleFile::RattleFile(std::filesystem::path file, std::string from)
 }
 
 std::vector<RattleRow> RattleFile::read() {
-  std::ifstream in(file_, std::ios::binary);
-  if (!in) return {};
+  const auto content = read_input_file_if_there(file_, {"a rattle map", kLargestReport});
+  if (!content) return {};
+  std::istringstream in(*content);
   const auto fail = [&](const std::string& why) {
     throw InputError(file_.string() + ": " + why + "; without --resume it is replaced");
   };

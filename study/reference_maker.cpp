@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -13,10 +12,13 @@
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/foreign_table.h"
+#include "bentaxis/files/kept_case.h"
+#include "bentaxis/files/new_folder.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/reference_set.h"
+#include "bentaxis/study/regression.h"
 
 namespace bentaxis::study {
 
@@ -33,12 +35,10 @@ constexpr const char* kGoldenTolerance = "1e-11";
 // up to 1e-7 (docs/hydraulics.md); reactions that are small against the pressure forces magnify it.
 constexpr const char* kHydraulicGoldenTolerance = "1e-6";
 
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+void replace_all(std::string& text, const std::string& old, const std::string& now) {
+  for (std::size_t at = text.find(old); at != std::string::npos;
+       at = text.find(old, at + now.size()))
+    text.replace(at, old.size(), now);
 }
 
 void must_be_new(const fs::path& folder) {
@@ -110,13 +110,18 @@ std::string factor_lines(const std::string& unit, double factor) {
 
 std::string curve_text(const MappingGuess& guess) {
   const compare::CurveDescription& curve = guess.curve;
+  const std::string unrecognised =
+      guess.unrecognised.empty()
+          ? ""
+          : "# Not recognised, although a name or size says a channel: " +
+                list_text(guess.unrecognised) + ". Map these, or leave them in ignore.\n";
   std::string text = fmt::format(
       "[[curve]]\n"
       "file = {}\n"
       "{}points = {}\n"
       "guessed = true  # every report says what was assumed; take the line away once you have "
       "checked it\n"
-      "ignore = {}  # columns that stand for no result\n"
+      "{}ignore = {}  # columns that stand for no result\n"
       "\n"
       "# theta_deg = sign x column (in degrees) + offset_deg; theta = 0 where piston 1 is deepest "
       "in.\n"
@@ -127,8 +132,9 @@ std::string curve_text(const MappingGuess& guess) {
       "offset_deg = {}\n",
       toml_text(curve.file.filename()),
       curve.sheet.empty() ? "" : "sheet = " + toml_text(curve.sheet) + "\n", curve.points,
-      list_text(curve.ignored), toml_text(curve.angle.column), toml_text(curve.angle.unit),
-      curve.angle.sign < 0 ? -1 : 1, number_text(curve.angle.offset_deg));
+      unrecognised, list_text(curve.ignored), toml_text(curve.angle.column),
+      toml_text(curve.angle.unit), curve.angle.sign < 0 ? -1 : 1,
+      number_text(curve.angle.offset_deg));
   if (curve.angle.rounding_deg > 0)
     text += fmt::format("rounding_deg = {:.2g}  # half a unit of its last digit\n",
                         curve.angle.rounding_deg);
@@ -225,23 +231,41 @@ std::string description_of(const MappingGuess& guess, const std::string& source,
 }
 
 std::vector<fs::path> make_reference(const Case& the_case, bool changed, const fs::path& curve,
-                                     const std::string& description, const fs::path& out) {
+                                     const std::string& description, const fs::path& out,
+                                     const fs::path& mapping, const PartProgress& progress_of) {
   must_be_new(out);
   const std::string curve_name = curve.filename();
   if (curve_name == "case.toml" || curve_name == "description.toml")
     throw InputError(curve.string() + ": a curve must not be named so");
-  OutputFolder folder(out);
+  NewFolder folder(out);
+  std::vector<fs::path> names;
+  const auto add = [&](const fs::path& name, const std::string& content) {
+    folder.add(name, content);
+    names.push_back(out / name);
+  };
   // A case written anew names its curve where it lies.
-  folder.add("case.toml", changed ? case_text(the_case) : read_text(the_case.file));
+  add("case.toml", changed ? case_text(the_case) : bytes_of(the_case.file));
   for (const auto& file : changed ? std::vector<fs::path>{} : files_of(the_case)) {
     if (fs::absolute(file).lexically_normal().parent_path() !=
         fs::absolute(the_case.file).lexically_normal().parent_path())
       throw InputError(file.string() + ": must lie beside the case to be copied with it");
-    folder.add(file.filename(), read_text(file));
+    add(file.filename(), bytes_of(file));
   }
-  folder.add(curve_name, read_text(curve));
-  folder.add("description.toml", description);
-  return folder.commit();
+  add(curve_name, bytes_of(curve));
+  add("description.toml", description);
+  // What regress would refuse is not written.
+  const Outcome outcome = hold({folder.here(), out.filename().string()}, progress_of);
+  const bool nothing = outcome.state == Outcome::State::differs && !outcome.error.empty();
+  if (outcome.state == Outcome::State::unusable || nothing) {
+    std::string why = outcome.error;
+    if (!mapping.empty())
+      replace_all(why, (folder.here() / "description.toml").string(), mapping.string());
+    replace_all(why, folder.here().string(), out.string());
+    const std::string name = (mapping.empty() ? curve : mapping).string();
+    throw InputError((why.find(name) == std::string::npos ? name + ": " : "") + why);
+  }
+  folder.commit();
+  return names;
 }
 
 std::vector<fs::path> make_golden(Case the_case, bool changed, int samples, const fs::path& out,
@@ -303,7 +327,7 @@ GoldenUpdate update_golden(const ReferenceDescription& description,
                        ": points = " + std::to_string(curve.points) + ", but the case now gives " +
                        std::to_string(table.rows()) + " rows: change it there first");
     const std::string text = to_csv(table);
-    if (text == read_text(curve.file)) continue;
+    if (text == bytes_of(curve.file)) continue;
     std::string what;
     bool agrees = false;
     try {

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "bentaxis/files/case_file.h"
+#include "bentaxis/pump/characters.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/registry.h"
 #include "bentaxis/study/achieved_error.h"
 
 namespace bentaxis::study {
@@ -14,6 +18,9 @@ std::vector<ReferencePlace> references_below(const fs::path& root) {
   for (const auto& folder : compare::find_references(root)) {
     fs::path name = folder.lexically_relative(root);
     if (name == ".") name = fs::absolute(folder / ".").lexically_normal().parent_path().filename();
+    if (has_control_characters(name, true))
+      throw InputError(without_control_characters(folder.string()) +
+                       ": the name of this folder holds a control character");
     places.push_back({folder, name.generic_string()});
   }
   return places;
@@ -21,15 +28,16 @@ std::vector<ReferencePlace> references_below(const fs::path& root) {
 
 std::vector<fs::path> files_of(const Case& the_case) {
   std::vector<fs::path> files;
-  if (the_case.pressure.kind == PressureKind::curve) files.push_back(the_case.pressure.file);
-  if (the_case.hydraulics && the_case.hydraulics->load &&
-      !the_case.hydraulics->load->share.file.empty())
-    files.push_back(the_case.hydraulics->load->share.file);
-  if (the_case.hydraulics)
-    for (const PlatePort* port : {&the_case.hydraulics->delivery, &the_case.hydraulics->suction})
-      if (!port->table.file.empty()) files.push_back(port->table.file);
-  if (the_case.drive && !the_case.drive->curve.file.empty())
-    files.push_back(the_case.drive->curve.file);
+  const ConstView view = view_of(the_case);
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& parameter : table.parameters) {
+      const auto* const curve = std::get_if<CurveField>(&parameter.field);
+      const fs::path* const file = curve == nullptr ? nullptr : curve->file.read(view);
+      if (file == nullptr || file->empty()) continue;
+      if (file == &the_case.pressure.file && the_case.pressure.kind != PressureKind::curve)
+        continue;
+      if (std::find(files.begin(), files.end(), *file) == files.end()) files.push_back(*file);
+    }
   return files;
 }
 

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,15 +17,20 @@
 #include <vector>
 
 #include "bentaxis/files/foreign_table.h"
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/files/toml_reader.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 
 namespace bentaxis {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -269,6 +276,248 @@ TEST_F(OutputFolderTest, FilesReadAreLoggedWhileALogIsKept) {
     EXPECT_EQ(InputLog::files()[2].sha256, sha256_of("abc = 3"));
   }
   EXPECT_TRUE(InputLog::files().empty());
+}
+
+// ---- Input files
+
+class InputFileTest : public OutputFolderTest {
+ protected:
+  std::string refusal(const fs::path& path, std::uint64_t largest) const {
+    try {
+      read_input_file(path, {"a curve", largest});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(InputFileTest, AreReadWholeUpToALimit) {
+  file("five", "12345");
+  EXPECT_EQ(read_input_file(folder_ / "five", {"a curve", 5}), "12345");
+  EXPECT_THAT(refusal(folder_ / "five", 4), HasSubstr("five: has "));
+  EXPECT_THAT(refusal(folder_ / "five", 4), HasSubstr("a curve must have at most"));
+  file("empty", "");
+  EXPECT_EQ(read_input_file(folder_ / "empty", {"a curve", 0}), "");
+  // A file of the system says that it has 0 bytes.
+  EXPECT_THAT(refusal("/proc/self/maps", 10), HasSubstr("larger than its size says"));
+  EXPECT_GT(read_input_file("/proc/self/maps", {"a curve", kMebibyte}).size(), 10U);
+}
+
+TEST_F(InputFileTest, AreRegular) {
+  EXPECT_THAT(refusal(folder_, 10), HasSubstr("is a folder, not a curve"));
+  EXPECT_THAT(refusal(folder_ / "none", 10), HasSubstr("no such file"));
+  EXPECT_THAT(refusal("/dev/null", 10), HasSubstr("is a device: a curve must be a regular file"));
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(refusal(folder_ / "pipe", 10), HasSubstr("is a pipe"));
+  EXPECT_FALSE(read_input_file_if_there(folder_ / "none", {"a curve", 10}));
+  EXPECT_THROW(read_input_file_if_there(folder_ / "pipe", {"a curve", 10}), InputError);
+}
+
+// ---- Depth and length of TOML
+
+std::string refusal_of_toml(const std::string& text) {
+  try {
+    TomlFile(text, "x.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string repeated(const std::string& text, int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+TEST(TomlDepth, KeysListsAndTablesAreAtMostThirtyTwoDeep) {
+  const auto key = [](int levels) { return repeated("a.", levels - 1) + "a"; };
+  EXPECT_EQ(refusal_of_toml(key(30) + " = 1\n"), "");
+  EXPECT_THAT(refusal_of_toml("\n" + key(40) + " = 1\n"), HasSubstr("x.toml:2: "));
+  EXPECT_EQ(refusal_of_toml("[" + key(30) + "]\n"), "");
+  EXPECT_THAT(refusal_of_toml("[" + key(40) + "]\n"), HasSubstr("deep"));
+  EXPECT_EQ(refusal_of_toml("a = " + repeated("[", 30) + repeated("]", 30)), "");
+  EXPECT_THAT(refusal_of_toml("a = " + repeated("[", 40) + repeated("]", 40)), HasSubstr("deep"));
+  // Headings and keys add up, as keys in tables in lists do.
+  EXPECT_THAT(refusal_of_toml("[" + key(20) + "]\n" + key(20) + " = 1\n"), HasSubstr("deep"));
+  EXPECT_THAT(refusal_of_toml("a = [{" + key(20) + " = {" + key(20) + " = 1}}]\n"),
+              HasSubstr("deep"));
+  for (const int levels : {1000, 100000, 1000000}) {
+    EXPECT_THAT(refusal_of_toml(key(levels) + " = 1\n"), HasSubstr("deep"));
+    EXPECT_THAT(refusal_of_toml("a = " + repeated("{b=", levels)), HasSubstr("deep"));
+  }
+}
+
+TEST(TomlDepth, WhatStandsInTextsAndCommentsDoesNotCount) {
+  const std::string dots = repeated(".[{", 100);
+  for (const std::string& text :
+       {"a = \"" + dots + "\"\n", "a = '" + dots + "'\n", "a = 1 # " + dots + "\nb = 1\n",
+        "a = \"\"\"\n" + dots + "\n\\\"\"\"\"\n", "a = \'\'\'\n" + dots + "'\n\'\'\'\n",
+        "\"" + dots + "\" = 1\n", "a = \"\\\"" + dots + "\"\n",
+        "a = [" + repeated("1.5, ", 1000) + "]\n", repeated("[[a]]\nb.c = 1.5\n", 1000)})
+    EXPECT_EQ(refusal_of_toml(text), "") << text.substr(0, 40);
+  // Behind a text it counts again.
+  EXPECT_THAT(refusal_of_toml("a = '" + dots + "'\n" + repeated("a.", 99) + "b = 1\n"),
+              HasSubstr("x.toml:2: "));
+  // What is no TOML says so, whatever is in it.
+  for (const char* text : {"a = \"", "a = \'\'\'", "a = \"\\", "]]]}}}", "a = [}", "\"", "'", "#"})
+    EXPECT_THAT(refusal_of_toml(text), Not(HasSubstr("deep")));
+}
+
+TEST(TomlLists, AreAtMostTenThousandLong) {
+  EXPECT_EQ(refusal_of_toml("a = [" + repeated("1,", 10000) + "]\n"), "");
+  EXPECT_THAT(refusal_of_toml("\n\na = [" + repeated("1,", 10001) + "]\n"),
+              HasSubstr("x.toml:3: a list of 10001 entries: must have at most 10000"));
+  EXPECT_THAT(refusal_of_toml(repeated("[[a]]\n", 10001)), HasSubstr("10001 entries"));
+  std::string keys;
+  for (int i = 0; i < 10001; ++i) keys += "k" + std::to_string(i) + " = 1\n";
+  EXPECT_THAT(refusal_of_toml(keys), HasSubstr("a table of 10001 entries"));
+}
+
+TEST(TomlTexts, HoldNoControlCharacters) {
+  EXPECT_EQ(refusal_of_toml("a = \"\\t\\n\\r\\u00e4 \\u00a0\"\n"), "");
+  for (const char* escape : {"\\u0000", "\\u001b", "\\u007f", "\\u0085", "\\u009b"}) {
+    const std::string text = std::string("\"x") + escape + "\"";
+    EXPECT_THAT(refusal_of_toml("\na = " + text), HasSubstr("x.toml:2: the text"));
+    EXPECT_THAT(refusal_of_toml(text + " = 1\n"), HasSubstr("x.toml:1: the key"));
+    EXPECT_THAT(refusal_of_toml("a = [[" + text + "]]\n"), HasSubstr("control character"));
+  }
+}
+
+// ---- Characters
+
+TEST(Characters, ControlCharactersOfAsciiAndUnicode) {
+  EXPECT_FALSE(has_control_characters("plain \xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80", true));
+  EXPECT_FALSE(has_control_characters("a\tb\nc\r", false));
+  EXPECT_TRUE(has_control_characters("a\tb", true));
+  for (const std::string& text :
+       {std::string(1, '\0'), std::string("\x1b[31m"), std::string("\x7f"), std::string("\xc2\x9b"),
+        std::string("\xc2\x80")})
+    EXPECT_TRUE(has_control_characters("a" + text, false));
+  EXPECT_EQ(without_control_characters(std::string("a\0\x1b[\n", 5)), "a\\u0000\\u001B[\\u000A");
+  EXPECT_EQ(without_control_characters("a\n\t\x1b", false), "a\n\t\\u001B");
+  EXPECT_EQ(without_control_characters("\xc2\x9b \x9b \xe4"), "\\u009B \\x9B \xe4");
+}
+
+TEST(Characters, Utf8AndWindows1252) {
+  EXPECT_TRUE(is_utf8("a\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80"));
+  for (const char* text : {"\xe4", "\xc3", "\xc0\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80",
+                           "\xe0\x80\x80", "\xff", "\x80"})
+    EXPECT_FALSE(is_utf8(text)) << text;
+  EXPECT_EQ(utf8_of_windows_1252("a\xe4\x80\x96"), "a\xc3\xa4\xe2\x82\xac\xe2\x80\x93");
+  EXPECT_TRUE(is_utf8(utf8_of_windows_1252("\x81\x8d\x8f\x90\x9d\xff")));
+}
+
+// ---- MATLAB files that are not whole
+
+class MatlabFileTest : public OutputFolderTest {
+ protected:
+  std::string content_of(const std::string& name) const {
+    std::ifstream in(fs::path(BENTAXIS_SOURCE_DIR) / name, std::ios::binary);
+    std::string content{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_GT(content.size(), 100U) << name;
+    return content;
+  }
+  // What is wrong with a content, or "".
+  std::string refusal(const std::string& content) const {
+    file("record.mat", content);
+    try {
+      read_table(folder_ / "record.mat");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+// Lengths at which a file of version 5 ends with a variable.
+std::set<std::size_t> ends_of_variables(const std::string& content) {
+  std::set<std::size_t> ends;
+  for (std::size_t at = 128; at + 8 <= content.size();) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, content.data() + at + 4, sizeof size);
+    at += 8 + size;
+    ends.insert(at);
+  }
+  return ends;
+}
+
+TEST_F(MatlabFileTest, AreRefusedAtEveryLengthButTheEndOfAVariable) {
+  // At these a file of as many variables is whole, with two vectors or more.
+  for (const auto& [name, whole] : std::map<std::string, std::size_t>{{"plain_5.mat", 1},
+                                                                      {"packed_5.mat", 1},
+                                                                      {"structure.mat", 3},
+                                                                      {"version_4.mat", 0},
+                                                                      {"version_7_3.mat", 0}}) {
+    const std::string content = content_of("fuzz/corpus/mat/" + name);
+    EXPECT_EQ(refusal(content), "") << name;
+    const auto ends = ends_of_variables(content);
+    std::size_t read = 0;
+    for (std::size_t length = 0; length < content.size(); ++length)
+      if (refusal(content.substr(0, length)).empty()) {
+        ++read;
+        EXPECT_EQ(ends.count(length), 1U) << name << ": " << length;
+      }
+    EXPECT_EQ(read, whole) << name;
+  }
+}
+
+TEST_F(MatlabFileTest, SayWhatIsMissing) {
+  const std::string five = content_of("fuzz/corpus/mat/plain_5.mat");
+  EXPECT_THAT(
+      refusal(five.substr(0, five.size() - 1)),
+      AllOf(HasSubstr("record.mat: is a truncated MATLAB file: "), HasSubstr("variable 3 takes")));
+  const std::string four = content_of("fuzz/corpus/mat/version_4.mat");
+  EXPECT_THAT(refusal(four.substr(0, four.size() - 1)), HasSubstr("variable 2 takes"));
+  const std::string seven = content_of("fuzz/corpus/mat/version_7_3.mat");
+  EXPECT_THAT(refusal(seven.substr(0, seven.size() - 1)),
+              HasSubstr("the file by its own count takes " + std::to_string(seven.size())));
+}
+
+// More values than there are, by the dimensions alone: the file has the length that it says.
+TEST_F(MatlabFileTest, HaveAsManyValuesAsTheirDimensionsSay) {
+  std::string content = content_of("fuzz/corpus/mat/plain_5.mat");
+  const std::size_t dimensions = 128 + 8 + 16 + 8;
+  for (const char columns : {'\x0b', '\x0d', '\x78'}) {  // 12 values are there
+    content[dimensions + 4] = columns;
+    if (columns > 12) {
+      EXPECT_THAT(refusal(content), HasSubstr("truncated")) << int(columns);
+    }
+  }
+  content[dimensions + 7] = '\xff';
+  EXPECT_THAT(refusal(content), HasSubstr("negative dimension"));
+}
+
+TEST_F(MatlabFileTest, WrittenByOthersAreWhole) {
+  for (const char* name : {"tests/imports/good/run.mat", "tests/imports/good/run_octave.mat",
+                           "tests/imports/bad/one_sign.mat", "tests/imports/bad/tilt.mat"}) {
+    const std::string content = content_of(name);
+    EXPECT_EQ(refusal(content), "") << name;
+    const auto ends = ends_of_variables(content);
+    for (std::size_t percent = 1; percent < 100; ++percent) {
+      const std::size_t length = content.size() * percent / 100;
+      if (ends.count(length) == 0) {
+        EXPECT_THAT(refusal(content.substr(0, length)), HasSubstr("truncated"))
+            << name << ": " << percent;
+      }
+    }
+  }
+}
+
+TEST_F(ForeignTableTest, NamesThatRepeatAreToldApart) {
+  std::string names = "a", values = "1";
+  for (int i = 1; i < 5000; ++i) {
+    names += ",f";
+    values += "," + std::to_string(i);
+  }
+  file("wide.csv", names + "\n" + values + "\n" + values + "\n" + values + "\n");
+  const ForeignTable table = read_table(folder_ / "wide.csv");
+  const std::set<std::string> different(table.header.begin(), table.header.end());
+  EXPECT_EQ(different.size(), 5000U);
+  EXPECT_EQ(table.header[1], "f");
+  EXPECT_EQ(table.header[2], "f (2)");
+  EXPECT_EQ(table.header[4999], "f (4999)");
 }
 
 }  // namespace

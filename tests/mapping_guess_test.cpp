@@ -216,6 +216,10 @@ TEST(MappingColumns, ARecordCoversATurnWithoutWideGaps) {
   EXPECT_FALSE(record_of(steps(3, 29.9, 12)).is);  // 328.9
   EXPECT_FALSE(record_of(steps(3, 30.1, 13)).is);
   EXPECT_TRUE(record_of(steps(3, -30, 12)).is);
+  EXPECT_TRUE(record_of(steps(3, 2, 179)).is);   // a gap of two steps at the end
+  EXPECT_FALSE(record_of(steps(3, 2, 178)).is);  // of three
+  EXPECT_FALSE(record_of(steps(3, 2, 170)).is);
+  EXPECT_TRUE(record_of(steps(3, 2, 300)).is);  // more than a turn, cut anywhere
   EXPECT_FALSE(record_of(steps(0, 90, 5)).is);
   EXPECT_TRUE(record_of(steps(0, 30, 12001)).is);   // 1000 turns
   EXPECT_FALSE(record_of(steps(0, 30, 12002)).is);  // and more
@@ -864,14 +868,14 @@ TEST(MappingRecords, PistonsMixedUpStaySo) {
       guess(record(1, 40, numbered([](int k) { return k == 2   ? 4
                                                       : k == 4 ? 2
                                                                : k; })));
-  ASSERT_EQ(found.proposals.size(), 5U);
-  std::vector<std::string> poor, good;
   for (const MappingProposal& p : found.proposals) {
     EXPECT_EQ(p.ours.substr(3), p.theirs.substr(1, 1)) << p.theirs;
-    (p.difference > 0.1 ? poor : good).push_back(p.ours);
+    EXPECT_LT(p.difference, 1e-5) << p.theirs;
   }
-  EXPECT_THAT(poor, testing::UnorderedElementsAre("Rs_2", "Rs_4"));
-  EXPECT_EQ(good.size(), 3U);
+  EXPECT_EQ(found.proposals.size(), 3U);
+  EXPECT_THAT(found.unrecognised, testing::UnorderedElementsAre("f2_x", "f2_y", "f4_x", "f4_y"));
+  EXPECT_EQ(found.recognised(), 6U);
+  EXPECT_THAT(found.curve.ignored, testing::IsSupersetOf({"f2_x", "f4_y"}));
   EXPECT_EQ(found.curve.angle.offset_deg, 40);
 }
 
@@ -886,10 +890,44 @@ TEST(MappingRecords, AVectorWithoutAPistonShowsNoNumbering) {
   columns.resize(6);
   for (const std::string axis : {"x", "y", "z"})
     columns.push_back({"Fb4 " + axis, "N", of("Rb1_" + axis + "1_N")});
-  double worst = 0;
-  for (const MappingProposal& p : guess(record(1, 40, columns)).proposals)
-    worst = std::max(worst, p.difference);
-  EXPECT_GT(worst, 0.1);
+  EXPECT_THAT(guess(record(1, 40, columns)).unrecognised, testing::Not(IsEmpty()));
+}
+
+// A column whose name says Td and whose curve has a given correlation with it.
+TEST(MappingRecords, ACorrelationBelowTheLeastIsNotRecognised) {
+  const auto with = [](double correlation) {
+    const double other = std::sqrt(1 - correlation * correlation);
+    // As large as Td about its mean, and without correlation to it: a harmonic that it lacks.
+    double own = 0, mixed = 0, mean = 0;
+    for (int i = 0; i < 360; ++i) mean += ours("Td_z1_Nm", i) / 360;
+    for (int i = 0; i < 360; ++i) {
+      own += std::pow(ours("Td_z1_Nm", i) - mean, 2);
+      mixed += std::pow(std::cos(radians(61 * i)), 2);
+    }
+    const double size = std::sqrt(own / mixed);
+    return guess(record(1, 40,
+                        {{"Fx", "N", of("Rb1_x1_N")},
+                         {"Fy", "N", of("Rb1_y1_N")},
+                         {"Fz", "N", of("Rb1_z1_N")},
+                         {"f1_x", "N", of("Rs_1_x2_N")},
+                         {"f1_y", "N", of("Rs_1_y2_N")},
+                         {"Td_z1", "Nm", [=](double t) {
+                            return correlation * ours("Td_z1_Nm", t) +
+                                   other * size * std::cos(radians(61 * t));
+                          }}}));
+  };
+  const MappingGuess good = with(kLeastCorrelation + 0.02);
+  EXPECT_THAT(good.unrecognised, IsEmpty());
+  EXPECT_EQ(good.recognised(), 6U);
+  for (const double correlation : {kLeastCorrelation - 0.02, 0.54}) {
+    const MappingGuess found = with(correlation);
+    EXPECT_THAT(found.unrecognised, ElementsAre("Td_z1")) << correlation;
+    EXPECT_EQ(found.recognised(), 5U);
+    EXPECT_THAT(found.curve.ignored, ElementsAre("Td_z1"));
+    ASSERT_EQ(found.ignored.size(), 1U);
+    EXPECT_THAT(found.ignored[0].second, testing::HasSubstr("not recognised: looks like Td_z1_Nm"));
+    EXPECT_THAT(found.ignored[0].second, testing::HasSubstr("less than 0.8"));
+  }
 }
 
 TEST(MappingRecords, OfAnotherPistonTheNumbersSayThePhase) {

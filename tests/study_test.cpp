@@ -602,10 +602,17 @@ TEST(ReferenceSet, FilesOfACaseAreThoseThatItReads) {
   the_case.drive.emplace();
   EXPECT_EQ(study::files_of(the_case).size(), 2U);
   the_case.drive->curve.file = "speed.csv";
-  EXPECT_EQ(study::files_of(the_case),
-            (std::vector<std::filesystem::path>{"pressure.csv", "opening.csv", "speed.csv"}));
+  using Path = std::filesystem::path;
+  EXPECT_THAT(
+      study::files_of(the_case),
+      testing::UnorderedElementsAre(Path("pressure.csv"), Path("opening.csv"), Path("speed.csv")));
   the_case.hydraulics->load.emplace().share.file = "share.csv";
   EXPECT_EQ(study::files_of(the_case).size(), 4U);
+  the_case.pump.gear.contact = ToothContact::teeth;
+  the_case.pump.gear.teeth.emplace().error_file = "pitch.csv";
+  EXPECT_EQ(study::files_of(the_case).size(), 5U);
+  the_case.pressure.kind = PressureKind::ideal;
+  EXPECT_THAT(study::files_of(the_case), testing::Not(testing::Contains(Path("pressure.csv"))));
 }
 
 // Imposed gear, a smaller scene, a film force of zero: absent channels, all of them expected.

@@ -6,6 +6,7 @@
 #include <pugixml.hpp>
 
 #include "bentaxis/fmu/slave.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 
@@ -23,7 +24,8 @@ class Reader {
            std::to_string(parsed.offset));
     root_ = document_.document_element();
     if (std::string_view(root_.name()) != "fmiModelDescription")
-      fail("begins with <" + std::string(root_.name()) + ">: must be <fmiModelDescription>");
+      fail("begins with <" + without_control_characters(root_.name()) +
+           ">: must be <fmiModelDescription>");
   }
 
   UnitDescription read() {
@@ -32,8 +34,8 @@ class Reader {
     if (version.rfind("2.", 0) != 0 && version.rfind("3.", 0) != 0)
       fail("fmiVersion = \"" + version + "\": must be 2.0 or 3.0");
     d.version = version[0] - '0';
-    d.model_name = root_.attribute("modelName").value();
-    d.tool = root_.attribute("generationTool").value();
+    d.model_name = plain(root_, "modelName");
+    d.tool = plain(root_, "generationTool");
     d.token = needed(root_, d.version == 2 ? "guid" : "instantiationToken");
     d.identifier = identifier("CoSimulation");
     d.exchange_identifier = identifier("ModelExchange");
@@ -55,7 +57,18 @@ class Reader {
   std::string needed(const pugi::xml_node& node, const char* key) const {
     const auto attribute = node.attribute(key);
     if (!attribute) fail("<" + std::string(node.name()) + "> has no " + key);
-    return attribute.value();
+    return plain(node, key);
+  }
+
+  // The value of an attribute, "" where it is missing. It is printed, and names files and columns.
+  std::string plain(const pugi::xml_node& node, const char* key) const {
+    std::string text = node.attribute(key).value();
+    if (has_control_characters(text, false) || !is_utf8(text))
+      fail("<" + std::string(node.name()) + "> " + key + " = \"" +
+           without_control_characters(text) + "\": holds a control character, or is no UTF-8");
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+    return text;
   }
 
   std::optional<double> number(const pugi::xml_node& node, const char* key) const {
@@ -99,16 +112,16 @@ class Reader {
 
   void read_types() {
     for (const auto& type : root_.child("TypeDefinitions").children()) {
-      const std::string name = type.attribute("name").value();
-      types_[name] = type.attribute("unit").value();  // FMI 3
-      if (const auto real = type.child("Real")) types_[name] = real.attribute("unit").value();
+      const std::string name = plain(type, "name");
+      types_[name] = plain(type, "unit");  // FMI 3
+      if (const auto real = type.child("Real")) types_[name] = plain(real, "unit");
     }
   }
 
   UnitVariable variable(const pugi::xml_node& node, int version) const {
     UnitVariable v;
     v.name = needed(node, "name");
-    v.description = node.attribute("description").value();
+    v.description = plain(node, "description");
     const std::string reference = needed(node, "valueReference");
     const char* end = reference.data() + reference.size();
     const auto [stop, error] = std::from_chars(reference.data(), end, v.reference);
@@ -124,11 +137,11 @@ class Reader {
           type = below;
       }
     v.type = type == node && version == 2 ? "" : type.name();
-    v.causality = node.attribute("causality").as_string("local");
-    v.variability = node.attribute("variability").as_string("continuous");
-    v.start = type.attribute("start").value();
+    v.causality = node.attribute("causality") ? plain(node, "causality") : "local";
+    v.variability = node.attribute("variability") ? plain(node, "variability") : "continuous";
+    v.start = plain(type, "start");
     v.array = version == 3 && node.child("Dimension");
-    v.unit = type.attribute("unit").value();
+    v.unit = plain(type, "unit");
     if (v.unit.empty())
       if (const auto declared = types_.find(type.attribute("declaredType").value());
           declared != types_.end())

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 
 namespace bentaxis::fmu {
@@ -19,6 +20,8 @@ namespace fs = std::filesystem;
 
 constexpr zip_int64_t kMostEntries = 20000;
 constexpr std::size_t kPiece = 1U << 16;
+// Of modelDescription.xml, in bytes.
+constexpr std::uint64_t kLargestDescription = 64ULL << 20U;
 constexpr std::string_view kDescription = "modelDescription.xml";
 
 [[noreturn]] void fail(const fs::path& file, const std::string& why) {
@@ -58,6 +61,10 @@ std::string platform_folder(int version) {
 Unpacked::Unpacked(const fs::path& archive, std::uint64_t most) : file_(archive) {
   if (!fs::exists(archive)) fail(archive, "does not exist");
   if (fs::is_directory(archive)) fail(archive, "is a folder: must be a .fmu");
+  if (!fs::is_regular_file(archive))
+    fail(archive, "is a pipe, a socket or a device: an FMU must be a regular file");
+  if (fs::file_size(archive) > most)
+    fail(archive, "is larger than " + std::to_string(most >> 20U) + " MiB");
   std::string pattern = (fs::absolute(fs::temp_directory_path()) / "bentaxis-fmu-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr)
     fail(pattern, "a folder to unpack a unit into cannot be made");
@@ -90,6 +97,8 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
   for (zip_int64_t i = 0; i < entries; ++i) {
     const char* raw = zip_get_name(archive.get(), static_cast<zip_uint64_t>(i), 0);
     const std::string name = raw != nullptr ? raw : "";
+    if (has_control_characters(name, true))
+      fail(file, "entry \"" + without_control_characters(name) + "\": holds a control character");
     if (!stays_inside(name)) fail(file, "entry \"" + name + "\" would be unpacked elsewhere");
     if (constexpr std::string_view kBinaries = "binaries/"; name.rfind(kBinaries, 0) == 0) {
       const std::string platform =
@@ -119,7 +128,11 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
     if (failed || !out) fail(target, "cannot be written: is there room for the unpacked unit?");
   }
   fs::create_directories(folder_ / "resources");
-  if (!fs::exists(folder_ / kDescription)) fail(file, "is no .fmu: it has no modelDescription.xml");
+  if (!fs::is_regular_file(folder_ / kDescription))
+    fail(file, "is no .fmu: it has no modelDescription.xml");
+  if (fs::file_size(folder_ / kDescription) > kLargestDescription)
+    fail(file, "modelDescription.xml is larger than " + std::to_string(kLargestDescription >> 20U) +
+                   " MiB");
 }
 
 std::string Unpacked::description() const {

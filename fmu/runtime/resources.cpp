@@ -1,8 +1,9 @@
 #include "resources.h"
 
-#include <fstream>
+#include <sstream>
 
 #include "bentaxis/files/case_file.h"
+#include "bentaxis/files/input_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 
@@ -41,8 +42,7 @@ Drive drive_in(const std::string& word, const std::string& where) {
 }
 
 void read_choice(const std::filesystem::path& file, Resources& all) {
-  std::ifstream in(file);
-  if (!in) throw InputError(file.string() + ": cannot be read: no such file, or no permission");
+  std::istringstream in(read_input_file(file, {"a choice of the FMU", kMebibyte}));
   for (std::string line; std::getline(in, line);) {
     const auto blank = line.find(' ');
     const std::string key = line.substr(0, blank);

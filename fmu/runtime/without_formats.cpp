@@ -7,14 +7,16 @@
 
 namespace bentaxis {
 
-void InputLog::note(const std::filesystem::path& /*file*/) {}
+void InputLog::note(const std::filesystem::path& /*file*/, const std::string& /*content*/) {}
 
 namespace foreign {
 
-ForeignTable read_workbook(const std::filesystem::path& file, const std::string& /*sheet*/) {
+ForeignTable read_workbook(const std::filesystem::path& file, const std::string& /*content*/,
+                           const std::string& /*sheet*/) {
   throw InputError(file.string() + ": a unit reads no workbooks: its curves must be CSV");
 }
-ForeignTable read_matlab(const std::filesystem::path& file, const std::string& /*wanted*/) {
+ForeignTable read_matlab(const std::filesystem::path& file, const std::string& /*content*/,
+                         const std::string& /*wanted*/) {
   throw InputError(file.string() + ": a unit reads no .mat files: its curves must be CSV");
 }
 

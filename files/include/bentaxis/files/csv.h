@@ -27,6 +27,9 @@ struct NumericTable {
 /// @param allow_empty  an empty field is "not computed" rather than an error
 /// @throws InputError naming file, line, column and text.
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty = false);
+/// The same of a content that was read from `file`.
+NumericTable numeric_csv_of(const std::string& content, const std::filesystem::path& file,
+                            bool allow_empty);
 
 /// Reads the curve of a chamber pressure from any table of foreign_table.h: one column of angles
 /// (deg, rad, turn, gon) and one of gauge pressures (bar, mbar, Pa, kPa, MPa, psi), with units in

@@ -34,6 +34,9 @@ struct ForeignTable : NumericTable {
 /// @param sheet  name of the sheet or variable to take; "" = the first with a table
 /// @throws InputError naming file, line or cell, and what stands there
 ForeignTable read_table(const std::filesystem::path& file, const std::string& sheet = "");
+/// The same of a content that was read from `file`.
+ForeignTable table_of(const std::string& content, const std::filesystem::path& file,
+                      const std::string& sheet = "");
 
 /// The unit that a column's name ends with or has in brackets, as written; "" = none.
 std::string unit_in_name(const std::string& name);

@@ -23,8 +23,10 @@ class InputLog {
 
   /// In the order in which they were read first.
   static std::vector<InputFile> files();
-  /// For readers: notes a file, once for each content it was found with.
+  /// For readers: notes a file, once for each content it was found with. Without a content it is
+  /// read for that; what cannot be read is not noted.
   static void note(const std::filesystem::path& file);
+  static void note(const std::filesystem::path& file, const std::string& content);
 };
 
 /// SHA-256 (FIPS 180-4) of a text's bytes, 64 hexadecimal digits.

@@ -28,6 +28,9 @@ struct MappingGuess {
   compare::CurveDescription curve;                           ///< guessed = true
   std::vector<MappingProposal> proposals;                    ///< worst first
   std::vector<std::pair<std::string, std::string>> ignored;  ///< columns, and why
+  /// Of those ignored: columns whose names or sizes say a channel, but whose correlation with its
+  /// curve is too small. They stand for nothing until someone says what they are.
+  std::vector<std::string> unrecognised;
   double rounding = 0;  ///< of the values, over the peak of their group: the largest of all
   int digits = 0;       ///< significant ones of the columns that are mapped
   int samples = 0;      ///< per turn of a run that has the record's angles; 0 = none has

@@ -35,11 +35,15 @@ std::string description_of(const MappingGuess& guess, const std::string& source 
 /// Copies the case and the record into a new folder, beside a description. Returns the paths of its
 /// files.
 /// @param changed  the case is not as its file has it: it is written anew instead of copied
-/// @throws InputError where the folder is not new
+/// @param mapping  the file that the description is of, for messages; "" = it was guessed
+/// @throws InputError where the folder is not new, and where regress would refuse it; nothing is
+/// then written
 std::vector<std::filesystem::path> make_reference(const Case& the_case, bool changed,
                                                   const std::filesystem::path& curve,
                                                   const std::string& description,
-                                                  const std::filesystem::path& out);
+                                                  const std::filesystem::path& out,
+                                                  const std::filesystem::path& mapping = {},
+                                                  const PartProgress& progress_of = silent());
 
 /// Makes a folder with the curves that both models give a case today. Returns the paths of its
 /// files.
