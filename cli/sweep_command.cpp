@@ -68,7 +68,12 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
   if (!before) return kInterrupted;
   ranks.wait();
   if (!first) return kDone;
-  if (share.resume) std::fprintf(stderr, "bentaxis: %zu blocks were there already\n", *before);
+  if (!before->misplaced.empty())
+    std::fprintf(stderr,
+                 "bentaxis: %s: files of these blocks held the designs of another block, and the "
+                 "blocks were computed again: %s\n",
+                 parts.folder().c_str(), designs::list_of(before->misplaced).c_str());
+  if (share.resume) std::fprintf(stderr, "bentaxis: %zu blocks were there already\n", before->kept);
   if (share.parts > 1) {
     std::printf("part %s is in %s; bentaxis merge %s makes results of all parts\n",
                 options.part.c_str(), parts.folder().c_str(), options.place.out.c_str());

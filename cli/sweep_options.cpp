@@ -102,9 +102,9 @@ designs::SweepFormats formats_of(const std::vector<std::string>& formats) {
 
 std::filesystem::path parts_in(const std::filesystem::path& out) { return out / "sweep.parts"; }
 
-std::optional<std::size_t> compute_or_say(const designs::Sweep& sweep,
-                                          const designs::SweepParts& parts,
-                                          const designs::SweepShare& share) {
+std::optional<designs::ResumedBlocks> compute_or_say(const designs::Sweep& sweep,
+                                                     const designs::SweepParts& parts,
+                                                     const designs::SweepShare& share) {
   std::size_t kept = 0;
   const auto say_kept = [&](const char* why) {
     kept = parts.count();

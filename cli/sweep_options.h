@@ -34,10 +34,10 @@ designs::SweepFormats formats_of(const std::vector<std::string>& formats);
 std::filesystem::path parts_in(const std::filesystem::path& out);
 
 /// Computes the blocks of a share; where that ends early, says how many are kept.
-/// @return how many were there already; nothing where the user has interrupted it
-std::optional<std::size_t> compute_or_say(const designs::Sweep& sweep,
-                                          const designs::SweepParts& parts,
-                                          const designs::SweepShare& share);
+/// @return what was there already; nothing where the user has interrupted it
+std::optional<designs::ResumedBlocks> compute_or_say(const designs::Sweep& sweep,
+                                                     const designs::SweepParts& parts,
+                                                     const designs::SweepShare& share);
 
 /// Writes the results of all blocks and prints what came out. @return the exit status
 int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,

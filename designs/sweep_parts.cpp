@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -209,8 +210,26 @@ std::string program_in(const SweepRecord& record) {
 
 }  // namespace
 
+bool BlockLayout::fits(std::size_t number, const SweepBlock& block) const {
+  if (number >= blocks()) return false;
+  const std::size_t first = number * block_size;
+  if (block.first != first || block.designs != std::min(block_size, designs - first) ||
+      block.values.size() != block.designs * variables ||
+      block.results.size() != block.designs * outputs || block.reasons.size() != block.designs)
+    return false;
+  std::size_t next = first;  // checks come in the order of the designs, each at most once
+  return std::all_of(block.checks.begin(), block.checks.end(), [&](const SweepCheck& check) {
+    const bool fits =
+        check.design >= next && check.design < first + block.designs && check.own.size() == outputs;
+    next = check.design + 1;
+    return fits;
+  });
+}
+
 SweepRecord record_of(const Sweep& sweep, const std::string& program) {
   SweepRecord record;
+  record.layout = {sweep.designs(), sweep.block_size(), sweep.plan().varied.size(),
+                   sweep.plan().outputs.size()};
   const Case& base = sweep.family().base();
   record.case_text = text_of(sweep.family());
   const ConstView view = view_of(base);
@@ -274,8 +293,22 @@ void SweepParts::keep(std::size_t block, const SweepBlock& content) const {
 std::optional<SweepBlock> SweepParts::read(std::size_t block) const {
   for (const fs::path& folder : folders_)
     if (const auto bytes = content_of(file_of(folder, block)))
-      if (auto found = block_of(*bytes, record_.identity)) return found;
+      if (auto found = block_of(*bytes, record_.identity);
+          found && record_.layout.fits(block, *found))
+        return found;
   return std::nullopt;
+}
+
+std::vector<std::size_t> SweepParts::misplaced(const std::vector<std::size_t>& among) const {
+  std::vector<std::size_t> found;
+  std::copy_if(among.begin(), among.end(), std::back_inserter(found), [&](std::size_t block) {
+    return std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& folder) {
+      const auto bytes = content_of(file_of(folder, block));
+      const auto content = bytes ? block_of(*bytes, record_.identity) : std::nullopt;
+      return content && !record_.layout.fits(block, *content);
+    });
+  });
+  return found;
 }
 
 std::size_t SweepParts::count() const {
@@ -307,23 +340,25 @@ std::pair<Sweep, SweepRecord> sweep_in(const fs::path& folder) {
   return {std::move(sweep), std::move(record)};
 }
 
-std::size_t compute_blocks(const Sweep& sweep, const SweepParts& parts, const SweepShare& share,
-                           const Progress& progress) {
+ResumedBlocks compute_blocks(const Sweep& sweep, const SweepParts& parts, const SweepShare& share,
+                             const Progress& progress) {
   std::vector<std::size_t> missing;
-  std::size_t mine = 0, there = 0;
+  ResumedBlocks resumed;
+  std::size_t mine = 0;
   for (std::size_t block = share.part; block < sweep.blocks(); block += share.parts) {
     if (mine++ % share.ranks != share.rank) continue;
     if (share.resume && parts.read(block))
-      ++there;
+      ++resumed.kept;
     else
       missing.push_back(block);
   }
+  if (share.resume) resumed.misplaced = parts.misplaced(missing);
   study::Reporting reporting(missing.size(), progress);
   study::in_threads(share.threads, missing.size(), [&](std::size_t i) {
     parts.keep(missing[i], sweep.compute(missing[i], [&] { reporting.tick(); }));
     reporting.done();
   });
-  return there;
+  return resumed;
 }
 
 std::string list_of(const std::vector<std::size_t>& numbers) {

@@ -222,6 +222,19 @@ class SweepTest(ProgramTest):
         self.assert_mentions(self.refused("merge", "out", "elsewhere"), "elsewhere/sweep.parts", "another case")
         self.assert_mentions(self.refused("merge", "nowhere"), "nowhere")
 
+    def test_a_block_under_the_name_of_another_is_not_taken(self):
+        self.run_program(*self.command("--check", "5%", out="whole"))
+        self.run_program(*self.command("--check", "5%", "--part", "1/1"))  # one part leaves no blocks behind ..
+        self.assertFalse((self.folder / "out" / "sweep.parts").exists())
+        for part in (1, 2):
+            self.run_program(*self.command("--check", "5%", "--part", f"{part}/2"))
+        parts = self.folder / "out" / "sweep.parts"
+        shutil.copy(parts / "block-000005.bin", parts / "block-000011.bin")
+        self.assert_mentions(self.refused("merge", "out"), "sweep.parts", "1 hold the designs of another block: 11")
+        result = self.run_program(*self.command("--check", "5%", "--resume"))
+        self.assertRegex(result.err, "held the designs of another block, and the blocks were computed again: 11\nbentaxis: 209 blocks were")
+        self.assertEqual(self.results("out"), self.results("whole"))
+
     def interrupted(self, process, how, parts=pathlib.Path("out/sweep.parts")):
         """Ends a run in the middle; returns the finished blocks."""
         end = time.monotonic() + program.SECONDS
