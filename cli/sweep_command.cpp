@@ -59,9 +59,10 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
                                   designs::record_of(sweep, "bentaxis " BENTAXIS_VERSION));
   ranks.must_be_same(parts.record().identity, "case, plan or version");
   std::optional<ReportFolders> folders;
+  std::optional<RunLock> lock;
   if (first) {
     folders.emplace(options.place);
-    parts.begin();
+    lock.emplace(parts.begin(share.parts > 1 ? RunLock::Kind::shared : RunLock::Kind::alone));
   }
   ranks.wait();
   const auto before = compute_or_say(sweep, parts, share);
@@ -79,9 +80,17 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
                 options.part.c_str(), parts.folder().c_str(), options.place.out.c_str());
     return kDone;
   }
-  const int status = write_results(sweep, parts, formats, share.threads, *folders);
-  parts.remove(sweep.blocks());
-  return status;
+  try {
+    const int status = write_results(sweep, parts, formats, share.threads, *folders);
+    parts.remove(sweep.blocks());
+    return status;
+  } catch (const Interrupted&) {
+    say_kept(sweep, parts, "interrupted; ");
+    return kInterrupted;
+  } catch (...) {
+    say_kept(sweep, parts, "");
+    throw;
+  }
 }
 
 }  // namespace

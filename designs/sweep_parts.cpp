@@ -1,10 +1,6 @@
 #include "bentaxis/designs/sweep_parts.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -18,6 +14,7 @@
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/toml_reader.h"
+#include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/study/in_threads.h"
@@ -31,6 +28,7 @@ static_assert(std::endian::native == std::endian::little, "blocks are kept in li
 constexpr const char* kTitle = "bentaxis sweep block 1\n";
 constexpr const char* kCaseFile = "case.toml";
 constexpr const char* kPlanFile = "plan.toml";
+constexpr const char* kLockFile = "lock";
 constexpr std::size_t kHash = 64;  // hexadecimal digits of a SHA-256
 
 std::optional<std::string> content_of(const fs::path& file) {
@@ -39,27 +37,6 @@ std::optional<std::string> content_of(const fs::path& file) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
-}
-
-// Under another name first, which no other process or thread has; then renamed.
-void put(const fs::path& file, const std::string& content) {
-  static std::atomic<unsigned> count = 0;
-  char host[64] = "";
-  gethostname(host, sizeof host - 1);
-  const fs::path temporary = file.string() + "." + host + "-" + std::to_string(getpid()) + "-" +
-                             std::to_string(count++) + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out << content << std::flush;
-  const bool written = out.good();
-  out.close();
-  std::error_code error;
-  if (written) fs::rename(temporary, file, error);
-  if (!written || error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw InputError(file.string() + ": cannot be written" +
-                     (error ? ": " + error.message() : std::string(": is the disk full?")));
-  }
 }
 
 fs::path file_of(const fs::path& folder, std::size_t block) {
@@ -263,18 +240,31 @@ SweepRecord record_of(const Sweep& sweep, const std::string& program) {
 SweepParts::SweepParts(fs::path folder, SweepRecord record)
     : folders_{folder}, folder_(std::move(folder)), record_(std::move(record)) {}
 
-void SweepParts::begin() const {
+// Refuses a folder of another sweep.
+void SweepParts::must_be_own() const {
   if (const auto found = found_in(folder_); found && found->identity != record_.identity)
     throw InputError(
         folder_.string() + ": holds blocks of another " +
         (found->program == program_in(record_) ? "case or plan" : "version, " + found->program) +
         "; remove it or name another --out");
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) throw InputError(folder_.string() + ": cannot be written: " + error.message());
-  for (const auto& [name, content] : record_.curves) put(folder_ / name, content);
-  put(folder_ / kCaseFile, record_.case_text);
-  put(folder_ / kPlanFile, record_.plan);
+}
+
+RunLock SweepParts::begin(RunLock::Kind kind) const {
+  // Looked at twice: what is refused is not touched, and nobody can change it once it is locked.
+  {
+    const RunLock held = reading();
+    must_be_own();
+  }
+  RunLock lock(folder_ / kLockFile, kind, "sweep");
+  must_be_own();
+  for (const auto& [name, content] : record_.curves) write_whole(folder_ / name, content);
+  write_whole(folder_ / kCaseFile, record_.case_text);
+  write_whole(folder_ / kPlanFile, record_.plan);
+  return lock;
+}
+
+RunLock SweepParts::reading() const {
+  return {folder_ / kLockFile, RunLock::Kind::reader, "sweep"};
 }
 
 void SweepParts::add(const fs::path& folder) {
@@ -287,7 +277,7 @@ void SweepParts::add(const fs::path& folder) {
 }
 
 void SweepParts::keep(std::size_t block, const SweepBlock& content) const {
-  put(file_of(folder_, block), bytes_of(content, record_.identity));
+  write_whole(file_of(folder_, block), bytes_of(content, record_.identity));
 }
 
 std::optional<SweepBlock> SweepParts::read(std::size_t block) const {
@@ -325,6 +315,9 @@ void SweepParts::remove(std::size_t blocks) const {
   for (const auto& [name, content] : record_.curves) fs::remove(folder_ / name, ignored);
   fs::remove(folder_ / kCaseFile, ignored);
   fs::remove(folder_ / kPlanFile, ignored);
+  fs::remove(folder_ / kLockFile, ignored);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored))
+    if (entry.path().extension() == kUnfinished) fs::remove(entry.path(), ignored);
   fs::remove(folder_, ignored);
 }
 

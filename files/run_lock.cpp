@@ -82,7 +82,7 @@ bool RunLock::take(Kind kind, const std::string& work) {
     return false;
   }
   alone_ = held && kind == Kind::alone;
-  if (held && kind != Kind::reader) write_holder(handle_);
+  if (alone_) write_holder(handle_);
   return true;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bentaxis/designs/sweep.h"
+#include "bentaxis/files/run_lock.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::designs {
@@ -48,8 +49,15 @@ class SweepParts {
   const std::filesystem::path& folder() const { return folder_; }
   const SweepRecord& record() const { return record_; }
   /// Makes the folder and says in it what sweep it is of.
-  /// @throws InputError where it is that of another sweep, or cannot be written
-  void begin() const;
+  /// @param kind  alone, or shared with runs that compute other parts of the same sweep
+  /// @return held until the blocks are computed and, by a run that is alone, removed
+  /// @throws InputError where it is that of another sweep, another run computes a sweep there, or
+  /// it
+  ///         cannot be written
+  RunLock begin(RunLock::Kind kind = RunLock::Kind::alone) const;
+  /// Held while the blocks are read, so that no run removes them meanwhile.
+  /// @throws InputError where one computes them
+  RunLock reading() const;
   /// A folder from elsewhere to look for blocks in.
   /// @throws InputError where it is of another sweep, or of none
   void add(const std::filesystem::path& folder);
@@ -62,10 +70,13 @@ class SweepParts {
   std::vector<std::size_t> misplaced(const std::vector<std::size_t>& among) const;
   /// Number of blocks in the folder, whole or not.
   std::size_t count() const;
-  /// Removes blocks and record, and the folder if nothing else is in it.
+  /// Removes blocks, record and what killed runs have left unfinished, and the folder if nothing
+  /// else is in it.
   void remove(std::size_t blocks) const;
 
  private:
+  void must_be_own() const;
+
   std::vector<std::filesystem::path> folders_;  // to look in
   std::filesystem::path folder_;                // to write to
   SweepRecord record_;

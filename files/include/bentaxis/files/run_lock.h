@@ -16,7 +16,7 @@ class RunLock {
     shared,  ///< others of this kind may
     reader   ///< as shared, but no file is made: where there is none, nothing is held
   };
-  /// @param file  made with its folder where missing; names the process that holds it
+  /// @param file  made with its folder where missing; names the process that holds it alone
   /// @param work  what the holder does, for the message: "sweep"
   /// @throws InputError where another run holds it, or the file cannot be made
   RunLock(std::filesystem::path file, Kind kind, const std::string& work);
