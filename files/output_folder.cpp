@@ -91,11 +91,12 @@ void OutputFolder::Stream::expect(double bytes) const {
   std::error_code error;
   const auto space = fs::space(shown_.parent_path().empty() ? "." : shown_.parent_path(), error);
   if (error || bytes <= static_cast<double>(space.available)) return;
-  const auto gigabytes = [](double size) {
-    return number_text(std::ceil(size / 1e8) / 10) + " GB";
-  };
-  fail(shown_, "takes about " + gigabytes(bytes) + " of disk, and " +
-                   gigabytes(static_cast<double>(space.available)) + " are free");
+  const auto free = static_cast<double>(space.available);
+  const auto [unit, name] =
+      free < 1e9 && bytes < 1e9 ? std::pair{1e6, " MB"} : std::pair{1e9, " GB"};
+  fail(shown_, "takes about " + number_text(std::ceil(10 * bytes / unit) / 10) + name +
+                   " of disk, and " + number_text(std::floor(10 * free / unit) / 10) + name +
+                   " are free");
 }
 
 fs::path OutputFolder::reserve(const std::string& name) {
