@@ -1,4 +1,5 @@
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <functional>
@@ -98,6 +99,8 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A file that outgrows its limit (ulimit -f) is refused as one on a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
   const InputLog inputs;
   remember_command(argc, argv);
   return checked_output(run_program(argc, argv));

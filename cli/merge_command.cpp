@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -33,8 +34,16 @@ int merge(const Options& options) {
   const auto [sweep, record] = designs::sweep_in(sources.front());
   designs::SweepParts parts(sources.front(), record);
   for (auto more = sources.begin() + 1; more != sources.end(); ++more) parts.add(*more);
+  const RunLock lock = parts.reading();
   ReportFolders folders(options.place);
-  return write_results(sweep, parts, formats, 0, folders);
+  try {
+    return write_results(sweep, parts, formats, 0, folders);
+  } catch (const Interrupted&) {
+    std::fprintf(stderr,
+                 "bentaxis: interrupted; no results were written; the blocks stay where they are: "
+                 "merge them again\n");
+    return kInterrupted;
+  }
 }
 
 }  // namespace

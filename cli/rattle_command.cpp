@@ -7,6 +7,7 @@
 #include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/files/run_lock.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/rattle_document.h"
 #include "bentaxis/study/rattle_file.h"
@@ -52,8 +53,10 @@ int rattle(const Options& options) {
   study::RattleFile file(std::filesystem::path(options.place.out) / "rattle.partial.csv",
                          origin_of(the_case, rattle));
   study::RattleKeeping keeping;
-  if (options.resume) keeping.finished = file.read();
   ReportFolders folders(options.place);
+  const RunLock lock(std::filesystem::path(options.place.out) / "rattle.partial.lock",
+                     RunLock::Kind::alone, "rattle map");
+  if (options.resume) keeping.finished = file.read();
   if (options.resume && file.rows() == 0)
     std::fprintf(stderr, "bentaxis: %s: no rows to resume from; all are computed\n",
                  file.file().c_str());
@@ -72,8 +75,13 @@ int rattle(const Options& options) {
     paths = folders.write("report", study::rattle_document(map, versions()), {},
                           {{"rattle.csv", study::rattle_csv(map)}});
   } catch (const Interrupted&) {
-    if (file.rows() == 0) throw;
-    say_kept("interrupted; ");
+    if (file.rows() > 0) {
+      say_kept("interrupted; ");
+    } else {
+      if (!std::filesystem::exists(file.file())) throw;
+      std::fprintf(stderr, "bentaxis: interrupted; %s still holds the rows of an earlier run\n",
+                   file.file().c_str());
+    }
     return kInterrupted;
   } catch (...) {
     if (file.rows() > 0) say_kept("");

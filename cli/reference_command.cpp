@@ -1,10 +1,11 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 
 #include "bentaxis/files/input_file.h"
+#include "bentaxis/files/kept_case.h"
+#include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/reference_maker.h"
 #include "commands.h"
@@ -54,8 +55,7 @@ int make_new(const Options& options) {
       if (fs::exists(proposal))
         throw InputError(proposal.string() +
                          ": exists; use it by --mapping, or take it away for a new guess");
-      std::ofstream(proposal, std::ios::binary) << description;
-      if (!fs::exists(proposal)) throw InputError(proposal.string() + ": cannot be written");
+      write_whole(proposal, description);
       std::printf("%s", proposals.c_str());
       std::printf(
           "%s: confirm or edit it, then: bentaxis reference new .. --mapping %s (or --accept the "
@@ -83,8 +83,17 @@ int make_golden(const Options& options) {
 int update(const Options& options) {
   const study::GoldenSet set = study::find_golden(options.folder);
   int changed = 0;
-  for (const auto& description : set.golden) {
-    const study::GoldenUpdate update = study::update_golden(description, progress_of);
+  for (std::size_t i = 0; i < set.golden.size(); ++i) {
+    study::GoldenUpdate update;
+    try {
+      update = study::update_golden(set.golden[i], progress_of);
+    } catch (const Interrupted&) {
+      std::fprintf(stderr,
+                   "bentaxis: interrupted after %zu of %zu golden folders, of which %d were "
+                   "rewritten; do the same again for the rest\n",
+                   i, set.golden.size(), changed);
+      return kInterrupted;
+    }
     std::printf("%s", update.text.c_str());
     changed += update.rewritten ? 1 : 0;
   }

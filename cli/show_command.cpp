@@ -50,14 +50,16 @@ int show(const Options& options) {
   for (const auto& quantity : study::derived_section(the_case))
     std::printf("  %-22s %10.5g %s\n", quantity.name.c_str(), quantity.value,
                 quantity.unit.c_str());
-  if (options.picture_alone()) write_picture(the_case, options.out);
-  if (!report && !figures) return kDone;
-
+  if (!report && !figures) {
+    if (options.picture_alone()) write_picture(the_case, options.out);
+    return kDone;
+  }
   const study::ShownPump pump = study::show_pump(the_case, progress_of);
   const report::Document document = study::pump_document(pump, versions());
   const report::Curves curves = study::pump_curves(pump);
   if (figures) {
     add_figure_files(*figures, document, curves);
+    if (options.picture_alone()) write_picture(the_case, options.out);
     std::printf("%s\n", commit_figures(*figures).c_str());
     return kDone;
   }

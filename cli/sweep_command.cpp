@@ -59,24 +59,38 @@ int sweep(const Options& options, const CommandParser& command, const Ranks& ran
                                   designs::record_of(sweep, "bentaxis " BENTAXIS_VERSION));
   ranks.must_be_same(parts.record().identity, "case, plan or version");
   std::optional<ReportFolders> folders;
+  std::optional<RunLock> lock;
   if (first) {
     folders.emplace(options.place);
-    parts.begin();
+    lock.emplace(parts.begin(share.parts > 1 ? RunLock::Kind::shared : RunLock::Kind::alone));
   }
   ranks.wait();
   const auto before = compute_or_say(sweep, parts, share);
   if (!before) return kInterrupted;
   ranks.wait();
   if (!first) return kDone;
-  if (share.resume) std::fprintf(stderr, "bentaxis: %zu blocks were there already\n", *before);
+  if (!before->misplaced.empty())
+    std::fprintf(stderr,
+                 "bentaxis: %s: files of these blocks held the designs of another block, and the "
+                 "blocks were computed again: %s\n",
+                 parts.folder().c_str(), designs::list_of(before->misplaced).c_str());
+  if (share.resume) std::fprintf(stderr, "bentaxis: %zu blocks were there already\n", before->kept);
   if (share.parts > 1) {
     std::printf("part %s is in %s; bentaxis merge %s makes results of all parts\n",
                 options.part.c_str(), parts.folder().c_str(), options.place.out.c_str());
     return kDone;
   }
-  const int status = write_results(sweep, parts, formats, share.threads, *folders);
-  parts.remove(sweep.blocks());
-  return status;
+  try {
+    const int status = write_results(sweep, parts, formats, share.threads, *folders);
+    parts.remove(sweep.blocks());
+    return status;
+  } catch (const Interrupted&) {
+    say_kept(sweep, parts, "interrupted; ");
+    return kInterrupted;
+  } catch (...) {
+    say_kept(sweep, parts, "");
+    throw;
+  }
 }
 
 }  // namespace

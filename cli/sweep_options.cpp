@@ -102,25 +102,29 @@ designs::SweepFormats formats_of(const std::vector<std::string>& formats) {
 
 std::filesystem::path parts_in(const std::filesystem::path& out) { return out / "sweep.parts"; }
 
-std::optional<std::size_t> compute_or_say(const designs::Sweep& sweep,
-                                          const designs::SweepParts& parts,
-                                          const designs::SweepShare& share) {
-  std::size_t kept = 0;
-  const auto say_kept = [&](const char* why) {
-    kept = parts.count();
-    if (kept == 0 && share.ranks == 1 && share.parts == 1) parts.remove(0);
-    if (kept > 0 && share.rank == 0)
-      std::fprintf(stderr, "bentaxis: %s%zu of %zu blocks are in %s: --resume goes on from them\n",
-                   why, kept, sweep.blocks(), parts.folder().c_str());
+std::size_t say_kept(const designs::Sweep& sweep, const designs::SweepParts& parts,
+                     const std::string& why) {
+  const std::size_t kept = parts.count();
+  if (kept > 0)
+    std::fprintf(stderr, "bentaxis: %s%zu of %zu blocks are in %s: --resume goes on from them\n",
+                 why.c_str(), kept, sweep.blocks(), parts.folder().c_str());
+  return kept;
+}
+
+std::optional<designs::ResumedBlocks> compute_or_say(const designs::Sweep& sweep,
+                                                     const designs::SweepParts& parts,
+                                                     const designs::SweepShare& share) {
+  const auto kept = [&](const char* why) {
+    if (parts.count() == 0 && share.ranks == 1 && share.parts == 1) parts.remove(0);
+    return share.rank == 0 ? say_kept(sweep, parts, why) : parts.count();
   };
   try {
     return designs::compute_blocks(sweep, parts, share, progress_of("sweep"));
   } catch (const Interrupted&) {
-    say_kept("interrupted; ");
-    if (kept == 0 || share.ranks > 1) throw;  // other ranks would wait for this one
+    if (kept("interrupted; ") == 0 || share.ranks > 1) throw;  // other ranks would wait for it
     return std::nullopt;
   } catch (...) {
-    say_kept("");
+    kept("");
     throw;
   }
 }

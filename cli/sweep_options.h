@@ -33,11 +33,17 @@ designs::SweepFormats formats_of(const std::vector<std::string>& formats);
 /// Where finished blocks of a sweep to this folder wait.
 std::filesystem::path parts_in(const std::filesystem::path& out);
 
+/// Says on standard error which blocks are kept after a sweep has ended early, and how to go on.
+/// @param why  begins the line: "interrupted; " or ""
+/// @return their number; of none nothing is said
+std::size_t say_kept(const designs::Sweep& sweep, const designs::SweepParts& parts,
+                     const std::string& why);
+
 /// Computes the blocks of a share; where that ends early, says how many are kept.
-/// @return how many were there already; nothing where the user has interrupted it
-std::optional<std::size_t> compute_or_say(const designs::Sweep& sweep,
-                                          const designs::SweepParts& parts,
-                                          const designs::SweepShare& share);
+/// @return what was there already; nothing where the user has interrupted it
+std::optional<designs::ResumedBlocks> compute_or_say(const designs::Sweep& sweep,
+                                                     const designs::SweepParts& parts,
+                                                     const designs::SweepShare& share);
 
 /// Writes the results of all blocks and prints what came out. @return the exit status
 int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,

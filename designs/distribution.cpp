@@ -13,11 +13,16 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
+#include "plain_double.h"
 
 namespace bentaxis::designs {
 namespace {
 
 namespace law = boost::math;
+using Normal = law::normal_distribution<double, PlainDouble>;
+using Uniform = law::uniform_distribution<double, PlainDouble>;
+using Triangular = law::triangular_distribution<double, PlainDouble>;
+using Lognormal = law::lognormal_distribution<double, PlainDouble>;
 
 constexpr std::array<const char*, 4> kShapes = {"normal", "uniform", "triangular", "lognormal"};
 constexpr std::array<std::size_t, 4> kNumbers = {2, 2, 3, 2};
@@ -28,15 +33,15 @@ double ask(const Distribution& d, const Job& job) {
   const std::vector<double>& n = d.numbers;
   switch (d.shape) {
     case Shape::normal:
-      return job(law::normal(n[0], n[1]));
+      return job(Normal(n[0], n[1]));
     case Shape::uniform:
-      return job(law::uniform(n[0], n[1]));
+      return job(Uniform(n[0], n[1]));
     case Shape::triangular:
-      return job(law::triangular(n[0], n[1], n[2]));
+      return job(Triangular(n[0], n[1], n[2]));
     case Shape::lognormal:
       break;
   }
-  return job(law::lognormal(std::log(n[0]), n[1]));
+  return job(Lognormal(std::log(n[0]), n[1]));
 }
 
 // What is wrong with the numbers of a distribution; "" where nothing is.
@@ -94,7 +99,7 @@ double Distribution::quantile(double share) const {
 double Distribution::at_score(double score) const {
   if (shape == Shape::normal) return numbers[0] + numbers[1] * score;
   if (shape == Shape::lognormal) return numbers[0] * std::exp(numbers[1] * score);
-  const law::normal standard;  // of both tails the short one, which has all its digits
+  const Normal standard;  // of both tails the short one, which has all its digits
   return ask(*this, [&](const auto& d) {
     return score < 0 ? law::quantile(d, law::cdf(standard, score))
                      : law::quantile(complement(d, law::cdf(complement(standard, score))));
@@ -214,7 +219,7 @@ void UncertainVariables::values(std::span<const double> shares, std::span<double
     for (std::size_t i = 0; i < n; ++i) values[i] = distributions[i].quantile(shares[i]);
     return;
   }
-  const law::normal standard;
+  const Normal standard;
   for (std::size_t i = 0; i < n; ++i) values[i] = law::quantile(standard, shares[i]);
   for (std::size_t i = n; i-- > 0;) {  // downwards: those above are still independent
     double score = 0;

@@ -1,11 +1,15 @@
 #include "bentaxis/designs/evaluator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/memory.h"
+#include "bentaxis/study/run.h"
 #include "idle.h"
 #include "turn_statistics.h"
 
@@ -45,6 +49,17 @@ Evaluator::Implementation::Implementation(Family the_family, std::vector<Output>
     : family(std::move(the_family)), outputs(std::move(the_outputs)), model(the_model) {
   if (model == study::Model::analytic && stays_in_reach(family))
     kernel = turn_outputs(outputs, family.base());
+  if (!kernel) {
+    study::require_memory(family.base(), study::Kept::table, study::Way::driven);
+    return;
+  }
+  // The angles, and for every piston its pressure and what that is made of; of two threads.
+  const Operation& operation = family.base().operation;
+  const double numbers = 1 + 4.0 * family.base().pump.geometry.pistons;
+  study::require_memory(
+      2 * numbers * sizeof(double) * operation.samples_per_revolution,
+      fmt::format("[operation] samples_per_revolution = {}", operation.samples_per_revolution),
+      "lower samples_per_revolution");
 }
 
 Evaluator::Evaluator(Family family, std::vector<Output> outputs, study::Model model)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/case_sections.h"
@@ -78,23 +77,6 @@ report::Section bearings_section(const LifeStudy& s) {
   return section;
 }
 
-// Shares of the time and of the revolutions, summing to 1.
-struct Shares {
-  std::vector<double> time, revolutions;
-};
-Shares shares_of(const std::vector<LifePoint>& points) {
-  Shares shares;
-  for (const LifePoint& p : points) {
-    shares.time.push_back(p.share);
-    shares.revolutions.push_back(p.share * std::abs(p.speed_rpm));
-  }
-  for (auto* list : {&shares.time, &shares.revolutions}) {
-    const double all = std::accumulate(list->begin(), list->end(), 0.0);
-    for (double& share : *list) share = all > 0 ? share / all : 0;
-  }
-  return shares;
-}
-
 // Mean equivalent load of one row.
 double load_of(const LifePoint& point, Bearing bearing) {
   const auto& loads = point.loads[static_cast<std::size_t>(bearing)].equivalent;
@@ -115,7 +97,7 @@ report::Section duty_section(const LifeStudy& s) {
     columns.push_back(to_string(bearing) + " P_m, N");
     columns.push_back(to_string(bearing) + " life, %");
   }
-  const Shares shares = shares_of(s.analytic.points);
+  const study::DutyShares shares = study::duty_shares(s.analytic.points);
   for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
     std::vector<report::Cell> cells = {static_cast<long>(row + 1), 100 * shares.time[row],
                                        100 * shares.revolutions[row]};
@@ -190,7 +172,7 @@ report::Figure turn_figure(const LifeStudy& s, Bearing bearing, std::size_t row)
 // Share of the revolutions above a load.
 report::Figure spectrum_figure(const LifeStudy& s) {
   constexpr std::size_t kMostPoints = 400;  // of a curve
-  const Shares shares = shares_of(s.analytic.points);
+  const study::DutyShares shares = study::duty_shares(s.analytic.points);
   report::XyFigure plot{
       {"share of the revolutions above it", "%"}, {"equivalent load", "N", false, 0}, {}};
   for (const Bearing bearing : study::kBearings) {
@@ -250,7 +232,7 @@ std::string life_csv(const LifeStudy& s) {
     for (const char* what : {"P_N", "P_multibody_N", "life_share"})
       text += "," + to_string(bearing) + "_" + what;
   text += "\n";
-  const Shares shares = shares_of(s.analytic.points);
+  const study::DutyShares shares = study::duty_shares(s.analytic.points);
   const auto add = [&](double value) {
     text += ',';
     append_number(text, value);
@@ -304,7 +286,7 @@ std::string life_text(const LifeStudy& s) {
                         digits(life.revolutions), digits(life.hours), life.static_safety);
   }
   if (s.duty.rows.size() > 1) {
-    const Shares shares = shares_of(s.analytic.points);
+    const study::DutyShares shares = study::duty_shares(s.analytic.points);
     text += fmt::format("\n{:>7} {:>7} {:>10} {:>12}  of time, revolutions, life used up, %\n",
                         "time", "turns", "tapered", "cylindrical");
     for (std::size_t row = 0; row < s.duty.rows.size(); ++row)

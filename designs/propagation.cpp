@@ -1,5 +1,7 @@
 #include "bentaxis/designs/propagation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
@@ -8,6 +10,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/memory.h"
+#include "plain_double.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -21,7 +25,7 @@ constexpr double kTail = (1 - kConfidence) / 2;
 QuantileRule::QuantileRule(double share, std::size_t samples) {
   const auto count = static_cast<double>(samples);
   // How many values lie below the quantile is binomial; Boost rounds outwards.
-  const boost::math::binomial below(count, share);
+  const boost::math::binomial_distribution<double, PlainDouble> below(count, share);
   const auto first = static_cast<std::size_t>(boost::math::quantile(below, kTail));
   const auto last = static_cast<std::size_t>(boost::math::quantile(complement(below, kTail)));
   low_ = first;  // with at most that probability `first` values or fewer lie below
@@ -85,6 +89,12 @@ Evaluated evaluate(const Response& response, std::size_t outputs, std::size_t di
                    std::size_t count,
                    const std::function<void(std::size_t index, std::span<double> values)>& point,
                    int threads, const Progress& progress) {
+  // Results twice, with and without the infeasible ones, and a reason each.
+  const auto number = static_cast<double>(count);
+  study::require_memory(
+      number * (2 * static_cast<double>(outputs * sizeof(double)) + sizeof(std::string)),
+      fmt::format("--samples: {} designs of {} numbers each", count, outputs),
+      "lower --samples, or ask for fewer outputs");
   Evaluated all{std::vector<double>(count * outputs), std::vector<std::string>(count)};
   const std::size_t blocks = (count + kPoints - 1) / kPoints;
   study::Reporting reporting(blocks, progress);

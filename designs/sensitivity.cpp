@@ -523,6 +523,7 @@ std::vector<Variable> continuous_variables(const Case& base) {
 Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
                             const std::vector<Output>& outputs, study::Model model,
                             const study::PartProgress& progress_of) {
+  study::require_memory(base, study::Kept::table, study::Way::driven);
   Sensitivities s = begin(base, variables, outputs, model);
   const ChannelLayout layout(base.pump.geometry.pistons);
   const bool analytic = model == study::Model::analytic;

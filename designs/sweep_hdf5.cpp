@@ -8,6 +8,8 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -15,7 +17,17 @@ namespace bentaxis::designs {
 
 bool has_hdf5() { return true; }
 
+namespace {
+
+// At the end of the program the library would write once more what it could not write before, and
+// fail so that the program crashes. Files that are closed have all of theirs. Counts only before
+// anything else is called.
+void leave_at_exit() { H5dont_atexit(); }
+
+}  // namespace
+
 std::string hdf5_version() {
+  leave_at_exit();
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
@@ -30,11 +42,18 @@ enum class Packing {
   light  // of levels and texts, which come again and again
 };
 
+// What the system has refused to the library, which says no more than that it failed.
+[[noreturn]] void fail() {
+  const int error = errno;
+  throw InputError(std::string("sweep.h5: cannot be written by the library HDF5: ") +
+                   (error != 0 ? std::strerror(error) : "is the disk full?"));
+}
+
 // An identifier of the library, given back at the end.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id_ < 0) throw InputError("the library HDF5 refuses to write");
+    if (id_ < 0) fail();
   }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&&) = delete;
@@ -49,7 +68,7 @@ class Handle {
 };
 
 void must(herr_t status) {
-  if (status < 0) throw InputError("the library HDF5 cannot write: is the disk full?");
+  if (status < 0) fail();
 }
 
 Handle text_type() {
@@ -147,6 +166,7 @@ struct Hdf5File::Implementation {
   }
 
   static Handle open(const std::filesystem::path& path) {
+    leave_at_exit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are said by this program
     const Handle how(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     must(H5Pset_obj_track_times(*how, false));

@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "bentaxis/designs/sweep.h"
 #include "bentaxis/results/stopwatch.h"
 #include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/memory.h"
 
 namespace bentaxis::designs {
 
@@ -13,6 +16,14 @@ SweepResult compute_in_memory(const Sweep& sweep, int threads, const Progress& p
   result.base = sweep.family().base();
   result.designs = sweep.designs();
   const std::size_t n = result.plan.varied.size(), m = result.plan.outputs.size();
+  // Numbers, a reason each, and what both models say of those that are checked.
+  const double of_check = static_cast<double>(sizeof(SweepCheck) + 3 * m * sizeof(double));
+  study::require_memory(
+      static_cast<double>(result.designs) *
+          (static_cast<double>((n + m) * sizeof(double) + sizeof(std::string)) +
+           result.plan.check_share * of_check),
+      fmt::format("sweep: {} designs of {} variables and {} outputs", result.designs, n, m),
+      "take fewer designs, or the command bentaxis sweep, which keeps them on the disk");
   result.values.resize(result.designs * n);
   result.results.resize(result.designs * m);
   std::vector<SweepBlock> blocks(sweep.blocks());  // reasons and checks of each, in its place

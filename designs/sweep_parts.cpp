@@ -1,13 +1,10 @@
 #include "bentaxis/designs/sweep_parts.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <system_error>
 #include <utility>
@@ -18,6 +15,7 @@
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/toml_reader.h"
+#include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/study/in_threads.h"
@@ -31,31 +29,11 @@ static_assert(std::endian::native == std::endian::little, "blocks are kept in li
 constexpr const char* kTitle = "bentaxis sweep block 1\n";
 constexpr const char* kCaseFile = "case.toml";
 constexpr const char* kPlanFile = "plan.toml";
+constexpr const char* kLockFile = "lock";
 constexpr std::size_t kHash = 64;  // hexadecimal digits of a SHA-256
 
 std::optional<std::string> content_of(const fs::path& file) {
   return read_input_file_if_there(file, {"a file of a sweep", kLargestReport});
-}
-
-// Under another name first, which no other process or thread has; then renamed.
-void put(const fs::path& file, const std::string& content) {
-  static std::atomic<unsigned> count = 0;
-  char host[64] = "";
-  gethostname(host, sizeof host - 1);
-  const fs::path temporary = file.string() + "." + host + "-" + std::to_string(getpid()) + "-" +
-                             std::to_string(count++) + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out << content << std::flush;
-  const bool written = out.good();
-  out.close();
-  std::error_code error;
-  if (written) fs::rename(temporary, file, error);
-  if (!written || error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw InputError(file.string() + ": cannot be written" +
-                     (error ? ": " + error.message() : std::string(": is the disk full?")));
-  }
 }
 
 fs::path file_of(const fs::path& folder, std::size_t block) {
@@ -206,8 +184,26 @@ std::string program_in(const SweepRecord& record) {
 
 }  // namespace
 
+bool BlockLayout::fits(std::size_t number, const SweepBlock& block) const {
+  if (number >= blocks()) return false;
+  const std::size_t first = number * block_size;
+  if (block.first != first || block.designs != std::min(block_size, designs - first) ||
+      block.values.size() != block.designs * variables ||
+      block.results.size() != block.designs * outputs || block.reasons.size() != block.designs)
+    return false;
+  std::size_t next = first;  // checks come in the order of the designs, each at most once
+  return std::all_of(block.checks.begin(), block.checks.end(), [&](const SweepCheck& check) {
+    const bool fits =
+        check.design >= next && check.design < first + block.designs && check.own.size() == outputs;
+    next = check.design + 1;
+    return fits;
+  });
+}
+
 SweepRecord record_of(const Sweep& sweep, const std::string& program) {
   SweepRecord record;
+  record.layout = {sweep.designs(), sweep.block_size(), sweep.plan().varied.size(),
+                   sweep.plan().outputs.size()};
   const Case& base = sweep.family().base();
   record.case_text = text_of(sweep.family());
   const ConstView view = view_of(base);
@@ -241,18 +237,31 @@ SweepRecord record_of(const Sweep& sweep, const std::string& program) {
 SweepParts::SweepParts(fs::path folder, SweepRecord record)
     : folders_{folder}, folder_(std::move(folder)), record_(std::move(record)) {}
 
-void SweepParts::begin() const {
+// Refuses a folder of another sweep.
+void SweepParts::must_be_own() const {
   if (const auto found = found_in(folder_); found && found->identity != record_.identity)
     throw InputError(
         folder_.string() + ": holds blocks of another " +
         (found->program == program_in(record_) ? "case or plan" : "version, " + found->program) +
         "; remove it or name another --out");
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) throw InputError(folder_.string() + ": cannot be written: " + error.message());
-  for (const auto& [name, content] : record_.curves) put(folder_ / name, content);
-  put(folder_ / kCaseFile, record_.case_text);
-  put(folder_ / kPlanFile, record_.plan);
+}
+
+RunLock SweepParts::begin(RunLock::Kind kind) const {
+  // Looked at twice: what is refused is not touched, and nobody can change it once it is locked.
+  {
+    const RunLock held = reading();
+    must_be_own();
+  }
+  RunLock lock(folder_ / kLockFile, kind, "sweep");
+  must_be_own();
+  for (const auto& [name, content] : record_.curves) write_whole(folder_ / name, content);
+  write_whole(folder_ / kCaseFile, record_.case_text);
+  write_whole(folder_ / kPlanFile, record_.plan);
+  return lock;
+}
+
+RunLock SweepParts::reading() const {
+  return {folder_ / kLockFile, RunLock::Kind::reader, "sweep"};
 }
 
 void SweepParts::add(const fs::path& folder) {
@@ -265,14 +274,28 @@ void SweepParts::add(const fs::path& folder) {
 }
 
 void SweepParts::keep(std::size_t block, const SweepBlock& content) const {
-  put(file_of(folder_, block), bytes_of(content, record_.identity));
+  write_whole(file_of(folder_, block), bytes_of(content, record_.identity));
 }
 
 std::optional<SweepBlock> SweepParts::read(std::size_t block) const {
   for (const fs::path& folder : folders_)
     if (const auto bytes = content_of(file_of(folder, block)))
-      if (auto found = block_of(*bytes, record_.identity)) return found;
+      if (auto found = block_of(*bytes, record_.identity);
+          found && record_.layout.fits(block, *found))
+        return found;
   return std::nullopt;
+}
+
+std::vector<std::size_t> SweepParts::misplaced(const std::vector<std::size_t>& among) const {
+  std::vector<std::size_t> found;
+  std::copy_if(among.begin(), among.end(), std::back_inserter(found), [&](std::size_t block) {
+    return std::any_of(folders_.begin(), folders_.end(), [&](const fs::path& folder) {
+      const auto bytes = content_of(file_of(folder, block));
+      const auto content = bytes ? block_of(*bytes, record_.identity) : std::nullopt;
+      return content && !record_.layout.fits(block, *content);
+    });
+  });
+  return found;
 }
 
 std::size_t SweepParts::count() const {
@@ -289,6 +312,9 @@ void SweepParts::remove(std::size_t blocks) const {
   for (const auto& [name, content] : record_.curves) fs::remove(folder_ / name, ignored);
   fs::remove(folder_ / kCaseFile, ignored);
   fs::remove(folder_ / kPlanFile, ignored);
+  fs::remove(folder_ / kLockFile, ignored);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored))
+    if (entry.path().extension() == kUnfinished) fs::remove(entry.path(), ignored);
   fs::remove(folder_, ignored);
 }
 
@@ -304,23 +330,25 @@ std::pair<Sweep, SweepRecord> sweep_in(const fs::path& folder) {
   return {std::move(sweep), std::move(record)};
 }
 
-std::size_t compute_blocks(const Sweep& sweep, const SweepParts& parts, const SweepShare& share,
-                           const Progress& progress) {
+ResumedBlocks compute_blocks(const Sweep& sweep, const SweepParts& parts, const SweepShare& share,
+                             const Progress& progress) {
   std::vector<std::size_t> missing;
-  std::size_t mine = 0, there = 0;
+  ResumedBlocks resumed;
+  std::size_t mine = 0;
   for (std::size_t block = share.part; block < sweep.blocks(); block += share.parts) {
     if (mine++ % share.ranks != share.rank) continue;
     if (share.resume && parts.read(block))
-      ++there;
+      ++resumed.kept;
     else
       missing.push_back(block);
   }
+  if (share.resume) resumed.misplaced = parts.misplaced(missing);
   study::Reporting reporting(missing.size(), progress);
   study::in_threads(share.threads, missing.size(), [&](std::size_t i) {
     parts.keep(missing[i], sweep.compute(missing[i], [&] { reporting.tick(); }));
     reporting.done();
   });
-  return there;
+  return resumed;
 }
 
 std::string list_of(const std::vector<std::size_t>& numbers) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -81,6 +82,23 @@ double bytes_expected(const Sweep& sweep) {
   return kBytesOfNumber * columns * static_cast<double>(sweep.designs());
 }
 
+// Which blocks cannot be taken, and why.
+std::string missing_text(const SweepParts& parts, const std::vector<std::size_t>& missing) {
+  const std::size_t blocks = parts.record().layout.blocks();
+  const std::vector<std::size_t> misplaced = parts.misplaced(missing);
+  std::vector<std::size_t> others;
+  std::set_difference(missing.begin(), missing.end(), misplaced.begin(), misplaced.end(),
+                      std::back_inserter(others));
+  std::string text =
+      fmt::format("{}: of {} blocks (0-{}) ", parts.folder().string(), blocks, blocks - 1);
+  if (!misplaced.empty())
+    text += fmt::format("{} hold the designs of another block: {}{}", misplaced.size(),
+                        list_of(misplaced), others.empty() ? "" : "; ");
+  if (!others.empty())
+    text += fmt::format("{} are missing or damaged: {}", others.size(), list_of(others));
+  return text;
+}
+
 // Appends what is shown of a block.
 void take(SweepResult& result, SweepBlock& block) {
   const std::size_t n = result.plan.varied.size(), m = result.plan.outputs.size();
@@ -124,6 +142,7 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
     }
   };
   std::vector<std::size_t> missing;
+  std::size_t counted = 0;  // designs so far: no block holds those of another one
   // Some blocks at a time are read and made text side by side; those before are written meanwhile.
   constexpr std::size_t kAtATime = 8;
   std::vector<ReadBlock> before, now;
@@ -136,19 +155,21 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
       if (one.block && csv != nullptr) one.rows = csv_rows(*one.block, result.plan);
     });
     for (std::size_t i = 0; i < now.size(); ++i) {
-      if (now[i].block)
-        take(result, *now[i].block);
-      else
+      if (!now[i].block) {
         missing.push_back(first + i);
+        continue;
+      }
+      counted += now[i].block->designs;
+      take(result, *now[i].block);
     }
     before.swap(now);
     progress(static_cast<double>(first + before.size()) / static_cast<double>(sweep.blocks()));
     if (!missing.empty()) before.clear();
   }
-  if (!missing.empty())
-    throw InputError(fmt::format("{}: of {} blocks (0-{}) {} are missing or damaged: {}",
-                                 parts.folder().string(), sweep.blocks(), sweep.blocks() - 1,
-                                 missing.size(), list_of(missing)));
+  if (!missing.empty()) throw InputError(missing_text(parts, missing));
+  if (counted != sweep.designs())
+    throw ComputationError(fmt::format("{}: its blocks hold {} designs, but the plan has {}",
+                                       parts.folder().string(), counted, sweep.designs()));
   write(before);
   if (hdf5) hdf5->finish(result.checks);
   if (!result.checks.empty())

@@ -1,7 +1,5 @@
 #include "bentaxis/files/new_folder.h"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <fstream>
 #include <system_error>
@@ -33,22 +31,19 @@ NewFolder::NewFolder(fs::path folder) : folder_(std::move(folder)) {
     refuse(place.parent_path(), "there is no such folder");
   }
   folder_ = place;
-  here_ =
-      place.parent_path() / ("." + place.filename().string() + ".part-" + std::to_string(getpid()));
-  if (!fs::create_directory(here_, error))
-    refuse(place.parent_path(), "nothing can be written there: " +
-                                    (error ? error.message() : here_.string() + " is in the way"));
+  try {
+    staging_.emplace(place.parent_path(), prefix());
+  } catch (const fs::filesystem_error& failed) {
+    refuse(place.parent_path(), "nothing can be written there: " + failed.code().message());
+  }
 }
 
-NewFolder::~NewFolder() {
-  std::error_code error;
-  fs::remove_all(here_, error);
-}
+std::string NewFolder::prefix() const { return "." + folder_.filename().string() + ".part-"; }
 
 void NewFolder::add(const fs::path& name, const std::string& content) {
   std::error_code error;
-  fs::create_directories((here_ / name).parent_path(), error);
-  std::ofstream out(here_ / name, std::ios::binary);
+  fs::create_directories((here() / name).parent_path(), error);
+  std::ofstream out(here() / name, std::ios::binary);
   out << content;
   out.close();
   if (!out)
@@ -58,14 +53,20 @@ void NewFolder::add(const fs::path& name, const std::string& content) {
 
 void NewFolder::commit() {
   std::error_code error;
-  if (!fs::exists(folder_, error)) {
-    fs::rename(here_, folder_, error);
+  if (fs::exists(folder_, error)) {
+    fill();
+  } else {
+    fs::rename(here(), folder_, error);
     if (error) refuse(folder_, "cannot be made: " + error.message());
-    return;
   }
-  // It is there and empty, and may be where somebody stands: it stays, and is filled.
+  StagingFolder::remove_abandoned(folder_.parent_path(), prefix());
+}
+
+// It is there and empty, and may be where somebody stands: it stays, and is filled.
+void NewFolder::fill() {
+  std::error_code error;
   std::vector<fs::path> moved;
-  for (const fs::directory_entry& entry : fs::directory_iterator(here_)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(here())) {
     const fs::path to = folder_ / entry.path().filename();
     fs::rename(entry.path(), to, error);
     if (error) {

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -19,6 +18,8 @@
 namespace bentaxis {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr const char* kStaging = ".bentaxis.part-";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& why) {
   throw InputError(path.string() + ": cannot be written: " + why);
@@ -63,9 +64,10 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  for (const Pending& file : pending_) fs::remove(file.temporary, ignored);
+  streams_.clear();
+  staging_.reset();
   if (created_.empty()) return;
+  std::error_code ignored;
   // A folder made for a run that produced nothing goes too, unless somebody else put something in.
   fs::path folder = fs::absolute(folder_, ignored).lexically_normal();
   if (folder.filename().empty()) folder = folder.parent_path();
@@ -88,19 +90,23 @@ void OutputFolder::Stream::expect(double bytes) const {
   std::error_code error;
   const auto space = fs::space(shown_.parent_path().empty() ? "." : shown_.parent_path(), error);
   if (error || bytes <= static_cast<double>(space.available)) return;
-  const auto gigabytes = [](double size) {
-    return number_text(std::ceil(size / 1e8) / 10) + " GB";
-  };
-  fail(shown_, "takes about " + gigabytes(bytes) + " of disk, and " +
-                   gigabytes(static_cast<double>(space.available)) + " are free");
+  const auto free = static_cast<double>(space.available);
+  const auto [unit, name] =
+      free < 1e9 && bytes < 1e9 ? std::pair{1e6, " MB"} : std::pair{1e9, " GB"};
+  fail(shown_, "takes about " + number_text(std::ceil(10 * bytes / unit) / 10) + name +
+                   " of disk, and " + number_text(std::floor(10 * free / unit) / 10) + name +
+                   " are free");
 }
 
 fs::path OutputFolder::reserve(const std::string& name) {
-  // Other objects of this process write to the same folder under names of their own.
-  static std::atomic<unsigned> count = 0;
-  const std::string own = std::to_string(getpid()) + "-" + std::to_string(count++);
-  pending_.push_back({folder_ / ("." + name + ".part-" + own), folder_ / name,
-                      folder_ / ("." + name + ".before-" + own)});
+  try {
+    if (!staging_) staging_.emplace(folder_, kStaging);
+  } catch (const fs::filesystem_error& error) {
+    fail(folder_, error.code().message());
+  }
+  // No ending by which others know a result.
+  pending_.push_back(
+      {staging_->path() / (name + ".new"), folder_ / name, staging_->path() / (name + ".before")});
   return pending_.back().temporary;
 }
 
@@ -193,9 +199,10 @@ std::vector<fs::path> OutputFolder::commit(const std::string& record, const Name
     paths.push_back(file.final_path);
   }
   std::error_code ignored;
-  for (const Pending& file : pending_) fs::remove(file.before, ignored);
   for (const fs::path& file : old) fs::remove(file, ignored);
   pending_.clear();
+  staging_.reset();
+  StagingFolder::remove_abandoned(folder_, kStaging);
   created_.clear();
   return paths;
 }

@@ -27,15 +27,19 @@ const BearingRating& rating_of(const BearingRatings& b, Bearing bearing) {
   return bearing == Bearing::tapered ? *b.tapered : *b.cylindrical;
 }
 
-// Revolutions of every point, in proportion.
-std::vector<double> revolutions_of(const std::vector<LifePoint>& points) {
-  std::vector<double> revolutions;
-  for (const LifePoint& p : points) revolutions.push_back(p.share * std::abs(p.speed_rpm));
-  return revolutions;
+// Over their sum; first over the largest, so that no sum leaves the range of numbers.
+void normalise(std::vector<double>& shares) {
+  const double largest = *std::max_element(shares.begin(), shares.end());
+  if (largest == 0) return;
+  double all = 0;
+  for (double& share : shares) all += share /= largest;
+  for (double& share : shares) share /= all;
 }
 
+double finite_or_none(double value) { return std::isfinite(value) ? value : not_computed(); }
+
 double hours(double revolutions, double mean_speed_rpm) {
-  return mean_speed_rpm > 0 ? revolutions * 1e6 / (kMinutesPerHour * mean_speed_rpm)
+  return mean_speed_rpm > 0 ? finite_or_none(revolutions * 1e6 / (kMinutesPerHour * mean_speed_rpm))
                             : not_computed();
 }
 
@@ -170,19 +174,20 @@ double equivalent_static_load(const TaperedRating& rating, double radial, double
 }
 
 double mean_load(std::span<const double> loads, std::span<const double> shares) {
-  // Over the largest, so that no power leaves the range of numbers.
-  double largest = 0, sum = 0, all = 0;
+  // Over the largest, so that no power and no sum leaves the range of numbers.
+  double largest = 0, most = 0, sum = 0, all = 0;
   for (const double load : loads) largest = std::max(largest, load);
-  if (largest == 0) return 0;
+  for (const double share : shares) most = std::max(most, share);
+  if (largest == 0 || most == 0) return 0;
   for (std::size_t i = 0; i < loads.size(); ++i) {
-    sum += shares[i] * std::pow(loads[i] / largest, kLifeExponent);
-    all += shares[i];
+    sum += shares[i] / most * std::pow(loads[i] / largest, kLifeExponent);
+    all += shares[i] / most;
   }
   return largest * std::pow(sum / all, 1 / kLifeExponent);
 }
 
 double rating_life(double dynamic_rating, double load) {
-  return load > 0 ? std::pow(dynamic_rating / load, kLifeExponent) : not_computed();
+  return load > 0 ? finite_or_none(std::pow(dynamic_rating / load, kLifeExponent)) : not_computed();
 }
 
 double combined_life(std::span<const double> lives) {
@@ -222,16 +227,23 @@ LifePoint life_point(const Case& the_case, const ResultTable& table, double shar
   return point;
 }
 
+DutyShares duty_shares(const std::vector<LifePoint>& points) {
+  DutyShares shares;
+  for (const LifePoint& p : points) shares.time.push_back(p.share);
+  normalise(shares.time);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    shares.revolutions.push_back(shares.time[i] * std::abs(points[i].speed_rpm));
+  normalise(shares.revolutions);
+  return shares;
+}
+
 PumpLife pump_life(const Case& the_case, const std::vector<LifePoint>& points) {
   const BearingRatings& b = rated(the_case);
-  const std::vector<double> revolutions = revolutions_of(points);
-  double turned = 0, time = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    turned += revolutions[i];
-    time += points[i].share;
-  }
+  const DutyShares shares = duty_shares(points);
+  const std::vector<double>& revolutions = shares.revolutions;
   PumpLife life;
-  life.mean_speed_rpm = turned / time;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    life.mean_speed_rpm += shares.time[i] * std::abs(points[i].speed_rpm);
   std::array<double, 2> lives{};
   for (const Bearing bearing : kBearings) {
     const auto i = static_cast<std::size_t>(bearing);

@@ -430,6 +430,7 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
                                 const ComparisonOptions& options, const PartProgress& progress_of) {
   if (!options.with.empty()) reference_in(options.with);  // refused before anything is computed
   if (multibody_case) check_same_run(analytic_case, *multibody_case);
+  require_memory(analytic_case, Kept::compared, options.way);
   ReadyCase first = prepare(std::move(analytic_case), progress_of);
   // The same case is solved once: both models get the very same curve.
   ReadyCase second = multibody_case ? prepare(std::move(*multibody_case), progress_of)

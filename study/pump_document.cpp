@@ -25,6 +25,7 @@ void append(std::vector<Item>& list, std::vector<Item> more) {
 }  // namespace
 
 ShownPump show_pump(Case the_case, const PartProgress& progress_of) {
+  require_memory(the_case, Kept::shown, Way::driven);
   ShownPump pump{prepare(std::move(the_case), progress_of), {}, {}};
   RunOptions options;
   options.loads = true;

@@ -1,6 +1,6 @@
 #include "bentaxis/study/rattle_file.h"
 
-#include <cerrno>
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <sstream>
@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "bentaxis/files/input_file.h"
+#include "bentaxis/files/input_log.h"
+#include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/error.h"
 
 namespace bentaxis::study {
@@ -60,8 +62,8 @@ void append(std::string& text, const std::vector<double>& values) {
   }
 }
 
-// A line for the row, then one per sweep.
-std::string text_of(const RattleRow& row) {
+// A line for the row, one for the criterion, one per sweep.
+std::string numbers_text(const RattleRow& row) {
   std::string text = "row," + number_text(row.delivery_bar);
   append(text, row.boundary_rpm);
   text += "\nrigid";
@@ -74,10 +76,24 @@ std::string text_of(const RattleRow& row) {
   return text + "\n";
 }
 
+// And one that tells whether a row is whole and belongs to this map.
+std::string sum_of(const std::string& numbers, const std::string& from) {
+  return "sum," + sha256_of(from + "\n" + numbers);
+}
+
+std::string text_of(const RattleRow& row, const std::string& from) {
+  const std::string numbers = numbers_text(row);
+  return numbers + sum_of(numbers, from) + "\n";
+}
+
 // The numbers behind a line's name; false where it is another or has something else in it.
-bool read_line(std::istream& in, const std::string& name, std::vector<double>& values) {
+// @param text  gets the line
+bool read_line(std::istream& in, const std::string& name, std::vector<double>& values,
+               std::string& text) {
   std::string line;
-  if (!std::getline(in, line) || line.compare(0, name.size(), name) != 0) return false;
+  if (!std::getline(in, line)) return false;
+  text += line + "\n";
+  if (line.compare(0, name.size(), name) != 0) return false;
   values.clear();
   const char* at = line.data() + name.size();
   const char* end = line.data() + line.size();
@@ -92,22 +108,28 @@ bool read_line(std::istream& in, const std::string& name, std::vector<double>& v
   return true;
 }
 
-bool read_row(std::istream& in, RattleRow& row) {
+bool read_row(std::istream& in, const std::string& from, RattleRow& row) {
   std::vector<double> values;
-  if (!read_line(in, "row", values) || values.empty()) return false;
+  std::string text;
+  if (!read_line(in, "row", values, text) || values.empty()) return false;
   row.delivery_bar = values[0];
   row.boundary_rpm.assign(values.begin() + 1, values.end());
-  if (!read_line(in, "rigid", values) || values.size() % 2 != 0) return false;
+  if (!read_line(in, "rigid", values, text) || values.size() % 2 != 0) return false;
   const std::size_t speeds = values.size() / 2;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(speeds);
   row.least.assign(values.begin(), middle);
   row.greatest.assign(middle, values.end());
   for (const auto& [name, points] : {std::pair{"up", &row.up}, {"down", &row.down}}) {
-    if (!read_line(in, name, values) || values.size() != speeds * kNumbers) return false;
-    for (std::size_t j = 0; j < speeds; ++j)
-      points->push_back(point_of(values.data() + j * kNumbers));
+    if (!read_line(in, name, values, text) || values.size() != speeds * kNumbers) return false;
+    for (std::size_t j = 0; j < speeds; ++j) {
+      const double* numbers = values.data() + j * kNumbers;
+      if (!(numbers[0] >= 0 && numbers[0] < static_cast<double>(rattle_class_names().size())))
+        return false;
+      points->push_back(point_of(numbers));
+    }
   }
-  return true;
+  std::string sum;
+  return std::getline(in, sum) && sum == sum_of(text, from);
 }
 
 }  // namespace
@@ -155,41 +177,34 @@ std::vector<RattleRow> RattleFile::read() {
   std::vector<RattleRow> rows;
   while (in.peek() != std::istream::traits_type::eof()) {
     RattleRow row;
-    if (!read_row(in, row)) fail("row " + std::to_string(rows.size() + 1) + " cannot be read");
+    const std::string which = "row " + std::to_string(rows.size() + 1);
+    if (!read_row(in, from_, row)) fail(which + " is damaged");
+    if (std::any_of(rows.begin(), rows.end(),
+                    [&](const RattleRow& other) { return other.delivery_bar == row.delivery_bar; }))
+      fail(which + " is of " + number_text(row.delivery_bar) + " bar, as an earlier row is");
     rows.push_back(std::move(row));
   }
-  for (const RattleRow& row : rows) text_ += text_of(row);
+  for (const RattleRow& row : rows) text_ += text_of(row, from_);
   rows_ = rows.size();
   return rows;
 }
 
 void RattleFile::keep(const RattleRow& row) {
-  std::string text = text_ + text_of(row);
-  write(text);
+  std::string text = text_ + text_of(row, from_);
+  write_whole(file_, text);
   text_ = std::move(text);
   ++rows_;
 }
 
-void RattleFile::write(const std::string& text) const {
-  const std::filesystem::path beside = file_.string() + ".new";
-  std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
-  std::error_code error;
-  if (out)
-    std::filesystem::rename(beside, file_, error);
-  else
-    error.assign(errno, std::generic_category());
-  if (error || !out) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw InputError(file_.string() + ": cannot be written: " + error.message());
-  }
-}
-
 void RattleFile::remove() const {
+  namespace fs = std::filesystem;
   std::error_code ignored;
-  std::filesystem::remove(file_, ignored);
+  fs::remove(file_, ignored);
+  const std::string name = file_.filename().string();
+  for (const fs::directory_entry& entry : fs::directory_iterator(file_.parent_path(), ignored))
+    if (entry.path().filename().string().starts_with(name + ".") &&
+        entry.path().extension() == kUnfinished)
+      fs::remove(entry.path(), ignored);
 }
 
 std::string options_text(const RattleOptions& options) {

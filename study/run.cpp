@@ -1,8 +1,6 @@
 #include "bentaxis/study/run.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <utility>
@@ -15,6 +13,7 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/calibration.h"
+#include "bentaxis/study/memory.h"
 
 namespace bentaxis::study {
 namespace {
@@ -37,47 +36,55 @@ void check(const RunOptions& options) {
     throw InputError("what teeth do is of a driven run of the full pump");
 }
 
-// Tables of a run, and what a comparison makes of them, lie in memory.
-void check_fits_memory(const Case& the_case, double rows, const std::string& because,
-                       const std::string& advice) {
-  constexpr double kCopies = 4;  // of the results, least: two models, sorted apart, as text
-  const double columns = static_cast<double>(ChannelLayout(the_case.pump.geometry.pistons).size());
-  const double needed = kCopies * rows * columns * sizeof(double);
-  rlimit limit{};
-  double there =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-    there = std::min(there, static_cast<double>(limit.rlim_cur));
-  if (needed <= there) return;
-  throw InputError(fmt::format(
-      "{}: {:.6g} samples of {:.0f} columns take at least {:.3g} GB of memory, and this machine "
-      "lets a program have {:.3g} GB{}",
-      because, rows, columns, needed / 1e9, there / 1e9, advice));
+// What lies in memory of every number of a model's table when most does: the tables, columns sorted
+// apart, figures, and all of it as text. Measured at 10 000 samples and more.
+double copies_of(Kept kept) {
+  switch (kept) {
+    case Kept::table:
+      return 7;
+    case Kept::shown:
+    case Kept::simulated:
+      return 18;
+    case Kept::compared:
+      break;
+  }
+  return 43;
 }
 
-void check_fits_memory(const Case& the_case, Way way) {
-  const auto& operation = the_case.operation;
-  const bool integrated = way == Way::integrated;
-  check_fits_memory(
-      the_case,
-      static_cast<double>(operation.samples_per_revolution) *
-          (integrated ? operation.revolutions : 1),
-      fmt::format("[operation] samples_per_revolution = {}{}", operation.samples_per_revolution,
-                  integrated ? fmt::format(", revolutions = {}", operation.revolutions) : ""),
-      "; run --model analytic writes row by row");
+void require_rows(const Case& the_case, Kept kept, double rows, const std::string& because,
+                  const std::string& advice) {
+  const double columns = static_cast<double>(ChannelLayout(the_case.pump.geometry.pistons).size());
+  const double needed = copies_of(kept) * rows * columns * sizeof(double);
+  constexpr double kLittle = 5e7;  // not worth asking the system, which takes its time
+  if (needed < kLittle) return;
+  require_memory(
+      needed, fmt::format("{}: {:.6g} samples of {:.0f} columns", because, rows, columns), advice);
 }
 
 }  // namespace
 
-void check_fits_memory(const Case& the_case, const DriveSpec& drive) {
-  check_fits_memory(the_case, drive.samples + 1.0,
-                    fmt::format("[drive] samples = {}", drive.samples), "");
+void require_memory(const Case& the_case, Kept kept, Way way) {
+  const auto& operation = the_case.operation;
+  const bool integrated = way == Way::integrated;
+  require_rows(
+      the_case, kept,
+      static_cast<double>(operation.samples_per_revolution) *
+          (integrated ? operation.revolutions : 1),
+      fmt::format("[operation] samples_per_revolution = {}{}", operation.samples_per_revolution,
+                  integrated ? fmt::format(", revolutions = {}", operation.revolutions) : ""),
+      std::string("lower samples_per_revolution") + (integrated ? " or revolutions" : "") +
+          ", or take run --model analytic, which writes row by row");
+}
+
+void require_memory(const Case& the_case, const DriveSpec& drive, std::size_t models) {
+  require_rows(the_case, Kept::simulated, static_cast<double>(models) * (drive.samples + 1.0),
+               fmt::format("[drive] samples = {}", drive.samples), "lower [drive] samples");
 }
 
 std::string to_string(Model model) { return model == Model::analytic ? "analytic" : "multibody"; }
 
 Samples ReadyCase::samples(Way way) const {
-  check_fits_memory(the_case, way);
+  require_memory(the_case, Kept::table, way);
   if (way == Way::driven) return sample_case(the_case, pressure);
   return sample_case(the_case, pressure, the_case.operation.revolutions,
                      the_case.operation.speed_rpm < 0);

@@ -700,7 +700,7 @@ ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
 
 SimulationResult simulate(ReadyCase ready, const SimulationChoice& choice,
                           const PartProgress& progress_of) {
-  check_fits_memory(ready.the_case, drive_of(ready.the_case));
+  require_memory(ready.the_case, drive_of(ready.the_case), choice.only ? 1 : 2);
   SimulationResult result;
   result.ready = std::move(ready);
   result.choice = choice;

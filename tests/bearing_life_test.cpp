@@ -153,6 +153,27 @@ TEST(PumpLife, IsThatOfTheReactions) {
   EXPECT_LT(life.hours, life.of(Bearing::tapered).hours);
 }
 
+// Shares are in proportion: neither their sum nor share times speed may leave the range of numbers.
+TEST(PumpLife, SharesOfAnySizeAreInProportion) {
+  const Case fast = rated({"operation.speed_rpm=1500"}), slow = rated({"operation.speed_rpm=-500"});
+  const PumpLife plain = pump_life(fast, {turn(fast, 3), turn(slow, 1), turn(fast, 2)});
+  for (const double scale : {5e307, 1e-300}) {
+    const std::vector<LifePoint> points = {turn(fast, 3 * scale), turn(slow, scale),
+                                           turn(fast, 2 * scale)};
+    const PumpLife life = pump_life(fast, points);
+    EXPECT_NEAR(life.mean_speed_rpm, (5 * 1500 + 500) / 6.0, 1e-9) << scale;
+    EXPECT_NEAR(life.hours / plain.hours, 1, 1e-12) << scale;
+    for (const Bearing bearing : kBearings)
+      EXPECT_NEAR(life.of(bearing).life_share[1] / plain.of(bearing).life_share[1], 1, 1e-12);
+    const DutyShares shares = duty_shares(points);
+    EXPECT_NEAR(shares.time[0], 0.5, 1e-15);
+    EXPECT_NEAR(shares.revolutions[1], 500.0 / 8000, 1e-15);
+  }
+  EXPECT_NEAR(mean_load(std::vector<double>{1, 2}, std::vector<double>{1e308, 1e308}),
+              mean_load(std::vector<double>{1, 2}, std::vector<double>{1, 1}), 1e-15);
+  EXPECT_FALSE(is_computed(rating_life(1e5, 1e-200)));  // beyond all numbers is none
+}
+
 // Palmgren's and Miner's rule: what a duty cycle uses up in an hour is the sum of what its points
 // do.
 TEST(PumpLife, OfADutyCycleAddsUpWhatItUses) {

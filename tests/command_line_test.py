@@ -138,6 +138,8 @@ class ProgramTest(unittest.TestCase):
         shown = f"{' '.join(process.args[1:])}\nstatus {process.returncode}\n{process.out}{process.err}"
         self.assertEqual(process.returncode, status, shown)
         self.assertNotRegex(process.out + process.err, "[\x1b\r]", f"colour or progress without a terminal: {shown}")
+        if status in (DONE, OUT_OF_TOLERANCE):
+            self.assertNotRegex(process.out, r"(?<![\w./-])-?(nan|inf)(?![\w./-])", f"no number: {shown}")
         # What pump a case describes, and what of it is doubtful, is said first (plausibility_test.py); the tests here are about the rest.
         process.err = PUMP.sub("", process.err)
         return process
@@ -1041,6 +1043,104 @@ class InterruptionTest(ProgramTest):
         process.send_signal(signal.SIGINT)
         self.finish(process, INTERRUPTED)
         self.assertEqual({p.name for p in self.folder.glob("out/*")}, {"analytic.csv", "notes.txt"})
+
+
+    def test_what_a_killed_run_has_left_is_removed_by_the_next(self):
+        process = self.start("run", self.long_case(), "--model", "analytic", "--out", "out")
+        self.addCleanup(process.kill)
+        until = time.monotonic() + SECONDS
+        while not list(self.folder.glob("out/.bentaxis.part-*/*")) and time.monotonic() < until and process.poll() is None:
+            time.sleep(0.002)
+        process.kill()
+        process.communicate()
+        self.assertEqual(process.returncode, -signal.SIGKILL)
+        self.assertEqual(len(os.listdir(self.folder / "out")), 1)
+        self.run_program("run", self.case(), "--model", "multibody", "--out", "out")
+        self.assertEqual(os.listdir(self.folder / "out"), ["multibody.csv"])
+
+    def test_an_interrupted_update_says_what_was_rewritten(self):
+        for name, samples in (("a", 3), ("b", 4000)):
+            self.run_program("reference", "golden", self.case(), "--samples", samples, "--out", f"data/{name}")
+        (self.folder / "data" / "a" / "multibody.csv").write_text("theta_deg\n0\n")
+        process = self.start("reference", "update", "data")
+        self.addCleanup(process.kill)
+        until = time.monotonic() + SECONDS
+        before = (self.folder / "data" / "a" / "multibody.csv").read_bytes()
+        while (self.folder / "data" / "a" / "multibody.csv").read_bytes() == before and time.monotonic() < until and process.poll() is None:
+            time.sleep(0.002)
+        process.send_signal(signal.SIGINT)
+        self.finish(process, INTERRUPTED)
+        self.assertEqual(process.err, "bentaxis: interrupted after 1 of 2 golden folders, of which 1 were rewritten; do the same again for the rest\n")
+        self.assertEqual({p.name for p in self.folder.glob("data/a/*")}, {"description.toml", "analytic.csv", "multibody.csv"})
+
+
+def limit_files(size):
+    """For preexec_fn: files of the program may have this many bytes, as on a disk that is full then."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+
+class FullDiskTest(ProgramTest):
+    """A file that cannot be completed: one line that names it, status 2, and what was there is there."""
+
+    def test_every_command_that_writes(self):
+        rated, start = REPO / "cases" / "bap63_rated.toml", REPO / "cases" / "bap63_motor_start.toml"
+        few = ("--set", "operation.samples_per_revolution=36")
+        (self.folder / "record.csv").write_text(
+            "theta_deg,Rs_1_z2_N\n" + "".join(f"{angle},{1000 + angle}\n" for angle in range(0, 360, 10)))
+        for command in (["run", rated, *few, "--model", "analytic", "--out", "out"],
+                        ["run", rated, *few, "--model", "multibody", "--out", "out"],
+                        ["compare", rated, *few, "--out", "out"],
+                        ["compare", rated, *few, "--out", "there", "--figures", "out"],
+                        ["show", rated, "--out", "pump.svg"],
+                        ["show", rated, *few, "--out", "out"],
+                        ["simulate", start, *few, "--model", "analytic", "--out", "out"],
+                        ["sensitivity", rated, *few, "--output", "peak:Rb1", "--out", "out"],
+                        ["life", REPO / "cases" / "bap63_bearing_life.toml", *few, "--out", "out"],
+                        ["inertia", rated, *few, "--speeds", "1500", "--out", "out"],
+                        ["fmu", rated, "--out", "pump.fmu"],
+                        ["init", "project", "--case", rated],
+                        ["reference", "golden", rated, "--out", "out"],
+                        ["index", ".", "--out", "index.html"]):
+            with self.subTest(command=command[0]):
+                if command[0] == "index":
+                    self.run_program("show", rated, *few, "--out", "report")
+                before = self.contents()
+                result = self.run_program(*command, status=BAD_INPUT, preexec_fn=lambda: limit_files(700))
+                self.assertRegex(result.err, r"^bentaxis: \S+: cannot be written: File too large\n$")
+                self.assertEqual(self.contents(), before)
+
+
+class MemoryTest(ProgramTest):
+    """What would not fit is refused before it is computed: what it needs, what there is, what to lower."""
+
+    def test_samples_and_rows(self):
+        start, rated = REPO / "cases" / "bap63_motor_start.toml", self.case(**{"operation.samples_per_revolution": 200000})
+        for command, key in ((("compare", rated), "samples_per_revolution"),
+                             (("run", rated, "--model", "multibody", "--set", "operation.revolutions=20", "--way", "integrated"), "samples_per_revolution"),
+                             (("inertia", rated, "--speeds", "1500"), "samples_per_revolution"),
+                             (("simulate", start, "--model", "analytic", "--set", "drive.samples=200000"), "[drive] samples"),
+                             (("simulate", start, "--set", "drive.samples=200000"), "[drive] samples")):
+            with self.subTest(command=command):
+                line = self.refused(*command, preexec_fn=lambda: limit_memory(1.2e9))
+                self.assertRegex(line, rf"{re.escape(key)} = 200000(, revolutions = 20)?: .*about [0-9.]+ GB of memory are needed, and [0-9.]+ GB are "
+                                       rf"available; lower {re.escape(key)}")
+        result = self.run_program("show", rated, "--out", "out", status=BAD_INPUT, preexec_fn=lambda: limit_memory(1.2e9))
+        self.assert_mentions(result.err, "samples_per_revolution = 200000: ", "GB of memory are needed")
+        # Row by row, and few of them, it fits.
+        self.run_program("run", rated, "--model", "analytic", "--out", "out", preexec_fn=lambda: limit_memory(1.2e9))
+        self.run_program("compare", self.case("few.toml"), "--out", "out", preexec_fn=lambda: limit_memory(1.2e9))
+
+    def test_many_designs(self):
+        case = self.case(**{"operation.samples_per_revolution": 36})
+        with open(case, "a") as file:
+            file.write('\n[uncertainty]\n"pump.tilt_deg" = "normal(0.1)"\n')
+        line = self.refused("uncertainty", case, "--samples", 10000000, "--output", "mean:Td", preexec_fn=lambda: limit_memory(1.2e9))
+        self.assertRegex(line, "--samples: .*GB of memory are needed, and .*; lower --samples")
+
+
+def limit_memory(size):
+    """For preexec_fn: the address space of the program may have this many bytes."""
+    resource.setrlimit(resource.RLIMIT_AS, (int(size), int(size)))
 
 
 class TogetherTest(ProgramTest):

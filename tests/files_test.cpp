@@ -1,14 +1,19 @@
 // Sets of output files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <set>
@@ -19,8 +24,11 @@
 #include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/files/new_folder.h"
 #include "bentaxis/files/output_folder.h"
+#include "bentaxis/files/run_lock.h"
 #include "bentaxis/files/toml_reader.h"
+#include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 
@@ -106,7 +114,7 @@ TEST_F(OutputFolderTest, AFailureInTheMiddleLeavesTheOldSet) {
     folder.add("two", "new two");
     // The last file's temporary is gone: its renaming fails when the others are in place.
     for (const auto& name : contents())
-      if (name.rfind(".two.part-", 0) == 0) fs::remove(folder_ / name);
+      if (name.starts_with(".bentaxis.part-")) fs::remove(folder_ / name / "two.new");
     EXPECT_THROW(folder.commit(), InputError);
   }
   EXPECT_THAT(contents(), UnorderedElementsAre("one", "two"));
@@ -176,6 +184,167 @@ TEST_F(OutputFolderTest, WhatTheDiskDoesNotHoldIsNotBegun) {
   OutputFolder::Stream& stream = folder.open("curve.csv");
   EXPECT_NO_THROW(stream.expect(1000));
   EXPECT_THROW(stream.expect(1e30), InputError);
+}
+
+// A process of its own that is killed in the middle of a job.
+template <typename Job>
+void killed_after(const Job& job) {
+  const pid_t child = fork();
+  if (child == 0) {
+    job();
+    raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+}
+
+TEST_F(OutputFolderTest, WhatAKilledRunHasLeftIsRemovedByTheNext) {
+  file("a", "of the user");
+  killed_after([&] {
+    OutputFolder folder(folder_);
+    folder.add("a", "of the killed run");
+    folder.open("b.json").write("half");
+    std::_Exit(raise(SIGKILL));
+  });
+  EXPECT_EQ(text("a"), "of the user");
+  EXPECT_EQ(contents().size(), 2U);
+  // Whoever looks for results in all folders, by their endings, finds none in what is left.
+  for (const auto& entry : fs::recursive_directory_iterator(folder_))
+    EXPECT_NE(entry.path().extension(), ".json");
+  OutputFolder running(folder_);  // what it holds is not taken for left behind
+  running.add("c", "of the running one");
+  {
+    OutputFolder failed(folder_);
+    failed.add("d", "never put in place");
+  }
+  EXPECT_EQ(contents().size(), 3U);
+  {
+    OutputFolder folder(folder_);
+    folder.add("a", "of the next run");
+    folder.commit();
+  }
+  EXPECT_EQ(contents().size(), 2U);
+  running.commit();
+  EXPECT_THAT(contents(), UnorderedElementsAre("a", "c"));
+  EXPECT_EQ(text("c"), "of the running one");
+}
+
+TEST_F(OutputFolderTest, ANewFolderRemovesWhatAKilledRunHasLeft) {
+  killed_after([&] {
+    NewFolder folder(folder_ / "project");
+    folder.add("case.toml", "half");
+    std::_Exit(raise(SIGKILL));
+  });
+  EXPECT_EQ(contents().size(), 1U);
+  NewFolder folder(folder_ / "project");
+  folder.add("case.toml", "whole");
+  folder.commit();
+  EXPECT_THAT(contents(), UnorderedElementsAre("project"));
+  EXPECT_EQ(text("project/case.toml"), "whole");
+}
+
+TEST_F(OutputFolderTest, RunsAreKeptApartByALock) {
+  const fs::path file = folder_ / "parts" / "lock";
+  const auto refused = [&](RunLock::Kind kind) {
+    try {
+      const RunLock lock(file, kind, "sweep");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(RunLock::Kind::reader), "");
+  EXPECT_FALSE(fs::exists(folder_ / "parts"));  // a reader makes nothing
+  {
+    const RunLock lock(file, RunLock::Kind::alone, "sweep");
+    for (const RunLock::Kind kind :
+         {RunLock::Kind::alone, RunLock::Kind::shared, RunLock::Kind::reader})
+      EXPECT_THAT(refused(kind),
+                  testing::AllOf(testing::HasSubstr((folder_ / "parts").string()),
+                                 testing::HasSubstr("another sweep is running there"),
+                                 testing::HasSubstr("process " + std::to_string(getpid()))));
+  }
+  EXPECT_FALSE(fs::exists(file));
+  {
+    const RunLock first(file, RunLock::Kind::shared, "sweep");
+    EXPECT_EQ(refused(RunLock::Kind::shared), "");
+    EXPECT_EQ(refused(RunLock::Kind::reader), "");
+    EXPECT_NE(refused(RunLock::Kind::alone), "");
+  }
+  EXPECT_EQ(refused(RunLock::Kind::alone), "");  // the file of shared ones stays, held by nobody
+  EXPECT_FALSE(fs::exists(file));
+  killed_after([&] {
+    const RunLock lock(file, RunLock::Kind::alone, "sweep");
+    std::_Exit(raise(SIGKILL));
+  });
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_EQ(refused(RunLock::Kind::alone), "");
+  EXPECT_FALSE(fs::exists(file));
+}
+
+// Files of this process may have so many bytes while it lives; the system refuses more as it does
+// on a full disk.
+class FileLimit {
+ public:
+  explicit FileLimit(rlim_t bytes) : former_signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &former_);
+    rlimit limit = former_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FileLimit(const FileLimit&) = delete;
+  FileLimit& operator=(const FileLimit&) = delete;
+  ~FileLimit() {
+    setrlimit(RLIMIT_FSIZE, &former_);
+    std::signal(SIGXFSZ, former_signal_);
+  }
+
+ private:
+  void (*former_signal_)(int);
+  rlimit former_ = {};
+};
+
+TEST_F(OutputFolderTest, AFullDiskLeavesWhatWasThere) {
+  file("a", "old");
+  const auto said = [&](const std::function<void()>& job) {
+    const FileLimit limit(1000);
+    try {
+      job();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string large(100000, 'x');
+  const std::vector<std::function<void()>> jobs = {[&] { write_whole(folder_ / "a", large); },
+                                                   [&] {
+                                                     OutputFolder folder(folder_);
+                                                     folder.add("b", "small");
+                                                     folder.add("a", large);
+                                                     folder.commit();
+                                                   },
+                                                   [&] {
+                                                     OutputFolder folder(folder_);
+                                                     OutputFolder::Stream& stream =
+                                                         folder.open("a");
+                                                     for (int i = 0; i < 100; ++i)
+                                                       stream.write(std::string(1000, 'y'));
+                                                     folder.commit();
+                                                   },
+                                                   [&] {
+                                                     NewFolder folder(folder_ / "a.new");
+                                                     folder.add("a", large);
+                                                     folder.commit();
+                                                   }};
+  for (const auto& job : jobs) {
+    EXPECT_THAT(said(job), testing::AllOf(testing::HasSubstr("/a"),
+                                          testing::HasSubstr("cannot be written: File too large")));
+    EXPECT_THAT(contents(), UnorderedElementsAre("a"));
+    EXPECT_EQ(text("a"), "old");
+  }
+  EXPECT_EQ(said([&] { write_whole(folder_ / "a", "new"); }), "");
+  EXPECT_EQ(text("a"), "new");
 }
 
 class ForeignTableTest : public OutputFolderTest {

@@ -52,6 +52,19 @@ class LifeTest(ProgramTest):
             fr, fa = float(row["tapered_Fr_N"]), float(row["tapered_Fa_N"])
             self.assertAlmostEqual(float(row["tapered_P_N"]), fr if fa <= 0.83 * fr else 0.4 * fr + 0.73 * fa, 6)
 
+    def test_shares_are_in_proportion_however_large(self):
+        """Their sum, and shares times speeds, would leave the range of numbers."""
+        said = []
+        for out, shares in (("a.out", (3, 1, 2)), ("b.out", (1.5e308, 5e307, 1e308))):
+            said.append(self.run_program(*self.life(*self.duty("share,speed_rpm\n" + "".join(
+                f"{share},{speed}\n" for share, speed in zip(shares, (1500, 500, 2000)))), out=out)).out.replace(out, "out"))
+            self.assertIn(f"{(3 * 1500 + 500 + 2 * 2000) / 6:.4g} rpm on average", said[-1])
+        self.assertEqual(*said)
+        self.assertEqual(self.rows("life.csv", "a.out")[0].keys(), self.rows("life.csv", "b.out")[0].keys())
+        for small, large in zip(self.rows("life.csv", "a.out"), self.rows("life.csv", "b.out")):
+            for name, value in small.items():
+                self.assertAlmostEqual(float(large[name]) / float(value), 1, 12, name)
+
     def test_a_duty_cycle_uses_up_what_its_rows_do(self):
         self.run_program(*self.life(*self.duty("share,speed_rpm,pressure.delivery_bar\n3,1500,275\n1,2000,120\n")))
         both, _ = self.hours()

@@ -5,8 +5,10 @@ usage: rattle_command_test.py BENTAXIS REPO_ROOT [options of unittest]
 """
 
 import csv
+import hashlib
 import json
 import pathlib
+import re
 import signal
 import sys
 import time
@@ -100,9 +102,46 @@ class RattleTest(ProgramTest):
         self.assertEqual((self.folder / "out" / "rattle.csv").read_bytes(), whole)
         self.assertEqual(self.files(), FILES)
         first = text.split("\nup,")[1].split(",")[4]  # largest_N of a point
-        partial.write_text(text.replace(f",{first},", ",4321,"))
+        changed = text.replace(f",{first},", ",4321,")
+        partial.write_text(changed)
+        self.assert_mentions(self.refused(*command, "--resume"), "rattle.partial.csv", "row 1 is damaged")
+        head, *rows = re.split(r"(?m)^(?=row,)", changed)
+        origin = head.splitlines()[1][2:]
+        for i, row in enumerate(rows):
+            numbers = row[:row.index("sum,")]
+            rows[i] = f"{numbers}sum,{hashlib.sha256(f'{origin}{chr(10)}{numbers}'.encode()).hexdigest()}\n"
+        partial.write_text(head + "".join(rows))
         self.run_program(*command, "--resume")
         self.assertIn(",4321,", (self.folder / "out" / "rattle.csv").read_text())
+
+    def test_two_maps_in_one_folder(self):
+        command = self.command(delivery="100:300:#12")
+        first = self.start(*command, "--threads", 1)
+        partial, end = self.folder / "out" / "rattle.partial.csv", time.monotonic() + program.SECONDS
+        while not partial.exists() and first.poll() is None and time.monotonic() < end:
+            time.sleep(0.002)
+        first.send_signal(signal.SIGSTOP)
+        for more in ((), ("--resume",), ("--error", "1e-4")):
+            self.assert_mentions(self.refused(*command, *more), "out: another rattle map is running there", f"process {first.pid} on ")
+        first.kill()
+        first.communicate()
+        self.assertEqual(self.files(), {"rattle.partial.csv", "rattle.partial.lock"})
+        (self.folder / "out" / "rattle.partial.csv.host-1-1.part").write_text("half")
+        self.run_program(*command, "--resume")
+        self.assertEqual(self.files(), FILES)
+
+    def test_an_interruption_before_the_first_row_names_the_rows_of_an_earlier_run(self):
+        (self.folder / "out").mkdir()
+        partial = self.folder / "out" / "rattle.partial.csv"
+        partial.write_text("rows of an earlier run")
+        process = self.start(*self.command(delivery="20:21:#2", speeds="200:201:#2"), "--threads", 1)
+        lock, end = self.folder / "out" / "rattle.partial.lock", time.monotonic() + program.SECONDS
+        while not lock.exists() and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.001)
+        process.send_signal(signal.SIGINT)
+        self.finish(process, INTERRUPTED)
+        self.assertEqual(process.err, "bentaxis: interrupted; out/rattle.partial.csv still holds the rows of an earlier run\n")
+        self.assertEqual(partial.read_text(), "rows of an earlier run")
 
     def test_resume_without_rows_begins(self):
         self.run_program(*self.command("--resume", delivery="100:100:#1"))

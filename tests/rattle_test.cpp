@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <set>
@@ -36,6 +37,11 @@ Case pump_with(double drag, double backlash_um) {
       read_case(kCases / "bap63_rated.toml").pump.friction.block_viscous * drag;
   c.pump.gear.compliance->backlash = backlash_um * 1e-6;
   return c;
+}
+
+std::string text_of_file(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 RattleOptions map_of(std::vector<double> speeds, std::vector<double> pressures) {
@@ -405,6 +411,29 @@ TEST(Rattle, RowsThatAreThereAreNotComputedAgain) {
 
   EXPECT_THROW(RattleFile(file, "another case").read(), InputError);
   EXPECT_TRUE(RattleFile(file.string() + ".none", "one case").read().empty());
+  // A damaged row, one that is there twice, one of another map.
+  const std::string rows = text_of_file(file);
+  const std::size_t middle = rows.find("\nsum,") + 1;
+  const std::size_t first = rows.find("row,"), second = rows.find("row,", middle);
+  const auto refused = [&](const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    return test::refusal([&] { RattleFile(file, "one case").read(); });
+  };
+  for (std::size_t at = first; at < rows.size(); at += 13) {
+    std::string damaged = rows;
+    damaged[at] = damaged[at] == '7' ? '8' : '7';
+    EXPECT_THAT(refused(damaged), HasSubstr("is damaged")) << at;
+  }
+  EXPECT_THAT(refused(rows + rows.substr(second)), HasSubstr("as an earlier row is"));
+  EXPECT_THAT(refused("# rows of a rattle map that is not complete (docs/rattle.md)\n# one case\n" +
+                      rows.substr(first, second - first)),
+              "accepted");
+  RattleFile other(file, "another case");
+  other.keep(keeping.finished[1]);
+  const std::string others = text_of_file(file);
+  EXPECT_THAT(refused(rows.substr(0, second) + others.substr(others.find("row,"))),
+              HasSubstr("row 2 is damaged"));
+  std::ofstream(file, std::ios::binary) << rows;
   std::ofstream(file, std::ios::app) << "row,300\nrigid,1";
   EXPECT_THROW(RattleFile(file, "one case").read(), InputError);
   std::ofstream(file) << "delivery_bar\n1\n";

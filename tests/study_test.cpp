@@ -2,6 +2,8 @@
 // paper's appendix and against scaling laws.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -20,6 +22,7 @@
 #include "bentaxis/study/inertia.h"
 #include "bentaxis/study/inertia_document.h"
 #include "bentaxis/study/inertia_study.h"
+#include "bentaxis/study/memory.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/reference_set.h"
@@ -832,6 +835,44 @@ TEST(Tradeoff, FiguresHoldTheRunsThatAreDone) {
       series(0),
       (Points{{"rk3", 2}, {"multibody driven full", 1}, {"front of the integrated runs", 2}}));
   EXPECT_EQ(series(1), (Points{{"rk3", 2}}));
+}
+
+TEST(Memory, WhatDoesNotFitIsRefusedWithWhatIsNeededAndAvailable) {
+  EXPECT_EQ(refusal([] { study::require_memory(4e9, "samples = 9", "lower samples", 4e9); }),
+            "accepted");
+  EXPECT_EQ(
+      refusal([] { study::require_memory(4.1e9, "samples = 9", "lower samples", 4e9); }),
+      "samples = 9: about 4.1 GB of memory are needed, and 4 GB are available; lower samples");
+}
+
+// The limit of the address space counts, less what the process has of it already.
+TEST(Memory, IsThatOfTheProcess) {
+  const double before = study::available_memory();
+  EXPECT_GT(before, 1e7);
+  EXPECT_LT(before, 1e15);
+  rlimit former{};
+  ASSERT_EQ(getrlimit(RLIMIT_AS, &former), 0);
+  double pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const double taken = pages * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  rlimit limit = former;
+  limit.rlim_cur = static_cast<rlim_t>(taken) + (1 << 26);
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &limit), 0);
+  const double left = study::available_memory();
+  Case large = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_rated.toml");
+  const auto refused = [&](int samples, study::Kept kept) {
+    large.operation.samples_per_revolution = samples;
+    return refusal([&] { study::require_memory(large, kept, study::Way::driven); });
+  };
+  const std::string little = refused(2000, study::Kept::compared);
+  const std::string compared = refused(20000, study::Kept::compared);
+  const std::string table = refused(10000, study::Kept::table);
+  setrlimit(RLIMIT_AS, &former);
+  EXPECT_NEAR(left, 1 << 26, 2e6);
+  EXPECT_EQ(little, "accepted");
+  EXPECT_EQ(table, "accepted");
+  EXPECT_THAT(compared, testing::AllOf(testing::HasSubstr("samples_per_revolution = 20000: "),
+                                       testing::HasSubstr("lower samples_per_revolution")));
 }
 
 TEST(Tradeoff, AnOrderOutsideThatOfItsMethodIsMarked) {

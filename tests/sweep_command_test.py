@@ -222,6 +222,19 @@ class SweepTest(ProgramTest):
         self.assert_mentions(self.refused("merge", "out", "elsewhere"), "elsewhere/sweep.parts", "another case")
         self.assert_mentions(self.refused("merge", "nowhere"), "nowhere")
 
+    def test_a_block_under_the_name_of_another_is_not_taken(self):
+        self.run_program(*self.command("--check", "5%", out="whole"))
+        self.run_program(*self.command("--check", "5%", "--part", "1/1"))  # one part leaves no blocks behind ..
+        self.assertFalse((self.folder / "out" / "sweep.parts").exists())
+        for part in (1, 2):
+            self.run_program(*self.command("--check", "5%", "--part", f"{part}/2"))
+        parts = self.folder / "out" / "sweep.parts"
+        shutil.copy(parts / "block-000005.bin", parts / "block-000011.bin")
+        self.assert_mentions(self.refused("merge", "out"), "sweep.parts", "1 hold the designs of another block: 11")
+        result = self.run_program(*self.command("--check", "5%", "--resume"))
+        self.assertRegex(result.err, "held the designs of another block, and the blocks were computed again: 11\nbentaxis: 209 blocks were")
+        self.assertEqual(self.results("out"), self.results("whole"))
+
     def interrupted(self, process, how, parts=pathlib.Path("out/sweep.parts")):
         """Ends a run in the middle; returns the finished blocks."""
         end = time.monotonic() + program.SECONDS
@@ -253,6 +266,71 @@ class SweepTest(ProgramTest):
         self.assertIn(f"{len(blocks) - 1} blocks were there already", result.err)
         self.assertEqual(self.results("out"), self.results("whole"))
         self.assertEqual(sorted(os.listdir(self.folder / "out")), sorted(os.listdir(self.folder / "whole")))
+
+    def test_an_interruption_while_results_are_written_says_what_is_there(self):
+        vary = {"pump.tilt_deg": "20:40:#400", "pressure.delivery_bar": "50:400:#400"}
+        process = self.start(*self.command(samples=3, **vary))
+        parts, end = self.folder / "out" / "sweep.parts", time.monotonic() + program.SECONDS
+        while len(list(parts.glob("*.bin"))) < 313 and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.001)
+        process.send_signal(signal.SIGINT)
+        self.finish(process, INTERRUPTED)
+        self.assertEqual(process.err, "bentaxis: interrupted; 313 of 313 blocks are in out/sweep.parts: --resume goes on from them\n")
+        self.assertEqual(os.listdir(self.folder / "out"), ["sweep.parts"])
+        # The same of a merge: the blocks stay.
+        process = self.start("merge", "out")
+        while not list((self.folder / "out").glob(".bentaxis.part-*")) and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.001)
+        process.send_signal(signal.SIGINT)
+        self.finish(process, INTERRUPTED)
+        self.assert_mentions(process.err, "no results were written", "the blocks stay where they are")
+        self.assertEqual(os.listdir(self.folder / "out"), ["sweep.parts"])
+        result = self.run_program(*self.command("--resume", samples=3, **vary))
+        self.assertIn("313 blocks were there already", result.err)
+        self.assertFalse(parts.exists())
+
+    def test_two_sweeps_in_one_folder(self):
+        self.run_program(*self.slow(out="whole"))
+        first = self.interrupted(self.start(*self.slow("--threads", 1)), lambda p: p.send_signal(signal.SIGSTOP))
+        for command in (self.slow(), self.slow("--resume"), self.slow("--part", "1/2"), ["merge", "out"],
+                        self.slow("--set", "operation.speed_rpm=1600")):
+            self.assert_mentions(self.refused(*command), "out/sweep.parts: another sweep is running there", f"process {first.pid} on ")
+        first.send_signal(signal.SIGCONT)
+        self.finish(first, 0)
+        self.assertEqual(self.results("out"), self.results("whole"))
+        self.assertEqual(sorted(os.listdir(self.folder / "out")), sorted(os.listdir(self.folder / "whole")))
+        # Parts of one sweep are computed side by side; a whole one is not computed beside them.
+        one = self.interrupted(self.start(*self.slow("--part", "1/2", "--threads", 1)), lambda p: p.send_signal(signal.SIGSTOP))
+        self.run_program(*self.slow("--part", "2/2"))
+        self.assert_mentions(self.refused(*self.slow()), "another sweep is running there")
+        one.send_signal(signal.SIGCONT)
+        self.finish(one, 0)
+        self.run_program("merge", "out")
+        self.assertEqual(self.results("out"), self.results("whole"))
+        self.run_program(*self.slow("--resume"))
+        self.assertFalse((self.folder / "out" / "sweep.parts").exists())
+
+    def test_a_killed_sweep_leaves_nothing_behind_the_next(self):
+        self.run_program(*self.slow(out="whole"))
+        process = self.interrupted(self.start(*self.slow("--threads", 1)), lambda p: p.kill())
+        process.communicate()
+        parts = self.folder / "out" / "sweep.parts"
+        self.assertTrue((parts / "lock").exists())
+        (parts / "block-000003.bin.host-1-1.part").write_bytes(b"half of a block")
+        self.run_program(*self.slow())
+        self.assertEqual(sorted(os.listdir(self.folder / "out")), sorted(os.listdir(self.folder / "whole")))
+
+    def test_a_full_disk(self):
+        for limit, named in ((700, "sweep.parts/"), (10000, "out/sweep.csv"), (20000, "sweep.h5" if self.has("hdf5") else "report.html")):
+            with self.subTest(limit):
+                result = self.run_program(*self.command(), status=2, preexec_fn=lambda limit=limit: program.limit_files(limit))
+                self.assert_mentions(result.err, named, "File too large")
+                self.assertLessEqual({path.name for path in self.folder.glob("out/*")}, {"sweep.parts"})
+                self.assertEqual(list(self.folder.glob("out/.*")) + list(self.folder.glob("out/sweep.parts/*.part")), [])
+                if limit > 700:  # where the first block could be written
+                    self.assertIn("210 of 210 blocks are in out/sweep.parts: --resume goes on from them", result.err)
+        self.run_program(*self.command("--resume"))
+        self.assertFalse((self.folder / "out" / "sweep.parts").exists())
 
     def test_a_killed_sweep_resumes_to_the_same_file(self):
         self.run_program(*self.slow(out="whole"))

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "bentaxis/designs/sweep_parts.h"
@@ -179,6 +180,103 @@ TEST(SweepParts, KeepsBlocksWholeOrNotAtAll) {
   EXPECT_FALSE(fs::exists(folder.path() / "parts"));
 }
 
+// A block that is whole, but under the name of another one: its designs would be there twice, and
+// those of the other one nowhere.
+TEST(SweepParts, AreNotTakenForOneAnother) {
+  const Folder folder;
+  const Case base = rated();
+  SweepRequest request = tilts("20:100:#515");
+  request.check_share = 0.01;
+  const Sweep sweep(base, sweep_plan(request, base));
+  ASSERT_EQ(sweep.block_size(), 2U);
+  ASSERT_EQ(sweep.blocks(), 258U);  // the last of one design
+  const SweepParts parts(folder.path() / "parts", record_of(sweep, "test 1"));
+  parts.begin();
+  EXPECT_EQ(compute_blocks(sweep, parts, {}, [](double) {}).kept, 0U);
+  const auto file = [&](const char* number) {
+    return folder.path() / "parts" / (std::string("block-000") + number + ".bin");
+  };
+  const auto overwrite = [&](const char* from, const char* to) {
+    fs::copy_file(file(from), file(to), fs::copy_options::overwrite_existing);
+  };
+  overwrite("003", "007");
+  overwrite("004", "257");
+  fs::remove(file("009"));
+  EXPECT_TRUE(parts.read(3));
+  EXPECT_FALSE(parts.read(7));
+  EXPECT_FALSE(parts.read(257));
+  EXPECT_FALSE(parts.read(258));
+  EXPECT_THAT(parts.misplaced({3, 7, 9, 257}), ElementsAre(7, 257));
+  const auto write = [&] {
+    OutputFolder out(folder.path() / "out");
+    return write_sweep(sweep, parts, {.csv = true, .hdf5 = false}, out, 2, [](double) {});
+  };
+  EXPECT_THAT(
+      refusal([&] { write(); }),
+      HasSubstr("2 hold the designs of another block: 7, 257; 1 are missing or damaged: 9"));
+  SweepShare share;
+  share.resume = true;
+  const ResumedBlocks resumed = compute_blocks(sweep, parts, share, [](double) {});
+  EXPECT_EQ(resumed.kept, 255U);
+  EXPECT_THAT(resumed.misplaced, ElementsAre(7, 257));
+  EXPECT_EQ(write().values, compute_in_memory(sweep, 2).values);
+}
+
+// Numbers that the plan does not ask for belong to no block.
+TEST(SweepParts, HoldWhatThePlanAsksFor) {
+  const Case base = rated();
+  SweepRequest request = tilts("20:40:#600");
+  request.check_share = 1;
+  const Sweep sweep(base, sweep_plan(request, base));
+  const BlockLayout layout = record_of(sweep, "test 1").layout;
+  const SweepBlock block = sweep.compute(5, [] {});
+  ASSERT_EQ(block.designs, 2U);
+  EXPECT_TRUE(layout.fits(5, block));
+  const auto fits = [&](const std::function<void(SweepBlock&)>& change) {
+    SweepBlock changed = block;
+    change(changed);
+    return layout.fits(5, changed);
+  };
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.first += 2; }));
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.designs = 1; }));
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.values.pop_back(); }));
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.results.push_back(0); }));
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.reasons.pop_back(); }));
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.checks[1].own.pop_back(); }));
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.checks[1].design = b.first + 2; }));
+  EXPECT_FALSE(fits([](SweepBlock& b) { b.checks[1].design = b.first; }));  // twice
+}
+
+// The final count: what a wrong layout lets through does not become a table.
+TEST(SweepParts, AreCountedDesignByDesign) {
+  const Folder folder;
+  const Case base = rated();
+  const Sweep sweep(base, sweep_plan(tilts("20:40:#4"), base));
+  const auto said = [&](std::size_t block_size, const std::vector<std::size_t>& firsts) {
+    SweepRecord record = record_of(sweep, "test 1");
+    record.layout.block_size = block_size;
+    record.layout.designs = firsts.back() + block_size;
+    const SweepParts parts(folder.path() / std::to_string(block_size), record);
+    parts.begin();
+    for (std::size_t i = 0; i < firsts.size(); ++i)
+      parts.keep(i, {.first = firsts[i],
+                     .designs = block_size,
+                     .values = std::vector<double>(block_size),
+                     .results = std::vector<double>(2 * block_size),
+                     .reasons = std::vector<std::string>(block_size),
+                     .checks = {}});
+    OutputFolder out(folder.path() / "out");
+    try {
+      write_sweep(sweep, parts, {.csv = true, .hdf5 = false}, out, 2, [](double) {});
+    } catch (const ComputationError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(said(1, {0, 1, 2, 3}), "");
+  EXPECT_THAT(said(2, {0, 2, 4, 6}), HasSubstr("8 designs, but the plan has 4"));
+}
+
 // Case, plan, version: each of them makes other blocks; what is better does not.
 TEST(SweepParts, AreOfOneSweepOnly) {
   const Folder folder;
@@ -284,9 +382,9 @@ TEST(SweepResult, IsThinnedEvenly) {
   parts.begin();
   SweepShare share;
   share.threads = 2;
-  EXPECT_EQ(compute_blocks(sweep, parts, share, [](double) {}), 0U);
+  EXPECT_EQ(compute_blocks(sweep, parts, share, [](double) {}).kept, 0U);
   share.resume = true;
-  EXPECT_EQ(compute_blocks(sweep, parts, share, [](double) {}), 9U);
+  EXPECT_EQ(compute_blocks(sweep, parts, share, [](double) {}).kept, 9U);
   const auto results = [&](std::size_t most) {
     OutputFolder out(folder.path() / "out");
     return write_sweep(

@@ -5,15 +5,19 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bentaxis/files/staging_folder.h"
+
 namespace bentaxis {
 
-/// Collects the files of a run and puts them in place as a set: each is written under a temporary
-/// name first, and only when all are complete are they renamed. On any failure nothing is left, and
-/// what was there before is there again. Of two programs, or two objects of one program, that write
+/// Collects the files of a run and puts them in place as a set: each is written into a hidden
+/// folder first, and only when all are complete are they renamed. On any failure nothing is left,
+/// and what was there before is there again. What a killed run has left is removed by the next
+/// commit(). Of two programs, or two objects of one program, that write
 /// the same files, all files are those of the one that ends last.
 class OutputFolder {
  public:
@@ -48,6 +52,7 @@ class OutputFolder {
   /// Opens such a file; it is complete at commit(). @throws InputError
   Stream& open(const std::string& name);
   /// The temporary name of a file that others write: it must be complete at commit().
+  /// @throws InputError
   std::filesystem::path reserve(const std::string& name);
 
   /// Names of the files so far, in the order in which they were added.
@@ -73,6 +78,7 @@ class OutputFolder {
                                                 const NamesIn& names_in) const;
   void put_back() noexcept;
 
+  std::optional<StagingFolder> staging_;  // made with the first file
   std::vector<Pending> pending_;
   std::vector<std::unique_ptr<Stream>> streams_;
 };

@@ -65,6 +65,13 @@ void require_ratings(const Case& the_case);
 /// @throws InputError where the case does not give both ratings
 LifePoint life_point(const Case& the_case, const ResultTable& table, double share = 1);
 
+/// Shares of the time that sum to 1, and of the revolutions: they sum to 1 too, or are all 0 where
+/// nothing turns. Shares in any proportion, however large, are taken.
+struct DutyShares {
+  std::vector<double> time, revolutions;
+};
+DutyShares duty_shares(const std::vector<LifePoint>& points);
+
 /// Of one bearing over all points.
 struct BearingLife {
   double mean_load = 0;            ///< P_m, N

@@ -78,8 +78,17 @@ struct ModelRun {
   std::string choice;  ///< of a run to an error: what was chosen, and what it then did
 };
 
-/// @throws InputError where the rows of a simulation would not fit into this machine's memory
-void check_fits_memory(const Case& the_case, const DriveSpec& drive);
+/// What is kept of a run, and so how much memory a sample takes.
+enum class Kept {
+  table,      ///< one model's, and its text
+  shown,      ///< one model's with all loads, figures and the page
+  compared,   ///< both models' with figures and the page
+  simulated,  ///< one model's in time, with figures and the page
+};
+/// @throws InputError where the samples of the case do not fit into the memory that is available
+void require_memory(const Case& the_case, Kept kept, Way way);
+/// The same of the rows of a simulation by one or two models.
+void require_memory(const Case& the_case, const DriveSpec& drive, std::size_t models);
 
 /// Runs one model.
 /// @throws InputError where the options contradict each other or the case refuses them (integrated
