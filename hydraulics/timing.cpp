@@ -112,8 +112,8 @@ void TimingRecord::see(const Integrator::Step& step) {
     network_.flows(x, y, load_size_, flows_);
     x_.push_back(x);
     for (int k = 0; k < network_.pistons(); ++k)
-      nodes_.push_back(
-          {0, y[k], flows_.delivery[k], flows_.suction[k], network_.mixture(y, k).density});
+      nodes_.push_back({0, y[k], flows_.delivery[k], flows_.suction[k],
+                        network_.air_at() > 0 ? network_.air_out(y, k) : 0});
   }
 }
 
@@ -192,7 +192,10 @@ Timing TimingRecord::timing(double delivery_mean) const {
           return std::abs(wrap_degrees(a.theta_deg - *end + 180) - 180) <
                  std::abs(wrap_degrees(b.theta_deg - *end + 180) - 180);
         });
-    const double ratio = nearest->density / density;
+    const double ratio =
+        (network_.air_at() > 0 ? fluid.mixture(nearest->s, nearest->air_out).density
+                               : fluid.state(nearest->s).density) /
+        density;
     const double volume = network_.chamber().volume(radians(*end)).value;
     result.filled = Timing::Filled{*end, ratio, (1 - ratio) * volume / network_.chamber().swept()};
   }
