@@ -34,7 +34,9 @@ constexpr double kNearlyPeriodic = 0.1;
 // Of all effort that an integrator may spend, what tighter tolerances may take.
 constexpr double kShareForRefinement = 0.05;
 // The same of one search in another way, where the usual one finds nothing.
-constexpr double kShareForOtherSearch = 0.05;
+constexpr double kShareForOtherSearch = 0.05, kShareForNeighbour = 0.02;
+// Of all of these together.
+constexpr double kShareForOtherSearches = 0.25;
 // What such searches change: the tolerance, and how far a neighbour is whose state they start from.
 constexpr double kCoarsestOther = 1000;
 constexpr double kOtherTolerances[] = {2, 0.5, 10, 0.1, 100, kCoarsestOther};
@@ -188,7 +190,7 @@ std::optional<Vector> state_beside(const Case& beside, const std::function<void(
   try {
     const Network network(beside);
     Integrator integrator(network, alive);
-    integrator.spend_at_most(kShareForOtherSearch);
+    integrator.spend_at_most(kShareForNeighbour);
     PeriodMap map(network, Sizing::mean_pressure, integrator);
     return search_from(network, map, {}, kCoarse, alive).z;
   } catch (const ComputationError&) {
@@ -210,9 +212,10 @@ std::optional<Found> search_otherwise(const Case& the_case, const Network& netwo
     SteadyState state;
   };
   std::optional<Best> best;
+  const double most = integrator.share_of_effort() + kShareForOtherSearches;
   // Whether what there is now is accurate enough.
   const auto tried = [&](const std::function<Found(double)>& search_at, double tolerance) {
-    integrator.spend_at_most(integrator.share_of_effort() + kShareForOtherSearch);
+    integrator.spend_at_most(std::min(integrator.share_of_effort() + kShareForOtherSearch, most));
     try {
       Found found = attempt(search_at, tolerance);
       if (!best || pressure_error(result) < pressure_error(best->state))
@@ -228,6 +231,7 @@ std::optional<Found> search_otherwise(const Case& the_case, const Network& netwo
     return std::move(best->found);
   };
   const double own = the_case.hydraulics->tolerance;
+  if (most >= 1 + kShareForOtherSearches) return std::nullopt;  // the usual search spent it all
   for (const double factor : kOtherTolerances) {
     const double tolerance = own * factor;
     if (tolerance < kFinest || tolerance > kCoarse) continue;
@@ -237,6 +241,7 @@ std::optional<Found> search_otherwise(const Case& the_case, const Network& netwo
   if (best) return taken();
   for (const double factor : kBeside)
     for (const bool speed : {false, true}) {
+      if (integrator.share_of_effort() >= most) return taken();
       Case beside = the_case;
       double& moved = speed ? beside.operation.speed_rpm : beside.pressure.ports.delivery;
       if (moved == 0) continue;
