@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bentaxis/pump/error.h"
+#include "commands.h"
 #include "time_left.h"
 
 namespace bentaxis::cli {
@@ -50,6 +51,19 @@ Progress progress_of(const std::string& job) {
       std::fflush(stderr);
     }
   };
+}
+
+int status_of_series(int status, const std::vector<study::FailedPoint>& failed,
+                     std::size_t points) {
+  if (failed.empty()) return status;
+  std::fprintf(
+      stderr,
+      "bentaxis: %zu of %zu points could not be computed; their rows are empty, the others "
+      "are written:\n",
+      failed.size(), points);
+  for (const study::FailedPoint& f : failed)
+    std::fprintf(stderr, "bentaxis: %s: %s\n", f.point.c_str(), f.reason.c_str());
+  return kComputationFailed;
 }
 
 }  // namespace bentaxis::cli

@@ -35,14 +35,16 @@ int run(const Options& options) {
   const auto published =
       study::printed_numbers_of(data ? *data / "published" : "",
                                 {study::facts_of(result.the_case, result.the_case.analytic)});
-  const study::InertiaReport report =
+  study::InertiaReport report =
       study::inertia_report(result, published ? &published->numbers : nullptr, versions());
+  study::add_warnings(report.document, result.failed);
   const auto paths = folders.write("inertia", report.document, report.curves,
                                    {{"inertia.csv", study::inertia_curves_csv(result)},
                                     {"inertia_errors.csv", study::inertia_errors_csv(result)},
                                     {"inertia_map.csv", study::inertia_map_csv(result.map)}});
   print_result(study::inertia_text(result), paths);
-  return result.agrees() ? kDone : kOutOfTolerance;
+  return status_of_series(result.agrees() ? kDone : kOutOfTolerance, result.failed,
+                          options.study.speeds.size());
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ int life(const Options& options) {
                                    {{"life.csv", designs::life_csv(result)},
                                     {"life_loads.csv", designs::life_loads_csv(result)}});
   print_result(designs::life_text(result), paths);
-  return result.agrees() ? kDone : kOutOfTolerance;
+  return status_of_series(result.agrees() ? kDone : kOutOfTolerance, result.failed,
+                          duty.rows.size());
 }
 
 }  // namespace

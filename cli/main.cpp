@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/hydraulics/accuracy_log.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/study/timing.h"
 #include "commands.h"
 #include "console.h"
 #include "provenance.h"
@@ -68,6 +70,14 @@ ProgramParser::Texts texts() {
           "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out"};
 }
 
+// A pressure that is less accurate than its case allows is said, whatever the command makes of it.
+int with_accuracy_said(int status) {
+  if (const auto warning = study::accuracy_warning(hydraulics::AccuracyLog::record()))
+    std::fprintf(stderr, "bentaxis: warning: %s: %s\n", warning->name.c_str(),
+                 warning->text.c_str());
+  return status;
+}
+
 int run_program(int argc, char** argv) {
   ProgramParser parser(texts());
   const CommandParser program = parser.root();
@@ -102,6 +112,7 @@ int main(int argc, char** argv) {
   // A file that outgrows its limit (ulimit -f) is refused as one on a full disk is.
   std::signal(SIGXFSZ, SIG_IGN);
   const InputLog inputs;
+  const hydraulics::AccuracyLog accuracy;
   remember_command(argc, argv);
-  return checked_output(run_program(argc, argv));
+  return with_accuracy_said(checked_output(run_program(argc, argv)));
 }

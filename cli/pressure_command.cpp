@@ -27,6 +27,8 @@ struct Options {
   int transient = 0;
 };
 
+constexpr const char* kFilling = "filling";  // of --suction-speed
+
 // saturation, vapour or a pressure in bar.
 double suction_limit(const std::string& text, const HydraulicData& data) {
   if (text == "saturation") return data.saturation_pressure;
@@ -35,7 +37,7 @@ double suction_limit(const std::string& text, const HydraulicData& data) {
   if (!value || !(pascals(*value) > -data.atmosphere))
     throw InputError(
         "--suction-speed " + text +
-        ": must be saturation, vapour or a gauge pressure in bar, above absolute zero");
+        ": must be filling, saturation, vapour or a gauge pressure in bar, above absolute zero");
   return pascals(*value);
 }
 
@@ -53,13 +55,17 @@ int pressure(const Options& options) {
   if (!options.delivery.empty())
     pressures = designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
   std::optional<double> limit;
-  if (!options.suction_speed.empty())
+  if (!options.suction_speed.empty() && options.suction_speed != kFilling)
     limit = suction_limit(options.suction_speed, *read.hydraulics);
   ReportFolders folders(options.place);
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
   const auto power = hydraulics::power_by_place(point.state(), progress_of("power by place"));
   report::Document document = study::pressure_document(point, power, versions());
+  // A limit on the pressure alone does not say whether the chambers fill.
+  if (options.suction_speed == kFilling || (limit && point.state().timing.filled))
+    study::add_suction_speed(document, point,
+                             study::filling_speed(point.the_case(), progress_of("filling speed")));
   if (limit)
     study::add_suction_speed(
         document, point,
@@ -89,7 +95,9 @@ int pressure(const Options& options) {
   if (published) text += "\n" + study::text_of(document.published->section);
   if (curve) text += "\n" + to_csv(*curve);
   print_result(text, paths);
-  return !published || document.published->section.calibrated() ? kDone : kOutOfTolerance;
+  const bool held = !published || document.published->section.calibrated();
+  const int status = held ? kDone : kOutOfTolerance;
+  return curve ? status_of_series(status, curve->failed, pressures.size()) : status;
 }
 
 }  // namespace
@@ -114,9 +122,10 @@ Command add_pressure_command(CommandParser program) {
       .text("FILE");
   command
       .option("--suction-speed", options->suction_speed,
-              "also the largest speed at which no chamber falls below the pressure at which air "
-              "comes out or oil boils, or below one in bar: 10 to 30 operating points")
-      .text("saturation|vapour|BAR");
+              "also the largest speed at which the chambers fill (at most 1 % of a stroke lost), "
+              "and the one at which no chamber falls below the pressure at which air comes out or "
+              "oil boils, or below one in bar: 10 to 30 operating points each")
+      .text("filling|saturation|vapour|BAR");
   command
       .option("--transient", options->transient, "also the transient from rest over so many turns")
       .integer_in(1, 1000)

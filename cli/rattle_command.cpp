@@ -89,7 +89,8 @@ int rattle(const Options& options) {
   }
   file.remove();
   print_result(study::rattle_text(map), paths);
-  return map.agrees() ? kDone : kOutOfTolerance;
+  return status_of_series(map.agrees() ? kDone : kOutOfTolerance, map.failed,
+                          rattle.delivery_bar.size());
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 #include "report_files.h"
 
+#include <algorithm>
 #include <cstdio>
 
+#include "bentaxis/hydraulics/accuracy_log.h"
 #include "bentaxis/report/page.h"
 #include "bentaxis/report/picture.h"
+#include "bentaxis/study/timing.h"
 #include "provenance.h"
 
 namespace bentaxis::cli {
@@ -31,6 +34,17 @@ std::vector<std::string> files_of_list(const std::string& list) {
   return names;
 }
 
+// A pressure that is less accurate than its case allows is a warning of every report.
+void add_accuracy(report::Document& document) {
+  const auto warning = study::accuracy_warning(hydraulics::AccuracyLog::record());
+  if (!warning) return;
+  auto& all = document.warnings ? *document.warnings : document.warnings.emplace();
+  const bool there = std::any_of(all.begin(), all.end(), [&](const report::Warning& other) {
+    return other.name == warning->name;
+  });
+  if (!there) all.push_back(*warning);
+}
+
 }  // namespace
 
 ReportFolders::ReportFolders(const ReportPlace& place) : report_(place.out) {
@@ -42,6 +56,7 @@ std::vector<std::filesystem::path> ReportFolders::write(const std::string& name,
                                                         const report::Curves& curves,
                                                         const std::vector<TextFile>& further) {
   add_provenance(document);
+  add_accuracy(document);
   document.files = report_.names();
   document.files.insert(document.files.begin(), name + ".html");
   for (const auto& [file, content] : further) document.files.push_back(file);

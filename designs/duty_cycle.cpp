@@ -34,7 +34,7 @@ constexpr const char* kShare = "share";
 }  // namespace
 
 std::string DutyCycle::name_of(std::size_t row) const {
-  std::string text = "row " + std::to_string(row + 1);
+  std::string text = "row " + std::to_string(rows[row].number);
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const std::string& name = variables[i].name();
     text += (i == 0 ? ": " : ", ") + name.substr(name.rfind('.') + 1) + " " +
@@ -69,6 +69,7 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     DutyCycle::Row row;
     row.line = table.lines[r];
+    row.number = r + 1;
     row.share = table.rows[r][share];
     if (!(row.share > 0))
       throw InputError(file.string() + ":" + std::to_string(row.line) +
@@ -104,6 +105,7 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
   const std::size_t rows = duty.rows.size();
   result.analytic.points.resize(rows);
   result.multibody.points.resize(rows);
+  std::vector<std::string> reasons(rows);
   study::Reporting reporting(rows, progress_of("duty cycle"));
   study::in_threads(0, rows, [&](std::size_t row) {
     try {
@@ -119,9 +121,24 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
       if (duty.file.empty()) throw;
       throw InputError(duty.file.string() + ":" + std::to_string(duty.rows[row].line) + ": " +
                        error.what());
+    } catch (const ComputationError& error) {
+      reasons[row] = error.what();
     }
     reporting.done();
   });
+  if (std::all_of(reasons.begin(), reasons.end(), [](const auto& r) { return !r.empty(); }))
+    throw ComputationError(
+        (rows > 1 ? "no row of the duty cycle could be computed; the first: " : std::string()) +
+        reasons[0]);
+  for (std::size_t row = rows; row-- > 0;) {
+    if (reasons[row].empty()) continue;
+    const auto at = static_cast<std::ptrdiff_t>(row);
+    result.failed.insert(result.failed.begin(), {static_cast<double>(duty.rows[row].number),
+                                                 duty.name_of(row), reasons[row]});
+    result.duty.rows.erase(result.duty.rows.begin() + at);
+    for (LifeStudy::OfModel* of : {&result.analytic, &result.multibody})
+      of->points.erase(of->points.begin() + at);
+  }
   for (LifeStudy::OfModel* of : {&result.analytic, &result.multibody})
     of->life = study::pump_life(the_case, of->points);
   return result;

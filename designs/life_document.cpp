@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/plausibility_section.h"
@@ -35,14 +36,28 @@ std::string digits(double value) {
 
 std::string hours_text(double hours) { return is_computed(hours) ? digits(hours) + " h" : "none"; }
 
+// Of what part of the duty cycle the lives are, where that is not all of it.
+std::string part_text(const LifeStudy& s) {
+  if (s.failed.empty()) return "";
+  std::string rows;
+  for (const study::FailedPoint& f : s.failed)
+    rows += (rows.empty() ? "" : ", ") + fmt::format("{:g}", f.value);
+  return fmt::format(
+      "NOT the life under the whole duty cycle: row{} {} could not be computed. The other rows "
+      "alone: ",
+      s.failed.size() > 1 ? "s" : "", rows);
+}
+
 std::string headline(const LifeStudy& s) {
   const PumpLife& life = s.analytic.life;
   if (life.mean_speed_rpm == 0) return "no revolution: the bearings have no rating life";
-  return fmt::format(
-      "{} at {:.4g} rpm{} for both bearings together: tapered {}, "
-      "cylindrical {}",
-      hours_text(life.hours), life.mean_speed_rpm, s.duty.rows.size() > 1 ? " on average" : "",
-      hours_text(life.of(Bearing::tapered).hours), hours_text(life.of(Bearing::cylindrical).hours));
+  return part_text(s) + fmt::format(
+                            "{} at {:.4g} rpm{} for both bearings together: tapered {}, "
+                            "cylindrical {}",
+                            hours_text(life.hours), life.mean_speed_rpm,
+                            s.duty.rows.size() > 1 ? " on average" : "",
+                            hours_text(life.of(Bearing::tapered).hours),
+                            hours_text(life.of(Bearing::cylindrical).hours));
 }
 
 std::string agreement_text(const LifeStudy& s) {
@@ -99,8 +114,8 @@ report::Section duty_section(const LifeStudy& s) {
   }
   const study::DutyShares shares = study::duty_shares(s.analytic.points);
   for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
-    std::vector<report::Cell> cells = {static_cast<long>(row + 1), 100 * shares.time[row],
-                                       100 * shares.revolutions[row]};
+    std::vector<report::Cell> cells = {static_cast<long>(s.duty.rows[row].number),
+                                       100 * shares.time[row], 100 * shares.revolutions[row]};
     for (std::size_t i = 0; i < s.duty.variables.size(); ++i)
       cells.emplace_back(s.duty.variables[i].text(s.duty.rows[row].values[i]));
     for (const Bearing bearing : study::kBearings) {
@@ -222,6 +237,7 @@ report::Document life_document(const LifeStudy& s, const report::Lines& program)
   document.figures = {turn_figure(s, Bearing::tapered, row),
                       turn_figure(s, Bearing::cylindrical, row)};
   if (s.analytic.life.mean_speed_rpm > 0) document.figures->push_back(spectrum_figure(s));
+  study::add_warnings(document, s.failed);
   return document;
 }
 
@@ -231,14 +247,14 @@ std::string life_csv(const LifeStudy& s) {
   for (const Bearing bearing : study::kBearings)
     for (const char* what : {"P_N", "P_multibody_N", "life_share"})
       text += "," + to_string(bearing) + "_" + what;
-  text += "\n";
+  text += ",reason\n";
   const study::DutyShares shares = study::duty_shares(s.analytic.points);
   const auto add = [&](double value) {
     text += ',';
     append_number(text, value);
   };
   for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
-    text += std::to_string(row + 1);
+    text += std::to_string(s.duty.rows[row].number);
     add(shares.time[row]);
     add(shares.revolutions[row]);
     for (const double value : s.duty.rows[row].values) add(value);
@@ -247,8 +263,11 @@ std::string life_csv(const LifeStudy& s) {
       add(load_of(s.multibody.points[row], bearing));
       add(s.analytic.life.of(bearing).life_share[row]);
     }
-    text += "\n";
+    text += ",\n";
   }
+  const std::size_t empty = 2 + s.duty.variables.size() + 3 * std::size(study::kBearings);
+  for (const study::FailedPoint& f : s.failed)
+    text += fmt::format("{:g}", f.value) + std::string(empty + 1, ',') + csv_text(f.reason) + "\n";
   return text;
 }
 
@@ -259,7 +278,7 @@ std::string life_loads_csv(const LifeStudy& s) {
     for (std::size_t k = 0; k < s.analytic.points[row].theta_deg.size(); ++k)
       for (const auto* of : {&s.analytic, &s.multibody}) {
         const LifePoint& p = of->points[row];
-        text += std::to_string(row + 1) + ",";
+        text += std::to_string(s.duty.rows[row].number) + ",";
         append_number(text, p.theta_deg[k]);
         text += of == &s.analytic ? ",analytic" : ",multibody";
         for (const double value :

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/in_threads.h"
@@ -15,13 +16,6 @@
 
 namespace bentaxis::designs {
 namespace {
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-  return quoted + "\"";
-}
 
 // "max:Rb1_z1_N" says its unit; "peak:Rb1" does not.
 std::string heading_of(const Output& o) {

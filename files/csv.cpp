@@ -368,6 +368,13 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
   return states;
 }
 
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
+  return quoted + "\"";
+}
+
 std::string to_csv(const MotionTable& table) {
   const ResultTable& results = table.results;
   std::string text;

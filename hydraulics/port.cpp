@@ -11,6 +11,10 @@ namespace {
 
 // Edges closer than this are one, degrees.
 constexpr double kOneEdge = 1e-9;
+// A piece of a table bends where its slope changes by more than this share of itself, unless the
+// area that the change makes is below this share of the largest: that is rounding of the table.
+constexpr double kBend = 0.1;
+constexpr double kRoundedArea = 1e-6;
 
 double wrap(double angle) {
   const double wrapped = angle - 360.0 * std::floor(angle / 360.0);
@@ -155,15 +159,25 @@ void PortOpening::add_table(const OpeningTable& table) {
     const double share = (span[before] + 2 * span[i]) / (3 * (span[before] + span[i]));
     slope[i] = rise[before] * rise[i] / (share * rise[i] + (1 - share) * rise[before]);
   }
+  const double largest = *std::max_element(table.area.begin(), table.area.end());
+  std::vector<bool> edge(n);
   std::vector<PeriodicCubic::Piece> pieces;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t next = (i + 1) % n;
+    // An integration that meets a bend in the middle of a step sees it late, or not at all where
+    // the step covers it.
+    const auto [least, most] = std::minmax({slope[i], rise[i], slope[next]});
+    if (most - least > kBend * std::max(std::abs(least), std::abs(most)) &&
+        (most - least) * span[i] > kRoundedArea * largest)
+      edge[i] = edge[next] = true;
     pieces.push_back({table.theta_deg[i] - table.theta_deg[0], table.area[i], slope[i],
                       table.area[next], slope[next]});
     const std::size_t before = (i + n - 1) % n;
     const bool closed_before = table.area[before] == 0, closed_after = table.area[next] == 0;
-    if (table.area[i] == 0 && closed_before != closed_after) add_edge(table.theta_deg[i]);
+    if (table.area[i] == 0 && closed_before != closed_after) edge[i] = true;
   }
+  for (std::size_t i = 0; i < n; ++i)
+    if (edge[i]) add_edge(table.theta_deg[i]);
   add({"table", "from a table"}, Table{table.theta_deg[0], PeriodicCubic(std::move(pieces))});
 }
 

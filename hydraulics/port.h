@@ -42,8 +42,9 @@ class PortOpening {
   const PartName& part(std::size_t i) const { return names_[i]; }
   double part_area(std::size_t i, double theta_deg) const;
 
-  /// Chamber angles in [0, 360) where the slope of the area jumps, or nearly so, and where the port
-  /// opens or closes, in rising order.
+  /// Chamber angles in [0, 360) where the slope of the area jumps, where the port opens or closes,
+  /// and both ends of every piece of a table over which the slope changes appreciably, in rising
+  /// order.
   const std::vector<double>& edges_deg() const { return edges_deg_; }
 
  private:

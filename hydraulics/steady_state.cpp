@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "bentaxis/hydraulics/accuracy_log.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -32,6 +33,14 @@ constexpr double kSharesInLoop[] = {0.7, 0.9, 0.5, 0.3};
 constexpr double kNearlyPeriodic = 0.1;
 // Of all effort that an integrator may spend, what tighter tolerances may take.
 constexpr double kShareForRefinement = 0.05;
+// The same of one search in another way, where the usual one finds nothing.
+constexpr double kShareForOtherSearch = 0.05, kShareForNeighbour = 0.02;
+// Of all of these together.
+constexpr double kShareForOtherSearches = 0.25;
+// What such searches change: the tolerance, and how far a neighbour is whose state they start from.
+constexpr double kCoarsestOther = 1000;
+constexpr double kOtherTolerances[] = {2, 0.5, 10, 0.1, 100, kCoarsestOther};
+constexpr double kBeside[] = {0.99, 1.01};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Tolerances below this are round-off.
 constexpr double kFinest = 3e-13;
@@ -171,6 +180,91 @@ void refuse_what_is_out_of_reach(const Network& network, const Case& the_case,
         (left > map.noise() * kCoarse ? "about " : "") +
         number_text(std::round(10 * largest / kPascalPerBar) / 10) +
         " bar, and leakage, backflow and compression take all of the flow");
+}
+
+// Carries out one kind of search at a tolerance, with all that follows it.
+using Attempt = std::function<Found(const std::function<Found(double)>& search_at, double)>;
+
+// The state that a case a little beside this one repeats, coarsely.
+std::optional<Vector> state_beside(const Case& beside, const std::function<void()>& alive) {
+  try {
+    const Network network(beside);
+    Integrator integrator(network, alive);
+    integrator.spend_at_most(kShareForNeighbour);
+    PeriodMap map(network, Sizing::mean_pressure, integrator);
+    return search_from(network, map, {}, kCoarse, alive).z;
+  } catch (const ComputationError&) {
+    return std::nullopt;
+  } catch (const InputError&) {  // a load that takes more than the pump displaces there
+    return std::nullopt;
+  }
+}
+
+// Where the usual search fails. At a finer tolerance the integration may see what it stepped over;
+// at a coarser one Newton's method passes over jumps of the map that are below it, and the error
+// that the curve then has is stated as ever. A neighbour's state is a start close by.
+// Of all that is found the first that is accurate enough is taken, else the most accurate.
+std::optional<Found> search_otherwise(const Case& the_case, const Network& network, PeriodMap& map,
+                                      Integrator& integrator, const std::function<void()>& alive,
+                                      const Attempt& attempt, SteadyState& result) {
+  struct Best {
+    Found found;
+    SteadyState state;
+  };
+  std::optional<Best> best;
+  const double most = integrator.share_of_effort() + kShareForOtherSearches;
+  // Whether what there is now is accurate enough.
+  const auto tried = [&](const std::function<Found(double)>& search_at, double tolerance) {
+    integrator.spend_at_most(std::min(integrator.share_of_effort() + kShareForOtherSearch, most));
+    try {
+      Found found = attempt(search_at, tolerance);
+      if (!best || pressure_error(result) < pressure_error(best->state))
+        best = Best{std::move(found), std::move(result)};
+    } catch (const ComputationError&) {
+      // The next one.
+    }
+    return best && is_accurate(the_case, best->state);
+  };
+  const auto taken = [&]() -> std::optional<Found> {
+    if (!best) return std::nullopt;
+    result = std::move(best->state);
+    return std::move(best->found);
+  };
+  const double own = the_case.hydraulics->tolerance;
+  if (most >= 1 + kShareForOtherSearches) return std::nullopt;  // the usual search spent it all
+  for (const double factor : kOtherTolerances) {
+    const double tolerance = own * factor;
+    if (tolerance < kFinest || tolerance > kCoarse) continue;
+    if (tried([&](double at) { return search_from(network, map, {}, at, alive); }, tolerance))
+      return taken();
+  }
+  if (best) return taken();
+  for (const double factor : kBeside)
+    for (const bool speed : {false, true}) {
+      if (integrator.share_of_effort() >= most) return taken();
+      Case beside = the_case;
+      double& moved = speed ? beside.operation.speed_rpm : beside.pressure.ports.delivery;
+      if (moved == 0) continue;
+      moved *= factor;
+      const std::optional<Vector> guess = state_beside(beside, alive);
+      if (!guess) continue;
+      for (const double tolerance : {own, own * kCoarsestOther})
+        if (tried([&](double at) { return find(network, map, *guess, true, at, alive); },
+                  tolerance))
+          return taken();
+    }
+  return taken();
+}
+
+// Which operating point it is, and what failed there.
+std::string failure_text(const Case& the_case, const Network& network, const std::string& what) {
+  if (network.load().kind() == LoadKind::flow && !network.fixed_line())
+    return the_case.file.string() + ": [load] flow_l_per_min = " +
+           number_text(the_case.hydraulics->load->flow / kLitrePerMinute) +
+           ": no delivery pressure found at which the pump delivers it: " + what;
+  return the_case.file.string() +
+         ": [pressure] delivery_bar = " + number_text(network.delivery_pressure() / kPascalPerBar) +
+         ", [operation] speed_rpm = " + number_text(the_case.operation.speed_rpm) + ": " + what;
 }
 
 int rows_of(const Case& the_case) {
@@ -318,10 +412,11 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
   Integrator integrator(network, alive);
   PeriodMap map(network, Sizing::mean_pressure, integrator);
   SteadyState result;
-  double tolerance = the_case.hydraulics->tolerance;
-  Found found;
-  try {
-    found = search_from(network, map, start, tolerance, alive);
+  // The state by one kind of search, at the tolerance and, where the curve's error asks for it, at
+  // finer ones.
+  const Attempt attempt = [&](const std::function<Found(double)>& search_at, double tolerance) {
+    Found found = search_at(tolerance);
+    result = SteadyState();
     solve(the_case, network, map, tolerance, found, alive, result);
     integrator.spend_at_most(integrator.share_of_effort() + kShareForRefinement);
     const auto error = [&] { return result.computed->error / result.computed->peak; };
@@ -331,16 +426,24 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
       tolerance = std::max(tolerance / 10, kFinest);
       if (!improve(the_case, network, map, tolerance, found, alive, result)) break;
     }
-    if (network.load_sought() && !(result.summary.mass_flow > 0))
-      throw ComputationError("hydraulics: nothing is left for the load");
+    return found;
+  };
+  Found found;
+  try {
+    found = attempt([&](double at) { return search_from(network, map, start, at, alive); },
+                    the_case.hydraulics->tolerance);
   } catch (const ComputationError& error) {
-    if (network.load().kind() == LoadKind::flow && !network.fixed_line())
-      throw ComputationError(
-          the_case.file.string() + ": [load] flow_l_per_min = " +
-          number_text(the_case.hydraulics->load->flow / kLitrePerMinute) +
-          ": no delivery pressure found at which the pump delivers it: " + error.what());
     if (network.load_sought()) refuse_what_is_out_of_reach(network, the_case, alive);
-    throw;
+    std::optional<Found> again;
+    if (!start)
+      again = search_otherwise(the_case, network, map, integrator, alive, attempt, result);
+    if (!again) throw ComputationError(failure_text(the_case, network, error.what()));
+    found = std::move(*again);
+  }
+  if (network.load_sought() && !(result.summary.mass_flow > 0)) {
+    refuse_what_is_out_of_reach(network, the_case, alive);
+    throw ComputationError(
+        failure_text(the_case, network, "hydraulics: nothing is left for the load"));
   }
   result.equations = equations;
   result.corrected_states = map.states(found.next);
@@ -357,8 +460,17 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
   result.convergence.evaluations = integrator.work().evaluations;
   result.convergence.seconds = stopwatch.seconds();
   result.table.provenance.seconds = result.convergence.seconds;
+  if (!is_accurate(the_case, result)) AccuracyLog::note(the_case, result);
   if (progress) progress(1);
   return result;
+}
+
+double pressure_error(const SteadyState& state) {
+  return state.computed ? state.computed->error / state.computed->peak : not_computed();
+}
+
+bool is_accurate(const Case& the_case, const SteadyState& state) {
+  return !(pressure_error(state) > the_case.hydraulics->curve_error);
 }
 
 ResultTable transient_from_rest(const Case& the_case, double load_size, int revolutions,
@@ -492,10 +604,18 @@ std::vector<Line> lines(const SteadyState& state) {
        "both_open_deg"},
       {"both ports closed (positive overlap)", s.both_closed_deg, "deg per turn",
        "both_closed_deg"},
+      {"filling at the end of suction, mass in the chamber over that of oil at suction pressure",
+       state.timing.filled ? 100 * state.timing.filled->ratio : not_computed(), "%",
+       "filling_percent"},
+      {"loss of volumetric efficiency by incomplete filling",
+       state.timing.filled ? 100 * state.timing.filled->loss : not_computed(), "%",
+       "filling_loss_percent"},
       {"chamber below saturation pressure: air comes out", s.below_saturation_deg, "deg per turn",
        "below_saturation_deg"},
       {"chamber below vapour pressure: oil boils", s.below_vapour_deg, "deg per turn",
        "below_vapour_deg"},
+      {"estimated error of the chamber pressure, of its peak", pressure_error(state), "",
+       "pressure_error"},
   };
 }
 

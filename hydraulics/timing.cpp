@@ -51,6 +51,32 @@ Timing::Trapped trapped(const Network& network, const Bridge& bridge) {
   return t;
 }
 
+// Where the longest stretch ends that is open to the suction port alone.
+std::optional<double> end_of_suction(const Network& network) {
+  std::vector<double> edges = network.suction().edges_deg();
+  const auto& others = network.delivery().edges_deg();
+  edges.insert(edges.end(), others.begin(), others.end());
+  std::sort(edges.begin(), edges.end());
+  if (edges.empty()) return std::nullopt;
+  double length = 0, longest = 0;
+  std::optional<double> end;
+  // Two turns: a stretch may go on over 0 degrees.
+  const std::size_t count = edges.size();
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    const double from = edges[i % count];
+    const double to = i % count + 1 < count ? edges[i % count + 1] : edges[0] + 360;
+    const double middle = (from + to) / 2;
+    if (!(network.suction().area(middle) > 0) || network.delivery().area(middle) > 0) {
+      length = 0;
+      continue;
+    }
+    length += to - from;
+    if (length > longest) longest = length, end = wrap_degrees(to);
+  }
+  if (longest >= 360) return std::nullopt;  // it never ends
+  return end;
+}
+
 }  // namespace
 
 std::vector<Stretch> stretches_below(const std::vector<double>& theta_deg,
@@ -86,7 +112,8 @@ void TimingRecord::see(const Integrator::Step& step) {
     network_.flows(x, y, load_size_, flows_);
     x_.push_back(x);
     for (int k = 0; k < network_.pistons(); ++k)
-      nodes_.push_back({0, y[k], flows_.delivery[k], flows_.suction[k]});
+      nodes_.push_back({0, y[k], flows_.delivery[k], flows_.suction[k],
+                        network_.air_at() > 0 ? network_.air_out(y, k) : 0});
   }
 }
 
@@ -159,6 +186,19 @@ Timing TimingRecord::timing(double delivery_mean) const {
   for (int i = 0; i < kAreaAngles; ++i)
     largest = std::max(largest, network_.chamber().volume(radians(360.0 * i / kAreaAngles)).value);
   result.filling = largest * (fluid.density(delivery_mean) / density - 1);
+  if (const auto end = network_.backwards() ? std::nullopt : end_of_suction(network_)) {
+    const auto nearest =
+        std::min_element(turn.begin(), turn.end(), [&](const Node& a, const Node& b) {
+          return std::abs(wrap_degrees(a.theta_deg - *end + 180) - 180) <
+                 std::abs(wrap_degrees(b.theta_deg - *end + 180) - 180);
+        });
+    const double ratio =
+        (network_.air_at() > 0 ? fluid.mixture(nearest->s, nearest->air_out).density
+                               : fluid.state(nearest->s).density) /
+        density;
+    const double volume = network_.chamber().volume(radians(*end)).value;
+    result.filled = Timing::Filled{*end, ratio, (1 - ratio) * volume / network_.chamber().swept()};
+  }
   return result;
 }
 

@@ -27,6 +27,7 @@ class TimingRecord {
     double theta_deg;  // rising over the turn
     double s;
     double to_delivery, from_suction;  // kg/s
+    double air_out;                    // share of the dissolved air, where it takes time
   };
   std::vector<Node> turn() const;
 

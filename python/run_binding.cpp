@@ -39,6 +39,8 @@ void add_timing(const study::ReadyCase& ready, Warnings& warnings) {
   for (const auto& warning :
        study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics)))
     warnings.push_back(warning.name + ": " + warning.text);
+  if (const auto warning = study::accuracy_warning(ready.the_case, *ready.hydraulics))
+    warnings.push_back(warning->name + ": " + warning->text);
 }
 
 Warned<ResultTable> turn(const Case& the_case, study::Model model,

@@ -340,6 +340,10 @@ void Maker::warn() {
   if (r.first.hydraulics)
     for (auto& warning : timing_warnings(timing_rows(r.first.the_case, *r.first.hydraulics)))
       r.warnings.push_back(std::move(warning));
+  for (const ReadyCase* ready : {&r.first, &r.second})
+    if (ready->hydraulics && (ready == &r.first || ready->the_case.file != r.first.the_case.file))
+      if (auto warning = accuracy_warning(ready->the_case, *ready->hydraulics))
+        r.warnings.push_back(std::move(*warning));
   for (const auto& limit : r.limits)
     if (limit.applicable && limit.violated_share > 0)
       r.warnings.push_back(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/run.h"
 
@@ -61,9 +62,16 @@ InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& option
   s.the_case = prepare(as_read, progress_of).the_case;
   const Case& the_case = s.the_case;
   for (const double speed : options.speeds) at_speed(the_case, speed);  // refuses early
-  s.fastest = *std::max_element(options.speeds.begin(), options.speeds.end(), slower);
+  std::vector<double> speeds;                                           // that could be computed
   for (const double speed : options.speeds) {
-    const Case at = prepare(at_speed(as_read, speed), progress_of).the_case;
+    Case at;
+    try {
+      at = prepare(at_speed(as_read, speed), progress_of).the_case;
+    } catch (const ComputationError& error) {
+      s.failed.push_back({speed, fmt::format("speed_rpm = {:g}", speed), error.what()});
+      continue;
+    }
+    speeds.push_back(speed);
     for (const bool loaded : {false, true}) {
       const std::string what = fmt::format("{:g} rpm, {}", speed, loaded ? "loaded" : "no load");
       s.one_piston.push_back(run_both_pistons(at, speed, loaded, multibody::Scene::piston,
@@ -72,14 +80,17 @@ InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& option
                                         progress_of("full pump, " + what)));
     }
   }
+  if (speeds.empty())
+    throw ComputationError("no speed of the series could be computed; the first: " +
+                           s.failed[0].reason);
+  s.fastest = *std::max_element(speeds.begin(), speeds.end(), slower);
   compare_models_and_scenes(s);
   s.causes = causes_of_error(the_case, s.fastest, By::analytic);
   s.multibody_causes = causes_of_error(the_case, s.fastest, By::multibody);
   s.lumpings = lumpings(the_case, s.fastest);
   s.over_fraction = lumping_over_fraction(the_case, s.fastest, 51);
   s.masses = three_masses(the_case.pump);
-  const double slowest =
-      std::abs(*std::min_element(options.speeds.begin(), options.speeds.end(), slower));
+  const double slowest = std::abs(*std::min_element(speeds.begin(), speeds.end(), slower));
   const auto map_speeds =
       options.map_speeds.value_or(std::pair(slowest / 3, 3 * std::abs(s.fastest)));
   s.map = error_map(the_case, options.map_axis, ratios(map_speeds, options.map_size),

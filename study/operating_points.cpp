@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <initializer_list>
 
+#include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -55,40 +57,67 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
   const std::size_t count = delivery_bar.size();
   TorqueCurve curve;
   curve.bar = delivery_bar;
-  for (auto* values :
-       {&curve.analytic, &curve.multibody, &curve.ideal, &curve.flow, &curve.efficiency})
-    values->resize(count);
+  const auto columns = {&curve.bar,   &curve.analytic, &curve.multibody,
+                        &curve.ideal, &curve.flow,     &curve.efficiency};
+  for (auto* values : columns) values->resize(count);
+  std::vector<std::string> reasons(count);
   Reporting reporting(count, progress);
   const PartProgress within = [&](const std::string&) { return [&](double) { reporting.tick(); }; };
   in_threads(kMostThreads, count, [&](std::size_t i) {
     reporting.tick();
     Case at = the_case;
     at.pressure.ports.delivery = pascals(delivery_bar[i]);
-    const OperatingPoint point = run_point(std::move(at), within);
-    const auto& s = point.state().summary;
-    curve.analytic[i] = mean(point.analytic, "Td_z1_Nm");
-    curve.multibody[i] = mean(point.multibody, "Td_z1_Nm");
-    curve.ideal[i] =
-        s.displacement * (pascals(delivery_bar[i]) - the_case.pressure.ports.suction) / (2 * kPi);
-    curve.flow[i] = s.flow * 6e4;
-    curve.efficiency[i] = 100 * s.volumetric_efficiency;
+    try {
+      const OperatingPoint point = run_point(std::move(at), within);
+      const auto& s = point.state().summary;
+      curve.analytic[i] = mean(point.analytic, "Td_z1_Nm");
+      curve.multibody[i] = mean(point.multibody, "Td_z1_Nm");
+      curve.ideal[i] =
+          s.displacement * (pascals(delivery_bar[i]) - the_case.pressure.ports.suction) / (2 * kPi);
+      curve.flow[i] = s.flow * 6e4;
+      curve.efficiency[i] = 100 * s.volumetric_efficiency;
+    } catch (const ComputationError& error) {
+      reasons[i] = error.what();
+    }
     reporting.done();
   });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!reasons[i].empty()) {
+      curve.failed.push_back(
+          {delivery_bar[i], "delivery_bar = " + number_text(delivery_bar[i]), reasons[i]});
+      continue;
+    }
+    for (auto* values : columns) (*values)[kept] = (*values)[i];
+    ++kept;
+  }
+  if (kept == 0 && count > 0)
+    throw ComputationError("no point of the series could be computed; the first: " + reasons[0]);
+  for (auto* values : columns) values->resize(kept);
   return curve;
 }
 
 std::string to_csv(const TorqueCurve& curve) {
   std::string text =
       "delivery_bar,mean_Td_analytic_Nm,mean_Td_multibody_Nm,ideal_Td_Nm,flow_l_per_min,"
-      "volumetric_efficiency_percent\n";
-  for (std::size_t i = 0; i < curve.bar.size(); ++i) {
-    const double row[] = {curve.bar[i],   curve.analytic[i], curve.multibody[i],
-                          curve.ideal[i], curve.flow[i],     curve.efficiency[i]};
-    for (std::size_t c = 0; c < std::size(row); ++c) {
-      if (c > 0) text += ',';
-      append_number(text, row[c]);
+      "volumetric_efficiency_percent,reason\n";
+  const auto add = [&](std::initializer_list<double> row, const std::string& reason) {
+    for (const double value : row) {
+      append_number(text, value);
+      text += ',';
     }
-    text += '\n';
+    text += csv_text(reason) + '\n';
+  };
+  const double none = not_computed();
+  auto failed = curve.failed.begin();
+  for (std::size_t i = 0; i <= curve.bar.size(); ++i) {
+    for (; failed != curve.failed.end() && (i == curve.bar.size() || failed->value < curve.bar[i]);
+         ++failed)
+      add({failed->value, none, none, none, none, none}, failed->reason);
+    if (i < curve.bar.size())
+      add({curve.bar[i], curve.analytic[i], curve.multibody[i], curve.ideal[i], curve.flow[i],
+           curve.efficiency[i]},
+          "");
   }
   return text;
 }

@@ -128,6 +128,8 @@ class PaperRun {
       case PaperKind::operating_points: {
         const TorqueCurve torque = torque_curve(at(figure.condition).as_read(), figure.delivery_bar,
                                                 progress_of_("torque over pressure"));
+        if (!torque.failed.empty())
+          throw ComputationError(torque.failed[0].point + ": " + torque.failed[0].reason);
         for (const PaperPanel& panel : figure.panels)
           add_panel(figure, panel, [&](const PaperCurve& curve) {
             const bool analytic = curve.model == Model::analytic;

@@ -77,6 +77,12 @@ void add_curve(report::Document& document, const TorqueCurve& curve) {
   for (std::size_t i = 0; i < curve.bar.size(); ++i)
     section.table.rows.push_back({curve.bar[i], curve.analytic[i], curve.multibody[i],
                                   curve.ideal[i], curve.flow[i], curve.efficiency[i]});
+  for (const FailedPoint& failed : curve.failed) {
+    section.table.rows.push_back({failed.value, report::Cell(), report::Cell(), report::Cell(),
+                                  report::Cell(), report::Cell()});
+    section.facts.emplace_back(failed.point + ": not computed", failed.reason);
+  }
+  add_warnings(document, curve.failed);
   document.runs->push_back(std::move(section));
 }
 
@@ -138,14 +144,18 @@ void add_published(report::Document& document, const compare::Published& publish
   for (auto& row : section.rows) {
     const compare::PublishedNumber& number = row.number;
     if (!number.find_pressure || row.verdict == compare::PublishedVerdict::not_comparable) continue;
-    const double pressure = delivery_pressure_for(
-        point, number.quantity, number.low,
-        [&](const ResultTable& table) {
-          return compare::value_of(number, {&table, {}})->low;
-        },
-        progress_of);
-    row.where +=
-        fmt::format("; needs a mean delivery pressure of {:.1f} bar", pressure / kPascalPerBar);
+    try {
+      const double pressure = delivery_pressure_for(
+          point, number.quantity, number.low,
+          [&](const ResultTable& table) {
+            return compare::value_of(number, {&table, {}})->low;
+          },
+          progress_of);
+      row.where +=
+          fmt::format("; needs a mean delivery pressure of {:.1f} bar", pressure / kPascalPerBar);
+    } catch (const ComputationError& error) {
+      row.where += fmt::format("; the delivery pressure it needs was not found: {}", error.what());
+    }
   }
   const std::string text =
       section.summary.text() +

@@ -104,7 +104,7 @@ Case rattle_case(Case the_case, double speed_rpm, double delivery_bar) {
 
 RattleMap rattle_map(const Case& the_case, const RattleOptions& options,
                      const RattleKeeping& keeping, const PartProgress& progress_of) {
-  RattleMap map{the_case, options, std::vector<RattleRow>(options.delivery_bar.size()), {}};
+  RattleMap map{the_case, options, std::vector<RattleRow>(options.delivery_bar.size()), {}, {}};
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < map.rows.size(); ++i) {
     const auto there = std::find_if(
@@ -116,15 +116,32 @@ RattleMap rattle_map(const Case& the_case, const RattleOptions& options,
       missing.push_back(i);
   }
   Reporting points(2 * missing.size() * options.speed_rpm.size(), progress_of("rattle"));
+  std::vector<std::string> reasons(map.rows.size());
   in_threads(options.threads, missing.size(), [&](std::size_t i) {
     RattleRow& row = map.rows[missing[i]];
-    row = compute_row(
-        the_case, options, options.delivery_bar[missing[i]], [&] { points.tick(); },
-        [&] { points.done(); });
+    try {
+      row = compute_row(
+          the_case, options, options.delivery_bar[missing[i]], [&] { points.tick(); },
+          [&] { points.done(); });
+    } catch (const ComputationError& error) {
+      reasons[missing[i]] = error.what();
+      return;
+    }
     points.tick([&] {
       if (keeping.keep) keeping.keep(row);
     });
   });
+  for (std::size_t i = map.rows.size(); i-- > 0;) {
+    if (reasons[i].empty()) continue;
+    const double bar = options.delivery_bar[i];
+    map.failed.insert(map.failed.begin(), {bar, "delivery_bar = " + number_text(bar), reasons[i]});
+    map.rows.erase(map.rows.begin() + static_cast<std::ptrdiff_t>(i));
+    map.options.delivery_bar.erase(map.options.delivery_bar.begin() +
+                                   static_cast<std::ptrdiff_t>(i));
+  }
+  if (map.rows.empty())
+    throw ComputationError("no row of the map could be computed; the first: " +
+                           map.failed[0].reason);
   const auto chosen = points_to_check(map);
   map.checks.resize(chosen.size());
   Reporting checks(chosen.size(), progress_of("Simbody"));

@@ -355,6 +355,7 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
   if (!rigid(map)) document.runs->push_back(states_section(map));
   if (!map.checks.empty()) document.runs->push_back(checks_section(map));
   document.figures = map_figures(map);
+  add_warnings(document, map.failed);
   return document;
 }
 

@@ -15,6 +15,7 @@
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth.h"
+#include "bentaxis/study/timing.h"
 #include "fmu_section.h"
 #include "key_figures.h"
 
@@ -427,6 +428,9 @@ std::vector<report::Warning> warnings_of(const SimulationResult& r) {
                      "motion; the oil does not follow it.",
                      r.ready.the_case.operation.speed_rpm)});
   warn_of_further_pairs(r, warnings);
+  if (r.ready.hydraulics)
+    if (auto warning = accuracy_warning(r.ready.the_case, *r.ready.hydraulics))
+      warnings.push_back(std::move(*warning));
   if (r.choice.unit)
     for (report::Warning& warning : coupling_warnings(r)) warnings.push_back(std::move(warning));
   return warnings;

@@ -6,6 +6,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -23,6 +24,8 @@ constexpr double kBackflow = 1.5;         // over what fills the chamber, but at
 constexpr double kLeastBackflow = 0.01;   // of a stroke
 constexpr double kOvershoot = 0.1;        // of the mean delivery pressure, but at least
 constexpr double kLeastOvershoot = 10e5;  // Pa
+
+constexpr double kLargestFillingLoss = 0.01;  // of a stroke
 
 // The search for a speed.
 constexpr double kFactor = 1.25;
@@ -142,6 +145,17 @@ TimingRow trapped(const hydraulics::Timing& t, const hydraulics::Summary& s) {
   return r;
 }
 
+TimingRow filling(const hydraulics::Timing::Filled& filled) {
+  TimingRow r =
+      row("filling", "stroke lost by incomplete filling", 100 * filled.loss, "% of a stroke");
+  r.theta_deg = filled.at_deg;
+  hold(r, 100 * kLargestFillingLoss);
+  r.text =
+      fmt::format("{}: the chamber holds {:.4g} % of the oil it would hold at suction pressure",
+                  r.flagged ? "not filled" : "filled", 100 * filled.ratio);
+  return r;
+}
+
 std::string value_text(const TimingRow& r) {
   if (!r.bound.empty()) return r.bound;
   return is_computed(r.value) ? fmt::format("{:.4g}", r.value) : "none";
@@ -158,8 +172,8 @@ std::string angles_text(const TimingRow& r) {
 }  // namespace
 
 std::vector<std::string> timing_codes() {
-  return {"below-saturation", "below-vapour", "ports-connected", "short-circuit",
-          "backflow",         "trapped-oil",  "overshoot",       "suction-speed"};
+  return {"below-saturation", "below-vapour", "ports-connected", "short-circuit", "backflow",
+          "trapped-oil",      "overshoot",    "filling",         "suction-speed", "filling-speed"};
 }
 
 std::vector<TimingRow> timing_rows(const Case& the_case, const hydraulics::SteadyState& state) {
@@ -181,6 +195,7 @@ std::vector<TimingRow> timing_rows(const Case& the_case, const hydraulics::Stead
   hold(over, overshoot_limit(s));
   over.text = fmt::format("{:.4g} bar", bar(s.chamber_greatest));
   rows.push_back(over);
+  if (t.filled) rows.push_back(filling(*t.filled));
   for (TimingRow& r : rows) r.meant = stated_reason(the_case, r.code);
   return rows;
 }
@@ -197,6 +212,31 @@ std::vector<report::Warning> timing_warnings(const std::vector<TimingRow>& rows)
   return warnings;
 }
 
+std::optional<report::Warning> accuracy_warning(const hydraulics::AccuracyLog::Record& record) {
+  if (record.count == 0) return std::nullopt;
+  const hydraulics::InaccurateState& worst = record.worst;
+  const std::string point = fmt::format(
+      "at delivery_bar = {:.6g}, speed_rpm = {:.6g} the estimated error of the "
+      "computed chamber pressure is {:.1e} of its peak",
+      bar(worst.delivery), worst.speed_rpm, worst.error);
+  return report::Warning{
+      "curve-error",
+      fmt::format("{}: {}{}, above [hydraulics] curve_error = {:.3g}. A smaller [hydraulics] "
+                  "tolerance may reduce it; a larger curve_error accepts it.",
+                  worst.file.string(),
+                  record.count == 1
+                      ? ""
+                      : fmt::format("{} operating points exceed the allowed error; the worst: ",
+                                    record.count),
+                  point, worst.limit)};
+}
+
+std::optional<report::Warning> accuracy_warning(const Case& the_case,
+                                                const hydraulics::SteadyState& state) {
+  if (hydraulics::is_accurate(the_case, state)) return std::nullopt;
+  return accuracy_warning({1, hydraulics::inaccurate_state(the_case, state)});
+}
+
 std::string timing_text(const std::vector<TimingRow>& rows) {
   std::string text;
   for (const TimingRow& r : rows)
@@ -210,26 +250,30 @@ std::string timing_text(const std::vector<TimingRow>& rows) {
   return text;
 }
 
-SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& progress) {
+namespace {
+
+// Above 0 where the speed is below the one sought.
+using Margin = std::function<double(const hydraulics::SteadyState&)>;
+
+SuctionSpeed search_speed(const Case& the_case, SuctionSpeed found, const Margin& margin_of,
+                          const Progress& progress) {
   if (!(the_case.operation.speed_rpm > 0))
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = " + number_text(the_case.operation.speed_rpm) +
                      ": must be > 0 for a speed at which suction follows");
-  SuctionSpeed found;
-  found.limit = limit;
   Case at = the_case;
   at.hydraulics->curve_error = std::max(at.hydraulics->curve_error, kSpeedCurveError);
   at.pressure.points = 0;
   const auto alive = [&](double) {
     if (progress) progress(std::min(0.95, 0.04 * found.solves));
   };
-  // Least pressure above the limit, over the pressure between limit and absolute zero.
   const auto margin = [&](double rpm) {
     at.operation.speed_rpm = rpm;
     const auto state = hydraulics::steady_state(at, {}, alive);
     ++found.solves;
     found.least = state.summary.chamber_least;
-    return (found.least - limit) / state.summary.atmosphere;
+    if (state.timing.filled) found.losses.emplace_back(rpm, state.timing.filled->loss);
+    return margin_of(state);
   };
   const double own = the_case.operation.speed_rpm;
   double speed = own, here = margin(own);
@@ -237,19 +281,19 @@ SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& p
   const bool up = here >= 0;
   const double end = own * (up ? kMostOverOwn : kLeastOverOwn);
   double before = speed, there = here;
+  const auto stop = [&](double rpm, const std::exception& error) {
+    found.stopped = fmt::format("at {:.5g} rpm: {}", rpm, error.what());
+  };
   while ((here >= 0) == up && speed != end) {
     before = speed;
     there = here;
     speed = up ? std::min(end, speed * kFactor) : std::max(end, speed / kFactor);
-    const auto stop = [&](const std::exception& error) {
-      found.stopped = fmt::format("at {:.5g} rpm: {}", speed, error.what());
-    };
     try {
       here = margin(speed);
     } catch (const ComputationError& error) {
-      stop(error);
+      stop(speed, error);
     } catch (const InputError& error) {  // a load that takes more than the pump displaces
-      stop(error);
+      stop(speed, error);
     }
     if (!found.stopped.empty()) break;
     (up ? found.searched_to : found.searched_from) = speed;
@@ -259,19 +303,68 @@ SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& p
     const auto close = [](double a, double b) {
       return std::abs(b - a) <= kSpeedTolerance * std::abs(a);
     };
-    const auto [low, high] =
-        up ? boost::math::tools::toms748_solve(margin, before, speed, there, here, close, solves)
-           : boost::math::tools::toms748_solve(margin, speed, before, here, there, close, solves);
-    found.rpm = low;  // below it the limit is kept
-    static_cast<void>(high);
+    // The largest speed known to keep the limit: the result where the search breaks off.
+    double kept = up ? before : speed;
+    const auto noted = [&](double rpm) {
+      const double m = margin(rpm);
+      if (m >= 0) kept = std::max(kept, rpm);
+      return m;
+    };
+    try {
+      const auto [low, high] =
+          up ? boost::math::tools::toms748_solve(noted, before, speed, there, here, close, solves)
+             : boost::math::tools::toms748_solve(noted, speed, before, here, there, close, solves);
+      found.rpm = low;  // below it the limit is kept
+      static_cast<void>(high);
+    } catch (const ComputationError& error) {
+      found.rpm = kept;
+      stop(at.operation.speed_rpm, error);
+    }
   }
   if (progress) progress(1);
   return found;
 }
 
+std::string percent_of_stroke(double loss) {
+  return fmt::format("{:.3g} % of a stroke", 100 * loss);
+}
+
+}  // namespace
+
+SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& progress) {
+  SuctionSpeed search;
+  search.limit = limit;
+  // Least pressure above the limit, over the pressure between limit and absolute zero.
+  return search_speed(
+      the_case, search,
+      [limit](const hydraulics::SteadyState& state) {
+        return (state.summary.chamber_least - limit) / state.summary.atmosphere;
+      },
+      progress);
+}
+
+SuctionSpeed filling_speed(const Case& the_case, const Progress& progress) {
+  SuctionSpeed search;
+  search.filling = true;
+  search.limit = kLargestFillingLoss;
+  return search_speed(
+      the_case, search,
+      [&](const hydraulics::SteadyState& state) {
+        if (!state.timing.filled)
+          throw ComputationError(the_case.file.string() +
+                                 ": filling: no chamber is ever open to the suction port alone");
+        return kLargestFillingLoss - state.timing.filled->loss;
+      },
+      progress);
+}
+
 TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found) {
-  TimingRow r = row("suction-speed", "largest speed at which suction follows",
-                    found.rpm.value_or(not_computed()), "rpm");
+  TimingRow r =
+      found.filling
+          ? row("filling-speed", "largest speed at which the chambers fill", not_computed(), "rpm")
+          : row("suction-speed", "largest speed at which no chamber falls below a pressure",
+                not_computed(), "rpm");
+  r.value = found.rpm.value_or(not_computed());
   if (!found.rpm)
     r.bound = found.searched_from < the_case.operation.speed_rpm
                   ? fmt::format("< {:.4g}", found.searched_from)
@@ -280,11 +373,29 @@ TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found) {
   r.limit = own;
   r.flagged = found.rpm ? *found.rpm < own : found.searched_from < own;
   r.meant = stated_reason(the_case, r.code);
-  r.text = fmt::format("no chamber below {:.4g} bar up to it", bar(found.limit));
-  if (!found.rpm)
-    r.text = fmt::format("a chamber is {} {:.4g} bar at every speed from {:.4g} to {:.4g} rpm",
-                         r.flagged ? "below" : "never below", bar(found.limit), found.searched_from,
-                         found.searched_to);
+  const std::string range =
+      fmt::format("every speed from {:.4g} to {:.4g} rpm", found.searched_from, found.searched_to);
+  if (found.filling) {
+    const std::string limit = percent_of_stroke(found.limit);
+    r.text = found.rpm ? fmt::format("up to it incomplete filling costs at most {}", limit)
+                       : fmt::format("incomplete filling costs {} than {} at {}",
+                                     r.flagged ? "more" : "less", limit, range);
+  } else {
+    const double limit = bar(found.limit);
+    r.text = found.rpm ? fmt::format("no chamber below {:.4g} bar up to it", limit)
+                       : fmt::format("a chamber is {} {:.4g} bar at {}",
+                                     r.flagged ? "below" : "never below", limit, range);
+    // What the limit on the pressure does not say.
+    if (!found.losses.empty() && found.rpm) {
+      const auto& nearest = *std::min_element(
+          found.losses.begin(), found.losses.end(), [&](const auto& a, const auto& b) {
+            return std::abs(a.first - *found.rpm) < std::abs(b.first - *found.rpm);
+          });
+      r.text +=
+          fmt::format("; at it incomplete filling costs {}{}", percent_of_stroke(nearest.second),
+                      nearest.second > kLargestFillingLoss ? ": not filled" : "");
+    }
+  }
   if (!found.stopped.empty()) r.text += "; the search ends " + found.stopped;
   return r;
 }

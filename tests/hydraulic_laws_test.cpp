@@ -10,6 +10,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
+#include "bentaxis/hydraulics/accuracy_log.h"
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -428,8 +429,10 @@ TEST(PortOpening, TableGoesThroughItsPointsAndStaysBetweenThem) {
       before = area;
     }
   }
-  EXPECT_THAT(port.edges_deg(), testing::ElementsAre(testing::DoubleNear(20, 1e-12),
-                                                     testing::DoubleNear(180, 1e-12)));
+  // Both ends of the pieces beside the corners, where the slope changes.
+  EXPECT_THAT(port.edges_deg(),
+              testing::Pointwise(testing::DoubleNear(1e-12),
+                                 std::vector<double>{15, 20, 180, 185, 215, 220, 340, 345}));
 }
 
 // Between the edges listed no slope jumps, and the area nowhere.
@@ -833,6 +836,76 @@ TEST_F(PortFile, TableOfTheGeometryGivesTheSamePressures) {
             the_case.hydraulics->suction.table.theta_deg);
 }
 
+// Corners as the manual asks for them: a point at the corner and one on each side, close by.
+class ClosePoints : public testing::Test {
+ protected:
+  // Trapezoids of the case in tests/close_points, with points `width` degrees beside the corners.
+  static Case with_corners(double width, double inlet_bar) {
+    Case the_case =
+        read_case(fs::path(BENTAXIS_SOURCE_DIR) / "tests" / "close_points" / "case.toml");
+    HydraulicData& h = *the_case.hydraulics;
+    for (OpeningTable* table : {&h.delivery.table, &h.suction.table}) {
+      constexpr double kAsGiven = 0.02;  // degrees
+      for (std::size_t i = 0; i < table->theta_deg.size(); ++i) {
+        const std::size_t corner = i / 3 * 3 + 1;
+        if (i == corner) continue;
+        const double share = width / kAsGiven;
+        table->theta_deg[i] =
+            table->theta_deg[corner] + share * (table->theta_deg[i] - table->theta_deg[corner]);
+        table->area[i] = table->area[corner] + share * (table->area[i] - table->area[corner]);
+      }
+    }
+    the_case.pressure.ports.suction = pascals(inlet_bar) - the_case.hydraulics->atmosphere;
+    return the_case;
+  }
+};
+
+TEST_F(ClosePoints, PressuresAreAsAccurateAsAskedFor) {
+  const struct {
+    double width, inlet_bar;
+  } points[] = {{0.01, 12.111}, {0.02, 5},     {0.02, 17.444},
+                {0.02, 20},     {0.03, 8.556}, {0.03, 13.889}};
+  for (const auto& [width, inlet_bar] : points) {
+    const Case the_case = with_corners(width, inlet_bar);
+    const SteadyState state = steady_state(the_case);
+    EXPECT_LT(pressure_error(state), the_case.hydraulics->curve_error) << width << " " << inlet_bar;
+  }
+}
+
+TEST_F(ClosePoints, EveryBendEndsAStep) {
+  const Case the_case = with_corners(0.02, 20);
+  const HydraulicData& h = *the_case.hydraulics;
+  for (const PlatePort* port : {&h.delivery, &h.suction}) {
+    // Of the three points of a corner the one on the flat side ends no bend.
+    const auto& at = port->table.theta_deg;
+    EXPECT_THAT(PortOpening(h, *port, the_case.pump.geometry.bore_circle_radius).edges_deg(),
+                testing::Pointwise(
+                    testing::DoubleNear(1e-9),
+                    std::vector<double>{at[1], at[2], at[3], at[4], at[7], at[8], at[9], at[10]}));
+  }
+}
+
+// A table of many points that bends slowly costs no restart at each of them; rounding of its
+// areas is no bend.
+TEST_F(ClosePoints, SmoothTablesEndFewSteps) {
+  Case the_case = with_corners(0.02, 20);
+  HydraulicData& h = *the_case.hydraulics;
+  constexpr int kPoints = 720;
+  OpeningTable table;
+  for (int i = 0; i < kPoints; ++i) {
+    const double theta = 360.0 * i / kPoints;
+    table.theta_deg.push_back(theta);
+    const double area = 20 * std::max(0.0, std::sin(radians(theta)));  // mm2
+    table.area.push_back(std::round(area * 1e6) * 1e-12);
+  }
+  h.suction.table = table;
+  const auto edges =
+      PortOpening(h, h.suction, the_case.pump.geometry.bore_circle_radius).edges_deg();
+  EXPECT_THAT(edges, testing::Contains(testing::DoubleNear(0, 1e-9)));
+  EXPECT_THAT(edges, testing::Contains(testing::DoubleNear(180, 1e-9)));
+  EXPECT_LT(edges.size(), 60U);
+}
+
 TEST_F(PortFile, FaultsOfATableAreNamed) {
   using testing::HasSubstr;
   const std::string head = "theta_deg,area_mm2\n";
@@ -871,6 +944,70 @@ TEST_F(PortFile, ImpossiblePartsAreRefused) {
   expect({"vapour_bar=1.2"}, "[0, 1.01325)");
   expect({"saturation_bar=-1.2"}, "saturation_bar");
   expect({"bulk_modulus_slope=21"}, "20");
+}
+
+// ---- Accuracy
+// ------------------------------------------------------------------------------------
+
+TEST(Accuracy, StatesBeyondTheLimitAreNotedWithTheWorstAndOthersAreNot) {
+  // The kink where air begins to dissolve is never resolved to this limit.
+  Case the_case = rated();
+  the_case.hydraulics->cavitation = Cavitation::rate;
+  the_case.hydraulics->curve_error = 1e-9;
+  steady_state(the_case);  // without a log
+  EXPECT_EQ(AccuracyLog::record().count, 0U);
+  const AccuracyLog log;
+  Case less = the_case;
+  less.hydraulics->curve_error = 1e-6;
+  EXPECT_TRUE(is_accurate(less, steady_state(less)));
+  EXPECT_EQ(AccuracyLog::record().count, 0U);
+  double worst = 0;
+  for (const double bar : {275, 200}) {
+    the_case.pressure.ports.delivery = pascals(bar);
+    const SteadyState state = steady_state(the_case);
+    ASSERT_FALSE(is_accurate(the_case, state)) << bar;
+    worst = std::max(worst, state.computed->error / state.computed->peak);
+  }
+  const AccuracyLog::Record record = AccuracyLog::record();
+  EXPECT_EQ(record.count, 2U);
+  EXPECT_EQ(record.worst.error, worst);
+  EXPECT_EQ(record.worst.limit, 1e-9);
+  EXPECT_EQ(record.worst.speed_rpm, the_case.operation.speed_rpm);
+  EXPECT_EQ(record.worst.file, the_case.file);
+}
+
+// At 175 bar the usual search stops at a jump of its map above its limit; neighbours say what the
+// state is.
+TEST(OtherSearches, FindTheStateBetweenItsNeighbours) {
+  Case the_case =
+      read_case(fs::path(BENTAXIS_SOURCE_DIR) / "tests" / "periodic_state" / "case.toml");
+  const auto at = [&](double bar) {
+    the_case.pressure.ports.delivery = pascals(bar);
+    return steady_state(the_case);
+  };
+  const SteadyState state = at(175), low = at(174.9), high = at(175.1);
+  const auto expect_between = [&](double Summary::*value, double relative) {
+    EXPECT_NEAR(state.summary.*value, (low.summary.*value + high.summary.*value) / 2,
+                relative * std::abs(state.summary.*value));
+  };
+  expect_between(&Summary::mass_flow, 1e-5);
+  expect_between(&Summary::work, 1e-5);
+  expect_between(&Summary::chamber_greatest, 1e-4);
+  EXPECT_NEAR(state.summary.delivery_mean, pascals(175), 1);
+  EXPECT_LT(pressure_error(state), 1e-6);
+}
+
+// A start from which no integration gets anywhere, and which alone is tried.
+TEST(OtherSearches, AFailureNamesTheOperatingPoint) {
+  const Case the_case = rated();
+  try {
+    steady_state(the_case, Start{pascals(1e6), pascals(1e6), 1e3});
+    ADD_FAILURE();
+  } catch (const ComputationError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("bap63_rated_hydraulic.toml: [pressure] "
+                                                 "delivery_bar = 275, [operation] speed_rpm = "
+                                                 "1500: hydraulics: "));
+  }
 }
 
 }  // namespace

@@ -268,13 +268,96 @@ TEST(SuctionSpeed, EndsAtItsBoundsAndWhenAsked) {
   EXPECT_NEAR(never.searched_from, 0.05 * 1500, 1e-9);
   const report::TimingRow row = suction_speed_row(the_case, never);
   EXPECT_TRUE(row.flagged);
-  EXPECT_THAT(timing_warnings({row})[0].text, testing::HasSubstr("follows: < 75 rpm"));
+  EXPECT_THAT(timing_warnings({row})[0].text, testing::HasSubstr("below a pressure: < 75 rpm"));
   the_case.hydraulics->kidney_height = 1;  // m
   const SuctionSpeed always = suction_speed(the_case, pascals(0.5));
   EXPECT_FALSE(always.rpm.has_value());
   EXPECT_FALSE(suction_speed_row(the_case, always).flagged);
   EXPECT_EQ(suction_speed_row(the_case, always).bound.substr(0, 2), "> ");
   EXPECT_THROW(suction_speed(the_case, 0, [](double) { throw Interrupted(); }), Interrupted);
+}
+
+// Oil that is not compressible, no leakage, no way from port to port: what a chamber holds at the
+// end of suction is what it delivers.
+Case without_losses() {
+  Case the_case = plain_ports();
+  HydraulicData& h = *the_case.hydraulics;
+  h.bulk_modulus = 1e12;
+  return the_case;
+}
+
+TEST(Filling, IsWhatTheVolumetricEfficiencyLacks) {
+  Case the_case = without_losses();
+  for (const double rpm : {1000.0, 5000.0}) {
+    the_case.operation.speed_rpm = rpm;
+    const SteadyState state = hydraulics::steady_state(the_case);
+    ASSERT_TRUE(state.timing.filled.has_value());
+    const auto& filled = *state.timing.filled;
+    EXPECT_NEAR(filled.at_deg, 180, 1e-6);
+    EXPECT_NEAR(1 - filled.loss, state.summary.volumetric_efficiency, 2e-4) << rpm;
+    // The whole chamber, dead volume included.
+    const double full = 1 + the_case.hydraulics->dead_volume / stroke_volume(the_case);
+    EXPECT_NEAR(filled.loss, (1 - filled.ratio) * full, 1e-9) << rpm;
+  }
+}
+
+TEST(Filling, SaysNoWhereChambersAreNotFilledAndYesWhereTheyAre) {
+  Case the_case = rated();
+  const struct {
+    double rpm;
+    bool filled;
+  } points[] = {{1500, true}, {4600, false}};
+  for (const auto& [rpm, filled] : points) {
+    the_case.operation.speed_rpm = rpm;
+    const SteadyState state = hydraulics::steady_state(the_case);
+    const auto rows = timing_rows(the_case, state);
+    const report::TimingRow& row = row_of(rows, "filling");
+    EXPECT_EQ(row.flagged, !filled) << rpm;
+    EXPECT_EQ(*row.limit, 1);
+    EXPECT_EQ(row.text.substr(0, 6), filled ? "filled" : "not fi");
+    if (filled) continue;
+    // Half of the oil is missing, and so is half of the flow.
+    EXPECT_LT(state.summary.volumetric_efficiency, 0.55);
+    EXPECT_GT(row.value, 35);
+    EXPECT_THAT(timing_warnings(rows),
+                testing::Contains(testing::Field(&report::Warning::name, testing::Eq("filling"))));
+    the_case.meant = "filling: it is to starve";
+    EXPECT_EQ(row_of(timing_rows(the_case, state), "filling").meant, "it is to starve");
+  }
+}
+
+// Backwards the oil comes from elsewhere; a port that is never open alone has no end of suction.
+TEST(Filling, IsNotJudgedWhereThereIsNoSuctionStroke) {
+  Case the_case = plain_ports();
+  the_case.hydraulics->load = LoadData{};
+  the_case.hydraulics->load->kind = LoadKind::constant_pressure;
+  the_case.operation.speed_rpm = -1500;
+  const SteadyState state = hydraulics::steady_state(the_case);
+  EXPECT_FALSE(state.timing.filled.has_value());
+  for (const auto& row : timing_rows(the_case, state)) EXPECT_NE(row.code, "filling");
+}
+
+TEST(FillingSpeed, LosesOnePercentAndPressureLimitsNameTheirLoss) {
+  Case the_case = rated();
+  const SuctionSpeed found = filling_speed(the_case);
+  ASSERT_TRUE(found.rpm.has_value());
+  const report::TimingRow row = suction_speed_row(the_case, found);
+  EXPECT_EQ(row.code, "filling-speed");
+  EXPECT_FALSE(row.flagged);
+  for (const auto& [factor, filled] : {std::pair{0.995, true}, {1.005, false}}) {
+    the_case.operation.speed_rpm = *found.rpm * factor;
+    EXPECT_EQ(hydraulics::steady_state(the_case).timing.filled->loss <= 0.01, filled) << factor;
+  }
+  // Vapour pressure is first reached where half of the stroke is lost already.
+  the_case = rated();
+  const HydraulicData& h = *the_case.hydraulics;
+  const SuctionSpeed vapour = suction_speed(the_case, h.vapour_pressure - h.atmosphere);
+  ASSERT_TRUE(vapour.rpm.has_value());
+  EXPECT_GT(*vapour.rpm, *found.rpm);
+  EXPECT_THAT(suction_speed_row(the_case, vapour).text, testing::EndsWith(": not filled"));
+  // At the case's own speed already lost.
+  the_case.operation.speed_rpm = *found.rpm * 1.5;
+  EXPECT_TRUE(suction_speed_row(the_case, filling_speed(the_case)).flagged);
 }
 
 }  // namespace

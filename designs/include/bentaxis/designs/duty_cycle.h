@@ -7,6 +7,7 @@
 
 #include "bentaxis/designs/variable.h"
 #include "bentaxis/study/bearing_life.h"
+#include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/progress.h"
 
 namespace bentaxis::designs {
@@ -19,6 +20,7 @@ struct DutyCycle {
     double share = 1;            ///< of the time, in proportion
     std::vector<double> values;  ///< one per variable, in the file's unit
     unsigned line = 0;           ///< of the file
+    std::size_t number = 1;      ///< of the row, from 1 on
   };
   std::vector<Row> rows = {Row()};
 
@@ -42,14 +44,19 @@ struct LifeStudy {
     study::PumpLife life;
   };
   OfModel analytic, multibody;
+  /// Rows that could not be computed, by number: they are neither in `duty` nor in the points, and
+  /// the lives are those of the other rows alone.
+  std::vector<study::FailedPoint> failed;
 
   /// Largest difference of an equivalent load, of the largest of its bearing and row.
   double models_apart() const;
   bool agrees() const { return models_apart() <= kLifeModelsAgree; }
 };
 
-/// Both models through a duty cycle; rows are computed side by side.
-/// @throws InputError where the case has no ratings or a row is none it can have, ComputationError
+/// Both models through a duty cycle; rows are computed side by side. A row whose computation fails
+/// is left out and named.
+/// @throws InputError where the case has no ratings or a row is none it can have; ComputationError
+///         where every row fails
 LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
                      const study::PartProgress& progress_of = study::silent());
 

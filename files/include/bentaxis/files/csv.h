@@ -31,6 +31,9 @@ NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empt
 NumericTable numeric_csv_of(const std::string& content, const std::filesystem::path& file,
                             bool allow_empty);
 
+/// A text as one field: quoted where it has a comma, a quotation mark or a line break.
+std::string csv_text(const std::string& text);
+
 /// Reads the curve of a chamber pressure from any table of foreign_table.h: one column of angles
 /// (deg, rad, turn, gon) and one of gauge pressures (bar, mbar, Pa, kPa, MPa, psi), with units in
 /// their headings. The first point may come again a turn later, with the same pressure.

@@ -113,7 +113,10 @@ struct Start {
 /// @throws InputError at standstill, backwards (motoring) where neither a supply nor a load of
 /// given size is at the delivery port, without stroke, or if the case has no
 ///         [hydraulics]
-/// @throws ComputationError where no state is found, e.g. because leakage takes all of the flow
+/// Where this finds nothing it is tried at other tolerances and from states of neighbouring speeds
+/// and delivery pressures.
+/// @throws ComputationError naming the operating point where no state is found, e.g. because
+///         leakage takes all of the flow
 SteadyState steady_state(const Case& the_case, const std::optional<Start>& start = {},
                          const Progress& progress = {});
 
@@ -123,6 +126,12 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
 /// @param load_size  as in Summary; that of the periodic state, say
 ResultTable transient_from_rest(const Case& the_case, double load_size, int revolutions,
                                 int samples = 72, const Progress& progress = {});
+
+/// Estimated error of the computed chamber pressure, over its peak.
+double pressure_error(const SteadyState& state);
+/// Whether that is within `curve_error` of the case. Where it is not, steady_state() has noted the
+/// state in the AccuracyLog.
+bool is_accurate(const Case& the_case, const SteadyState& state);
 
 /// Puts the computed curve into the case's pressure, where both mechanical models find it; where
 /// the load sets the delivery pressure its mean too, which loads the lands of the port plate.

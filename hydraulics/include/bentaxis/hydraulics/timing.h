@@ -1,6 +1,7 @@
 // What the timing of the ports does to a chamber over a turn.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 namespace bentaxis::hydraulics {
@@ -42,6 +43,19 @@ struct Timing {
     double least = 0, least_deg = 0;
   };
   std::vector<Trapped> trapped;
+
+  /// The end of suction: where the chamber's longest stretch open to the suction port alone ends,
+  /// because that port closes or the delivery port opens.
+  struct Filled {
+    double at_deg = 0;
+    /// Mass in the chamber there, over that of the same volume of oil at suction pressure.
+    double ratio = 1;
+    /// Volume of oil at suction pressure that it lacks, over the volume swept by a stroke: what
+    /// incomplete filling takes from the volumetric efficiency. Below 0 where it holds more.
+    double loss = 0;
+  };
+  /// None backwards, and where no chamber is ever open to the suction port alone.
+  std::optional<Filled> filled;
 
   double through() const {
     double sum = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/inertia.h"
 
 namespace bentaxis::study {
@@ -30,9 +31,10 @@ struct InertiaStudy {
   std::vector<Approach> approach;
   std::optional<SpinRun> spin;  ///< absent: a piston without axial inertia has no freedom to spin
   std::vector<SceneCost> costs;
-  double fastest = 0;       ///< rpm
-  double models_apart = 0;  ///< largest difference of the two models, of peak
-  double scenes_apart = 0;  ///< of the one-piston scene from the full pump, of peak
+  std::vector<FailedPoint> failed;  ///< speeds whose pressure could not be computed: left out
+  double fastest = 0;               ///< rpm
+  double models_apart = 0;          ///< largest difference of the two models, of peak
+  double scenes_apart = 0;          ///< of the one-piston scene from the full pump, of peak
 
   /// The run of a list at the same speed, loaded.
   static const InertiaRun& loaded(const std::vector<InertiaRun>& runs, double speed_rpm);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -35,12 +36,16 @@ double mean(const ResultTable& table, const std::string& channel);
 /// mean delivery pressures (bar). `ideal` is displacement x pressure difference / 2 pi.
 struct TorqueCurve {
   std::vector<double> bar, analytic, multibody, ideal, flow, efficiency;
+  /// Pressures that could not be computed: they are not in the vectors above.
+  std::vector<FailedPoint> failed;
 };
 /// Points are independent and are computed by as many threads as there are processors, 8 at most.
-/// @throws what the first point that fails throws; the others then stop
+/// A point whose computation fails is left out and named; the others are kept.
+/// @throws InputError; ComputationError where every point fails
 TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delivery_bar,
                          const Progress& progress = {});
-/// The curve as a CSV file with a header line.
+/// The curve as a CSV file with a header line, in rising order of the pressure. The row of a point
+/// that failed has empty fields and the reason in its last column.
 std::string to_csv(const TorqueCurve& curve);
 
 /// The mean delivery pressure (Pa) at which a statistic of the analytic model's turn reaches

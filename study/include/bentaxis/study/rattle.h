@@ -7,6 +7,7 @@
 
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/progress.h"
 
 namespace bentaxis::study {
@@ -90,6 +91,8 @@ struct RattleMap {
   RattleOptions options;
   std::vector<RattleRow> rows;  ///< by pressure
   std::vector<RattleCheck> checks;
+  /// Pressures whose row could not be computed: they are neither in `rows` nor in `options`.
+  std::vector<FailedPoint> failed;
   bool agrees() const;  ///< all checks
 };
 
@@ -103,8 +106,10 @@ struct RattleKeeping {
 /// @throws InputError where its load sets the pressure
 Case rattle_case(Case the_case, double speed_rpm, double delivery_bar);
 
-/// Computes a map. A row is computed by one thread: results do not depend on how many there are.
-/// @throws InputError, ComputationError; what `progress` throws, when rows under way are given up
+/// Computes a map. A row is computed by one thread: results do not depend on how many there are. A
+/// row whose computation fails at a speed is left out and named; the others are kept.
+/// @throws InputError; ComputationError where every row fails, or the check of a point; what
+/// `progress` throws, when rows under way are given up
 RattleMap rattle_map(const Case& the_case, const RattleOptions& options,
                      const RattleKeeping& keeping = {}, const PartProgress& progress_of = silent());
 

@@ -3,8 +3,10 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bentaxis/hydraulics/accuracy_log.h"
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/report/document.h"
@@ -21,20 +23,31 @@ std::vector<report::TimingRow> timing_rows(const Case& the_case,
 /// Those beyond their limits without a reason.
 std::vector<report::Warning> timing_warnings(const std::vector<report::TimingRow>& rows);
 
+/// Says that computed chamber pressures are less accurate than `curve_error` of their cases allows;
+/// none where all are.
+std::optional<report::Warning> accuracy_warning(const hydraulics::AccuracyLog::Record& record);
+/// The same of one state.
+std::optional<report::Warning> accuracy_warning(const Case& the_case,
+                                                const hydraulics::SteadyState& state);
+
 /// Names of all verdicts, which `[plausibility] meant` may give reasons for.
 std::vector<std::string> timing_codes();
 
 /// A line for each verdict, for a terminal.
 std::string timing_text(const std::vector<report::TimingRow>& rows);
 
-/// The speed up to which suction follows.
+/// The largest speed that keeps a limit on suction.
 struct SuctionSpeed {
-  double limit = 0;                           ///< Pa gauge, which no chamber may be below
+  bool filling = false;  ///< the limit is on the filling of the chambers, not on their pressure
+  /// Pa gauge, which no chamber may be below; of filling: share of a stroke that may be lost.
+  double limit = 0;
   std::optional<double> rpm;                  ///< where the least chamber pressure crosses it
   double searched_from = 0, searched_to = 0;  ///< rpm
   double least = 0;     ///< Pa gauge, least chamber pressure at the end looked at last
   int solves = 0;       ///< periodic states
   std::string stopped;  ///< why the search ended before its bounds, or ""
+  /// Speeds looked at, rpm, and the share of a stroke that incomplete filling costs there.
+  std::vector<std::pair<double, double>> losses;
 };
 
 /// The speed at which the least chamber pressure crosses `limit`: from the speed of the case
@@ -43,6 +56,10 @@ struct SuctionSpeed {
 /// @param limit  Pa gauge
 /// @throws InputError, ComputationError where the case's own speed has no periodic state
 SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& progress = {});
+
+/// The same for the speed at which incomplete filling costs 1 % of a stroke.
+/// @throws ComputationError also where no chamber is ever open to the suction port alone
+SuctionSpeed filling_speed(const Case& the_case, const Progress& progress = {});
 
 /// As one more verdict: beyond its limit where it is below the speed of the case.
 report::TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found);
