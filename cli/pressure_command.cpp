@@ -87,7 +87,7 @@ int pressure(const Options& options) {
 
   std::string text = study::pressure_text(point, power, document);
   if (published) text += "\n" + study::text_of(document.published->section);
-  if (curve) text += "\n" + to_csv(*curve);
+  if (curve) text += "\n" + torque_curve_text(*curve);
   print_result(text, paths);
   return !published || document.published->section.calibrated() ? kDone : kOutOfTolerance;
 }

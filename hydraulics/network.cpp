@@ -648,6 +648,14 @@ PowerBudget Network::power(const Moment& now, const double* y, const Flows& flow
   return power;
 }
 
+double Network::port_power(const double* y, const Flows& flows) const {
+  const double line = fixed_ ? end_.potential : fluid_.potential(y[n_]);
+  const double source = has_suction_volume() ? fluid_.potential(y[suction_at_]) : tank_.potential;
+  double power = 0;
+  for (int k = 0; k < n_; ++k) power += flows.delivery[k] * line - flows.suction[k] * source;
+  return power;
+}
+
 Network::Stored Network::stored(const Moment& now, const double* y) const {
   Stored all;
   const auto add = [&](double volume, double density, double potential, double s) {

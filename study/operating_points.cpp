@@ -1,5 +1,7 @@
 #include "bentaxis/study/operating_points.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/in_threads.h"
 
 namespace bentaxis::study {
@@ -55,8 +58,8 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
   const std::size_t count = delivery_bar.size();
   TorqueCurve curve;
   curve.bar = delivery_bar;
-  for (auto* values :
-       {&curve.analytic, &curve.multibody, &curve.ideal, &curve.flow, &curve.efficiency})
+  for (auto* values : {&curve.analytic, &curve.multibody, &curve.ideal, &curve.flow,
+                       &curve.efficiency, &curve.flow_at_delivery})
     values->resize(count);
   Reporting reporting(count, progress);
   const PartProgress within = [&](const std::string&) { return [&](double) { reporting.tick(); }; };
@@ -70,7 +73,8 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
     curve.multibody[i] = mean(point.multibody, "Td_z1_Nm");
     curve.ideal[i] =
         s.displacement * (pascals(delivery_bar[i]) - the_case.pressure.ports.suction) / (2 * kPi);
-    curve.flow[i] = s.flow * 6e4;
+    curve.flow[i] = s.flow / kLitrePerMinute;
+    curve.flow_at_delivery[i] = flow_at_delivery(point.state()) / kLitrePerMinute;
     curve.efficiency[i] = 100 * s.volumetric_efficiency;
     reporting.done();
   });
@@ -80,16 +84,30 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
 std::string to_csv(const TorqueCurve& curve) {
   std::string text =
       "delivery_bar,mean_Td_analytic_Nm,mean_Td_multibody_Nm,ideal_Td_Nm,flow_l_per_min,"
-      "volumetric_efficiency_percent\n";
+      "volumetric_efficiency_percent,flow_at_delivery_l_per_min\n";
   for (std::size_t i = 0; i < curve.bar.size(); ++i) {
-    const double row[] = {curve.bar[i],   curve.analytic[i], curve.multibody[i],
-                          curve.ideal[i], curve.flow[i],     curve.efficiency[i]};
+    const double row[] = {
+        curve.bar[i],  curve.analytic[i],   curve.multibody[i],       curve.ideal[i],
+        curve.flow[i], curve.efficiency[i], curve.flow_at_delivery[i]};
     for (std::size_t c = 0; c < std::size(row); ++c) {
       if (c > 0) text += ',';
       append_number(text, row[c]);
     }
     text += '\n';
   }
+  return text;
+}
+
+std::string torque_curve_text(const TorqueCurve& curve) {
+  std::string text = fmt::format("{:>12} {:>20} {:>20} {:>12} {:>12} {:>20} {:>22}\n", "delivery",
+                                 "mean Td, analytic", "mean Td, multibody", "ideal Td", "flow",
+                                 "flow at delivery", "volumetric efficiency");
+  text += fmt::format("{:>12} {:>20} {:>20} {:>12} {:>12} {:>20} {:>22}\n", "bar", "Nm", "Nm", "Nm",
+                      "l/min", "pressure, l/min", "%");
+  for (std::size_t i = 0; i < curve.bar.size(); ++i)
+    text += fmt::format("{:>12.6g} {:>20.6g} {:>20.6g} {:>12.6g} {:>12.6g} {:>20.6g} {:>22.6g}\n",
+                        curve.bar[i], curve.analytic[i], curve.multibody[i], curve.ideal[i],
+                        curve.flow[i], curve.flow_at_delivery[i], curve.efficiency[i]);
   return text;
 }
 
