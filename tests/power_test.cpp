@@ -242,7 +242,9 @@ TEST(Efficiency, AllCommandsStateTheSame) {
     const Case the_case = shipped("bap63_rated_hydraulic", changes);
     const auto compared = stated_by_compare(the_case), computed = stated_by_pressure(the_case);
     ASSERT_EQ(compared.size(), 10);
-    EXPECT_EQ(compared, computed);
+    ASSERT_EQ(computed.size(), compared.size());
+    for (const auto& [name, value] : compared)
+      EXPECT_NEAR(computed.at(name), value, scaled(1e-12) * value) << name;
     EXPECT_NEAR(compared.at("flow to the load") / compared.at("drive"),
                 compared.at("total efficiency") / 100, scaled(1e-12));
 

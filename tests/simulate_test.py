@@ -56,7 +56,6 @@ class SimulateTest(base.WithFolder):
 
 class PowerTest(SimulateTest):
     """The mean power of the oil and the efficiency: whichever command states them."""
-    CASE = base.REPO / "cases" / "bap63_rated_hydraulic.toml"
     NAMES = ("drive", "pistons on the oil, by the hydraulic model", "flow to the load", "in the oil")
 
     def rows(self, file, title):
@@ -64,11 +63,12 @@ class PowerTest(SimulateTest):
         return {row[0]: row[2:] for row in next(s for s in sections if s["title"] == title)["table"]["rows"]}
 
     def test_all_commands_state_the_same(self):
+        case = base.REPO / "cases" / "bap63_rated_hydraulic.toml"
         drive = ["--set", "drive.kind=speed", "--set", "drive.duration_s=0.04", "--set", "drive.samples=1440"]
-        self.run_program("compare", self.CASE, "--out", "compare")
-        self.run_program("pressure", self.CASE, "--out", "pressure")
-        self.run_program("sweep", self.CASE, "--vary", "operation.speed_rpm=1500", "--output", "efficiency.overall", "--out", "sweep")
-        self.simulate(self.CASE, "--steady", *drive)
+        self.run_program("compare", case, "--out", "compare")
+        self.run_program("pressure", case, "--out", "pressure")
+        self.run_program("sweep", case, "--vary", "operation.speed_rpm=1500", "--output", "efficiency.overall", "--out", "sweep")
+        self.simulate(case, "--steady", *drive)
         budget = json.loads((self.folder / "compare/report.json").read_text())["budget"]
         compared = {line["name"]: line["values"] for line in budget["power"] + budget["efficiency"]}
         computed = self.rows("pressure/pressure.json", "Power and efficiency of the pump")
