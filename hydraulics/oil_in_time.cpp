@@ -144,8 +144,8 @@ class OilInTime : public Oil {
       all.push_back(
           {"flow_relief_l_per_min", "over the relief valve beside the load, at suction density"});
     all.push_back({"power_useful_W",
-                   "what the oil carries out through the delivery port less what it carries in "
-                   "through the suction port, mass flow times pressure potential"});
+                   "what the oil carries out of the delivery volume less what it carries in to the "
+                   "suction port, mass flow times pressure potential"});
     return all;
   }
 

@@ -513,7 +513,7 @@ Table assumptions_table(const std::string& model, Model) {
             .field = flag_at(
                 [](const auto& v) { return in(Model{}(v), &Assumptions::piston_friction); }),
             .fallback = {true},
-            .meaning = "whether friction acts on the pistons"},
+            .meaning = model + " model: whether friction acts on the pistons"},
            {.key = "inertia",
             .field = choice_at([](const auto& v) { return in(Model{}(v), &Assumptions::inertia); }),
             .words = piston_inertia_names(),
@@ -521,13 +521,14 @@ Table assumptions_table(const std::string& model, Model) {
                            return to_string(v.pump->piston.inertia);
                          },
                          .words = "that of `[piston]`"},
-            .meaning = "as in `[piston]`"},
+            .meaning = model + " model: inertia of the pistons, as in `[piston]`"},
            {.key = "gear",
             .field = choice_at([](const auto& v) { return in(Model{}(v), &Assumptions::gear); }),
             .words = {"mesh", "imposed"},
             .fallback = {std::string("mesh")},
-            .meaning = "how the block is carried round: by the tooth force, or by a speed imposed "
-                       "on its own joint, as in the paper's ADAMS run"}},
+            .meaning = model +
+                       " model: how the block is carried round: by the tooth force, or by a speed "
+                       "imposed on its own joint, as in the paper's ADAMS run"}},
       .rules = {{.key = "inertia", .after = "gear", .broken = [](const ConstView& v) {
                    const Assumptions* a = Model{}(v);
                    return a == nullptr ? "" : piston_inertia_refusal(a->inertia, *v.pump);
@@ -1831,7 +1832,7 @@ Table suction_line_table() {
                               return kPi / 8 * line->diameter * line->diameter * line->length * 1e3;
                             },
                             .words = "half of the pipe's"},
-               .meaning = "at the suction port"}}};
+               .meaning = "between the suction line and the suction port"}}};
 }
 
 Table delivery_line_table() {
@@ -2004,7 +2005,7 @@ Table loop_table() {
                           .unit = kLitres,
                           .range = kPositive,
                           .fallback = {0.5},
-                          .meaning = "at the suction port"},
+                          .meaning = "of the closed loop at the suction port"},
                          {.key = "charge_area_mm2",
                           .field = number_of<kLoop, &LoopData::charge_area>(),
                           .symbol = "a_c",
