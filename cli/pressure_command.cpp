@@ -93,7 +93,7 @@ int pressure(const Options& options) {
 
   std::string text = study::pressure_text(point, power, document);
   if (published) text += "\n" + study::text_of(document.published->section);
-  if (curve) text += "\n" + to_csv(*curve);
+  if (curve) text += "\n" + torque_curve_text(*curve);
   print_result(text, paths);
   const bool held = !published || document.published->section.calibrated();
   const int status = held ? kDone : kOutOfTolerance;

@@ -300,11 +300,10 @@ std::vector<report::Figure> figures_of(const DataModel& model, const Identificat
     if (p.values.size() < 3) continue;
     figures.push_back(
         {fmt::format("profile_{}", i + 1), "Profile of " + u.name(), "",
-         report::XyFigure{
-             {u.variable.symbol().empty() ? u.name() : u.variable.symbol(), u.variable.unit()},
-             {"rise of the sum of squares", "", false, 0},
-             {{"others fitted anew", p.values, p.rises},
-              {"95 %", {p.values.front(), p.values.back()}, {3.841, 3.841}}}}});
+         report::XyFigure{{u.name(), u.variable.unit()},
+                          {"rise of the sum of squares", "", false, 0},
+                          {{"others fitted anew", p.values, p.rises},
+                           {"95 %", {p.values.front(), p.values.back()}, {3.841, 3.841}}}}});
   }
   return figures;
 }

@@ -94,17 +94,6 @@ const DerivedEntry kDerived[] = {
      [](const analytic::DerivedQuantities& d) { return d.largest_tilt * 180 / kPi; }},
 };
 
-struct EfficiencyEntry {
-  const char* name;
-  double study::Efficiencies::*which;
-  const char* meaning;
-};
-const EfficiencyEntry kEfficiencies[] = {
-    {"overall", &study::Efficiencies::overall, "total efficiency"},
-    {"mechanical", &study::Efficiencies::mechanical, "hydraulic-mechanical efficiency"},
-    {"volumetric", &study::Efficiencies::volumetric, "volumetric efficiency"},
-};
-
 struct LifeEntry {
   const char *name, *unit, *meaning;
   double (*value)(const study::PumpLife&);
@@ -201,13 +190,13 @@ Output output(const std::string& name, const Case& base) {
   }
   if (const std::string item = after(name, "efficiency."); !item.empty()) {
     o.source = Source::efficiency;
-    for (const EfficiencyEntry& e : kEfficiencies)
-      if (item == e.name) {
+    for (const study::EfficiencyLine& e : study::efficiency_lines())
+      if (item == e.key) {
         if (item != "mechanical" && base.pressure.kind != PressureKind::hydraulic)
           throw InputError("output " + name + ": needs [pressure] kind = \"hydraulic\"");
         o.item = item;
         o.unit = "%";
-        o.meaning = e.meaning;
+        o.meaning = std::string(e.name) + " efficiency: " + e.meaning;
         return o;
       }
     unknown(name, base);
@@ -264,7 +253,8 @@ std::vector<std::string> output_names(const Case& base) {
   }
   names.emplace_back("efficiency.mechanical");
   if (base.pressure.kind == PressureKind::hydraulic) {
-    names.insert(names.end(), {"efficiency.overall", "efficiency.volumetric"});
+    for (const study::EfficiencyLine& e : study::efficiency_lines())
+      if (std::string(e.key) != "mechanical") names.push_back(std::string("efficiency.") + e.key);
     hydraulics::SteadyState empty;
     if (base.hydraulics && base.hydraulics->load) empty.summary.load = base.hydraulics->load->kind;
     for (const hydraulics::Line& line : hydraulics::lines(empty))
@@ -369,15 +359,16 @@ class Turn {
         return o.share ? limit.violated_share : limit.worst;
     return not_computed();
   }
-  double efficiency(const Output& o) const {
+  double efficiency(const Output& o) {
     const std::size_t column = ChannelLayout(ready_.the_case.pump.geometry.pistons).Td();
     std::vector<double> torque;
     for (std::size_t row = 0; row < run_.table.rows(); ++row)
       torque.push_back(run_.table.at(row, column));
+    if (!oil_) oil_ = study::pump_power(ready_);
     const study::Efficiencies all =
-        study::efficiencies(ready_, statistic_of(Statistic::mean, torque));
-    for (const EfficiencyEntry& e : kEfficiencies)
-      if (o.item == e.name) return all.*e.which;
+        study::efficiencies(ready_, oil_, statistic_of(Statistic::mean, torque));
+    for (const study::EfficiencyLine& e : study::efficiency_lines())
+      if (o.item == e.key) return all.*e.value;
     return not_computed();
   }
 
@@ -394,6 +385,7 @@ class Turn {
   study::ModelRun run_;
   std::vector<analytic::ValidityLimit> limits_;
   std::optional<study::PumpLife> life_;
+  std::optional<hydraulics::PumpPower> oil_;  // its balance
 };
 
 }  // namespace

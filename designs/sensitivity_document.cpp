@@ -60,6 +60,25 @@ Section outputs_section(const Sensitivities& s) {
   return section;
 }
 
+// Of these the case says nothing: a parameter that they take their value from moves them as well,
+// so that the same edge, say, has a row of its own under either name.
+std::string followers_text(const Sensitivities& s) {
+  std::string names;
+  const Family family(s.base, {});
+  for (const Family::Follower& follower : family.followers()) {
+    const std::string name = follower.table->name + "." + follower.parameter->key;
+    const bool there = std::any_of(s.variables.begin(), s.variables.end(), [&](const Variable& v) {
+      return v.name() == name || v.name() == name + ".1" || v.name() == name + ".2";
+    });
+    if (there) names += (names.empty() ? "" : ", ") + name;
+  }
+  if (names.empty()) return {};
+  return "The case does not give " + names +
+         ": the value is that of another parameter. The row of that parameter changes both, the "
+         "row "
+         "of these changes them alone; do not add the two.";
+}
+
 Section derivatives_section(const Sensitivities& s, std::size_t o) {
   const Output& output = s.outputs[o];
   Section section{
@@ -84,6 +103,8 @@ Section derivatives_section(const Sensitivities& s, std::size_t o) {
                                                                          : Cell(d.error)});
   }
   if (!none.empty()) section.text = none + ".";
+  if (const std::string text = followers_text(s); !text.empty())
+    section.text += (section.text.empty() ? "" : " ") + text;
   return section;
 }
 
@@ -236,6 +257,8 @@ std::string sensitivity_text(const Sensitivities& found,
     if (order.size() > kTextLines)
       text += fmt::format("and {} more in sensitivity.csv\n", order.size() - kTextLines);
   }
+  if (const std::string followers = followers_text(found); !followers.empty())
+    text += "\n" + followers + "\n";
   return text;
 }
 

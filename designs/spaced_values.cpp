@@ -1,5 +1,7 @@
 #include "bentaxis/designs/spaced_values.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -43,7 +45,15 @@ std::vector<double> spaced_values(const std::string& what, const std::string& te
   if (count > most) fail("not be more than " + std::to_string(most) + " points");
   const double step = !counted ? numbers[2] : count > 1 ? (to - from) / (count - 1) : 0;
   std::vector<double> values;
-  for (int i = 0; i < static_cast<int>(count); ++i) values.push_back(from + i * step);
+  // Of 0.1 + 2 x 0.1 the 0.3 that is meant: digits beyond these are round-off of the sum.
+  for (int i = 1; i <= static_cast<int>(count); ++i) {
+    if (i == 1)
+      values.push_back(from);
+    else if (counted && i == static_cast<int>(count))
+      values.push_back(to);
+    else
+      values.push_back(number_in(fmt::format("{:.15g}", from + (i - 1) * step)).value());
+  }
   return values;
 }
 

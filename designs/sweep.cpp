@@ -93,7 +93,7 @@ Scale scale_of(const Output& o, const Case& base) {
         if (o.item == item) return {ScaleKind::vector, output(std::string("peak:") + force, base)};
       return {ScaleKind::own};
     case Source::efficiency:
-      return {o.item == "volumetric" ? ScaleKind::none : ScaleKind::percentage};
+      return {o.item.starts_with("volumetric") ? ScaleKind::none : ScaleKind::percentage};
     case Source::life:
       return {ScaleKind::own};
     case Source::derived:

@@ -77,6 +77,13 @@ Variable::Variable(const std::string& name, const Case& base) : name_(name) {
                           : ": needs [" + p.active.table + "] " + to_text(p.active)));
 }
 
+std::string Variable::symbol() const {
+  const std::string& all = parameter_->symbol;
+  const std::size_t comma = all.find(", ");
+  if (end_ < 0 || comma == std::string::npos) return all;
+  return end_ == 0 ? all.substr(0, comma) : all.substr(comma + 2);
+}
+
 NumberRange Variable::range(const Case& the_case) const {
   if (!words_.empty()) return {0, static_cast<double>(words_.size() - 1)};
   return range_of(*parameter_, view_of(the_case));

@@ -648,6 +648,22 @@ PowerBudget Network::power(const Moment& now, const double* y, const Flows& flow
   return power;
 }
 
+double Network::port_power(const double* y, const Flows& flows) const {
+  const double line = fixed_ ? end_.potential : fluid_.potential(y[n_]);
+  const double source = has_suction_volume() ? fluid_.potential(y[suction_at_]) : tank_.potential;
+  // With a volume at a port it is what leaves or enters that volume: smoother than the flows of the
+  // chambers, and the same over a period, after which the volume holds as much as before it.
+  double out = flows.load;
+  if (!fixed_) {
+    if (pipe_) out = pipe_->inflow(y + pipe_at_);
+    out += flows.accumulator;
+    if (loop_) out -= charge_into(fluid_.state(y[n_])).value;
+  }
+  double in = flows.taken;  // in a line, or through the ports from a reservoir
+  if (loop_) in = flows.load + charge_into(fluid_.state(y[suction_at_])).value;
+  return out * line - in * source;
+}
+
 Network::Stored Network::stored(const Moment& now, const double* y) const {
   Stored all;
   const auto add = [&](double volume, double density, double potential, double s) {

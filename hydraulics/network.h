@@ -128,6 +128,9 @@ class Network {
   PowerBudget power(double x, const double* y, const Flows& flows) const {
     return power(at(x), y, flows);
   }
+  /// What the oil carries out of the pump with the volume at its delivery port less what it carries
+  /// in to the suction port at one state, W: PumpPower::useful is its mean over a period.
+  double port_power(const double* y, const Flows& flows) const;
   /// What the circuit holds: with the power by place, d(energy)/dt is sources less all else.
   struct Stored {
     double energy = 0, mass = 0;  ///< J, kg

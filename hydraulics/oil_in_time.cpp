@@ -143,6 +143,9 @@ class OilInTime : public Oil {
     if (network_.load().has_relief() && !network_.fixed_end())
       all.push_back(
           {"flow_relief_l_per_min", "over the relief valve beside the load, at suction density"});
+    all.push_back({"power_useful_W",
+                   "what the oil carries out of the delivery volume less what it carries in to the "
+                   "suction port, mass flow times pressure potential"});
     return all;
   }
 
@@ -160,6 +163,7 @@ class OilInTime : public Oil {
     add_flow(flows.load - flows.relief);
     add_flow(sum_over_chambers(flows.leakage));
     if (network_.load().has_relief() && !network_.fixed_end()) add_flow(flows.relief);
+    *values++ = network_.port_power(y, flows);
   }
 
  private:

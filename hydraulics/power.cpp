@@ -1,5 +1,8 @@
 #include "bentaxis/hydraulics/power.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace bentaxis::hydraulics {
 namespace {
 
@@ -34,6 +37,12 @@ constexpr Description kDescriptions[kPlaces] = {
 
 const Description& of(Place place) { return kDescriptions[static_cast<int>(place)]; }
 
+// Losses between the pistons and the ports. The others are of what the ports lead to.
+constexpr Place kLossesOfThePump[] = {
+    Place::suction_port,      Place::suction_backflow, Place::delivery_port,
+    Place::delivery_backflow, Place::conductance,      Place::piston_gap,
+    Place::plate_gap,         Place::ring_slot,        Place::air};
+
 double sum_of(const PowerBudget& budget, PowerUse use) {
   double sum = 0;
   for (int i = 0; i < kPlaces; ++i)
@@ -46,6 +55,13 @@ double sum_of(const PowerBudget& budget, PowerUse use) {
 PowerUse use_of(Place place) { return of(place).use; }
 const char* key_of(Place place) { return of(place).key; }
 const char* name_of(Place place) { return of(place).name; }
+
+std::optional<Place> place_of(std::string_view key) {
+  const auto* const found = std::find_if(std::begin(kDescriptions), std::end(kDescriptions),
+                                         [&](const Description& d) { return d.key == key; });
+  if (found == std::end(kDescriptions)) return std::nullopt;
+  return static_cast<Place>(found - std::begin(kDescriptions));
+}
 
 const char* name_of(PowerUse use) {
   switch (use) {
@@ -67,5 +83,16 @@ double left_over(const PowerBudget& budget) {
 }
 
 double losses(const PowerBudget& budget) { return sum_of(budget, PowerUse::loss); }
+
+PumpPower pump_power(const PowerBudget& budget) {
+  // The chambers hold as much after a period as before it, so that what the pistons do and what the
+  // ports carry in leaves again: through the ports, into the case or as a loss.
+  PumpPower power;
+  power.pistons = budget[Place::pistons];
+  power.to_case = budget[Place::drain];
+  for (const Place place : kLossesOfThePump) power.dissipated += budget[place];
+  power.useful = power.pistons - power.to_case - power.dissipated;
+  return power;
+}
 
 }  // namespace bentaxis::hydraulics

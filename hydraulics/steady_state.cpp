@@ -532,6 +532,10 @@ PowerBudget power_by_place(const SteadyState& state, const Progress& progress) {
   return energy;
 }
 
+double density(const SteadyState& state, double gauge) {
+  return state.equations->fluid().density(gauge);
+}
+
 double effective_bulk_modulus(const SteadyState& state, double gauge) {
   return state.equations->fluid().effective_bulk_modulus(gauge);
 }

@@ -64,16 +64,15 @@ struct Turn {
   const ReadyCase& ready;
   const ResultTable& budget;
   const ResultTable& table;
+  const std::optional<hydraulics::PumpPower>& oil;  // its balance; of the hydraulic model
 
   double omega() const { return rad_per_second(ready.the_case.operation.speed_rpm); }
   double power(const std::string& column) const {
     return statistics(budget, column).mean * omega();
   }
   Efficiencies efficiencies() const {
-    return study::efficiencies(ready, statistics(budget, "Td_z1_Nm").mean);
+    return study::efficiencies(ready, oil, statistics(budget, "Td_z1_Nm").mean);
   }
-  double pressure_difference() const { return study::pressure_difference(ready); }
-  double ideal_flow() const { return study::ideal_flow(ready.the_case); }
   bool pumps() const { return is_computed(efficiencies().mechanical); }
 };
 
@@ -135,48 +134,40 @@ std::vector<report::Budget::Quantity> power_lines(const std::vector<Turn>& turns
         return rest;
       },
       "drive less all lines above");
-  if (!turns.front().ready.hydraulics) return lines;
-  add(
-      "pistons on the oil, by the hydraulic model", "check",
-      [](const Turn& turn) {
-        return turn.ready.hydraulics->summary.work * turn.omega() / (2 * kPi);
-      },
-      "work of -p dV per turn from the balance of mass: beside the power of the pressure");
-  const auto useful = [](const Turn& turn) {
-    return turn.ready.hydraulics->summary.flow * turn.pressure_difference();
+  if (!turns.front().oil) return lines;
+  using hydraulics::PumpPower;
+  const auto oil = [](const auto& value) {
+    return [value](const Turn& turn) { return turn.oil ? value(*turn.oil) : not_computed(); };
   };
-  add("flow to the load", "out", useful,
-      "of the power on the oil: flow at the density of the inlet x (mean delivery - suction "
-      "pressure)");
-  add(
-      "in the oil", "loss",
-      [&](const Turn& turn) { return turn.power("Td_pressure_Nm") - useful(turn); },
-      "of the power on the oil, less the flow to the load: ports, leakage, compression");
+  add("pistons on the oil, by the hydraulic model", "check",
+      oil([](const PumpPower& power) { return power.pistons; }),
+      "work of -p dV per turn from the balance of mass: beside the power of the pressure");
+  add("flow to the load", "out", oil([](const PumpPower& power) { return power.useful; }),
+      "of the power on the oil: mass flow x pressure potential, out through the delivery port less "
+      "in through the suction port; the work of compression is part of it");
+  add("in the oil", "loss", oil([](const PumpPower& power) { return power.lost(); }),
+      "pistons on the oil less the flow to the load: ports and leakage");
   return lines;
 }
 
-std::vector<report::Budget::Quantity> efficiency_lines(const std::vector<Turn>& turns) {
+std::vector<report::Budget::Quantity> efficiency_quantities(const std::vector<Turn>& turns) {
   const bool pumps =
       std::all_of(turns.begin(), turns.end(), [](const Turn& turn) { return turn.pumps(); });
-  const bool hydraulic = turns.front().ready.hydraulics.has_value();
-  const auto of = [&](bool known, double Efficiencies::*which) {
-    return [known, which](const Turn& turn) {
-      return known ? turn.efficiencies().*which : not_computed();
-    };
-  };
-  const std::string none = "not pumping: no power goes in, or no pressure is raised";
-  const std::string ideal =
-      "not modelled: the pressure is given, and nothing leaks or is compressed";
-  return {quantity(turns, "volumetric", "", "%", of(hydraulic, &Efficiencies::volumetric),
-                   hydraulic ? "mass flow to the load over that of the ideal flow at the density "
-                               "of the inlet"
-                             : ideal),
-          quantity(turns, "hydraulic-mechanical", "", "%", of(pumps, &Efficiencies::mechanical),
-                   pumps ? "ideal torque V dp / 2 pi over mean Td" : none),
-          quantity(turns, "total", "", "%", of(pumps && hydraulic, &Efficiencies::overall),
-                   !hydraulic ? ideal
-                   : pumps    ? "product of the two"
-                              : none)};
+  const bool hydraulic = turns.front().oil.has_value();
+  std::vector<report::Budget::Quantity> quantities;
+  for (const EfficiencyLine& line : efficiency_lines()) {
+    const bool given = line.value == &Efficiencies::mechanical;  // also where the pressure is given
+    const bool at_rest = line.value == &Efficiencies::volumetric;  // also where it does not pump
+    const bool known = (hydraulic || given) && (pumps || at_rest);
+    quantities.push_back(quantity(
+        turns, line.name, "", "%",
+        [&](const Turn& turn) { return known ? turn.efficiencies().*line.value : not_computed(); },
+        known ? line.meaning
+        : !hydraulic && !given
+            ? "not modelled: the pressure is given, and nothing leaks or is compressed"
+            : "not pumping: no power goes in, or no pressure is raised"));
+  }
+  return quantities;
 }
 
 std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns) {
@@ -277,8 +268,13 @@ void explain(BudgetComparison& budgets, const compare::Split& split,
 report::Budget budget_section(const BudgetComparison& budgets, const ReadyCase& first,
                               const ReadyCase& second, const ResultTable& analytic,
                               const ResultTable& multibody) {
-  const std::vector<Turn> turns = {{first, budgets.analytic, analytic},
-                                   {second, budgets.multibody, multibody}};
+  const std::optional<hydraulics::PumpPower> oil = pump_power(first);
+  // Both models get the same oil, unless they are given different cases.
+  const bool same = first.hydraulics && second.hydraulics &&
+                    first.hydraulics->equations == second.hydraulics->equations;
+  const std::optional<hydraulics::PumpPower> other = same ? oil : pump_power(second);
+  const std::vector<Turn> turns = {{first, budgets.analytic, analytic, oil},
+                                   {second, budgets.multibody, multibody, other}};
   report::Budget section;
   section.text =
       "Each line from its own load alone: analytic by the closed form under that load, multibody "
@@ -288,7 +284,7 @@ report::Budget budget_section(const BudgetComparison& budgets, const ReadyCase& 
   section.models = {analytic.name, multibody.name};
   section.torque = torque_lines(budgets, turns);
   section.power = power_lines(turns);
-  section.efficiency = efficiency_lines(turns);
+  section.efficiency = efficiency_quantities(turns);
   section.block = block_lines(turns);
   return section;
 }

@@ -44,7 +44,8 @@ report::KeyFigures key_figures_of(const ComparisonResult& r, const report::Docum
   const auto add = [&](report::KeyFigures::Row row) { key.rows.push_back(std::move(row)); };
   if (document.budget)
     for (const auto& line : document.budget->efficiency)
-      if (line.name == "hydraulic-mechanical" && is_computed(line.values.front()))
+      if ((line.name == "hydraulic-mechanical" || line.name == "total") &&
+          is_computed(line.values.front()))
         add(key_row(line.name + " efficiency", "", line.unit, line.values));
   if (r.first.hydraulics)
     for (auto& row : oil_figures(r.first.hydraulics->summary, key.models.size()))

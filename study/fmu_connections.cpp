@@ -17,7 +17,8 @@ namespace {
 // By the end of a column's name.
 std::string unit_by_name(std::string_view name) {
   constexpr std::pair<std::string_view, const char*> kEnds[] = {
-      {"_l_per_min", "L/min"}, {"_bar", "bar"}, {"_rpm", "rpm"}, {"_deg", "deg"}, {"_s", "s"}};
+      {"_l_per_min", "L/min"}, {"_bar", "bar"}, {"_rpm", "rpm"},
+      {"_deg", "deg"},         {"_s", "s"},     {"_W", "W"}};
   for (const auto& [end, unit] : kEnds)
     if (name.size() > end.size() && name.substr(name.size() - end.size()) == end) return unit;
   return "?";

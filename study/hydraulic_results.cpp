@@ -8,6 +8,7 @@
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/efficiency.h"
 #include "hydraulic_sections.h"
 
 namespace bentaxis::study {
@@ -106,6 +107,35 @@ report::Section power_section(const Case& the_case, const SteadyState& state,
     add(hydraulics::name_of(place), hydraulics::name_of(hydraulics::use_of(place)), power[place]);
   add("all losses", "sum", hydraulics::losses(power));
   add("left over", "sum", hydraulics::left_over(power));
+  return section;
+}
+
+report::Section efficiency_section(const OperatingPoint& point, const PowerBudget& power) {
+  const hydraulics::PumpPower oil = hydraulics::pump_power(power);
+  const double omega = rad_per_second(point.the_case().operation.speed_rpm);
+  const double torques[] = {mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm")};
+  report::Section section;
+  section.title = "Power and efficiency of the pump";
+  section.text =
+      "Means over a turn. The flow to the load is what the oil carries out through the delivery "
+      "port less what it carries in through the suction port: mass flow x pressure potential, with "
+      "the work of compression (docs/budgets.md).";
+  section.table.columns = {"quantity", "unit", point.analytic.name, point.multibody.name,
+                           "definition"};
+  const auto watts = [&](const char* name, double analytic, double multibody, const char* text) {
+    section.table.rows.push_back({name, "W", analytic, multibody, text});
+  };
+  watts("drive", torques[0] * omega, torques[1] * omega, "mean Td x speed");
+  watts("pistons on the oil, by the hydraulic model", oil.pistons, oil.pistons, "mean of -p dV/dt");
+  watts("flow to the load", oil.useful, oil.useful,
+        "mass flow x pressure potential, delivery port less suction port");
+  watts("in the oil", oil.lost(), oil.lost(), "pistons on the oil less the flow to the load");
+  const Efficiencies analytic = efficiencies(point.ready, oil, torques[0]);
+  const Efficiencies multibody = efficiencies(point.ready, oil, torques[1]);
+  for (const EfficiencyLine& line : efficiency_lines())
+    if (is_computed(analytic.*line.value))
+      section.table.rows.push_back({std::string(line.name) + " efficiency", "%",
+                                    analytic.*line.value, multibody.*line.value, line.meaning});
   return section;
 }
 

@@ -8,12 +8,18 @@
 #include "bentaxis/hydraulics/steady_state.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/operating_points.h"
 
 namespace bentaxis::study {
 
 /// Mean power by place, its balance, and the p-V diagram's area against it.
 report::Section power_section(const Case& the_case, const hydraulics::SteadyState& state,
                               const hydraulics::PowerBudget& power);
+
+/// Power of the drive and of the oil and the efficiencies, of both models: what `compare` states of
+/// the same case under the same names.
+report::Section efficiency_section(const OperatingPoint& point,
+                                   const hydraulics::PowerBudget& power);
 
 /// Multiples of N in outlet flow and pressures, and the same orders of dp/dtheta of a chamber.
 report::Section orders_section(const Case& the_case, const hydraulics::SteadyState& state);

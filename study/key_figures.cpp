@@ -155,7 +155,9 @@ std::vector<Row> oil_figures(const hydraulics::Summary& s, std::size_t models) {
         of_chamber->note.empty() ? "angle of the chamber" : "; angle of the chamber";
   least.at = s.chamber_least_deg;
   greatest.at = s.chamber_greatest_deg;
-  return {row("flow to the load, mean", "l/min", s.flow / kLitrePerMinute),
+  Row flow = row("flow to the load, mean", "l/min", s.flow / kLitrePerMinute);
+  flow.note += std::string(flow.note.empty() ? "" : "; ") + "at the density in the suction port";
+  return {std::move(flow),
           row("flow to the load, greatest less least over the mean", "%", 100 * s.flow_ripple),
           row("volumetric efficiency", "%", 100 * s.volumetric_efficiency), std::move(least),
           std::move(greatest)};

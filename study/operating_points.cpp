@@ -1,5 +1,7 @@
 #include "bentaxis/study/operating_points.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/in_threads.h"
 
 namespace bentaxis::study {
@@ -57,8 +60,8 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
   const std::size_t count = delivery_bar.size();
   TorqueCurve curve;
   curve.bar = delivery_bar;
-  const auto columns = {&curve.bar,   &curve.analytic, &curve.multibody,
-                        &curve.ideal, &curve.flow,     &curve.efficiency};
+  const auto columns = {&curve.bar,  &curve.analytic,   &curve.multibody,       &curve.ideal,
+                        &curve.flow, &curve.efficiency, &curve.flow_at_delivery};
   for (auto* values : columns) values->resize(count);
   std::vector<std::string> reasons(count);
   Reporting reporting(count, progress);
@@ -74,7 +77,8 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
       curve.multibody[i] = mean(point.multibody, "Td_z1_Nm");
       curve.ideal[i] =
           s.displacement * (pascals(delivery_bar[i]) - the_case.pressure.ports.suction) / (2 * kPi);
-      curve.flow[i] = s.flow * 6e4;
+      curve.flow[i] = s.flow / kLitrePerMinute;
+      curve.flow_at_delivery[i] = flow_at_delivery(point.state()) / kLitrePerMinute;
       curve.efficiency[i] = 100 * s.volumetric_efficiency;
     } catch (const ComputationError& error) {
       reasons[i] = error.what();
@@ -100,7 +104,7 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
 std::string to_csv(const TorqueCurve& curve) {
   std::string text =
       "delivery_bar,mean_Td_analytic_Nm,mean_Td_multibody_Nm,ideal_Td_Nm,flow_l_per_min,"
-      "volumetric_efficiency_percent,reason\n";
+      "volumetric_efficiency_percent,flow_at_delivery_l_per_min,reason\n";
   const auto add = [&](std::initializer_list<double> row, const std::string& reason) {
     for (const double value : row) {
       append_number(text, value);
@@ -113,12 +117,27 @@ std::string to_csv(const TorqueCurve& curve) {
   for (std::size_t i = 0; i <= curve.bar.size(); ++i) {
     for (; failed != curve.failed.end() && (i == curve.bar.size() || failed->value < curve.bar[i]);
          ++failed)
-      add({failed->value, none, none, none, none, none}, failed->reason);
+      add({failed->value, none, none, none, none, none, none}, failed->reason);
     if (i < curve.bar.size())
       add({curve.bar[i], curve.analytic[i], curve.multibody[i], curve.ideal[i], curve.flow[i],
-           curve.efficiency[i]},
+           curve.efficiency[i], curve.flow_at_delivery[i]},
           "");
   }
+  return text;
+}
+
+std::string torque_curve_text(const TorqueCurve& curve) {
+  std::string text = fmt::format("{:>12} {:>20} {:>20} {:>12} {:>12} {:>20} {:>22}\n", "delivery",
+                                 "mean Td, analytic", "mean Td, multibody", "ideal Td", "flow",
+                                 "flow at delivery", "volumetric efficiency");
+  text += fmt::format("{:>12} {:>20} {:>20} {:>12} {:>12} {:>20} {:>22}\n", "bar", "Nm", "Nm", "Nm",
+                      "l/min", "pressure, l/min", "%");
+  for (std::size_t i = 0; i < curve.bar.size(); ++i)
+    text += fmt::format("{:>12.6g} {:>20.6g} {:>20.6g} {:>12.6g} {:>12.6g} {:>20.6g} {:>22.6g}\n",
+                        curve.bar[i], curve.analytic[i], curve.multibody[i], curve.ideal[i],
+                        curve.flow[i], curve.flow_at_delivery[i], curve.efficiency[i]);
+  for (const FailedPoint& failed : curve.failed)
+    text += fmt::format("{:>12.6g} not computed: {}\n", failed.value, failed.reason);
   return text;
 }
 

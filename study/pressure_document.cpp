@@ -9,6 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
 #include "hydraulic_results.h"
@@ -38,7 +39,7 @@ report::Document pressure_document(const OperatingPoint& point,
   document.key_figures = {{"hydraulic model"}, "deg", oil_figures(point.state().summary, 1)};
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
   document.runs = {hydraulic_section(the_case, point.state()),
-                   power_section(the_case, point.state(), power),
+                   power_section(the_case, point.state(), power), efficiency_section(point, power),
                    orders_section(the_case, point.state())};
   document.timing = timing_rows(the_case, point.state());
   document.warnings = timing_warnings(*document.timing);
@@ -61,25 +62,31 @@ void add_curve(report::Document& document, const TorqueCurve& curve) {
   add_series(torque, "ideal: displacement x pressure / 2 pi", curve.ideal);
   report::Figure flow =
       own_figure("flow_curve", "Mean flow against delivery pressure", "", "l/min", axis, curve.bar);
-  add_series(flow, "to the load, at delivery pressure", curve.flow);
+  add_series(flow, "to the load, at the density in the suction port", curve.flow);
+  add_series(flow, "to the load, at the density of the mean delivery pressure",
+             curve.flow_at_delivery);
   document.figures->push_back(std::move(torque));
   document.figures->push_back(std::move(flow));
   report::Section section;
   section.title = "Torque and flow against delivery pressure";
   section.text =
-      "Each point: periodic hydraulic state, then both models over a turn. 0 bar is an open line.";
+      "Each point: periodic hydraulic state, then both models over a turn. 0 bar is an open line. "
+      "The flow and the volumetric efficiency are at the density in the suction port, the last "
+      "column at that of the mean delivery pressure.";
   section.table.columns = {"delivery, bar",
                            "mean torque, analytic, Nm",
                            "mean torque, multibody, Nm",
                            "ideal torque, Nm",
                            "flow, l/min",
-                           "volumetric efficiency, %"};
+                           "volumetric efficiency, %",
+                           "flow at delivery pressure, l/min"};
   for (std::size_t i = 0; i < curve.bar.size(); ++i)
     section.table.rows.push_back({curve.bar[i], curve.analytic[i], curve.multibody[i],
-                                  curve.ideal[i], curve.flow[i], curve.efficiency[i]});
+                                  curve.ideal[i], curve.flow[i], curve.efficiency[i],
+                                  curve.flow_at_delivery[i]});
   for (const FailedPoint& failed : curve.failed) {
     section.table.rows.push_back({failed.value, report::Cell(), report::Cell(), report::Cell(),
-                                  report::Cell(), report::Cell()});
+                                  report::Cell(), report::Cell(), report::Cell()});
     section.facts.emplace_back(failed.point + ": not computed", failed.reason);
   }
   add_warnings(document, curve.failed);
@@ -213,8 +220,16 @@ std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBu
     add(fmt::format("power, {}", hydraulics::name_of(place)), power[place], "W");
   add("power left over, of the pistons' power",
       hydraulics::left_over(power) / power[hydraulics::Place::pistons], "");
-  add("mean drive torque, analytic", mean(point.analytic, "Td_z1_Nm"), "Nm");
+  const hydraulics::PumpPower oil = hydraulics::pump_power(power);
+  add("power of the flow to the load", oil.useful, "W");
+  add("power lost in the oil", oil.lost(), "W");
+  const double torque = mean(point.analytic, "Td_z1_Nm");
+  add("mean drive torque, analytic", torque, "Nm");
   add("mean drive torque, multibody", mean(point.multibody, "Td_z1_Nm"), "Nm");
+  const Efficiencies all = efficiencies(point.ready, oil, torque);
+  for (const EfficiencyLine& line : efficiency_lines())
+    if (is_computed(all.*line.value) && line.value != &Efficiencies::volumetric)
+      add(std::string(line.name) + " efficiency", all.*line.value, "%");
   text += "\n" + timing_text(*document.timing) + "\n";
   for (const report::Warning& warning : *document.warnings)
     text += fmt::format("warning: {}: {}\n", warning.name, warning.text);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "bentaxis/analytic/teeth.h"
 #include "bentaxis/hydraulics/power.h"
@@ -231,7 +232,10 @@ report::Section energy_section(const SimulationResult& r) {
       "torque's own share (38), which feeds in where the torque drives backwards, among them; the "
       "oil's own are integrated place by place. Pistons do on the oil what the pressures do on "
       "them, which the models find from "
-      "their own velocities and the oil from the volumes of its chambers.";
+      "their own velocities and the oil from the volumes of its chambers. The work of the drive is "
+      "that of the torque on the shaft, or of the motor where there is one: damping in its "
+      "coupling "
+      "is then among the losses.";
   section.table.columns = {"energy, J", "use"};
   std::vector<std::vector<Cell>> rows;
   const auto put = [&](std::size_t row, const std::string& name, const char* use, double value) {
@@ -258,6 +262,50 @@ report::Section energy_section(const SimulationResult& r) {
     put(row++, "left over: oil", "must vanish", oil.energy_residual);
     put(row++, "left over: between pistons and oil", "must vanish", oil.exchange_residual);
     put(row++, "mass of the oil left over, kg", "must vanish", oil.mass_residual);
+  }
+  section.table.rows = std::move(rows);
+  return section;
+}
+
+// Mean power of a motion that repeats itself: its table is one turn at equal times, with both ends.
+report::Section steady_power_section(const SimulationResult& r) {
+  report::Section section;
+  section.title = "Mean power of the periodic motion";
+  section.text =
+      "Means over a turn, of what `bentaxis compare` states of constant speed under the same "
+      "names. "
+      "The drive is the torque Td on the pump's shaft; a motor in front of a coupling does what "
+      "the "
+      "coupling's damping takes in addition. The flow to the load is mass flow x pressure "
+      "potential, delivery port less suction port (docs/budgets.md).";
+  section.table.columns = {"quantity", "unit"};
+  std::vector<std::vector<Cell>> rows;
+  for (const auto& [name, run] : runs_of(r)) {
+    section.table.columns.push_back(name);
+    const ResultTable& table = run->table.results;
+    const std::size_t torque = table.find("Td_z1_Nm");
+    const std::size_t last = table.rows() - 1;
+    const double duration = run->table.state(last, 0) - run->table.state(0, 0);
+    double drive = 0;
+    for (std::size_t row = 0; row < last; ++row)
+      drive += table.at(row, torque) * rad_per_second(run->table.state(row, 3)) /
+               static_cast<double>(last);
+    hydraulics::PowerBudget budget;
+    for (const OilEnergy& e : run->oil->energies)
+      if (const auto place = hydraulics::place_of(e.place.key))
+        budget[*place] = e.energy / duration;
+    const hydraulics::PumpPower power = hydraulics::pump_power(budget);
+    const std::tuple<const char*, const char*, double> quantities[] = {
+        {"drive", "W", drive},
+        {"pistons on the oil, by the hydraulic model", "W", power.pistons},
+        {"flow to the load", "W", power.useful},
+        {"in the oil", "W", power.lost()},
+        {"total efficiency", "%", drive > 0 ? 100 * power.useful / drive : not_computed()}};
+    std::size_t at = 0;
+    for (const auto& [quantity, unit, value] : quantities) {
+      if (at == rows.size()) rows.push_back({quantity, unit});
+      rows[at++].emplace_back(value);
+    }
   }
   section.table.rows = std::move(rows);
   return section;
@@ -514,6 +562,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
   if (!r.groups.empty()) document.runs->push_back(difference_section(r));
   if (r.choice.unit) document.runs->push_back(coupling_section(r));
   if (r.oil_follows) document.runs->push_back(energy_section(r));
+  if (r.oil_follows && r.choice.steady) document.runs->push_back(steady_power_section(r));
   document.runs->push_back(work_section(r));
   if (compliant(r)) document.runs->push_back(teeth_section(r));
   if (!r.effort.empty()) document.runs->push_back(effort_section(r));

@@ -1263,7 +1263,12 @@ class PressureTest(ProgramTest):
         self.assertFalse((self.folder / "out").exists())
 
     def test_torque_curve(self):
-        self.run_program("pressure", self.hydraulic(), "--out", "out", "--delivery-bar", "0:350:25")
+        result = self.run_program("pressure", self.hydraulic(), "--out", "out", "--delivery-bar", "0:350:25")
+        shown = result.out[result.out.index("mean Td, analytic"):result.out.index("out/pressure.html")]
+        self.assertIn("294.7", shown)
+        for number in re.findall(r"[0-9.]+", shown):  # in the file all digits, on the console six
+            self.assertLessEqual(len(number.replace(".", "").lstrip("0")), 6, number)
+        at_delivery = [float(v) for v in self.column("out/torque_curve.csv", "flow_at_delivery_l_per_min")]
         pressures = [float(v) for v in self.column("out/torque_curve.csv", "delivery_bar")]
         self.assertEqual(pressures, [25.0 * i for i in range(15)])
         torque = [float(v) for v in self.column("out/torque_curve.csv", "mean_Td_analytic_Nm")]
@@ -1272,6 +1277,15 @@ class PressureTest(ProgramTest):
         self.assertEqual((torque, flow), (sorted(torque), sorted(flow, reverse=True)))
         for a, b in zip(torque, other):
             self.assertAlmostEqual(a, b, delta=1e-9 * torque[-1])
+        # Compressed oil takes less room: by p/K and the air in it.
+        for i in range(1, len(flow)):
+            self.assertAlmostEqual(at_delivery[i] / flow[i], 1 - 25e5 * i / 1.4e9 - 0.005, delta=3e-3)
+        figures = {f["id"]: f for f in json.loads((self.folder / "out/pressure.json").read_text())["figures"]}
+        drawn = {s["label"]: s["values"] for s in figures["flow_curve"]["series"]}
+        for label, values in (("in the suction port", flow), ("of the mean delivery pressure", at_delivery)):
+            for shown, value in zip(drawn.pop("to the load, at the density " + label), values, strict=True):
+                self.assertAlmostEqual(shown / value, 1, 8)  # the page has nine digits
+        self.assertEqual(drawn, {})
 
     def test_calibrate_and_blocktorque(self):
         result = self.run_program("calibrate", REPO / "cases" / "bap63_rated_hydraulic.toml", "--with", "294.7",

@@ -382,7 +382,7 @@ TEST(OilInTime, RowsAreThePressuresAndFlows) {
   for (const OilColumn& column : oil->columns()) names.push_back(column.name);
   EXPECT_THAT(names, ElementsAre("p_1_bar", "p_2_bar", "p_3_bar", "p_4_bar", "p_5_bar",
                                  "p_suction_bar", "p_delivery_bar", "flow_suction_l_per_min",
-                                 "flow_delivery_l_per_min", "leakage_l_per_min"));
+                                 "flow_delivery_l_per_min", "leakage_l_per_min", "power_useful_W"));
   const double speed = the_case.operation.speed_rpm * 2 * kPi / 60;
   std::vector<double> row(names.size());
   const auto start = oil->start();
@@ -396,6 +396,8 @@ TEST(OilInTime, RowsAreThePressuresAndFlows) {
   EXPECT_NEAR(row[0], column("p_1_bar"), 1e-5);
   EXPECT_NEAR(row[6], column("p_delivery_bar"), 1e-5);
   EXPECT_NEAR(row[8], column("Qload_l_per_min"), 1e-5);
+  // From a tank at atmospheric pressure, without a line: what goes into the load.
+  EXPECT_NEAR(row[10] / column("power_load_W"), 1, 1e-6);
 }
 
 // ---- What is connected
@@ -503,7 +505,7 @@ TEST(Load, ShareOverTimeIsTimesTheSize) {
     EXPECT_TRUE(plain->knots().empty());
     std::vector<double> y = plain->start();
     y[5] = 5.3;
-    const std::size_t flow = plain->columns().size() - 2;
+    const std::size_t flow = plain->columns().size() - 3;
     ASSERT_EQ(plain->columns()[flow].name, "flow_delivery_l_per_min");
     const auto value = [&](const Oil& oil, double time) {
       std::vector<double> row(oil.columns().size());

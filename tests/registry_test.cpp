@@ -143,6 +143,30 @@ TEST(ParameterOfATestRegistry, IsPerturbed) {
 // ---- The registry itself
 // -------------------------------------------------------------------------
 
+// What a table, an axis or an editor calls a parameter by: no two are called the same.
+TEST(Registry, ParametersAreToldApart) {
+  std::set<std::string> names, meanings;
+  for (const Table& table : standard_registry().tables) {
+    std::set<std::string> symbols;
+    for (const Parameter& p : table.parameters) {
+      const std::string name = table.name + "." + p.key;
+      EXPECT_TRUE(names.insert(name).second) << name;
+      EXPECT_TRUE(meanings.insert(p.symbol + ": " + p.meaning + " " + p.unit.name).second)
+          << name << ": " << p.meaning;
+      if (p.symbol.empty()) continue;
+      const std::size_t comma = p.symbol.find(", ");
+      EXPECT_TRUE(comma != std::string::npos || !std::holds_alternative<PairField>(p.field))
+          << name;
+      for (const std::string& symbol :
+           comma == std::string::npos
+               ? std::vector<std::string>{p.symbol}
+               : std::vector<std::string>{p.symbol.substr(0, comma), p.symbol.substr(comma + 2)})
+        EXPECT_TRUE(symbols.insert(symbol).second) << name << ": " << symbol;
+    }
+  }
+  EXPECT_GT(names.size(), 150);
+}
+
 // Seeded draws and sums depend on it: the order of the file, then the parts a pump may lack.
 TEST(Registry, ContinuousInputsKeepTheirOrder) {
   PumpParameters pump = reference_case("asymmetric_ports").pump;

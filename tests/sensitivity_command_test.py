@@ -119,6 +119,20 @@ class Sensitivity(unittest.TestCase):
         self.assertIn("1 derivatives by forward sensitivities, 1 by differences", done.stdout)
         self.assertIn("forward sensitivities (CVODES)", (self.out / "sensitivity.json").read_text())
 
+    def test_a_value_taken_from_another_parameter_is_said(self):
+        """Arcs of [hydraulics] are those of [port_plate] unless given: two rows with one derivative."""
+        names = "port_plate.delivery_arc_deg.1,hydraulics.delivery_arc_deg.1"
+        done = self.run_program("--output", "mean:Td", "--parameter", names, case="bap63_rated_hydraulic")
+        self.assertIn("The case does not give hydraulics.delivery_arc_deg: the value is that of another parameter.", done.stdout)
+        plate, oil = rows_of(self.out / "sensitivity.csv")
+        self.assertEqual([r["parameter"] for r in (plate, oil)], names.split(","))
+        self.assertEqual(plate["derivative"], oil["derivative"])
+        done = self.run_program("--output", "mean:Td", "--parameter", names, "--set", "hydraulics.delivery_arc_deg=[204, 336]",
+                                case="bap63_rated_hydraulic")
+        self.assertNotIn("The case does not give", done.stdout)
+        plate, oil = rows_of(self.out / "sensitivity.csv")
+        self.assertNotEqual(plate["derivative"], oil["derivative"])
+
     def test_without_names_every_number_of_the_case(self):
         done = self.run_program()
         rows = rows_of(self.out / "sensitivity.csv")

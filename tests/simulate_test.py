@@ -54,6 +54,43 @@ class SimulateTest(base.WithFolder):
         self.assertFalse((self.folder / "out" / "report.html").exists())
 
 
+class PowerTest(SimulateTest):
+    """The mean power of the oil and the efficiency: whichever command states them."""
+    NAMES = ("drive", "pistons on the oil, by the hydraulic model", "flow to the load", "in the oil")
+
+    def rows(self, file, title):
+        sections = json.loads((self.folder / file).read_text())["runs"]
+        return {row[0]: row[2:] for row in next(s for s in sections if s["title"] == title)["table"]["rows"]}
+
+    def test_all_commands_state_the_same(self):
+        case = base.REPO / "cases" / "bap63_rated_hydraulic.toml"
+        drive = ["--set", "drive.kind=speed", "--set", "drive.duration_s=0.04", "--set", "drive.samples=1440"]
+        self.run_program("compare", case, "--out", "compare")
+        self.run_program("pressure", case, "--out", "pressure")
+        self.run_program("sweep", case, "--vary", "operation.speed_rpm=1500", "--output", "efficiency.overall", "--out", "sweep")
+        self.simulate(case, "--steady", *drive)
+        budget = json.loads((self.folder / "compare/report.json").read_text())["budget"]
+        compared = {line["name"]: line["values"] for line in budget["power"] + budget["efficiency"]}
+        computed = self.rows("pressure/pressure.json", "Power and efficiency of the pump")
+        steady = self.rows("out/report.json", "Mean power of the periodic motion")
+        for model in (0, 1):
+            for name in self.NAMES:
+                self.assertAlmostEqual(computed[name][model] / compared[name][model], 1, 12, name)
+                self.assertAlmostEqual(steady[name][model] / compared[name][model], 1, 5, name)
+            for name in ("total", "volumetric", "hydraulic-mechanical", "mass-based hydraulic-mechanical",
+                         "ISO 4409 volumetric", "ISO 4409 total"):
+                self.assertAlmostEqual(computed[name + " efficiency"][model] / compared[name][model], 1, 12, name)
+            self.assertAlmostEqual(steady["total efficiency"][model] / compared["total"][model], 1, 5)
+        swept = float(self.table("sweep/sweep.csv")[0]["efficiency.overall [%]"])
+        self.assertAlmostEqual(swept / compared["total"][0], 1, 12)
+        # An independent program has 40 899 W and 2 998 W.
+        self.assertAlmostEqual(compared["flow to the load"][0], 40899, delta=1)
+        self.assertAlmostEqual(compared["in the oil"][0], 2998, delta=1)
+        # The column over time, which is an output of the pump's FMU too.
+        useful = [float(row["power_useful_W"]) for row in self.table("out/oil_analytic.csv")][:-1]
+        self.assertAlmostEqual(sum(useful) / len(useful) / compared["flow to the load"][0], 1, 4)
+
+
 class RestTest(SimulateTest):
     def test_a_shaft_at_rest_has_one_direction(self):
         """A given speed of 0 counts as +, whatever round-off the integration makes of it."""

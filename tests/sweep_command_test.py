@@ -155,6 +155,13 @@ class SweepTest(ProgramTest):
         (self.folder / "study.toml").write_text('samplings = "grid"\n')
         self.assert_mentions(self.refused("sweep", case, "--study", "study.toml"), "study.toml", "samplings")
 
+    def test_steps_are_the_numbers_that_are_meant(self):
+        """0.1 + 0.2 is 0.3 and not 0.30000000000000004."""
+        self.run_program("sweep", program.REPO / "cases/bap63_rated.toml", "--vary", "pressure.suction_bar=0.1:0.7:0.2",
+                         "--vary", "pump.tilt_deg=20:30:#4", "--output", "mean:Td", "--out", "out")
+        self.assertEqual({row["pressure.suction_bar"] for row in self.rows()}, {"0.1", "0.3", "0.5", "0.7"})
+        self.assertEqual({row["pump.tilt_deg"] for row in self.rows()}, {"20", "23.3333333333333", "26.6666666666667", "30"})
+
     def test_a_study_file_without_a_seed_has_seed_1(self):
         (self.folder / "study.toml").write_text('sampling = "random"\nsamples = 8\noutput = ["mean:Td"]\n\n'
                                                 '[[vary]]\nparameter = "pump.tilt_deg"\nvalues = "20:40"\n')
@@ -167,11 +174,15 @@ class SweepTest(ProgramTest):
         self.assertNotEqual(tables[0], tables[2])
 
     def test_hydraulic_pressure(self):
-        self.run_program(*self.command("--output", "hydraulics.flow_l_per_min,efficiency.overall,mean:Td", "--check", "1%",
+        self.run_program(*self.command("--output", "hydraulics.flow_l_per_min,efficiency.overall,mean:Td,efficiency.overall_iso,"
+                                       "efficiency.volumetric_iso,efficiency.mechanical_mass", "--check", "1%",
                                        case="bap63_rated_hydraulic.toml", samples=60, **{"operation.speed_rpm": "1000:2000:#3"}))
         flows = [float(row["hydraulics.flow_l_per_min [l/min]"]) for row in self.rows()]
         self.assertEqual(flows, sorted(flows))
-        self.assertEqual(len(self.rows(name="sweep_checks.csv")), 3)  # at least one design, three outputs
+        # At least one design, six outputs.
+        self.assertEqual(len(self.rows(name="sweep_checks.csv")), 6)
+        for row in self.rows():
+            self.assertLess(float(row["efficiency.overall_iso [%]"]), float(row["efficiency.overall [%]"]))
 
     def test_a_disagreement_is_reported_and_counts(self):
         result = self.run_program(*self.command("--check", "100%", "--set", "assumptions.multibody.inertia=lumped",

@@ -35,7 +35,8 @@ std::string meaning_of(const Channel& channel) {
 }
 
 std::string unit_in_name(const std::string& name) {
-  for (const auto& [end, unit] : {std::pair{"_l_per_min", "l/min"}, std::pair{"_bar", "bar"}})
+  for (const auto& [end, unit] :
+       {std::pair{"_l_per_min", "l/min"}, std::pair{"_bar", "bar"}, std::pair{"_W", "W"}})
     if (name.ends_with(end)) return unit;
   return {};
 }

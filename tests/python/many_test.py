@@ -1,6 +1,7 @@
 """Sweeps, simulations and identifications in Python."""
 
 import csv
+import json
 
 import numpy
 
@@ -40,6 +41,17 @@ class SweepTest(ModuleTest):
         sweep = bentaxis.sweep(self.case(), {"pump.tilt_deg": [33]}, "mean:Td")
         torque = bentaxis.run(self.case(pump__tilt_deg=33))["Td_Nm"]
         self.assertAlmostEqual(sweep["mean:Td_Nm"][0], numpy.mean(torque), delta=1e-11 * numpy.mean(torque))
+
+    def test_efficiencies_are_those_of_the_program(self):
+        self.run_program("compare", CASES / "bap63_rated_hydraulic.toml", "--out", "out")
+        budget = json.loads((self.folder / "out/report.json").read_text())["budget"]
+        stated = {line["name"]: line["values"][0] for line in budget["efficiency"]}
+        outputs = {"overall": "total", "overall_iso": "ISO 4409 total", "volumetric_iso": "ISO 4409 volumetric",
+                   "mechanical_mass": "mass-based hydraulic-mechanical"}
+        sweep = bentaxis.sweep(self.case("bap63_rated_hydraulic"), {"operation.speed_rpm": [1500]},
+                               ["efficiency." + name for name in outputs])
+        for i, name in enumerate(outputs.values()):
+            self.assertAlmostEqual(sweep.values[0][i], stated[name], 9, name)
 
     def test_samples_checks_and_designs_that_are_none(self):
         sweep = bentaxis.sweep(self.case(operation__samples_per_revolution=36), {"pump.tilt_deg": "30:42"}, "peak:Rb1",

@@ -31,7 +31,7 @@ enum class Source {
   validity,    ///< a limit of validity (analytic/validity.h): its worst value, or how long it is
                ///< violated
   hydraulics,  ///< a line of the hydraulic model's summary
-  efficiency,  ///< overall, mechanical, volumetric, %
+  efficiency,  ///< study::Efficiencies, %
   life,        ///< of the bearings, h (study/bearing_life.h)
 };
 
@@ -43,7 +43,8 @@ enum class Source {
 ///   displacement_cm3, stroke_mm, ..      geometry (Source::derived)
 ///   validity.NAME          worst value of the limit of that name; validity.NAME.share of the turn
 ///   hydraulics.NAME        of the summary: "hydraulics.flow_l_per_min"
-///   efficiency.overall, efficiency.mechanical, efficiency.volumetric
+///   efficiency.NAME        overall, volumetric, mechanical_mass by energy and mass; overall_iso,
+///                          volumetric_iso, mechanical of ISO 4409
 ///   life.NAME              of the bearings: life.system_h, life.tapered_P_N, ..
 struct Output {
   std::string name;  ///< as asked for, complete: "max:Rb1_z1_N"

@@ -21,8 +21,8 @@ class Variable {
   Variable(const std::string& name, const Case& base);
 
   const std::string& name() const { return name_; }
-  /// Symbol in the paper or in docs/, or "".
-  const std::string& symbol() const { return parameter_->symbol; }
+  /// Symbol in the paper or in docs/, of a pair that of its end, or "". Unique within its table.
+  std::string symbol() const;
   /// Of the file: "mm"; "" where there is none.
   std::string unit() const { return parameter_->unit.name; }
   const std::string& meaning() const { return parameter_->meaning; }

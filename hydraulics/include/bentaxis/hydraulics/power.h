@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <string_view>
 
 #include "bentaxis/results/oil.h"
 
@@ -51,10 +53,32 @@ const char* name_of(PowerUse use);
 /// For readers: "delivery port, backflow"; and as a part of a column's name: "delivery_backflow".
 const char* name_of(Place place);
 const char* key_of(Place place);
+/// The place of a key; none where no place has it.
+std::optional<Place> place_of(std::string_view key);
 
 /// Sources less everything else: 0 but for what is stored, over a period that repeats itself 0.
 double left_over(const PowerBudget& budget);
 /// Sum of all losses.
 double losses(const PowerBudget& budget);
+
+/// The energy balance of the pump between its pistons and its two ports, without the lines, valves
+/// and volumes that the ports lead to. W, or J where the budget is in J; the mean over a period.
+///
+///   pistons = useful + to_case + dissipated
+///
+/// Every statement of hydraulic power and of efficiency stands on it (docs/budgets.md).
+struct PumpPower {
+  double pistons = 0;  ///< what the pistons do on the oil, gauge pressure
+  /// What the oil carries out through the delivery port less what it carries in through the suction
+  /// port, mass flow times pressure potential h: sum(m_d) h(P_d) - sum(m_s) h(P_s). For one
+  /// constant density it is flow times pressure; h contains the work of compression as well.
+  double useful = 0;
+  double to_case = 0;     ///< what leakage carries into the case: none at a case pressure of 0
+  double dissipated = 0;  ///< losses in ports, gaps and by air that dissolves late: not negative
+
+  double lost() const { return pistons - useful; }
+};
+/// From a budget over a period that repeats itself.
+PumpPower pump_power(const PowerBudget& budget);
 
 }  // namespace bentaxis::hydraulics

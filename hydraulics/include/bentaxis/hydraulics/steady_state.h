@@ -145,6 +145,9 @@ PowerBudget power_by_place(const SteadyState& state, const Progress& progress = 
 /// Amplitudes of orders 1..count of dp/dtheta over the turn of a chamber, Pa per rad.
 std::vector<double> orders_of_rate(const ComputedPressure& chamber, int count);
 
+/// Density of the oil, kg/m3, at a gauge pressure, Pa.
+double density(const SteadyState& state, double gauge);
+
 /// Effective bulk modulus of the oil, Pa, at a gauge pressure, Pa.
 double effective_bulk_modulus(const SteadyState& state, double gauge);
 

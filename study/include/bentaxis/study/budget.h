@@ -30,7 +30,8 @@ void explain(BudgetComparison& budgets, const compare::Split& split,
              const compare::ZeroScales& scales);
 
 /// The budgets with power, efficiencies and the block's balance, for a report.
-/// @param first       the analytic model's case; its hydraulics give the volumetric efficiency
+/// @param first       the analytic model's case; its hydraulics give the balance of the oil
+/// @throws ComputationError where that balance cannot be integrated
 /// @param analytic, multibody  all channels of the same runs
 report::Budget budget_section(const BudgetComparison& budgets, const ReadyCase& first,
                               const ReadyCase& second, const ResultTable& analytic,

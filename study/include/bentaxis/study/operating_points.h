@@ -32,10 +32,11 @@ OperatingPoint run_point(Case the_case, const PartProgress& progress_of = silent
 /// The mean of a channel over all rows, channel's unit.
 double mean(const ResultTable& table, const std::string& channel);
 
-/// Mean torque (Nm), flow to the load at delivery pressure (l/min) and volumetric efficiency (%) at
-/// mean delivery pressures (bar). `ideal` is displacement x pressure difference / 2 pi.
+/// Mean torque (Nm), flow to the load (l/min) and volumetric efficiency (%, mass-based) at mean
+/// delivery pressures (bar). `ideal` is displacement x pressure difference / 2 pi. `flow` is at the
+/// density in the suction port, `flow_at_delivery` at that of the mean delivery pressure.
 struct TorqueCurve {
-  std::vector<double> bar, analytic, multibody, ideal, flow, efficiency;
+  std::vector<double> bar, analytic, multibody, ideal, flow, efficiency, flow_at_delivery;
   /// Pressures that could not be computed: they are not in the vectors above.
   std::vector<FailedPoint> failed;
 };
@@ -47,6 +48,8 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
 /// The curve as a CSV file with a header line, in rising order of the pressure. The row of a point
 /// that failed has empty fields and the reason in its last column.
 std::string to_csv(const TorqueCurve& curve);
+/// The curve as a table for people, six digits.
+std::string torque_curve_text(const TorqueCurve& curve);
 
 /// The mean delivery pressure (Pa) at which a statistic of the analytic model's turn reaches
 /// `wanted`, which rises with the pressure about in proportion.
