@@ -1,7 +1,6 @@
 #include <memory>
 
 #include "bentaxis/designs/identify_document.h"
-#include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/error.h"
 #include "commands.h"
 #include "console.h"
@@ -42,16 +41,14 @@ int identify(const Options& options, const CommandParser& command) {
   if (options.fit_only) settings.posterior = settings.profiles = settings.leave_one_out = false;
   const designs::Identification result = designs::identify(model, settings, progress_of);
 
-  Case identified = model.pump(result.fit.x);
-  identified.name += ", identified";
-  std::vector<TextFile> files = {{"identified.toml", case_text(identified)},
+  std::vector<TextFile> files = {{"identified.toml", designs::identified_case_text(model, result)},
                                  {"unknowns.csv", designs::unknowns_csv(model, result)}};
   if (const std::string bands = designs::bands_csv(model, result); !bands.empty())
     files.emplace_back("bands.csv", bands);
   const auto paths =
       folders.write("report", designs::identify_document(model, result, versions()), {}, files);
   print_result(designs::identify_text(model, result), paths);
-  return kDone;
+  return result.goodness.refuted() ? kOutOfTolerance : kDone;
 }
 
 }  // namespace

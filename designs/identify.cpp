@@ -488,13 +488,23 @@ Identification identify(const DataModel& model, const IdentifyOptions& options,
   result.minima = minima_of(fits);
   result.numbers = numbers;
   model.predict(result.fit.x, result.numbers);
-  result.information = information_of(model, result.fit.x, result.fit.jacobian);
-  if (options.profiles)
-    result.profiles = profiles_of(model, result.fit, options.threads, progress_of("profiles"));
+  result.goodness = goodness_of(model, result.fit);
+  result.worst = worst_residuals(model, result.fit);
+  const bool refuted = result.goodness.refuted();
+  std::vector<double> jacobian = result.fit.jacobian;
+  if (refuted)
+    for (double& slope : jacobian) slope /= result.goodness.birge_ratio();
+  result.information = information_of(model, result.fit.x, jacobian);
+  if (refuted)
+    result.further =
+        further_unknowns(model, result.fit, options.threads, progress_of("further unknowns"));
   if (options.leave_one_out)
     result.left_out =
         leave_one_out(model, result.fit, options.threads, progress_of("leave one out"));
-  if (options.posterior) {
+  // What follows says how well things are known if the model is right.
+  if (options.profiles && !refuted)
+    result.profiles = profiles_of(model, result.fit, options.threads, progress_of("profiles"));
+  if (options.posterior && !refuted) {
     result.posterior = posterior_of(model, result.fit, options, progress_of("posterior"));
     bands_of(model, options, result, progress_of("bands"));
   }

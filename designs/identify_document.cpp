@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/plausibility_section.h"
@@ -69,14 +70,214 @@ std::string number_text(const Datum& datum, double low, double high) {
   return low == high ? fmt::format("{:.6g}", low) : fmt::format("{:.5g} to {:.5g}", low, high);
 }
 
-double worst_residual(const DataModel& model, const Identification& result, std::size_t i) {
-  const Datum& datum = model.data().data[i];
-  double worst = 0;
-  for (std::size_t k = 0; k < datum.size(); ++k) {
-    const double r = model.residual(datum, k, result.numbers[model.place_of(i) + k]);
-    if (std::abs(r) > std::abs(worst)) worst = r;
+double worst_residual(const Identification& result, std::size_t datum) {
+  const auto worst = std::find_if(result.worst.begin(), result.worst.end(),
+                                  [&](const WorstResidual& w) { return w.datum == datum; });
+  return worst == result.worst.end() ? 0 : worst->residual;
+}
+
+// ---- Goodness of fit
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+constexpr std::size_t kWorstShown = 10, kWorstPrinted = 5;
+constexpr std::size_t kFurtherShown = 5;
+constexpr const char* kWithheld =
+    "Profile limits, posterior, bands of the reactions and useful further measurements are "
+    "withheld: they would hold only if the model were right.";
+
+std::string chi_square_text(double value) {
+  return value < 1e4 || value > 1e15 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
+}
+std::string p_text(double p) {
+  return p < 1e-300 ? "p below 1e-300" : fmt::format("p = {:.2g}", p);
+}
+
+// "chi-square 70.1 with 73 degrees of freedom, p = 0.57"
+std::string test_text(const GoodnessOfFit& fit) {
+  std::string text = fmt::format("chi-square {} with {} degrees of freedom",
+                                 chi_square_text(fit.chi_square), fit.degrees_of_freedom());
+  return fit.p_value ? text + ", " + p_text(*fit.p_value) : text;
+}
+
+// The same with what it means.
+std::string fit_text(const GoodnessOfFit& fit) {
+  const std::string test = test_text(fit);
+  if (fit.refuted())
+    return fit.p_value ? fmt::format("the model does not fit the data: {} (refuted below {:g})",
+                                     test, kFitRefutedBelow)
+                       : "the model does not fit the data: " + test +
+                             ", where a fit passes through all data";
+  if (!fit.p_value) return "no test of the fit: " + test;
+  if (fit.uncertainties_too_large())
+    return fmt::format(
+        "fit: {}: not refuted; residuals are smaller than the stated uncertainties let expect",
+        test);
+  return fmt::format("fit: {}: not refuted", test);
+}
+
+std::string birge_text(const GoodnessOfFit& fit) {
+  return fmt::format(
+      "Linear standard deviations are widened: they hold for data with all stated uncertainties "
+      "multiplied by {:.3g}, the root of chi-square over the degrees of freedom (Birge ratio). "
+      "This accounts for uncertainties that were stated too small. It does not account for a wrong "
+      "model: true values can lie outside.",
+      fit.birge_ratio());
+}
+
+// Given and model of a worst residual; of a prior its distribution and the unknown.
+std::pair<std::string, std::string> worst_values(const DataModel& model,
+                                                 const Identification& result,
+                                                 const WorstResidual& worst) {
+  if (worst.unknown)
+    return {model.data().unknowns[*worst.unknown].prior->text(),
+            fmt::format("{:.6g}", result.fit.x[*worst.unknown])};
+  const Datum& datum = model.data().data[*worst.datum];
+  const double of_model = result.numbers[model.place_of(*worst.datum) + worst.number];
+  const std::string given = datum.curve
+                                ? fmt::format("{:.6g} +- {:.2g}", datum.curve->values[worst.number],
+                                              datum.curve->uncertainties[worst.number])
+                                : given_text(datum);
+  return {given, fmt::format("{:.6g}", of_model)};
+}
+
+std::string worst_line(const DataModel& model, const Identification& result,
+                       const WorstResidual& worst) {
+  const auto [given, of_model] = worst_values(model, result, worst);
+  const std::string unit = worst.datum ? model.data().data[*worst.datum].unit
+                                       : model.data().unknowns[*worst.unknown].variable.unit();
+  return fmt::format("{}: {:+.1f} sigma (data {}, model {}{}{})", name_of(model, worst),
+                     worst.residual, given, of_model, unit.empty() ? "" : " ", unit);
+}
+
+// "friction.piston_coulomb_N (119.8 N instead of 0): chi-square .."
+std::string further_line(const DataModel& model, const FurtherUnknown& f) {
+  const std::string unit = f.variable.unit();
+  std::string text =
+      fmt::format("{} ({:.6g}{}{} instead of {:g}): {} would remain", f.variable.name(), f.value,
+                  unit.empty() ? "" : " ", unit, f.before, test_text(f.fit));
+  if (f.fit.refuted()) text += ", still refuted";
+  if (!model.base().analytic.piston_friction && f.variable.name().starts_with("friction.piston_"))
+    text += "; it acts with piston_friction = true of [assumptions.analytic] only";
+  if (!f.implausible.empty()) text += "; the value is implausible: " + listed(f.implausible);
+  return text;
+}
+
+// Names of those that the data cannot tell from the best: the rise of chi-square would be within
+// what one unknown's 95 % interval allows.
+std::vector<std::string> as_good_as_best(const Identification& result) {
+  constexpr double kRise95 = 3.841;
+  std::vector<std::string> names;
+  for (std::size_t k = 1; k < result.further.size(); ++k)
+    if (result.further[k].implausible.empty() &&
+        result.further[k].fit.chi_square < result.further[0].fit.chi_square + kRise95)
+      names.push_back(result.further[k].variable.name());
+  return names;
+}
+
+std::string further_text(const DataModel& model, const Identification& result) {
+  if (result.further.empty()) return "no single further parameter of the case improves the fit";
+  std::string text = "the further unknown that would improve the fit most: " +
+                     further_line(model, result.further.front());
+  if (const auto names = as_good_as_best(result); !names.empty())
+    text += ". The data cannot tell it from " + listed(names);
+  return text;
+}
+
+Section goodness_section(const Identification& result) {
+  const GoodnessOfFit& fit = result.goodness;
+  Section section;
+  section.title = "Goodness of fit";
+  section.text =
+      "Chi-square: sum of the squared residuals, each over its standard uncertainty. p: "
+      "probability "
+      "of a larger chi-square if the model and all stated uncertainties are right and the data are "
+      "independent of each other. The degrees of freedom are the data that count (values, points "
+      "of "
+      "curves, priors, windows that the fit leaves) less the directions of the unknowns that were "
+      "fitted to them.";
+  section.facts = {{"result", fit_text(fit)}};
+  if (!fit.p_value)
+    section.facts.emplace_back(
+        "no test",
+        "There are as many fitted unknowns as data: nothing is left by which "
+        "the model could be tested.");
+  if (fit.refuted()) {
+    section.facts.emplace_back("withheld", kWithheld);
+    section.facts.emplace_back("widened", birge_text(fit));
   }
-  return worst;
+  section.table.columns = {
+      "chi-square", "data that count", "fitted directions", "degrees of freedom",
+      "p-value",    "refuted below",   "refuted",           "Birge ratio"};
+  section.table.rows.push_back(
+      {fit.chi_square, static_cast<long>(fit.residuals), static_cast<long>(fit.fitted_directions),
+       static_cast<long>(fit.degrees_of_freedom()), fit.p_value ? Cell(*fit.p_value) : Cell(),
+       kFitRefutedBelow, fit.refuted(), fit.p_value ? Cell(fit.birge_ratio()) : Cell()});
+  return section;
+}
+
+Section worst_section(const DataModel& model, const Identification& result) {
+  Section section;
+  section.title = "Largest residuals";
+  section.text =
+      "Residual: model minus datum over its standard uncertainty (sigma); of a curve the worst "
+      "point. Share of chi-square: of all points of the curve.";
+  section.table.columns = {
+      "datum", "unit", "given", "model", "residual, sigma", "share of chi-square, %"};
+  for (std::size_t w = 0; w < std::min(kWorstShown, result.worst.size()); ++w) {
+    const WorstResidual& worst = result.worst[w];
+    const auto [given, of_model] = worst_values(model, result, worst);
+    section.table.rows.push_back({name_of(model, worst),
+                                  worst.datum
+                                      ? model.data().data[*worst.datum].unit
+                                      : model.data().unknowns[*worst.unknown].variable.unit(),
+                                  given, of_model, worst.residual, 100 * worst.share});
+  }
+  return section;
+}
+
+Section further_section(const DataModel& model, const Identification& result) {
+  Section section;
+  section.title = "Which further unknown would improve the fit most";
+  section.text =
+      "All continuous parameters that are active in the case and not unknown were compared by the "
+      "derivatives of the residuals. Those that promise most were each fitted together with the "
+      "unknowns. A better fit is no proof that this parameter is wrong: several can have the same "
+      "effect on the data.";
+  section.facts = {{"result", further_text(model, result)}};
+  section.table.columns = {"parameter", "unit",       "in the case",
+                           "fitted",    "chi-square", "degrees of freedom",
+                           "p-value",   "refuted",    "implausible"};
+  for (std::size_t k = 0; k < std::min(kFurtherShown, result.further.size()); ++k) {
+    const FurtherUnknown& f = result.further[k];
+    section.table.rows.push_back({f.variable.name(), f.variable.unit(), f.before, f.value,
+                                  f.fit.chi_square, static_cast<long>(f.fit.degrees_of_freedom()),
+                                  f.fit.p_value ? Cell(*f.fit.p_value) : Cell(), f.fit.refuted(),
+                                  listed(f.implausible)});
+  }
+  return section;
+}
+
+report::Verdict verdict_of(const Identification& result, std::string headline) {
+  const GoodnessOfFit& fit = result.goodness;
+  const bool tested = fit.p_value.has_value() || fit.refuted();
+  report::Verdict verdict{tested ? std::optional(!fit.refuted()) : std::nullopt,
+                          std::move(headline),
+                          fit.refuted() ? "Refuted"
+                          : tested      ? "Not refuted"
+                                        : "Not tested"};
+  verdict.fit = report::Verdict::Fit{fit.chi_square, static_cast<long>(fit.degrees_of_freedom()),
+                                     fit.p_value, kFitRefutedBelow, fit.refuted()};
+  return verdict;
+}
+
+// What the stated uncertainties are multiplied by in the linear standard deviations.
+double widened_by(const Identification& result) {
+  return result.goodness.refuted() ? result.goodness.birge_ratio() : 1;
 }
 
 Section unknowns_section(const DataModel& model, const Identification& result) {
@@ -84,8 +285,15 @@ Section unknowns_section(const DataModel& model, const Identification& result) {
   section.title = "Unknowns";
   section.text =
       "Identified: the least sum of squares. Linear: standard uncertainty as if the model were "
-      "linear there and bounds normal. Profile: 95 % limits, the others fitted anew; a limit at a "
-      "bound is the bound's, not the data's. Posterior: 95 % of the draws.";
+      "linear there and bounds normal. Profile: 95 % limits, the others fitted anew, where the sum "
+      "of squares has risen by 3.841; a limit at a bound is the bound's, not the data's. "
+      "Posterior: "
+      "95 % of the draws. All of them are right only where the stated uncertainties are right: a "
+      "rise of 3.841 means 95 % for that noise alone.";
+  if (result.goodness.refuted()) {
+    section.facts.emplace_back("withheld", kWithheld);
+    section.facts.emplace_back("widened", birge_text(result.goodness));
+  }
   section.table.columns = {"unknown",
                            "unit",
                            "bounds",
@@ -150,7 +358,10 @@ Section fitted_section(const DataModel& model, const Identification& result) {
       "Residual: model minus datum over its standard uncertainty, 0 inside a window. Left out: "
       "what "
       "the others predict for it, with its bounds as normal priors, and how far off that is over "
-      "the standard uncertainty of prediction and datum together.";
+      "the standard uncertainty of prediction and datum together";
+  section.text += result.goodness.refuted()
+                      ? ", both as stated: as the fit is refuted, they are too small."
+                      : ".";
   section.table.columns = {"datum", "where", "at",       "unit",
                            "given", "model", "residual", "left out: predicted",
                            "+-",    "off by"};
@@ -165,7 +376,7 @@ Section fitted_section(const DataModel& model, const Identification& result) {
         datum.unit,
         given_text(datum),
         number_text(datum, result.numbers[place], result.numbers[place + datum.size() - 1]),
-        worst_residual(model, result, i)};
+        worst_residual(result, i)};
     const auto left = std::find_if(result.left_out.begin(), result.left_out.end(),
                                    [&](const LeftOut& l) { return l.datum == i; });
     if (left == result.left_out.end())
@@ -176,6 +387,24 @@ Section fitted_section(const DataModel& model, const Identification& result) {
     section.table.rows.push_back(std::move(row));
   }
   return section;
+}
+
+// The posterior's 95 % band of a predicted datum, and whether it meets the datum.
+struct PredictedBand {
+  double low, high;
+  bool meets;
+};
+std::optional<PredictedBand> predicted_band(const DataModel& model, const Identification& result,
+                                            std::size_t i) {
+  const Datum& datum = model.data().data[i];
+  const std::size_t place = model.place_of(i), last = place + datum.size() - 1;
+  const double low = quantiles_of(result.posterior.numbers, model.numbers(), place).low;
+  const double high = quantiles_of(result.posterior.numbers, model.numbers(), last).high;
+  if (datum.curve || !is_computed(low)) return std::nullopt;
+  const double from = datum.value ? *datum.value - 2 * datum.uncertainty : datum.low;
+  const double to = datum.value ? *datum.value + 2 * datum.uncertainty : datum.high;
+  return PredictedBand{low, high,
+                       datum.size() == 2 ? low >= from && high <= to : low <= to && high >= from};
 }
 
 Section predicted_section(const DataModel& model, const Identification& result) {
@@ -195,16 +424,10 @@ Section predicted_section(const DataModel& model, const Identification& result) 
                              datum.unit,
                              given_text(datum),
                              number_text(datum, result.numbers[place], result.numbers[last])};
-    const double low = quantiles_of(result.posterior.numbers, model.numbers(), place).low;
-    const double high = quantiles_of(result.posterior.numbers, model.numbers(), last).high;
-    if (datum.curve || !is_computed(low)) {
+    if (const auto band = predicted_band(model, result, i))
+      row.insert(row.end(), {band->low, band->high, band->meets ? "yes" : "no"});
+    else
       row.insert(row.end(), {Cell(), Cell(), Cell()});
-    } else {
-      const double from = datum.value ? *datum.value - 2 * datum.uncertainty : datum.low;
-      const double to = datum.value ? *datum.value + 2 * datum.uncertainty : datum.high;
-      const bool meets = datum.size() == 2 ? low >= from && high <= to : low <= to && high >= from;
-      row.insert(row.end(), {low, high, meets ? "yes" : "no"});
-    }
     section.table.rows.push_back(std::move(row));
   }
   return section;
@@ -311,23 +534,45 @@ std::vector<report::Figure> figures_of(const DataModel& model, const Identificat
 std::string headline_of(const DataModel& model, const Identification& result) {
   int fitted = 0, open = 0;
   for (const Datum& datum : model.data().data) fitted += datum.use == Use::fitted;
+  std::string text = fmt::format("{}; unknowns: {}; data they are fitted to: {}",
+                                 fit_text(result.goodness), model.size(), fitted);
+  if (result.goodness.refuted())
+    return result.worst.empty() ? text
+                                : text + "; worst: " + worst_line(model, result, result.worst[0]);
   for (const Direction& direction : result.information.directions) open += direction.strength < 2;
-  std::string text = fmt::format(
-      "unknowns: {}; data they are fitted to: {}; {} of {} directions become less than half as "
-      "wide as "
-      "the bounds",
-      model.size(), fitted, static_cast<int>(model.size()) - open, model.size());
+  text += fmt::format("; {} of {} directions become less than half as wide as the bounds",
+                      static_cast<int>(model.size()) - open, model.size());
   if (result.bands.empty()) return text;
+  int predicted = 0, missed = 0;
+  for (std::size_t i = 0; i < model.data().data.size(); ++i)
+    if (model.data().data[i].use == Use::predicted)
+      if (const auto band = predicted_band(model, result, i)) {
+        ++predicted;
+        missed += !band->meets;
+      }
+  if (missed > 0)
+    text +=
+        fmt::format("; {} of {} predicted data are not met by their 95 % bands", missed, predicted);
   const auto [best, worst] = std::minmax_element(
       result.bands.begin(), result.bands.end(),
       [](const ReactionBand& a, const ReactionBand& b) { return a.half_width < b.half_width; });
   const ChannelLayout layout(model.base().pump.geometry.pistons);
-  return text + fmt::format("; reactions are known to {:.2g} % ({}) .. {:.2g} % ({}) of peak",
+  return text + fmt::format("; reactions are known {}to {:.2g} % ({}) .. {:.2g} % ({}) of peak",
+                            unsettled(result) ? "roughly (posterior not settled) " : "",
                             100 * best->half_width, layout.channels()[best->column].name,
                             100 * worst->half_width, layout.channels()[worst->column].name);
 }
 
 }  // namespace
+
+std::string name_of(const DataModel& model, const WorstResidual& worst) {
+  if (worst.unknown) return "prior of " + model.data().unknowns[*worst.unknown].name();
+  const Datum& datum = model.data().data[*worst.datum];
+  std::string name = datum.what;
+  if (datum.curve) name += fmt::format(" at {:g} deg", datum.curve->theta_deg[worst.number]);
+  if (const std::string at = known_text(model, datum); !at.empty()) name += " (" + at + ")";
+  return name;
+}
 
 report::Document identify_document(const DataModel& model, const Identification& result,
                                    const report::Lines& program) {
@@ -335,19 +580,37 @@ report::Document identify_document(const DataModel& model, const Identification&
   document.title = "Identification: " + model.base().name;
   document.program = program;
   study::describe_case(document, model.base());
-  document.verdict = report::Verdict{std::nullopt, headline_of(model, result)};
+  document.verdict = verdict_of(result, headline_of(model, result));
   document.meaning =
-      "What data say about the parameters of the model, given that the model is right and that "
-      "what is not unknown is known. It is no validation: only data that nothing was fitted to "
-      "are.";
+      result.goodness.refuted()
+          ? "The data refute the model with these unknowns, at the stated uncertainties: either "
+            "a parameter that was not unknown is wrong, or the model leaves out an effect, or "
+            "uncertainties are stated too small, or the search missed the best fit (--starts). The "
+            "identified values fit best, but they do not describe the pump."
+          : "What data say about the parameters of the model, given that the model is right and "
+            "that what is not unknown is known. A fit that is not refuted is no validation: only "
+            "data that nothing was fitted to are.";
+  std::vector<report::Warning> warnings;
+  if (result.goodness.uncertainties_too_large())
+    warnings.push_back(
+        {"Stated uncertainties too large",
+         fmt::format("{}: the residuals are smaller than the stated uncertainties let expect. "
+                     "Either these are stated too large, and then all intervals are too wide; or "
+                     "the data are not independent of each other, as points of a smoothed record",
+                     test_text(result.goodness))});
   if (const auto rhat = unsettled(result))
-    document.warnings = {
+    warnings.push_back(
         {"Posterior not settled",
          fmt::format("R-hat {:.3g}, above {:g}: the walkers still are where they began, and bands "
                      "are a rough size only. More --steps, fewer unknowns or narrower bounds help",
-                     *rhat, kSettled)}};
-  document.runs = {unknowns_section(model, result), determined_section(model, result),
-                   fitted_section(model, result)};
+                     *rhat, kSettled)});
+  if (!warnings.empty()) document.warnings = std::move(warnings);
+  document.runs = {goodness_section(result), worst_section(model, result)};
+  if (result.goodness.refuted()) document.runs->push_back(further_section(model, result));
+  for (Section& section :
+       std::vector{unknowns_section(model, result), determined_section(model, result),
+                   fitted_section(model, result)})
+    document.runs->push_back(std::move(section));
   document.runs->push_back(predicted_section(model, result));
   document.runs->push_back(left_out_section(model));
   if (!result.bands.empty()) {
@@ -364,6 +627,8 @@ std::string identify_text(const DataModel& model, const Identification& result) 
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Unknown& u = model.data().unknowns[i];
     text += fmt::format("{:<42} {:>12.6g} {:<8}", u.name(), result.fit.x[i], u.variable.unit());
+    if (result.goodness.refuted())
+      text += fmt::format(" standard deviation {:.3g}, widened", result.information.deviation[i]);
     if (!result.profiles.empty())
       text += fmt::format(" 95 %: {:.5g}{} to {:.5g}{}", result.profiles[i].low,
                           result.profiles[i].open_low ? " (bound)" : "", result.profiles[i].high,
@@ -371,6 +636,13 @@ std::string identify_text(const DataModel& model, const Identification& result) 
     text += "\n";
   }
   for (const std::string& line : result.information.words) text += line + "\n";
+  if (result.goodness.refuted()) {
+    text += "largest residuals:\n";
+    for (std::size_t w = 0; w < std::min(kWorstPrinted, result.worst.size()); ++w)
+      text += "  " + worst_line(model, result, result.worst[w]) + "\n";
+    text += further_text(model, result) + "\n";
+    text += std::string(kWithheld) + "\n" + birge_text(result.goodness) + "\n";
+  }
   if (const auto rhat = unsettled(result))
     text +=
         fmt::format("posterior not settled: R-hat {:.3g}; bands are a rough size only\n", *rhat);
@@ -380,9 +652,22 @@ std::string identify_text(const DataModel& model, const Identification& result) 
   return text;
 }
 
+std::string identified_case_text(const DataModel& model, const Identification& result) {
+  const GoodnessOfFit& fit = result.goodness;
+  Case identified = model.pump(result.fit.x);
+  identified.name += fit.refuted() ? ", identified (fit refuted)" : ", identified";
+  std::string head = "# Identified values. " + fit_text(fit) + ".\n";
+  if (fit.refuted())
+    head +=
+        "# The data refute this pump: its values fit best, but they do not describe the pump that "
+        "was measured.\n";
+  return head + case_text(identified);
+}
+
 std::string unknowns_csv(const DataModel& model, const Identification& result) {
   std::string text =
-      "unknown,unit,low,high,identified,linear_deviation,profile_low,profile_high,q025,q500,q975\n";
+      "unknown,unit,low,high,identified,linear_deviation,profile_low,profile_high,q025,q500,q975,"
+      "widened_by\n";
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Unknown& u = model.data().unknowns[i];
     const Quantiles q = quantiles_of(result.posterior.unknowns, model.size(), i);
@@ -390,7 +675,7 @@ std::string unknowns_csv(const DataModel& model, const Identification& result) {
     for (const double value : {u.low, u.high, result.fit.x[i], result.information.deviation[i],
                                result.profiles.empty() ? not_computed() : result.profiles[i].low,
                                result.profiles.empty() ? not_computed() : result.profiles[i].high,
-                               q.low, q.middle, q.high})
+                               q.low, q.middle, q.high, widened_by(result)})
       text += is_computed(value) ? fmt::format(",{}", value) : ",";
     text += "\n";
   }

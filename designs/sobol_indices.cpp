@@ -1,8 +1,10 @@
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "bentaxis/designs/points.h"
@@ -16,6 +18,12 @@ namespace bentaxis::designs {
 namespace {
 
 constexpr double kConfidence = 0.95;
+// Round-off of an output, in units of the last place of its largest value.
+constexpr double kUnits = 16;
+// Round-off of the estimator itself, of an index.
+constexpr double kOfEstimator = 1e-12;
+// An output whose round-off is this share of its standard deviation does not vary.
+constexpr double kNoVariation = 1e-3;
 
 // OpenTURNS brings eighty libraries, a BLAS of its own among them, and a tenth of a second: what is
 // linked with it is a file of its own, which is loaded when the first index is wanted.
@@ -93,7 +101,42 @@ class Design {
   std::unique_ptr<Points> points_;
 };
 
+// An index with its interval: what differs from 0 or 1 by round-off alone is 0 or 1.
+Estimate estimate_of(const double* index, double round_off) {
+  const auto rounded = [&](double value) {
+    if (std::abs(value) <= round_off) return 0.0;
+    return std::abs(value - 1) <= round_off ? 1.0 : value;
+  };
+  const double value = rounded(index[0]);
+  return {value, std::min(rounded(index[1]), value), std::max(rounded(index[2]), value)};
+}
+
+// Takes the mean off values, which loses digits in the estimator's sums.
+// @return round-off of an output over its standard deviation
+double centre(std::vector<double>& values) {
+  double mean = 0, largest = 0, squares = 0;
+  for (const double v : values) {
+    mean += (v - values.front()) / static_cast<double>(values.size());
+    largest = std::max(largest, std::abs(v));
+  }
+  mean += values.front();
+  for (double& v : values) {
+    v -= mean;
+    squares += v * v / static_cast<double>(values.size());
+  }
+  if (!(squares > 0)) return HUGE_VAL;
+  return kUnits * std::numeric_limits<double>::epsilon() * largest / std::sqrt(squares);
+}
+
 }  // namespace
+
+void require_sobol_indices() {
+  if (!module().is_there())
+    throw InputError(
+        "--sobol: this program was built without OpenTURNS; install "
+        "libopenturns-dev (scripts/setup full) and build again" +
+        (module().why().empty() ? "" : ": " + module().why()));
+}
 
 std::string openturns_version() {
 #ifdef BENTAXIS_HAS_OPENTURNS
@@ -108,11 +151,7 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
                            int threads, const Progress& progress) {
   if (!numbers.independent())
     throw InputError("Sobol indices: need independent parameters: [uncertainty] correlates some");
-  if (!module().is_there())
-    throw InputError(
-        "Sobol indices: this program was built without OpenTURNS; install "
-        "libopenturns-dev (scripts/setup full) and build again" +
-        (module().why().empty() ? "" : ": " + module().why()));
+  require_sobol_indices();
   const std::size_t n = numbers.size();
   const Design design(numbers, base, seed);
   const std::size_t rows = design.of_one();
@@ -147,14 +186,16 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
     for (std::size_t r = 0; r < rows; ++r)
       for (std::size_t k = 0; k < kept.size(); ++k)
         column[r * kept.size() + k] = results[(kept[k] * rows + r) * outputs + o];
-    const auto [low, high] = std::minmax_element(column.begin(), column.end());
     std::vector<double> found(6 * n, not_computed());
-    if (is_computed(column.front()) && *low < *high)
-      module().indices(kept.size(), n, ordered, column, found);
+    const double noise = is_computed(column.front()) ? centre(column) : HUGE_VAL;
+    if (noise < kNoVariation) module().indices(kept.size(), n, ordered, column, found);
+    const double round_off = std::max(kOfEstimator, noise);
     for (std::size_t i = 0; i < n; ++i) {
       const double* const row = found.data() + 6 * i;
-      all.first.push_back({row[0], row[1], row[2]});
-      all.total.push_back({row[3], row[4], row[5]});
+      all.first.push_back(is_computed(row[0]) ? estimate_of(row, round_off)
+                                              : Estimate{row[0], row[1], row[2]});
+      all.total.push_back(is_computed(row[3]) ? estimate_of(row + 3, round_off)
+                                              : Estimate{row[3], row[4], row[5]});
     }
   }
   return all;

@@ -105,6 +105,30 @@ CurveBand band_of(const SampledOutputs& sampled, std::size_t first, std::size_t 
   return band;
 }
 
+// The parameters of the samples that have outputs.
+std::vector<Spread> kept_parameters(const UncertainVariables& variables,
+                                    const UncertaintyOptions& options,
+                                    const SampledOutputs& sampled) {
+  const std::size_t n = variables.size();
+  const auto points = random(n, options.samples, options.seed);
+  std::vector<std::vector<double>> columns(n);
+  std::vector<double> shares(n), values(n);
+  auto without = sampled.infeasible.begin();
+  for (std::size_t i = 0; i < options.samples; ++i) {
+    if (without != sampled.infeasible.end() && without->first == i) {
+      ++without;
+      continue;
+    }
+    points->point(i, shares);
+    variables.values(shares, values);
+    for (std::size_t v = 0; v < n; ++v) columns[v].push_back(values[v]);
+  }
+  std::vector<Spread> kept;
+  for (std::vector<double>& column : columns)
+    kept.push_back(spread_of(std::move(column), options.level));
+  return kept;
+}
+
 // The outputs alone.
 SampledOutputs without_curves(const SampledOutputs& sampled, std::size_t outputs) {
   SampledOutputs few;
@@ -158,6 +182,7 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
                      std::to_string(kFewestBasePoints) + ", or 0: none");
   if (options.sobol > 0 && !variables.independent())
     throw InputError("--sobol: needs independent parameters: [uncertainty] correlates some");
+  if (options.sobol > 0) require_sobol_indices();
   const Designs designs(the_case, variables, options);
   const std::size_t outputs = options.outputs.size();
   const std::vector<double> nominal = designs.of(the_case);
@@ -193,6 +218,8 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
       band.peak = std::max(band.peak, std::sqrt(square));
     }
   result.sampled = without_curves(sampled, outputs);
+  if (!sampled.infeasible.empty())
+    result.kept_parameters = kept_parameters(variables, options, sampled);
 
   UncertaintyOptions of_outputs = options;
   of_outputs.curves = false;

@@ -27,13 +27,21 @@ std::string in_words(const UncertainOutput& o, double level) {
       s.deviation);
 }
 
+// "12 of 300 samples (4 %) are no pump .. and are left out"
+std::string left_out_text(const UncertaintyResult& result) {
+  const std::size_t without = result.sampled.infeasible.size(), all = result.options.samples;
+  return fmt::format(
+      "{} of {} samples are no pump that can be computed and are left out ({:.3g} %): all "
+      "statistics are those of the other samples alone, and their deviation is not that of the "
+      "stated distributions",
+      without, all, 100 * static_cast<double>(without) / static_cast<double>(all));
+}
+
 std::string headline(const UncertaintyResult& result) {
   std::string text = result.outputs.empty()
                          ? std::string("bands on reactions")
                          : in_words(result.outputs.front(), result.options.level);
-  if (const std::size_t without = result.sampled.infeasible.size(); without > 0)
-    text += fmt::format("; {} of {} samples are no pump that can be computed", without,
-                        result.options.samples);
+  if (!result.sampled.infeasible.empty()) text += "; " + left_out_text(result);
   return text;
 }
 
@@ -85,7 +93,12 @@ Section first_order_section(const UncertaintyResult& result) {
       "combined standard uncertainty from derivatives there and covariances. Where it differs from "
       "Monte Carlo by more than the latter's standard error, the output is not linear over the "
       "width of what is not known; Monte Carlo then counts.",
-      {},
+      result.sampled.infeasible.empty()
+          ? report::Lines{}
+          : report::
+                Lines{{"left-out samples",
+                       "First order takes the stated distributions as a whole, Monte Carlo only "
+                       "the samples that are pumps: the two differ by that too."}},
       {{"output", "unit", "value at the means", "combined standard uncertainty", "of Monte Carlo",
         "standard error of that"},
        {}}};
@@ -124,6 +137,25 @@ Section contributions_section(const UncertaintyResult& result) {
   return section;
 }
 
+// To three decimals, without a sign before 0.
+std::string share_text(double share) {
+  const std::string text = fmt::format("{:.3f}", share);
+  return text == "-0.000" ? "0.000" : text;
+}
+std::string share_text(const Estimate& e) {
+  return share_text(e.value) + " (" + share_text(e.low) + " .. " + share_text(e.high) + ")";
+}
+
+std::string sobol_left_out_text(const UncertaintyResult& result) {
+  const std::size_t without = result.sobol.left_out;
+  if (without == 0) return "0";
+  return fmt::format(
+      "{} of {} ({:.3g} %), one of whose points is no pump: the indices are those of the other "
+      "points alone, among which the parameters are no longer independent",
+      without, result.options.sobol,
+      100 * static_cast<double>(without) / static_cast<double>(result.options.sobol));
+}
+
 Section sobol_section(const UncertaintyResult& result) {
   Section section{
       "Sobol indices",
@@ -131,7 +163,7 @@ Section sobol_section(const UncertaintyResult& result) {
       "others. Martinez' estimator (OpenTURNS), with the interval of 95 % that it has at "
       "independent points; the points are a Sobol sequence, so that it errs on the safe side.",
       {{"evaluations", std::to_string(result.sobol.evaluations)},
-       {"base points left out", std::to_string(result.sobol.left_out)}},
+       {"base points left out", sobol_left_out_text(result)}},
       {{"output", "parameter", "first", "from", "to", "total", "from", "to"}, {}}};
   const std::size_t n = result.variables.size();
   for (std::size_t o = 0; o < result.outputs.size(); ++o)
@@ -141,22 +173,6 @@ Section sobol_section(const UncertaintyResult& result) {
                                     result.variables.variables[i].name(), first.value, first.low,
                                     first.high, total.value, total.low, total.high});
     }
-  return section;
-}
-
-Section infeasible_section(const UncertaintyResult& result) {
-  std::map<std::string, long> counts;
-  for (const auto& [index, reason] : result.sampled.infeasible) ++counts[reason];
-  Section section{"Samples that are no pump",
-                  "Left out of everything above: it holds for the pumps that there can be.",
-                  {{"samples", fmt::format("{} of {}", result.sampled.infeasible.size(),
-                                           result.options.samples)}},
-                  {{"reason", "samples"}, {}}};
-  constexpr std::size_t kMost = 20;
-  for (const auto& [reason, count] : counts)
-    if (section.table.rows.size() < kMost) section.table.rows.push_back({reason, count});
-  if (counts.size() > kMost)
-    section.facts.emplace_back("reasons not listed", std::to_string(counts.size() - kMost));
   return section;
 }
 
@@ -219,6 +235,49 @@ Section parameters_section(const UncertaintyResult& result) {
     section.facts.emplace_back("correlation of " + c.first + " and " + c.second,
                                number_text(c.coefficient));
   return section;
+}
+
+void add_left_out(report::Document& document, const UncertaintyResult& result) {
+  if (result.sampled.infeasible.empty()) return;
+  if (!document.runs) document.runs.emplace();
+  if (!document.warnings) document.warnings.emplace();
+  document.warnings->push_back({"Samples left out", left_out_text(result)});
+  std::map<std::string, long> counts;
+  for (const auto& [index, reason] : result.sampled.infeasible) ++counts[reason];
+  const auto without = static_cast<double>(result.sampled.infeasible.size());
+  Section reasons{
+      "Samples that are no pump",
+      "Left out of everything above: it holds for the pumps that there can be.",
+      {{"samples",
+        fmt::format("{} of {}", result.sampled.infeasible.size(), result.options.samples)},
+       {"share, %",
+        fmt::format("{:.3g}", 100 * without / static_cast<double>(result.options.samples))}},
+      {{"reason", "samples"}, {}}};
+  constexpr std::size_t kMost = 20;
+  for (const auto& [reason, count] : counts)
+    if (reasons.table.rows.size() < kMost) reasons.table.rows.push_back({reason, count});
+  if (counts.size() > kMost)
+    reasons.facts.emplace_back("reasons not listed", std::to_string(counts.size() - kMost));
+  document.runs->push_back(std::move(reasons));
+
+  Section kept{
+      "Parameters of the samples that are left",
+      "Leaving samples out changes the distributions of the parameters: where mean or "
+      "standard deviation of the samples that are left differ from the stated ones by more "
+      "than their standard errors, mean, standard deviation and quantiles of the outputs "
+      "are those of these narrower distributions, not of the stated ones.",
+      {},
+      {{"parameter", "unit", "stated mean", "mean", "standard error of it",
+        "stated standard deviation", "standard deviation", "standard error of it"},
+       {}}};
+  for (std::size_t i = 0; i < result.kept_parameters.size(); ++i) {
+    const Spread& s = result.kept_parameters[i];
+    const Distribution& d = result.variables.distributions[i];
+    kept.table.rows.push_back({result.variables.variables[i].name(),
+                               result.variables.variables[i].unit(), d.mean(), s.mean, s.mean_error,
+                               d.standard_deviation(), s.deviation, s.deviation_error});
+  }
+  document.runs->push_back(std::move(kept));
 }
 
 Section bands_section(const UncertaintyResult& result) {
@@ -303,7 +362,7 @@ report::Document uncertainty_document(const UncertaintyResult& result,
     for (report::Figure& figure : band_figures(result))
       document.figures->push_back(std::move(figure));
   }
-  if (!result.sampled.infeasible.empty()) document.runs->push_back(infeasible_section(result));
+  add_left_out(document, result);
   return document;
 }
 
@@ -321,10 +380,10 @@ std::string uncertainty_text(const UncertaintyResult& result) {
       for (std::size_t i = 0; i < n; ++i) {
         const Estimate &first = result.sobol.first[o * n + i],
                        &total = result.sobol.total[o * n + i];
-        text += fmt::format(
-            "{}: {}: first {:.3f} ({:.3f} .. {:.3f}), total {:.3f} ({:.3f} .. {:.3f})\n",
-            result.outputs[o].output.name, result.variables.variables[i].name(), first.value,
-            first.low, first.high, total.value, total.low, total.high);
+        text += result.outputs[o].output.name + ": " + result.variables.variables[i].name() + ": ";
+        text += is_computed(first.value)
+                    ? "first " + share_text(first) + ", total " + share_text(total) + "\n"
+                    : "no indices, the output does not vary\n";
       }
   const CurveBand* widest = nullptr;
   for (const CurveBand& b : result.bands)
@@ -333,9 +392,9 @@ std::string uncertainty_text(const UncertaintyResult& result) {
   if (widest != nullptr)
     text += fmt::format("widest band: {}, +-{:.3g} {}, {:.2g} % of peak\n", widest->channel.name,
                         widest->widest, widest->channel.unit, 100 * widest->widest / widest->peak);
-  if (const std::size_t without = result.sampled.infeasible.size(); without > 0)
-    text += fmt::format("{} of {} samples are no pump that can be computed, as: {}\n", without,
-                        result.options.samples, result.sampled.infeasible.front().second);
+  if (!result.sampled.infeasible.empty())
+    text += left_out_text(result) +
+            "; the first reason: " + result.sampled.infeasible.front().second + "\n";
   return text;
 }
 

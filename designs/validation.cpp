@@ -213,6 +213,7 @@ void add_validation(report::Document& document, const Validation& v) {
   if (!document.figures) document.figures.emplace();
   document.runs->push_back(parameters_section(v.uncertainty));
   document.runs->push_back(bands_section(v.uncertainty));
+  add_left_out(document, v.uncertainty);
   if (!v.rows.empty()) document.runs->push_back(numbers_section(v));
   if (!v.curves.empty()) document.runs->push_back(curves_section(v));
   for (report::Figure& figure : band_figures(v.uncertainty)) {
@@ -239,6 +240,11 @@ std::string validation_text(const Validation& v) {
   if (!v.curves.empty())
     text += fmt::format(", and all through the turn for {} curves",
                         of(v.curves, [](const ValidationCurve& curve) { return curve.worst; }));
+  if (const std::size_t without = v.uncertainty.sampled.infeasible.size(); without > 0)
+    text += fmt::format(
+        "; {} of {} samples are no pump that can be computed and are left out: u_input is that of "
+        "the other samples alone",
+        without, v.uncertainty.options.samples);
   return text;
 }
 

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "bentaxis/designs/identify_document.h"
-#include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/number.h"
 #include "binding.h"
 #include "call.h"
@@ -109,10 +108,22 @@ std::map<std::string, std::pair<double, double>> intervals(const Identification&
   return limits;
 }
 
-Case identified(const Found& found) {
-  Case pump = found.model.pump(found.result.fit.x);
-  pump.name += ", identified";
-  return pump;
+std::string identified(const Found& found) {
+  return designs::identified_case_text(found.model, found.result);
+}
+
+std::vector<std::pair<std::string, double>> worst_of_fit(const Identification& self) {
+  std::vector<std::pair<std::string, double>> all;
+  for (const auto& residual : self.found->result.worst)
+    all.emplace_back(designs::name_of(self.found->model, residual), residual.residual);
+  return all;
+}
+
+std::vector<std::pair<std::string, double>> further_of_fit(const Identification& self) {
+  std::vector<std::pair<std::string, double>> all;
+  for (const auto& unknown : self.found->result.further)
+    all.emplace_back(unknown.variable.name(), unknown.fit.chi_square);
+  return all;
 }
 
 // Columns of low, middle and high of each reaction, as bands.csv has them.
@@ -153,7 +164,7 @@ std::vector<fs::path> report_identification(const Identification& self, const fs
   return unlocked([&](const study::PartProgress&) {
     const Found& found = *self.found;
     std::vector<cli::TextFile> files = {
-        {"identified.toml", case_text(identified(found))},
+        {"identified.toml", identified(found)},
         {"unknowns.csv", designs::unknowns_csv(found.model, found.result)}};
     if (const std::string text = designs::bands_csv(found.model, found.result); !text.empty())
       files.emplace_back("bands.csv", text);
@@ -189,13 +200,43 @@ void add_identification(py::module_& module) {
           [](const Identification& self) {
             return by_name(self, self.found->result.information.deviation);
           },
-          "Standard deviations, as if the model were linear there.")
+          "Standard deviations, as if the model were linear there; where the fit is refuted, with "
+          "all stated uncertainties multiplied by birge_ratio.")
       .def_property_readonly("intervals", &intervals,
-                             "95 % limits by their profiles; empty with fit_only.")
+                             "95 % limits by their profiles; empty with fit_only and where the fit "
+                             "is refuted. Right only where the stated uncertainties are.")
       .def_property_readonly(
           "sum_of_squares",
           [](const Identification& self) { return self.found->result.fit.sum_of_squares; },
-          "Of all residuals over their uncertainties.")
+          "Of all residuals over their uncertainties: chi-square.")
+      .def_property_readonly(
+          "degrees_of_freedom",
+          [](const Identification& self) {
+            return self.found->result.goodness.degrees_of_freedom();
+          },
+          "Data that count less what was fitted to them; 0: the fit cannot be tested.")
+      .def_property_readonly(
+          "p_value", [](const Identification& self) { return self.found->result.goodness.p_value; },
+          "Probability of a larger sum of squares if model and stated uncertainties are right; "
+          "None "
+          "without degrees of freedom.")
+      .def_property_readonly(
+          "refuted",
+          [](const Identification& self) { return self.found->result.goodness.refuted(); },
+          "Whether the data refute the model with these unknowns: p_value below 0.001. There are "
+          "then no intervals and no bands.")
+      .def_property_readonly(
+          "birge_ratio",
+          [](const Identification& self) { return self.found->result.goodness.birge_ratio(); },
+          "Root of the sum of squares over the degrees of freedom.")
+      .def_property_readonly("worst_residuals", &worst_of_fit,
+                             "Names of the data with the largest residuals, and the residuals over "
+                             "their standard uncertainties, the largest first.")
+      .def_property_readonly(
+          "further_unknowns", &further_of_fit,
+          "Of a refuted fit: parameters that would improve it most if they were "
+          "unknown too, each with the sum of squares that would remain, the best "
+          "first.")
       .def_property_readonly(
           "minima", [](const Identification& self) { return self.found->result.minima; },
           "Best first.")
@@ -211,11 +252,13 @@ void add_identification(py::module_& module) {
       .def_property_readonly(
           "case",
           [](const Identification& self) {
-            return PythonCase(case_text(identified(*self.found)), self.file, {});
+            return PythonCase(identified(*self.found), self.file, {});
           },
           "The identified pump.")
-      .def_property_readonly("bands", &bands,
-                             "Reactions over the turn with their bands; None with fit_only.")
+      .def_property_readonly(
+          "bands", &bands,
+          "Reactions over the turn with their bands; None with fit_only and where the "
+          "fit is refuted.")
       .def("report", &report_identification, py::arg("folder"),
            "Writes what the program writes; returns the files' paths.")
       .def(

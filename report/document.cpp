@@ -403,6 +403,12 @@ Json json_of(const Verdict& verdict) {
     json["reference"] = {{"name", verdict.reference->name},
                          {"agrees", verdict.reference->agrees},
                          {"headline", verdict.reference->headline}};
+  if (verdict.fit)
+    json["fit"] = {{"chi_square", number_or_null(verdict.fit->chi_square)},
+                   {"degrees_of_freedom", verdict.fit->degrees_of_freedom},
+                   {"p_value", value_or_null(verdict.fit->p_value)},
+                   {"refuted_below", verdict.fit->refuted_below},
+                   {"refuted", verdict.fit->refuted}};
   return json;
 }
 

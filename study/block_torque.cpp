@@ -69,7 +69,7 @@ std::vector<BlockTorque> block_torques(const Case& ideal, const Case& hydraulic,
   };
   const Case still = with_coulomb(ideal, 0);
   const double without = rows.add("no piston friction, ideal trace of 20 deg", still);
-  const double one = rows.add("piston friction 25 N, which fits the two mean torques",
+  const double one = rows.add("piston friction 25 N, calibrated for the shipped case",
                               with_coulomb(ideal, kFittedCoulomb));
   rows.add("piston friction 250 N", with_coulomb(ideal, 250));
   const double needed =

@@ -1299,6 +1299,18 @@ class PressureTest(ProgramTest):
         self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0}), "--with", 2, "--without", 1),
                              "piston_coulomb_N")
 
+    def test_calibrate_finds_the_torques_or_says_that_it_does_not(self):
+        def viscous(value):
+            return self.case(**{"operation.samples_per_revolution": 36, "friction.piston_viscous_N_s_per_m": value})
+
+        # Viscous friction does not grow with piston_coulomb_N: it adds about 2 of the wanted 3 Nm.
+        result = self.run_program("calibrate", viscous(20.0), "--with", 295, "--without", 292)
+        self.assertIn(": 295.0000 Nm with, 292.0000 Nm without", result.out.splitlines()[-1])
+        # And here more than is wanted: no Coulomb friction gives that.
+        self.assert_mentions(self.refused("calibrate", viscous(500.0), "--with", 295, "--without", 292),
+                             "piston_coulomb_N", "must be > 0", "add 3 Nm", "piston_viscous_N_s_per_m")
+        self.assert_mentions(self.refused("calibrate", viscous(0.0), "--with", 290, "--without", 295), "piston_coulomb_N", "add -5 Nm")
+
     def test_overlay(self):
         self.run_program("pressure", self.hydraulic(), "--overlay", self.hydraulic("peak.toml", "bap63_peak"),
                          "--out", "out")

@@ -12,7 +12,7 @@ import sys
 import unittest
 
 import command_line_test as program
-from command_line_test import BAD_INPUT, ProgramTest
+from command_line_test import BAD_INPUT, OUT_OF_TOLERANCE, ProgramTest
 
 DATA = """schema = 1
 [[condition]]
@@ -52,7 +52,8 @@ class IdentifyTest(ProgramTest):
                                 *(() if "--fit-only" in options else ("--steps", 20, "--draws", 10)), *options, **others)
 
     def test_files_and_tables(self):
-        self.identify(DATA)
+        result = self.identify(DATA)
+        self.assertIn("1 of 1 predicted data are not met by their 95 % bands", result.out)
         self.assertEqual({path.name for path in (self.folder / "out").iterdir()},
                          {"report.html", "report.json", "identified.toml", "unknowns.csv", "bands.csv"})
         report = json.loads((self.folder / "out" / "report.json").read_text())
@@ -125,6 +126,88 @@ class IdentifyTest(ProgramTest):
         with open(self.folder / "out" / "unknowns.csv", newline="") as file:
             [row] = csv.DictReader(file)
         self.assertAlmostEqual(float(row["identified"]), 22.5, delta=1e-4)
+
+    # Mean torques at six operating points of the pump with 120 N of piston friction, fitted with the 25 N of the case.
+    REFUTED = """schema = 1
+[[unknown]]
+parameter = "pump.axis_offset_mm"
+between = [0, 1]
+[[unknown]]
+parameter = "pump.tilt_deg"
+between = [38, 42]
+"""
+
+    def rig(self, coulomb, uncertainty=0.4):
+        text = self.REFUTED
+        for speed in (1000, 2000):
+            for bar in (100, 200, 300):
+                settings = [f"operation.speed_rpm={speed}", f"pressure.delivery_bar={bar}"]
+                changes = [*settings, f"friction.piston_coulomb_N={coulomb}", "operation.samples_per_revolution=60"]
+                self.run_program("run", self.case(), *(word for change in changes for word in ("--set", change)), "--model",
+                                 "analytic", "--channels", "Td", "--out", "rig")
+                with open(self.folder / "rig" / "analytic.csv", newline="") as file:
+                    torques = [float(row["Td_z1_Nm"]) for row in csv.DictReader(file)]
+                # Noise of half the uncertainty, the same whatever the friction.
+                noise = 0.5 * uncertainty * math.cos(speed * bar)
+                text += (f'[[condition]]\nname = "{speed} rpm, {bar} bar"\nset = {json.dumps(settings)}\n[[number]]\n'
+                         f'output = "mean:Td"\nvalue = {sum(torques) / len(torques) + noise}\nuncertainty = {uncertainty}\n'
+                         f'condition = "{speed} rpm, {bar} bar"\n')
+        return text
+
+    def test_a_refuted_fit(self):
+        result = self.identify(self.rig(120), status=OUT_OF_TOLERANCE)
+        self.assertRegex(result.out, r"^the model does not fit the data: chi-square [\d.]+ with 5 degrees of freedom, p ")
+        self.assertRegex(result.out, r"largest residuals:\n  mean:Td \(\d000 rpm, \d00 bar\): -\d+\.\d sigma \(data ")
+        self.assertRegex(result.out, r"improve the fit most: friction\.piston_coulomb_N \(1[12]\d\.?\d* N instead of 25\)")
+        self.assertIn("withheld", result.out)
+        for claim in ("known to", "most useful further measurement"):
+            self.assertNotIn(claim, result.out)
+        self.assertEqual({path.name for path in (self.folder / "out").iterdir()},
+                         {"report.html", "report.json", "identified.toml", "unknowns.csv"})
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        self.assertIs(report["verdict"]["agrees"], False)
+        self.assertEqual(report["verdict"]["word"], "Refuted")
+        fit = report["verdict"]["fit"]
+        self.assertTrue(fit["refuted"])
+        # Six data less the tilt: of the offset they say nothing.
+        self.assertEqual(fit["degrees_of_freedom"], 5)
+        half = fit["chi_square"] / 2
+        p = math.erfc(math.sqrt(half)) + math.sqrt(4 * half / math.pi) * math.exp(-half) * (1 + 2 * half / 3)
+        self.assertGreater(p, 0)
+        self.assertAlmostEqual(fit["p_value"], p, delta=1e-9 * p)
+        tables = {run["title"]: [dict(zip(run["table"]["columns"], row)) for row in run["table"]["rows"]] for run in report["runs"]}
+        self.assertEqual(tables["Goodness of fit"][0]["chi-square"], fit["chi_square"])
+        best = tables["Which further unknown would improve the fit most"][0]
+        self.assertEqual((best["parameter"], best["refuted"]), ("friction.piston_coulomb_N", False))
+        self.assertAlmostEqual(best["fitted"], 120, delta=5)
+        self.assertGreater(abs(tables["Largest residuals"][0]["residual, sigma"]), 3)
+        self.assertNotIn("How well each reaction is known", tables)
+        with open(self.folder / "out" / "unknowns.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            self.assertEqual((row["profile_low"], row["q500"]), ("", ""))
+            self.assertAlmostEqual(float(row["widened_by"]), math.sqrt(fit["chi_square"] / 5), 9)
+        text = (self.folder / "out" / "identified.toml").read_text()
+        self.assertTrue(text.startswith("# Identified values. the model does not fit the data: chi-square "))
+        # What is made from it says so too.
+        shown = self.run_program("show", "out/identified.toml", "--out", "shown")
+        self.assertIn("fit refuted", shown.out + (self.folder / "shown" / "report.json").read_text())
+
+    def test_a_fit_that_is_not_refuted(self):
+        result = self.identify(self.rig(25), "--fit-only")
+        self.assertRegex(result.out, r"^fit: chi-square [\d.]+ with 5 degrees of freedom, p = 0\.\d+: not refuted; ")
+        report = json.loads((self.folder / "out" / "report.json").read_text())
+        self.assertIs(report["verdict"]["agrees"], True)
+        self.assertEqual(report["verdict"]["word"], "Not refuted")
+        with open(self.folder / "out" / "unknowns.csv", newline="") as file:
+            self.assertEqual({row["widened_by"] for row in csv.DictReader(file)}, {"1"})
+        self.assertIn("degrees of freedom", (self.folder / "out" / "identified.toml").read_text().splitlines()[0])
+
+    def test_a_fit_without_degrees_of_freedom_is_not_tested(self):
+        result = self.identify(DATA, "--fit-only")
+        self.assertRegex(result.out, "^no test of the fit: chi-square [^ ]+ with 0 degrees of freedom; ")
+        verdict = json.loads((self.folder / "out" / "report.json").read_text())["verdict"]
+        self.assertEqual((verdict["agrees"], verdict["word"], verdict["fit"]["p_value"]), (None, "Not tested", None))
 
     def refused_with(self, text, *words):
         line = self.identify(text, status=BAD_INPUT).err.strip().splitlines()[-1]

@@ -70,6 +70,10 @@ class SchemaTest(unittest.TestCase):
                                 "pump.joint_circle_radius_mm=20:35:5", "--maximise", "mean:Td", "--minimise", "max:Rb2", "--check", "10%"),
         }
         cls.reports["regress"] = cls.page_of_a_regression()
+        (folder / "data.toml").write_text('schema = 1\n[[unknown]]\nparameter = "pump.bore_diameter_mm"\nbetween = [20, 25]\n' + "".join(
+            f'[[number]]\noutput = "mean:Td"\nvalue = {value}\nuncertainty = 1\n' for value in (292, 300)))
+        if cls.run_program("identify", rated, "--data", "data.toml", "--out", "out", status=None).returncode != 2:  # there is Ceres
+            cls.reports["refuted"] = cls.report("report.json", "identify", rated, "--data", "data.toml", "--starts", "1", status=1)
 
     @classmethod
     def tearDownClass(cls):

@@ -146,6 +146,28 @@ class UncertaintyTest(ProgramTest):
         self.assertIn(f"{300 - rows} of 300 samples are no pump", result.out)
         section = {s["title"]: s for s in self.report()["runs"]}["Samples that are no pump"]
         self.assertIn("port_plate", section["table"]["rows"][0][0])
+        # What it does to the statistics: the arc's end is cut at its beginning, 189 deg, the tilt is not.
+        self.assert_mentions(result.out, f"({100 * (300 - rows) / 300:.3g} %)", "those of the other samples alone")
+        [warning] = self.report()["warnings"]
+        self.assertEqual(warning["name"], "Samples left out")
+        self.assertIn("left out", self.report()["verdict"]["headline"])
+        kept = {s["title"]: s for s in self.report()["runs"]}["Parameters of the samples that are left"]["table"]
+        self.assertEqual(kept["columns"][2:], ["stated mean", "mean", "standard error of it", "stated standard deviation",
+                                               "standard deviation", "standard error of it"])
+        samples = self.table("samples.csv")
+        for name, _, stated_mean, mean, mean_error, stated, deviation, error in kept["rows"]:
+            values = [float(sample[name]) for sample in samples]
+            self.assertAlmostEqual(mean, statistics.fmean(values), 9)
+            self.assertAlmostEqual(deviation, statistics.stdev(values), 9)
+            cut = name.startswith("port_plate")
+            self.assertEqual(abs(mean - stated_mean) > 4 * mean_error, cut, name)
+            self.assertEqual(abs(deviation - stated) > 4 * error, cut, name)
+
+    def test_samples_that_a_comparison_leaves_out(self):
+        case = self.uncertain('\n[uncertainty]\n"port_plate.delivery_arc_deg.2" = "normal(189.5, 0.5)"\n')
+        result = self.run_program("compare", case, "--uncertainty", 200, "--out", "out")
+        self.assert_mentions(result.out, "of 200 samples are no pump", "u_input is that of the other samples alone")
+        self.assertIn("Samples left out", [warning["name"] for warning in self.report()["warnings"]])
 
     def test_sobol_indices(self):
         self.run_program("uncertainty", self.uncertain(), "--samples", 150, "--no-curves", "--out", "plain")
@@ -164,6 +186,17 @@ class UncertaintyTest(ProgramTest):
             self.assertLess(low, first)
             self.assertLess(first, high)
             self.assertAlmostEqual(total, first, delta=0.1)
+        # Displacement depends on the tilt alone: indices are 0 or 1, not a round-off from them, and no 0 has a sign.
+        for seed in range(1, 5):
+            result = self.run_program("uncertainty", case, "--output", "displacement_cm3,mean:Td", "--no-curves", "--samples", 150,
+                                      "--sobol", 64, "--seed", seed, "--out", "out")
+            self.assertNotIn("-0.000", result.out)
+            rows = {s["title"]: s for s in self.report()["runs"]}["Sobol indices"]["table"]["rows"]
+            for output, name, first, low, high, total, total_low, total_high in rows:
+                self.assertTrue(low <= first <= high and total_low <= total <= total_high, (output, name, seed))
+                if output == "displacement_cm3":
+                    exact = (first, low, high) if name == "pump.tilt_deg" else (total, total_low, total_high)
+                    self.assertEqual(set(exact), {1 if name == "pump.tilt_deg" else 0}, name)
 
     def test_refusals(self):
         plain = self.uncertain("").rename(self.folder / "plain.toml")

@@ -12,6 +12,7 @@
 
 #include "bentaxis/designs/distribution.h"
 #include "bentaxis/designs/propagation.h"
+#include "bentaxis/designs/uncertainty_document.h"
 #include "bentaxis/designs/validation.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/case_writer.h"
@@ -377,6 +378,35 @@ TEST(SobolIndices, OfIshigamisFunctionLieInTheirBands) {
               testing::HasSubstr("independent"));
 }
 
+// An output of one number alone: its indices are 1, those of the others 0, and not a round-off from
+// them, which no interval would hold.
+TEST(SobolIndices, ThatAreZeroOrOneAreExact) {
+  if (openturns_version() == "none") GTEST_SKIP() << "built without OpenTURNS";
+  const UncertainVariables inputs = numbers(std::vector<std::string>(3, "uniform(0, 1)"));
+  for (const double offset : {0.0, 300.0, 1e6})
+    for (const std::size_t base : {16U, 64U, 1024U})
+      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        const Response one =
+            response_of([&](std::span<const double> x) { return offset + x[0]; }, 3);
+        const SobolIndices found = sobol_indices(one, 1, inputs, base, seed, 1);
+        EXPECT_EQ(found.first[0].value, 1);
+        EXPECT_EQ(found.total[1].value, 0);
+        EXPECT_FALSE(std::signbit(found.total[2].value));
+        for (const auto* indices : {&found.first, &found.total})
+          for (const Estimate& e : *indices) {
+            EXPECT_LE(e.low, e.value) << offset << ", " << base << ", " << seed;
+            EXPECT_GE(e.high, e.value) << offset << ", " << base << ", " << seed;
+          }
+        EXPECT_EQ(found.total[1].low, 0);
+        EXPECT_EQ(found.total[1].high, 0);
+        EXPECT_EQ(found.first[0].low, 1);
+      }
+  // What varies by its round-off alone has none.
+  const Response still = response_of(
+      [](std::span<const double> x) { return 1e9 * (1 + (x[0] > 0.5 ? 1 : 0) * 2.3e-16); }, 3);
+  EXPECT_FALSE(is_computed(sobol_indices(still, 1, inputs, 64, 1, 1).first[0].value));
+}
+
 // ---- Of a case
 
 Case some_uncertain() {
@@ -456,6 +486,33 @@ TEST(Uncertainty, ToFirstOrderIsThatOfAProduct) {
   const UncertaintyResult found = uncertainty(the_case, options);
   EXPECT_NEAR(found.first_order.deviations[0] / found.outputs[0].nominal,
               std::hypot(0.01, 2 * 0.005), 1e-9);
+}
+
+// Leaving samples out narrows the distributions: of the delivery arc's end only what lies after the
+// beginning of the arc, at 189 deg, is left.
+TEST(Uncertainty, SaysWhatLeavingSamplesOutDoes) {
+  Case the_case = uncertain({{"port_plate.delivery_arc_deg.2", "normal(189.3, 0.5)"}});
+  the_case.operation.samples_per_revolution = 60;
+  UncertaintyOptions options;
+  options.outputs = {output("mean:Td", the_case)};
+  options.samples = 2000;
+  options.curves = options.first_order = false;
+  const UncertaintyResult found = uncertainty(the_case, options);
+  const auto without = static_cast<double>(found.sampled.infeasible.size());
+  EXPECT_NEAR(without / 2000, 0.2743, 4 * 0.01)
+      << "what lies more than 0.6 deviations below the mean";
+  ASSERT_EQ(found.kept_parameters.size(), 1U);
+  // A normal number cut at 0.6 deviations below its mean: with r = phi(0.6) / Phi(0.6) its mean is
+  // r deviations higher, its variance 1 - 0.6 r - r^2.
+  const double r = 0.33322 / 0.72575;
+  const Spread& kept = found.kept_parameters[0];
+  EXPECT_NEAR(kept.mean, 189.3 + 0.5 * r, 4 * kept.mean_error);
+  EXPECT_NEAR(kept.deviation, 0.5 * std::sqrt(1 - 0.6 * r - r * r), 4 * kept.deviation_error);
+  const report::Document document = uncertainty_document(found, {});
+  EXPECT_EQ(document.warnings.value().at(0).name, "Samples left out");
+  EXPECT_THAT(document.verdict->headline, testing::HasSubstr("are left out ("));
+  EXPECT_EQ(document.runs->back().title, "Parameters of the samples that are left");
+  EXPECT_THAT(uncertainty_text(found), testing::HasSubstr("those of the other samples alone"));
 }
 
 TEST(Uncertainty, RefusesWhatMostlyIsNoPump) {

@@ -353,15 +353,45 @@ class Identification:
 
     @property
     def deviations(self) -> dict[str, float]:
-        """Standard deviations, as if the model were linear there."""
+        """Standard deviations, as if the model were linear there; where the fit is refuted, with all stated
+        uncertainties multiplied by birge_ratio."""
 
     @property
     def intervals(self) -> dict[str, Tuple[float, float]]:
-        """95 % limits by their profiles; empty with fit_only."""
+        """95 % limits by their profiles; empty with fit_only and where the fit is refuted. Right only where the
+        stated uncertainties are."""
 
     @property
     def sum_of_squares(self) -> float:
-        """Of all residuals over their uncertainties."""
+        """Of all residuals over their uncertainties: chi-square."""
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Data that count less what was fitted to them; 0: the fit cannot be tested."""
+
+    @property
+    def p_value(self) -> Optional[float]:
+        """Probability of a larger sum of squares if model and stated uncertainties are right; None without
+        degrees of freedom."""
+
+    @property
+    def refuted(self) -> bool:
+        """Whether the data refute the model with these unknowns: p_value below 0.001. There are then no
+        intervals and no bands."""
+
+    @property
+    def birge_ratio(self) -> float:
+        """Root of the sum of squares over the degrees of freedom."""
+
+    @property
+    def worst_residuals(self) -> list[Tuple[str, float]]:
+        """Names of the data with the largest residuals, and the residuals over their standard uncertainties, the
+        largest first."""
+
+    @property
+    def further_unknowns(self) -> list[Tuple[str, float]]:
+        """Of a refuted fit: parameters that would improve it most if they were unknown too, each with the sum of
+        squares that would remain, the best first."""
 
     @property
     def minima(self) -> list[Minimum]:
@@ -381,7 +411,7 @@ class Identification:
 
     @property
     def bands(self) -> Optional[Table]:
-        """Reactions over the turn with their bands; None with fit_only."""
+        """Reactions over the turn with their bands; None with fit_only and where the fit is refuted."""
 
     def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes what the program writes; returns the files' paths."""

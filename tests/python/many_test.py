@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 
 import numpy
 
@@ -140,12 +141,35 @@ class IdentificationTest(ModuleTest):
         self.assertIn("identified", found.case.name)
         self.assertAlmostEqual(numpy.mean(bentaxis.run(found.case)["Td_Nm"]), 292.5, delta=1e-3)
         self.assertGreater(found.deviations[name], 0)
+        self.assertEqual((found.degrees_of_freedom, found.p_value, found.refuted), (0, None, False))
         self.assertIsNone(found.bands)
         self.run_program("identify", CASES / "bap63_rated.toml", "--set", "operation.samples_per_revolution=60", "--data",
                          "data.toml", "--starts", 1, "--fit-only", "--out", "out")
         with open(self.folder / "out/unknowns.csv", newline="", encoding="utf-8") as file:
             [row] = csv.DictReader(file)
         self.assertEqual(float(row["identified"]), found.values[name])
+
+    def test_a_refuted_fit(self):
+        other = '[[number]]\noutput = "mean:Td"\nvalue = 300\nuncertainty = 1\n'
+        (self.folder / "two.toml").write_text(DATA + other)
+        case = self.case(operation__samples_per_revolution=60)
+        try:
+            found = bentaxis.identify(case, self.folder / "two.toml", starts=1, steps=20, draws=10)
+        except bentaxis.InputError as error:
+            self.assertIn("Ceres", str(error))
+            self.skipTest("built without Ceres")
+        # 292.5 and 300 Nm of one pump, each known to 1 Nm.
+        self.assertAlmostEqual(found.sum_of_squares, 2 * 3.75**2, delta=0.02)
+        self.assertTrue(found.refuted)
+        self.assertEqual(found.degrees_of_freedom, 1)
+        self.assertAlmostEqual(found.p_value, math.erfc(math.sqrt(found.sum_of_squares / 2)), delta=1e-12)
+        self.assertAlmostEqual(found.birge_ratio, math.sqrt(found.sum_of_squares), 12)
+        (name, residual), _ = found.worst_residuals
+        self.assertEqual(name, "mean:Td")
+        self.assertAlmostEqual(abs(residual), 3.75, delta=0.01)
+        self.assertEqual(found.intervals, {})
+        self.assertIsNone(found.bands)
+        self.assertIn("fit refuted", found.case.name)
 
     def test_bands_and_report(self):
         try:

@@ -144,10 +144,69 @@ struct Information {
 Information information_of(const DataModel& model, std::span<const double> x,
                            std::span<const double> jacobian);
 
+/// The p-value below which a fit is refuted: of a right model with right uncertainties one fit in
+/// a thousand is refuted by chance.
+inline constexpr double kFitRefutedBelow = 1e-3;
+/// The p-value above which the residuals are too small for the stated uncertainties.
+inline constexpr double kUncertaintiesTooLargeAbove = 1 - kFitRefutedBelow;
+
+/// Probability that chi-square is larger than a value, with so many degrees of freedom (> 0).
+double chi_square_p_value(double chi_square, std::size_t degrees_of_freedom);
+
+/// Chi-square test of a fit.
+struct GoodnessOfFit {
+  double chi_square = 0;  ///< sum of the squared residuals, each over its standard uncertainty
+  /// What counts as a datum: values, points of curves, priors, and windows that the fit leaves. A
+  /// window that is kept tests nothing.
+  std::size_t residuals = 0;
+  /// Directions of the unknowns that were fitted to them: none along a bound that holds an unknown,
+  /// and none that changes no residual.
+  std::size_t fitted_directions = 0;
+  std::optional<double> p_value = std::nullopt;  ///< nothing without degrees of freedom: no test
+
+  std::size_t degrees_of_freedom() const { return residuals - fitted_directions; }
+  /// Whether the data refute the model with these unknowns. Without degrees of freedom a fit passes
+  /// through all data; it counts as refuted where it does not even do that.
+  bool refuted() const;
+  /// Whether residuals are smaller than the stated uncertainties let expect.
+  bool uncertainties_too_large() const;
+  /// Birge ratio, the root of chi-square over the degrees of freedom (at least one): by how much
+  /// all stated uncertainties would have to be larger for the residuals to be as expected.
+  double birge_ratio() const;
+};
+GoodnessOfFit goodness_of(const DataModel& model, const LeastSquaresFit& fit);
+
+/// A parameter that was not unknown, fitted together with the unknowns.
+struct FurtherUnknown {
+  Variable variable;
+  double before = 0, value = 0;  ///< in the case and fitted, in the file's unit
+  GoodnessOfFit fit;             ///< with it
+  /// Plausibility warnings that the fitted value causes, by their names (study/plausibility.h).
+  std::vector<std::string> implausible = {};
+};
+/// The single parameters of the case that would improve a fit most if they were unknown too, the
+/// best first; those whose fitted values are implausible after all others. All continuous
+/// parameters that are active in the case are compared by their derivatives; those that promise
+/// most are fitted with all unknowns.
+std::vector<FurtherUnknown> further_unknowns(const DataModel& model, const LeastSquaresFit& fit,
+                                             int threads, const Progress& progress = {});
+
+/// A datum or a prior, and how far the fit is from it.
+struct WorstResidual {
+  std::optional<std::size_t> datum;    ///< in IdentificationData::data
+  std::optional<std::size_t> unknown;  ///< or of whose prior
+  std::size_t number = 0;              ///< of the datum: the worst point of a curve
+  double residual = 0;                 ///< over its standard uncertainty, with its sign
+  double share = 0;                    ///< of chi-square that all numbers of the datum make up
+};
+/// Of all fitted data and priors, the largest first.
+std::vector<WorstResidual> worst_residuals(const DataModel& model, const LeastSquaresFit& fit);
+
 /// Limits of an unknown by its profile: the others are fitted anew at each of its values.
 struct Profile {
-  std::vector<double> values, rises;         ///< of the sum of squares above its smallest
-  double low = 0, high = 0;                  ///< 95 %: where it rises by 3.841
+  std::vector<double> values, rises;  ///< of the sum of squares above its smallest
+  /// 95 %: where it rises by 3.841. Right only where the stated uncertainties are.
+  double low = 0, high = 0;
   bool open_low = false, open_high = false;  ///< a bound is met before
 };
 
@@ -204,10 +263,16 @@ struct Minimum {
 
 struct Identification {
   LeastSquaresFit fit;
-  std::vector<Minimum> minima;  ///< best first
-  std::vector<double> numbers;  ///< of the fit
+  GoodnessOfFit goodness;
+  std::vector<WorstResidual> worst;     ///< the largest first
+  std::vector<FurtherUnknown> further;  ///< of a refuted fit: what would improve it most
+  std::vector<Minimum> minima;          ///< best first
+  std::vector<double> numbers;          ///< of the fit
+  /// Of a refuted fit with all stated uncertainties times the Birge ratio.
   Information information;
-  std::vector<Profile> profiles;  ///< by unknown; empty where not asked for
+  /// By unknown; empty where not asked for. Neither they nor posterior, bands and candidates are
+  /// there of a refuted fit: they would rest on a model that the data refute.
+  std::vector<Profile> profiles;
   Posterior posterior;
   std::vector<double> theta_deg;
   std::vector<ReactionBand> bands;    ///< of the reactions of piston 1, block, shaft and gear
@@ -215,6 +280,7 @@ struct Identification {
   std::vector<LeftOut> left_out;
 };
 
+/// A fit that the data refute (GoodnessOfFit::refuted()) is a result, no error.
 /// @throws InputError, ComputationError
 Identification identify(const DataModel& model, const IdentifyOptions& options,
                         const study::PartProgress& progress_of = study::silent());

@@ -86,7 +86,9 @@ FirstOrder first_order(const Response& response, std::size_t outputs,
 /// of J.-M. Martinez, Analyse de sensibilite globale par decomposition de la variance, 2011, with
 /// asymptotic intervals: OpenTURNS' MartinezSensitivityAlgorithm.
 struct SobolIndices {
-  /// outputs x numbers, row by row; values not_computed() where an output does not vary
+  /// outputs x numbers, row by row; values not_computed() where an output does not vary by more
+  /// than its round-off. What differs from 0 or 1 by round-off alone is 0 or 1. Every interval
+  /// holds its value.
   std::vector<Estimate> first, total;
   std::size_t evaluations = 0;
   std::size_t left_out = 0;  ///< base points, for one of whose points had no outputs
@@ -97,6 +99,10 @@ inline constexpr std::size_t kFewestBasePoints = 16;  ///< below them there are 
 SobolIndices sobol_indices(const Response& response, std::size_t outputs,
                            const UncertainVariables& numbers, std::size_t base, std::uint64_t seed,
                            int threads = 0, const Progress& progress = {});
+
+/// @throws InputError where there is no OpenTURNS: before anything is computed, where Sobol indices
+/// will be wanted
+void require_sobol_indices();
 
 /// Version of the OpenTURNS that this was built with, or "none".
 std::string openturns_version();

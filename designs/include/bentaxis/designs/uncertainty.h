@@ -65,6 +65,9 @@ struct UncertaintyResult {
   std::vector<CurveBand> bands;
   std::vector<Spread> further;  ///< of the further numbers
   SampledOutputs sampled;       ///< outputs of all samples, without curves
+  /// Where samples were left out: the parameters among those that were not, in their order. Mean
+  /// and deviation show how far these are from the stated distributions.
+  std::vector<Spread> kept_parameters;
   double seconds = 0;
 };
 

@@ -18,6 +18,9 @@ std::string uncertainty_text(const UncertaintyResult& result);
 
 /// Parts of it for other reports: what is not known, and the bands with a table of them.
 report::Section parameters_section(const UncertaintyResult& result);
+/// What was left out, by reason, and what that does to the parameters; a warning too. Nothing where
+/// no sample was.
+void add_left_out(report::Document& document, const UncertaintyResult& result);
 report::Section bands_section(const UncertaintyResult& result);
 std::vector<report::Figure> band_figures(const UncertaintyResult& result);
 

@@ -294,6 +294,15 @@ struct Verdict {
   };
   std::optional<Further> reference =
       std::nullopt;  ///< of both models against curves from elsewhere
+  /// Chi-square test of a fit.
+  struct Fit {
+    double chi_square = 0;
+    long degrees_of_freedom = 0;
+    std::optional<double> p_value = std::nullopt;  ///< nothing without degrees of freedom
+    double refuted_below = 0;                      ///< the p-value that refutes a fit
+    bool refuted = false;
+  };
+  std::optional<Fit> fit = std::nullopt;
 };
 
 /// Values that are possible but hardly meant.

@@ -25,9 +25,9 @@ struct FrictionStep {
 /// is in proportion to Fc, so a few steps are enough. Torques that were set so are calibrated, not
 /// predicted.
 /// @return the steps from the case's own parameters; the last has found them
-/// @throws InputError where the case has no Coulomb friction to start from, or where the factor
-/// would
-///         leave (0, 1]
+/// @throws InputError where the case has no Coulomb friction to start from, where the factor would
+///         leave (0, 1], or where the friction would be negative; ComputationError where the last
+///         step does not give the wanted torques
 std::vector<FrictionStep> calibrate_friction(Case the_case, const MeanTorques& wanted,
                                              const PartProgress& progress_of = silent());
 
