@@ -189,8 +189,11 @@ fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
   return no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                          const fmi2Boolean /*value*/[]) {
-  return no_values(c, __func__, kSetDiscrete, vr, count, "Boolean");
+                          const fmi2Boolean value[]) {
+  return call(c, __func__, kSetDiscrete, [&](Instance& it) {
+    require_places(count, {vr, value});
+    it.set_flags(vr, count, value);
+  });
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          const fmi2String /*value*/[]) {

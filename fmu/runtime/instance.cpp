@@ -6,8 +6,6 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/pump/registry.h"
-#include "bentaxis/pump/validate.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -156,20 +154,7 @@ void Instance::reset() {
 }
 
 Case Instance::case_as_set(const std::vector<double>& parameters) const {
-  Case changed = resources_.the_case;
-  const View view = view_of(changed);
-  for (const Variable& it : variables_) {
-    const double value = parameters[it.reference];
-    if (it.role != Role::parameter || value == first_parameters_[it.reference]) continue;
-    const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
-    Value whole = value_of(parameter, as_const(view)).value();
-    if (auto* pair = std::get_if<std::array<double, 2>>(&whole))
-      (*pair)[it.place] = value;
-    else
-      whole = value;
-    store(parameter, view, whole);
-  }
-  return validate(changed);
+  return case_with(resources_.the_case, variables_, parameters);
 }
 
 UnitChoice Instance::present_choice() const {

@@ -20,6 +20,7 @@ struct Inputs {
   double torque = 0;                   ///< Nm
   double suction = 0, delivery = 0;    ///< Pa gauge
   double load_share = 1;
+  bool load_share_replaces_curve = false;  ///< also where it is 1
   bool acceleration_given = false;  ///< by whoever sets inputs: else reactions lack inertia by it
 };
 bool operator==(const Inputs& a, const Inputs& b);
