@@ -108,8 +108,6 @@ class Finder {
     std::copy(motion.begin(), motion.end(), base_.motion.begin());
     base_.oil = machine.oil->start();
     base_.load_size = load_size_of(case_);
-    base_.started = {case_.operation.speed_rpm, case_.pressure.ports.suction,
-                     case_.pressure.ports.delivery};
     knots_ = machine.mechanics->knots();
     for (const double knot : machine.oil->knots()) knots_.push_back(knot);
     std::sort(knots_.begin(), knots_.end());

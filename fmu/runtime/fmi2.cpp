@@ -43,8 +43,9 @@ std::string as_format(const std::string& text) {
 
 Log::Sink sink_of(const fmi2CallbackFunctions& functions, const std::string& name) {
   if (functions.logger == nullptr) return {};
-  return [logger = functions.logger, environment = functions.componentEnvironment, name](
-             Status status, const char* category, const std::string& message) {
+  return [logger = functions.logger, environment = functions.componentEnvironment,
+          name = bentaxis::fmu::shown(name, 1000)](Status status, const char* category,
+                                                   const std::string& message) {
     logger(environment, name.c_str(), static_cast<fmi2Status>(status), category,
            as_format(message).c_str());
   };

@@ -47,7 +47,7 @@ Instance::Instance(const std::filesystem::path& resources, const std::string& to
                    Log log)
     : kind_(kind), log_(std::move(log)), resources_(read_resources(resources)) {
   if (token != resources_.token)
-    throw Refused("the token " + token +
+    throw Refused("the token " + shown(token, 100) +
                   " is that of another unit than its resources: " + resources_.token);
   variables_ = variables_of(resources_.the_case, resources_.choice);
   for (const Variable& it : variables_)
@@ -214,7 +214,12 @@ Status Instance::step(double time, double size) {
   open_.reset();
   try {
     // A step below the resolution of time is none.
-    if (end - start_time_ > plant_->time()) plant_->step(end - start_time_);
+    if (end - start_time_ > plant_->time()) {
+      plant_->step(end - start_time_);
+      if (log_.tells_events())
+        for (const Plant::Passed& event : plant_->passed())
+          log_.event("event at " + number_text(start_time_ + event.time) + " s: " + event.what);
+    }
   } catch (const ComputationError& error) {
     return log_.say(Status::discard, error.what());
   }

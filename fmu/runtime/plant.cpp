@@ -153,6 +153,22 @@ class Plant::Implementation {
     fresh_ = false;
   }
 
+  std::vector<Passed> passed() const {
+    using Kind = coupled::PassedEvent::Kind;
+    std::vector<Passed> all;
+    for (const coupled::PassedEvent& event : stepper_->passed()) {
+      const std::string flank = event.flank > 0 ? "forward flank" : "backward flank";
+      std::string what = "breakpoint of a curve over time";
+      if (event.kind == Kind::edge)
+        what =
+            "the block passes a port edge at " + rounded_text(event.angle / kRadPerDegree) + " deg";
+      if (event.kind == Kind::touch) what = "teeth touch, " + flank;
+      if (event.kind == Kind::release) what = "teeth leave contact, " + flank;
+      all.push_back({event.time, what});
+    }
+    return all;
+  }
+
   coupled::OpenSystem& open() { return *open_; }
   const std::vector<double>& nominals() const { return nominals_; }
   void set_time(double time) {
@@ -451,6 +467,7 @@ void Plant::set_inputs(const Inputs& inputs) { it_->set_inputs(inputs); }
 const Inputs& Plant::inputs() const { return it_->inputs(); }
 double Plant::time() const { return it_->time(); }
 void Plant::step(double time) { it_->step(time); }
+std::vector<Plant::Passed> Plant::passed() const { return it_->passed(); }
 std::size_t Plant::state_count() const { return it_->open().states().size(); }
 std::vector<double> Plant::states() const { return it_->open().values(); }
 const std::vector<double>& Plant::nominals() const { return it_->nominals(); }

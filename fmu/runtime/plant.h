@@ -69,6 +69,12 @@ class Plant {
   /// of the integrator go on over communication points where inputs stay.
   /// @throws ComputationError where the motion cannot be followed; the plant then stands at time()
   void step(double time);
+  /// Events of the last step: when, s (FMI's less the start time), and in words.
+  struct Passed {
+    double time = 0;
+    std::string what;
+  };
+  std::vector<Passed> passed() const;
 
   // Model exchange: states, their rates and events for an integrator outside.
   std::size_t state_count() const;
