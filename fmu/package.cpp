@@ -145,6 +145,7 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
 
 UnitSummary unit_summary(const Case& the_case, const UnitOptions& options) {
   UnitSummary has;
+  has.glibc = needed_glibc();
   for (const Variable& variable : variables_of(the_case, {options.drive, options.tolerance})) {
     if (variable.causality == Causality::input) has.inputs.push_back(variable.name);
     if (variable.causality == Causality::output) ++has.outputs;

@@ -148,8 +148,7 @@ class RunTest(ModuleTest):
         case = self.case(pump__tilt_deg=1e-7)
         codes = [doubt.code for doubt in case.doubts()]
         self.assertTrue(codes)
-        case["drive.kind"] = "speed"
-        case.update({"drive.duration_s": 1e-3, "drive.samples": 4})
+        case.update({"drive.kind": "speed", "drive.duration_s": 1e-3, "drive.samples": 4})
 
         def warned(call):
             with warnings.catch_warnings(record=True) as caught:

@@ -34,6 +34,7 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options);
 struct UnitSummary {
   std::vector<std::string> inputs;  ///< by name
   std::size_t outputs = 0, states = 0, indicators = 0, parameters = 0;
+  std::string glibc;  ///< the least version that its library needs: "2.35"
 };
 /// @throws InputError as unit_archive
 UnitSummary unit_summary(const Case& the_case, const UnitOptions& options);
