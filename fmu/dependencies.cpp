@@ -6,7 +6,6 @@
 #include <optional>
 #include <random>
 #include <set>
-#include <stdexcept>
 #include <string>
 
 #include "bentaxis/coupled/open_system.h"
@@ -117,7 +116,7 @@ class Finder {
     Dependencies found;
     sets_ = {values_};
     for (int i = 0; i < kSets; ++i) sets_.push_back(other_parameters());
-    sample(Where::anywhere, running_);
+    if (!sample(Where::anywhere, running_)) return {};
     for (std::size_t u = 0; u < unknowns_.size(); ++u)
       for (std::size_t k = 0; k < knowns_.size(); ++k) {
         const Change& change = running_[u][k];
@@ -136,12 +135,19 @@ class Finder {
  private:
   using Values = std::vector<double>;  // of unknowns_
 
-  std::unique_ptr<Plant> plant_of(const Case& the_case) const {
-    auto plant = std::make_unique<Plant>(the_case, choice_, Plant::Kind::model_exchange);
-    PlantState state = base_;
-    state.inputs = plant->first_inputs();
-    plant->set_state(state);
-    return plant;
+  // @return null where the case with these parameters has no start
+  std::unique_ptr<Plant> plant_of(const std::vector<double>& parameters) const {
+    try {
+      auto plant = std::make_unique<Plant>(case_with(case_, variables_, parameters), choice_,
+                                           Plant::Kind::model_exchange);
+      PlantState state = base_;
+      state.inputs = plant->first_inputs();
+      plant->set_state(state);
+      return plant;
+    } catch (const InputError&) {
+    } catch (const ComputationError&) {
+    }
+    return nullptr;
   }
 
   // Other values of all parameters; those that are 0 are not, as far as the case allows it.
@@ -290,12 +296,13 @@ class Finder {
     return scales;
   }
 
-  void sample(Where where, std::vector<std::vector<Change>>& changes) {
+  // @return whether there were enough points
+  bool sample(Where where, std::vector<std::vector<Change>>& changes) {
     changes.assign(unknowns_.size(), std::vector<Change>(knowns_.size()));
     int points = 0;
     for (const std::vector<double>& parameters : sets_) {
-      const auto plant = plant_of(case_with(case_, variables_, parameters));
-      for (int p = 0; p < kPoints; ++p) {
+      const auto plant = plant_of(parameters);
+      for (int p = 0; plant && p < kPoints; ++p) {
         const Point here = any_point(*plant, where);
         Values before, after;
         if (!values_at(*plant, here, true, before)) continue;
@@ -310,9 +317,7 @@ class Finder {
         }
       }
     }
-    if (points < kPoints)
-      throw std::logic_error("the dependencies of a unit cannot be found: " +
-                             std::to_string(points) + " points have values");
+    return points >= kPoints;
   }
 
   std::optional<std::uint32_t> reference_of(const std::string& name) const {
@@ -383,10 +388,12 @@ class Finder {
 
   // Parameters that an unknown depends on where the states are given.
   void sample_parameters() {
+    by_load_.assign(unknowns_.size(), {});
     for (auto* changes : {&by_parameter_, &by_parameter_at_start_})
       changes->assign(unknowns_.size(), std::vector<Change>(parameters_.size()));
     for (const std::size_t set : {std::size_t{0}, std::size_t{1}}) {
-      const auto plant = plant_of(case_with(case_, variables_, sets_[set]));
+      const auto plant = plant_of(sets_[set]);
+      if (!plant) continue;
       const std::vector<Seen> anywhere = look_around(*plant, Where::anywhere);
       const std::vector<Seen> at_start = look_around(*plant, Where::at_start);
       for (std::size_t q = 0; q < parameters_.size(); ++q)
@@ -414,10 +421,12 @@ class Finder {
 
   void compare_parameter(std::size_t set, std::size_t parameter, const std::vector<Seen>& anywhere,
                          const std::vector<Seen>& at_start) {
-    const std::optional<std::vector<double>> values =
-        with_other(sets_[set], *parameters_[parameter]);
-    if (!values) return;
-    const auto plant = plant_of(case_with(case_, variables_, *values));
+    const auto values = with_other(sets_[set], *parameters_[parameter]);
+    const auto plant = values ? plant_of(*values) : nullptr;
+    if (!plant) {  // nothing is known of it: all may depend on it
+      if (set == 0) unmoved_.push_back(parameters_[parameter]->reference);
+      return;
+    }
     compare(*plant, anywhere,
             [&](std::size_t u) -> Change& { return by_parameter_[u][parameter]; });
     compare(*plant, at_start,
@@ -426,12 +435,12 @@ class Finder {
 
   // Unknowns that depend on a size of the load that is found at the start.
   void compare_load(const std::vector<Seen>& seen) {
-    by_load_.assign(unknowns_.size(), {});
     if (!case_.hydraulics || !hydraulics::needs_periodic_state(case_)) return;
     const double kept = base_.load_size;
     base_.load_size *= 1.1;
-    const auto plant = plant_of(case_);
+    const auto plant = plant_of(values_);
     base_.load_size = kept;
+    if (!plant) return;
     compare(*plant, seen, [&](std::size_t u) -> Change& { return by_load_[u]; });
   }
 
@@ -485,7 +494,7 @@ class Finder {
   void find_initial(Dependencies& found) {
     sample_parameters();
     std::vector<std::vector<Change>> at_start;
-    sample(Where::at_start, at_start);
+    if (!sample(Where::at_start, at_start)) return;
     // By inputs and parameters, and by states.
     std::map<std::uint32_t, std::set<std::uint32_t>> direct, by_states;
     for (std::size_t u = 0; u < unknowns_.size(); ++u) {
@@ -504,6 +513,7 @@ class Finder {
         const Change& change = anywhere ? by_parameter_[u][q] : by_parameter_at_start_[u][q];
         if (change.largest > kRoundOff) direct[unknown.reference].insert(known.reference);
       }
+      direct[unknown.reference].insert(unmoved_.begin(), unmoved_.end());
     }
     share_with_flags(direct, false);
     share_with_flags(by_states, true);
@@ -629,6 +639,7 @@ class Finder {
   std::vector<double> rates_, indicators_;
   std::vector<std::vector<Change>> running_, by_parameter_, by_parameter_at_start_;
   std::vector<Change> by_load_;
+  std::vector<std::uint32_t> unmoved_;  // parameters that cannot be changed alone
 };
 
 }  // namespace

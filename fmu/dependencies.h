@@ -27,6 +27,8 @@ struct Dependencies {
 /// Found by differences of the pump's own equations at many states, inputs and parameters, all over
 /// the ranges in which its laws differ: what none of them changes does not stand in the equations.
 /// The periodic state of oil at the start depends on all that the oil's rates depend on.
+/// Where the pump has values at too few of them nothing is said: importers then take all to depend
+/// on all.
 /// @param variables  of variables_of() for the same case and choice
 /// @throws InputError where the case cannot be simulated so
 Dependencies dependencies_of(const Case& the_case, const UnitChoice& choice,
