@@ -72,11 +72,17 @@ double rounded(double value) {
                    : std::round(value / unit) / std::round(1 / unit);
 }
 
-UnitChoice choice_of(const Case& the_case, const UnitOptions& options) {
+// @param why_not  where the mean torque cannot be computed: why
+UnitChoice choice_of(const Case& the_case, const UnitOptions& options, std::string& why_not) {
   UnitChoice choice{options.drive, options.tolerance};
   const bool own = the_case.drive && the_case.drive->kind == DriveKind::torque;
-  if (options.drive == Drive::torque && !own && the_case.operation.speed_rpm != 0)
-    choice.start_torque = rounded(mean_torque(the_case));
+  if (options.drive == Drive::torque && !own && the_case.operation.speed_rpm != 0) try {
+      choice.start_torque = rounded(mean_torque(the_case));
+    } catch (const InputError& error) {
+      why_not = error.what();
+    } catch (const ComputationError& error) {
+      why_not = error.what();
+    }
   return choice;
 }
 
@@ -125,7 +131,8 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
   alone.uncertainty = {};  // a unit has one value of each
   const KeptCase kept = kept_case(alone);
   require_text(kept);
-  const UnitChoice chosen = choice_of(the_case, options);
+  std::string why_not;  // of unit_summary()
+  const UnitChoice chosen = choice_of(the_case, options, why_not);
   Description description = description_of(the_case, options, chosen);
   const std::string choice = choice_text(chosen);
   description.token = token_of(identity(kept, choice, description.variables));
@@ -146,7 +153,10 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
 UnitSummary unit_summary(const Case& the_case, const UnitOptions& options) {
   UnitSummary has;
   has.glibc = needed_glibc();
-  for (const Variable& variable : variables_of(the_case, {options.drive, options.tolerance})) {
+  const UnitChoice choice = choice_of(the_case, options, has.no_start_torque);
+  for (const Variable& variable : variables_of(the_case, choice)) {
+    if (variable.role == Role::input && variable.input == Input::torque)
+      has.start_torque = variable.start;
     if (variable.causality == Causality::input) has.inputs.push_back(variable.name);
     if (variable.causality == Causality::output) ++has.outputs;
     if (variable.causality == Causality::parameter) ++has.parameters;

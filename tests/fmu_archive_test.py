@@ -351,6 +351,11 @@ class Archives(unittest.TestCase):
         self.assertEqual(torque(*own, "--set", "drive.torque_Nm=123"), 123)
         self.assertEqual(torque(*own, "--set", "drive.torque_Nm=0"), 0)
         self.assertEqual(torque("--set", "operation.speed_rpm=0"), 0)
+        # Where there is no operating point to be computed the unit is made all the same, and says so.
+        self.assertEqual(torque("--set", "operation.speed_rpm=-1500", case="bap63_rated_hydraulic"), 0)
+        said = run("fmu", REPO / "cases/bap63_rated_hydraulic.toml", "--out", self.folder / "torque.fmu", "--drive", "torque",
+                   "--set", "operation.speed_rpm=-1500").stdout
+        self.assertIn("drive_torque starts at 0 Nm: the mean torque of the operating point cannot be computed: ", said)
 
     def test_the_version_of_glibc_that_is_stated_is_the_one_needed(self):
         for (case, drive, version), file in self.files.items():
