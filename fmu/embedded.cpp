@@ -13,11 +13,13 @@ BENTAXIS_EMBED(bentaxis_fmu_library, BENTAXIS_FMU_LIBRARY);
 BENTAXIS_EMBED(bentaxis_fmu_licence, BENTAXIS_FMU_LICENCE);
 BENTAXIS_EMBED(bentaxis_fmu_notices, BENTAXIS_FMU_NOTICES);
 
+// NOLINTBEGIN(readability-identifier-naming): names of symbols
 extern "C" {
 extern const char bentaxis_fmu_library[], bentaxis_fmu_library_end[];
 extern const char bentaxis_fmu_licence[], bentaxis_fmu_licence_end[];
 extern const char bentaxis_fmu_notices[], bentaxis_fmu_notices_end[];
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace bentaxis::fmu {
 
