@@ -57,10 +57,17 @@ fs::path checked_place(const std::string& out) {
 
 void print(const fs::path& file, const Options& options, const fmu::UnitSummary& has) {
   std::cout << file.string() << ": FMI " << options.version
-            << ".0, model exchange and co-simulation, Linux on x86-64\n"
+            << ".0, model exchange and co-simulation, Linux on x86-64 with glibc " << has.glibc
+            << " or newer\n"
             << "drive: " << sentence_of(options.unit.drive) << "\ninputs:";
   for (const std::string& input : has.inputs) std::cout << " " << input;
   if (has.inputs.empty()) std::cout << " none";
+  if (has.start_torque) {
+    std::cout << "\ndrive_torque starts at " << *has.start_torque << " Nm";
+    if (!has.no_start_torque.empty())
+      std::cout << ": the mean torque of the operating point cannot be computed: "
+                << has.no_start_torque;
+  }
   std::cout << "\noutputs: " << has.outputs << ", states: " << has.states
             << ", event indicators: " << has.indicators << ", parameters: " << has.parameters
             << "\nhow to try it: docs/fmu.md\n";

@@ -265,6 +265,8 @@ void Course::advance(double end) {
     restart_ = false;
   }
   keep_going();
+  passed_edge_.reset();
+  at_knot_ = false;
   before_ = {touching_, events_.size(), apart_};
   const double stop = horizon(end);
   const double before = time_;
@@ -289,7 +291,8 @@ void Course::advance(double end) {
       return;
     }
   }
-  if (std::binary_search(knots_.begin(), knots_.end(), time_)) restart_ = true;
+  at_knot_ = std::binary_search(knots_.begin(), knots_.end(), time_);
+  if (at_knot_) restart_ = true;
   if (!edges_.none()) {
     const double angle = block(time_, state_).angle;
     const std::vector<int>& passed = integrator_.passed();
@@ -297,9 +300,11 @@ void Course::advance(double end) {
     if (reached == Integrator::Reached::guard)
       side = passed[System::kTo] != 0 ? 1 : passed[System::kFrom] != 0 ? -1 : 0;
     if (side != 0) {
+      passed_edge_ = side > 0 ? edges_.to() : edges_.from();
       edges_.pass(side);
       restart_ = true;
     } else if (edges_.left_by(angle)) {
+      passed_edge_ = angle > edges_.to() ? edges_.to() : edges_.from();
       edges_.find(block(time_, state_));
       restart_ = true;
     }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,10 @@ class Course {
   /// Flanks that touch have their impulse until now.
   void close_contacts();
   const std::vector<ToothEvent>& events() const { return events_; }
+  /// Of the last step: the edge of a port that the block has passed at time(), rad, and whether a
+  /// law changes there (a knot of a curve).
+  std::optional<double> passed_edge() const { return passed_edge_; }
+  bool at_knot() const { return at_knot_; }
   /// They are not kept any longer, nor are steps counted until now: of a motion without an end.
   void forget_events();
   double time_apart() const { return apart_; }  ///< s, without touch of a flank
@@ -90,6 +95,8 @@ class Course {
   std::vector<double> knots_;
   bool has_oil_;
   bool restart_ = false;  // before the next step
+  std::optional<double> passed_edge_;
+  bool at_knot_ = false;
   double time_ = 0, step_start_ = 0, apart_ = 0;
   SystemState state_;  // at time_
   std::vector<double> y_, integrals_;

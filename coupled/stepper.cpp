@@ -23,6 +23,9 @@ class Stepper::Implementation {
   }
 
   void restart() {
+    // The integrator was ahead: what it has met beyond the present time may not happen.
+    const auto is_ahead = [this](const PassedEvent& event) { return event.time > time_; };
+    events_.erase(std::remove_if(events_.begin(), events_.end(), is_ahead), events_.end());
     course_.start(time_, state_);
     course_.forget_events();
   }
@@ -36,6 +39,8 @@ class Stepper::Implementation {
   }
 
   void step_to(double time) {
+    const auto is_told = [this](const PassedEvent& event) { return event.time <= time_; };
+    events_.erase(std::remove_if(events_.begin(), events_.end(), is_told), events_.end());
     // Beyond the end another one is expected as far away, so that steps go on over points there
     // too.
     if (time > end_) end_ = std::max(time, end_ + span_);
@@ -55,6 +60,13 @@ class Stepper::Implementation {
     time_ = time;
   }
 
+  std::vector<PassedEvent> passed() const {
+    std::vector<PassedEvent> all;
+    for (const PassedEvent& event : events_)
+      if (event.time <= time_) all.push_back(event);
+    return all;
+  }
+
   double time() const { return time_; }
   const SystemState& state() const { return state_; }
   const Surroundings& surroundings() const { return outside_; }
@@ -64,13 +76,24 @@ class Stepper::Implementation {
   void advance_to(double time, double end) {
     while (course_.time() < time) {
       course_.advance(end);
+      note_events();
       course_.forget_events();
     }
+  }
+
+  void note_events() {
+    using Kind = PassedEvent::Kind;
+    if (course_.at_knot()) events_.push_back({Kind::knot, course_.time(), 0, 1});
+    if (const auto angle = course_.passed_edge())
+      events_.push_back({Kind::edge, course_.time(), *angle, 1});
+    for (const ToothEvent& event : course_.events())
+      events_.push_back({event.touch ? Kind::touch : Kind::release, event.time_s, 0, event.flank});
   }
 
   Mechanics& mechanics_;
   Oil& oil_;
   Course course_;
+  std::vector<PassedEvent> events_;  // since the last step_to(), and beyond time_
   Surroundings outside_;
   double time_ = 0, end_ = 0, span_ = 0;
   SystemState state_;
@@ -88,6 +111,7 @@ const Surroundings& Stepper::surroundings() const { return it_->surroundings(); 
 void Stepper::step_to(double time) { it_->step_to(time); }
 double Stepper::time() const { return it_->time(); }
 const SystemState& Stepper::state() const { return it_->state(); }
+std::vector<PassedEvent> Stepper::passed() const { return it_->passed(); }
 long Stepper::steps() const { return it_->steps(); }
 
 }  // namespace bentaxis::coupled

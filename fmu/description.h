@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bentaxis/fmu/unit.h"
+#include "dependencies.h"
 #include "runtime/variables.h"
 
 namespace bentaxis::fmu {
@@ -20,6 +21,7 @@ struct Description {
   double stop_time = 1;   ///< s
   double step = 0;        ///< s, of communication, where there is a usual one; 0: none
   double tolerance = 1e-9;
+  Dependencies dependencies;  ///< of unknowns that are not there nothing is said
 };
 
 std::string description_fmi2(const Description& description);

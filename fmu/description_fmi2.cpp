@@ -45,22 +45,27 @@ void add_variables(pugi::xml_node root, const std::vector<Variable>& variables) 
 
 template <class Pick>
 void add_list(pugi::xml_node structure, const char* name, const std::vector<Variable>& variables,
-              Pick pick) {
+              const DependencesOf& dependencies, Pick pick) {
   if (std::none_of(variables.begin(), variables.end(), pick)) return;
   pugi::xml_node list = structure.append_child(name);
-  for (const Variable& variable : variables)
-    if (pick(variable))
-      list.append_child("Unknown").append_attribute("index") = index_of(variable.reference);
+  for (const Variable& variable : variables) {
+    if (!pick(variable)) continue;
+    pugi::xml_node unknown = list.append_child("Unknown");
+    unknown.append_attribute("index") = index_of(variable.reference);
+    set_dependencies(unknown, dependencies, variable, index_of(0));
+  }
 }
 
-void add_structure(pugi::xml_node root, const std::vector<Variable>& variables) {
+void add_structure(pugi::xml_node root, const Description& description) {
+  const std::vector<Variable>& variables = description.variables;
+  const Dependencies& depend = description.dependencies;
   pugi::xml_node structure = root.append_child("ModelStructure");
-  add_list(structure, "Outputs", variables,
+  add_list(structure, "Outputs", variables, depend.running,
            [](const Variable& variable) { return variable.causality == Causality::output; });
-  add_list(structure, "Derivatives", variables,
+  add_list(structure, "Derivatives", variables, depend.running,
            [](const Variable& variable) { return variable.role == Role::derivative; });
   const auto unknowns = initial_unknowns(variables);
-  add_list(structure, "InitialUnknowns", variables, [&](const Variable& variable) {
+  add_list(structure, "InitialUnknowns", variables, depend.initial, [&](const Variable& variable) {
     return std::find(unknowns.begin(), unknowns.end(), &variable) != unknowns.end();
   });
 }
@@ -80,7 +85,7 @@ std::string description_fmi2(const Description& description) {
   add_log_categories(root);
   add_experiment(root, description);
   add_variables(root, variables);
-  add_structure(root, variables);
+  add_structure(root, description);
   return to_text(document);
 }
 

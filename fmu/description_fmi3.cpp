@@ -35,18 +35,25 @@ void add_variables(pugi::xml_node root, const std::vector<Variable>& variables) 
   }
 }
 
-void add_structure(pugi::xml_node root, const std::vector<Variable>& variables) {
+void add_structure(pugi::xml_node root, const Description& description) {
+  const std::vector<Variable>& variables = description.variables;
+  const Dependencies& depend = description.dependencies;
   pugi::xml_node structure = root.append_child("ModelStructure");
-  const auto add = [&](const char* name, const Variable& variable) {
-    structure.append_child(name).append_attribute("valueReference") = variable.reference;
+  const auto add = [&](const char* name, const Variable& variable, const DependencesOf& of) {
+    pugi::xml_node unknown = structure.append_child(name);
+    unknown.append_attribute("valueReference") = variable.reference;
+    set_dependencies(unknown, of, variable, 0);
   };
   for (const Variable& variable : variables)
-    if (variable.causality == Causality::output) add("Output", variable);
+    if (variable.causality == Causality::output) add("Output", variable, depend.running);
   for (const Variable& variable : variables)
-    if (variable.role == Role::derivative) add("ContinuousStateDerivative", variable);
-  for (const Variable* variable : initial_unknowns(variables)) add("InitialUnknown", *variable);
+    if (variable.role == Role::derivative)
+      add("ContinuousStateDerivative", variable, depend.running);
+  for (const Variable* variable : initial_unknowns(variables)) {
+    add("InitialUnknown", *variable, depend.initial);
+  }
   for (const Variable& variable : variables)
-    if (variable.role == Role::indicator) add("EventIndicator", variable);
+    if (variable.role == Role::indicator) add("EventIndicator", variable, depend.running);
 }
 
 }  // namespace
@@ -60,7 +67,7 @@ std::string description_fmi3(const Description& description) {
   add_log_categories(root);
   add_experiment(root, description);
   add_variables(root, description.variables);
-  add_structure(root, description.variables);
+  add_structure(root, description);
   return to_text(document);
 }
 

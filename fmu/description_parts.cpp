@@ -195,6 +195,22 @@ void set_values(pugi::xml_node node, const Variable& variable) {
   if (starts) set(node, "start", *variable.start);
 }
 
+void set_dependencies(pugi::xml_node node, const DependencesOf& all, const Variable& unknown,
+                      unsigned first) {
+  const auto found = all.find(unknown.reference);
+  if (found == all.end()) return;
+  std::string knowns, kinds;
+  bool constant = false;
+  for (const Dependence& one : found->second) {
+    const std::string blank = knowns.empty() ? "" : " ";
+    knowns += blank + std::to_string(one.known + first);
+    kinds += blank + (one.constant ? "constant" : "dependent");
+    constant = constant || one.constant;
+  }
+  set(node, "dependencies", knowns);
+  if (constant) set(node, "dependenciesKind", kinds);
+}
+
 std::string to_text(const pugi::xml_document& document) {
   std::ostringstream text;
   document.save(text, "  ", pugi::format_default, pugi::encoding_utf8);

@@ -28,6 +28,12 @@ void set_identity(pugi::xml_node node, const Variable& variable);
 /// declaredType, unit, displayUnit, min, max, nominal, start of a number; start of a flag.
 void set_values(pugi::xml_node node, const Variable& variable);
 
+/// dependencies, and dependenciesKind where a factor is constant; nothing where the unknown is not
+/// among them.
+/// @param first  number of the first variable: 1 where places count, 0 where references do
+void set_dependencies(pugi::xml_node node, const DependencesOf& all, const Variable& unknown,
+                      unsigned first);
+
 std::string to_text(const pugi::xml_document& document);
 
 }  // namespace bentaxis::fmu

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "bentaxis/pump/number.h"
+#include "embedded.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -61,7 +62,9 @@ std::string documentation_page(const Description& description, const UnitOptions
   say(body, "p",
       "Co-simulation integrates to " + number_text(description.tolerance) +
           " of each state's scale per step, however long the communication steps are. The case is "
-          "in resources/case.toml. For Linux on x86-64. Angles are those of the paper (Roccatello "
+          "in resources/case.toml. For Linux on x86-64 with glibc " +
+          needed_glibc() +
+          " or newer. Angles are those of the paper (Roccatello "
           "and Nervegna 2009); forces act on the body that is named first, at its point, in its "
           "frame.");
   add_table(body, "Inputs", Causality::input, description.variables);

@@ -1,12 +1,18 @@
 // The archive of a unit.
+#include <algorithm>
+#include <cmath>
+
 #include "archive.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/kept_case.h"
 #include "bentaxis/fmu/unit.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "dependencies.h"
 #include "documentation.h"
 #include "embedded.h"
+#include "runtime/plant.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -30,9 +36,54 @@ std::string token_of(const std::string& all) {
   return "{" + text + "}";
 }
 
-std::string choice_text(const UnitOptions& options) {
-  return std::string("drive ") + word_of(options.drive) + "\ntolerance " +
-         number_text(options.tolerance) + "\n";
+std::string choice_text(const UnitChoice& choice) {
+  std::string text = std::string("drive ") + word_of(choice.drive) + "\ntolerance " +
+                     number_text(choice.tolerance) + "\n";
+  if (choice.start_torque) text += "start_torque " + number_text(*choice.start_torque) + "\n";
+  return text;
+}
+
+// Mean drive torque of a turn at the speed of [operation], Nm: what a unit starts with where its
+// case does not say it.
+double mean_torque(const Case& the_case) {
+  Plant plant(the_case, {Drive::speed}, Plant::Kind::co_simulation);
+  const std::vector<PlantColumn> columns = columns_of(the_case, {Drive::speed}).outputs;
+  const auto torque = std::find_if(columns.begin(), columns.end(),
+                                   [](const auto& c) { return c.name == "Td_z1_Nm"; });
+  const auto place = static_cast<std::size_t>(torque - columns.begin());
+  Inputs inputs = plant.first_inputs();
+  inputs.speed = rad_per_second(the_case.operation.speed_rpm);
+  const double turn = 2 * kPi / std::abs(inputs.speed);
+  plant.start(inputs, turn);
+  constexpr int kPoints = 720;
+  double sum = 0;
+  for (int i = 1; i <= kPoints; ++i) {
+    plant.step(turn * i / kPoints);
+    sum += plant.outputs().at(place);
+  }
+  return sum / kPoints;
+}
+
+// Four digits: those that differ between computers do not matter for a start.
+double rounded(double value) {
+  if (value == 0) return 0;
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 3);
+  return unit >= 1 ? std::round(value / unit) * unit
+                   : std::round(value / unit) / std::round(1 / unit);
+}
+
+// @param why_not  where the mean torque cannot be computed: why
+UnitChoice choice_of(const Case& the_case, const UnitOptions& options, std::string& why_not) {
+  UnitChoice choice{options.drive, options.tolerance};
+  const bool own = the_case.drive && the_case.drive->kind == DriveKind::torque;
+  if (options.drive == Drive::torque && !own && the_case.operation.speed_rpm != 0) try {
+      choice.start_torque = rounded(mean_torque(the_case));
+    } catch (const InputError& error) {
+      why_not = error.what();
+    } catch (const ComputationError& error) {
+      why_not = error.what();
+    }
+  return choice;
 }
 
 // What decides what the variables are and what they do.
@@ -44,9 +95,11 @@ std::string identity(const KeptCase& kept, const std::string& choice,
   return all;
 }
 
-Description description_of(const Case& the_case, const UnitOptions& options) {
+Description description_of(const Case& the_case, const UnitOptions& options,
+                           const UnitChoice& choice) {
   Description it;
-  it.variables = variables_of(the_case, {options.drive, options.tolerance});
+  it.variables = variables_of(the_case, choice);
+  it.dependencies = dependencies_of(the_case, choice, it.variables);
   it.model_name = options.model_name.empty() ? the_case.name : options.model_name;
   it.text = "Bent-axis axial piston pump with " + std::to_string(the_case.pump.geometry.pistons) +
             " pistons: motion, every reaction force and drive torque in closed form" +
@@ -74,12 +127,14 @@ const char* folder_of_library(Version version) {
 }  // namespace
 
 std::string unit_archive(const Case& the_case, const UnitOptions& options) {
-  Description description = description_of(the_case, options);
   Case alone = the_case;
   alone.uncertainty = {};  // a unit has one value of each
   const KeptCase kept = kept_case(alone);
   require_text(kept);
-  const std::string choice = choice_text(options);
+  std::string why_not;  // of unit_summary()
+  const UnitChoice chosen = choice_of(the_case, options, why_not);
+  Description description = description_of(the_case, options, chosen);
+  const std::string choice = choice_text(chosen);
   description.token = token_of(identity(kept, choice, description.variables));
   std::vector<ArchiveFile> files;
   files.push_back({"modelDescription.xml", description_xml(options.version, description)});
@@ -97,7 +152,11 @@ std::string unit_archive(const Case& the_case, const UnitOptions& options) {
 
 UnitSummary unit_summary(const Case& the_case, const UnitOptions& options) {
   UnitSummary has;
-  for (const Variable& variable : variables_of(the_case, {options.drive, options.tolerance})) {
+  has.glibc = needed_glibc();
+  const UnitChoice choice = choice_of(the_case, options, has.no_start_torque);
+  for (const Variable& variable : variables_of(the_case, choice)) {
+    if (variable.role == Role::input && variable.input == Input::torque)
+      has.start_torque = variable.start;
     if (variable.causality == Causality::input) has.inputs.push_back(variable.name);
     if (variable.causality == Causality::output) ++has.outputs;
     if (variable.causality == Causality::parameter) ++has.parameters;

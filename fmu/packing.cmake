@@ -1,7 +1,7 @@
 # The description of a unit and its archive, for the program. Carries the pump of a unit with it: the list of
 # variables is what that has.
 bentaxis_library(fmu STANDARD 20
-  SOURCES archive.cpp description_fmi2.cpp description_fmi3.cpp description_parts.cpp documentation.cpp
+  SOURCES archive.cpp dependencies.cpp description_fmi2.cpp description_fmi3.cpp description_parts.cpp documentation.cpp
     embedded.cpp package.cpp units.cpp $<TARGET_OBJECTS:bentaxis_fmu_plant>)
 target_link_libraries(bentaxis_fmu PUBLIC bentaxis::pump
   PRIVATE bentaxis::analytic bentaxis::coupled bentaxis::files bentaxis::hydraulics bentaxis::results

@@ -4,8 +4,11 @@
 #include <pybind11/pybind11.h>
 
 #include <chrono>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/progress.h"
 
@@ -41,7 +44,12 @@ auto unlocked(const Job& job) {
   }
 }
 
-/// Warns as Python does, once per place in the caller's program: bentaxis.Warning.
+/// Warns as Python does, once per place in the caller's program: bentaxis.DoubtWarning.
 void warn(const std::string& text);
+
+/// What is implausible about a case, "code: text" each, as the program prints it.
+std::vector<std::string> plausibility_texts(const Case& the_case);
+/// Warns of each: bentaxis.PlausibilityWarning.
+void warn_of_plausibility(const std::vector<std::string>& texts);
 
 }  // namespace bentaxis::python

@@ -93,9 +93,8 @@ void add_class(py::module_& module) {
       .def(
           "items",
           [](const PythonCase& self) {
-            py::list items;
-            for (const std::string& key : self.keys())
-              items.append(py::make_tuple(key, value_in(self, key)));
+            std::vector<std::pair<std::string, py::object>> items;
+            for (const std::string& key : self.keys()) items.emplace_back(key, value_in(self, key));
             return items;
           },
           "Keys with their values.")

@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <map>
 
 #include "bentaxis/study/assumptions.h"
@@ -23,7 +24,17 @@ using Result = std::shared_ptr<const study::ComparisonResult>;
 
 struct Comparison {
   Result result;
+  std::vector<std::string> warnings;
 };
+
+// Of both cases where there are two, each text once.
+std::vector<std::string> implausible(const Case& first, const std::optional<Case>& second) {
+  std::vector<std::string> texts = plausibility_texts(first);
+  if (!second) return texts;
+  for (const std::string& text : plausibility_texts(*second))
+    if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+  return texts;
+}
 
 void assume(const CaseValues& settings, const char* what, const PumpParameters& pump,
             Assumptions& assumptions) {
@@ -51,11 +62,19 @@ Comparison compare_cases(const PythonCase& the_case, const CaseValues& multibody
   options.tolerance = tolerance;
   options.loads = true;
   if (const auto data = shipped("reference_data")) options.published = *data / "published";
-  return {unlocked([&](const study::PartProgress& progress_of) {
+  Comparison comparison;
+  comparison.warnings = implausible(first, second);
+  warn_of_plausibility(comparison.warnings);
+  comparison.result = unlocked([&](const study::PartProgress& progress_of) {
     if (second) study::check_same_run(first, *second);
     return std::make_shared<const study::ComparisonResult>(
         study::compare_models(std::move(first), std::move(second), options, progress_of));
-  })};
+  });
+  for (const report::Warning& warning : comparison.result->warnings) {
+    warn(warning.name + ": " + warning.text);
+    comparison.warnings.push_back(warning.name + ": " + warning.text);
+  }
+  return comparison;
 }
 
 std::vector<std::filesystem::path> report_comparison(const Comparison& self,
@@ -175,15 +194,8 @@ void add_comparison(py::module_& module) {
       .def_property_readonly(
           "checks", [](const Comparison& self) { return self.result->checks; },
           "What must vanish in each model.")
-      .def_property_readonly(
-          "warnings",
-          [](const Comparison& self) {
-            std::vector<std::string> texts;
-            for (const auto& warning : self.result->warnings)
-              texts.push_back(warning.name + ": " + warning.text);
-            return texts;
-          },
-          "What is doubtful about the results.")
+      .def_readonly("warnings", &Comparison::warnings,
+                    "What is doubtful about the case and the results, which was warned of.")
       .def("report", &report_comparison, py::arg("folder"),
            "Writes report.html, report.json and the curves as the program does; returns their "
            "paths.")

@@ -1,6 +1,7 @@
 #include <pybind11/pybind11.h>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/study/plausibility.h"
 #include "binding.h"
 #include "call.h"
 #include "words.h"
@@ -14,6 +15,7 @@ namespace py = pybind11;
 PyObject* input_error = nullptr;
 PyObject* computation_error = nullptr;
 PyObject* warning = nullptr;
+PyObject* plausibility_warning = nullptr;
 
 PyObject* new_class(py::module_& module, const char* name, const char* doc, PyObject* base) {
   PyObject* const made =
@@ -27,6 +29,18 @@ PyObject* new_class(py::module_& module, const char* name, const char* doc, PyOb
 
 void warn(const std::string& text) {
   if (PyErr_WarnEx(warning, in_python(text).c_str(), 1) != 0) throw py::error_already_set();
+}
+
+std::vector<std::string> plausibility_texts(const Case& the_case) {
+  std::vector<std::string> texts;
+  for (const study::Doubt& doubt : study::plausibility(the_case).warnings)
+    texts.push_back(in_python(doubt.code + ": " + doubt.text));
+  return texts;
+}
+
+void warn_of_plausibility(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts)
+    if (PyErr_WarnEx(plausibility_warning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
 void add_errors(py::module_& module) {
@@ -43,6 +57,10 @@ void add_errors(py::module_& module) {
                 "A result can be computed but is doubtful: digits that rounding takes, a port's "
                 "timing beyond its limits, states that are hardly meant.",
                 PyExc_UserWarning);
+  plausibility_warning = new_class(
+      module, "PlausibilityWarning",
+      "A case is valid but implausible: a value, or values together, as Case.doubts() lists them.",
+      warning);
   // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 wants it so
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {

@@ -79,6 +79,7 @@ Identification identify(const PythonCase& the_case, const Paths& data, const Bou
         "identify: this module was built without Ceres; install libceres-dev (scripts/setup full) "
         "and build again");
   const Case copy = the_case.copy();
+  warn_of_plausibility(plausibility_texts(copy));
   return {unlocked([&](const study::PartProgress& progress_of) {
             designs::IdentificationData all;
             for (const std::string& file : files) designs::read_identification(file, copy, all);

@@ -14,6 +14,7 @@
 #include "python_case.h"
 #include "table.h"
 #include "values.h"
+#include "words.h"
 
 namespace bentaxis::python {
 namespace {
@@ -24,13 +25,19 @@ using Warnings = std::vector<std::string>;
 template <class T>
 struct Warned {
   std::shared_ptr<const T> table;
-  Warnings warnings;
+  Warnings implausible, warnings;
 };
 
 template <class T>
 Table shown(Warned<T>&& found) {
-  for (const std::string& text : found.warnings) warn(text);
-  return table_of(std::move(found.table));
+  warn_of_plausibility(found.implausible);
+  Table table = table_of(std::move(found.table));
+  table.warnings = std::move(found.implausible);
+  for (const std::string& text : found.warnings) {
+    warn(text);
+    table.warnings.push_back(in_python(text));
+  }
+  return table;
 }
 
 // What the program says on standard error of the ports' timing.
@@ -47,6 +54,7 @@ Warned<ResultTable> turn(const Case& the_case, study::Model model,
                          const study::ChannelChoice& channels,
                          const study::PartProgress& progress_of) {
   Warned<ResultTable> found;
+  found.implausible = plausibility_texts(the_case);
   const ChannelLayout layout(the_case.pump.geometry.pistons);
   study::RunOptions options;
   options.model = model;
@@ -123,6 +131,7 @@ Table run_states(const PythonCase& the_case, const Motion& states, const std::st
   const Case copy = the_case.copy();
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     Warned<MotionTable> found;
+    found.implausible = plausibility_texts(copy);
     std::vector<Channel> there = ChannelLayout(copy.pump.geometry.pistons).channels();
     for (const Channel& channel : motion_channels()) there.push_back(channel);
     wanted.of(there);  // refuses unknown names

@@ -22,6 +22,7 @@ using study::PeriodicMotion;
 
 struct Simulation {
   std::shared_ptr<const study::SimulationResult> result;
+  std::vector<std::string> warnings;
 };
 
 Simulation simulate(const PythonCase& the_case, const std::optional<std::string>& model,
@@ -37,11 +38,23 @@ Simulation simulate(const PythonCase& the_case, const std::optional<std::string>
   if (oil == "periodic") choice.oil = study::OilInTime::periodic;
   choice.steady = steady;
   Case copy = the_case.copy();
-  return {unlocked([&](const study::PartProgress& progress_of) {
+  Simulation simulation;
+  simulation.warnings = plausibility_texts(copy);
+  warn_of_plausibility(simulation.warnings);
+  std::vector<report::Warning> of_run;
+  simulation.result = unlocked([&](const study::PartProgress& progress_of) {
     drive_of(copy);
-    return std::make_shared<const study::SimulationResult>(study::simulate(
+    auto result = std::make_shared<const study::SimulationResult>(study::simulate(
         study::prepare_simulation(std::move(copy), choice, progress_of), choice, progress_of));
-  })};
+    of_run = study::simulation_document(*result, versions())
+                 .warnings.value_or(std::vector<report::Warning>());
+    return result;
+  });
+  for (const report::Warning& warning : of_run) {
+    warn(warning.name + ": " + warning.text);
+    simulation.warnings.push_back(warning.name + ": " + warning.text);
+  }
+  return simulation;
 }
 
 using Run = std::optional<Trajectory> study::SimulationResult::*;
@@ -145,6 +158,8 @@ void add_simulation(py::module_& module) {
           "How far apart the models are.")
       .def_property_readonly(
           "checks", [](const Simulation& self) { return self.result->checks; }, "What must vanish.")
+      .def_readonly("warnings", &Simulation::warnings,
+                    "What is doubtful about the case and the motion, which was warned of.")
       .def_property_readonly(
           "judged_until_s", [](const Simulation& self) { return self.result->judged_until_s; },
           "Later a disturbance of the wanted error would change results altogether.")

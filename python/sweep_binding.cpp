@@ -85,11 +85,15 @@ Sweep sweep(const PythonCase& the_case, const Variations& vary, const Texts& out
   request.check_share = check;
   if (threads < 0) throw InputError("threads = " + std::to_string(threads) + ": must be >= 0");
   const Case copy = the_case.copy();
-  return shown(unlocked([&](const study::PartProgress& progress_of) {
+  const std::vector<std::string> implausible = plausibility_texts(copy);
+  warn_of_plausibility(implausible);
+  Sweep swept = shown(unlocked([&](const study::PartProgress& progress_of) {
     const designs::Sweep all(copy, designs::sweep_plan(request, copy));
     return std::make_shared<const designs::SweepResult>(
         designs::compute_in_memory(all, threads, progress_of("sweep")));
   }));
+  swept.warnings = implausible;
+  return swept;
 }
 
 std::map<std::size_t, std::string> infeasible(const Sweep& self) {

@@ -88,18 +88,31 @@ void add_channels(Table& table, const ResultTable& of) {
 
 }  // namespace
 
-const Column& Table::column(const std::string& wanted) const {
+namespace {
+
+// By its name, or by a short name that only one has.
+const Column* column_called(const std::vector<Column>& columns, const std::string& wanted) {
   const Column* found = nullptr;
-  std::set<std::string> names;
   std::size_t called = 0;
   for (const Column& one : columns) {
-    if (one.name == wanted) return one;
-    names.insert(one.name);
+    if (one.name == wanted) return &one;
     if (!is_called(one, wanted)) continue;
     ++called;
     found = &one;
   }
-  if (called == 1) return *found;
+  return called == 1 ? found : nullptr;
+}
+
+}  // namespace
+
+bool Table::has(const std::string& wanted) const {
+  return column_called(columns, wanted) != nullptr;
+}
+
+const Column& Table::column(const std::string& wanted) const {
+  if (const Column* const found = column_called(columns, wanted)) return *found;
+  std::set<std::string> names;
+  for (const Column& one : columns) names.insert(one.name);
   throw pybind11::key_error("no column is called " + wanted + suggestion(wanted, names));
 }
 

@@ -30,9 +30,12 @@ struct Table {
   std::size_t first_of_block = 0;  ///< columns from here on lie in one block of memory
   std::function<std::string()> csv;
   std::shared_ptr<const void> owner;
+  std::vector<std::string> warnings = {};  ///< what is doubtful about the case or the results
 
   /// @throws pybind11::key_error
   const Column& column(const std::string& wanted) const;
+  /// Whether column() finds one.
+  bool has(const std::string& wanted) const;
 };
 
 Table table_of(std::shared_ptr<const ResultTable> of);

@@ -51,6 +51,18 @@ Array values(const py::object& self) {
               {bytes(one.stride), bytes(1)});
 }
 
+py::object as_array(const Table& table, const py::object& dtype, const py::object& copy) {
+  if (!copy.is_none() && !copy.cast<bool>())
+    throw py::value_error("a table is not one array in memory: a copy is needed");
+  const std::size_t width = table.columns.size();
+  Array all({table.rows, width});
+  double* to = all.mutable_data();
+  for (std::size_t row = 0; row < table.rows; ++row)
+    for (const Column& one : table.columns) *to++ = one.first[row * one.stride];
+  if (dtype.is_none()) return all;
+  return all.attr("astype")(dtype);
+}
+
 DataFrame to_pandas(const py::object& self) {
   const auto& table = self.cast<const Table&>();
   py::dict columns, units;
@@ -110,12 +122,10 @@ void add_tables(py::module_& module) {
            "component, the axis: \"Td_z1_Nm\", \"Td_z1\", \"Td_Nm\", \"Td\".")
       .def(
           "__contains__",
-          [](const Table& self, const std::string& name) {
-            for (const Column& one : self.columns)
-              if (one.name == name) return true;
-            return false;
+          [](const Table& self, const py::object& name) {
+            return py::isinstance<py::str>(name) && self.has(name.cast<std::string>());
           },
-          py::arg("name"), "Whether there is such a column.")
+          py::arg("name"), "Whether there is such a column: whether [name] gives one.")
       .def(
           "__iter__", [](const Table& self) { return py::iter(py::cast(names(self))); },
           "Over names.")
@@ -125,6 +135,10 @@ void add_tables(py::module_& module) {
       .def_property_readonly(
           "names", &names, "Names of the columns; the first says where a row is, by angle or time.")
       .def_readonly("name", &Table::name, "Who computed it.")
+      .def("__array__", &as_array, py::arg("dtype") = py::none(), py::arg("copy") = py::none(),
+           "All columns as one array, row by row, in the order of `names`; a copy.")
+      .def_readonly("warnings", &Table::warnings,
+                    "What is doubtful about the case or the results, which was warned of.")
       .def_property_readonly("values", &values,
                              "All columns of `channels` as one array, row by row.")
       .def_property_readonly(

@@ -44,7 +44,8 @@ py::tuple state_of(const Table& table) {
   double* to = numbers.mutable_data();
   for (std::size_t row = 0; row < table.rows; ++row)
     for (const Column& one : table.columns) *to++ = one.first[row * one.stride];
-  return py::make_tuple(table.name, columns, numbers, table.first_is_index, table.first_of_block);
+  return py::make_tuple(table.name, columns, numbers, table.first_is_index, table.first_of_block,
+                        table.warnings);
 }
 
 Table table_in(const py::tuple& state) {
@@ -55,10 +56,12 @@ Table table_in(const py::tuple& state) {
                        parts[2].cast<std::string>(), nullptr, 1, unpacked(parts[3])});
   }
   const auto numbers = state[2].cast<py::array_t<double, py::array::c_style>>();
-  return table_of(state[0].cast<std::string>(), std::move(columns),
-                  {numbers.data(), numbers.data() + numbers.size()},
-                  static_cast<std::size_t>(numbers.shape(0)), state[3].cast<bool>(),
-                  state[4].cast<std::size_t>());
+  Table table = table_of(state[0].cast<std::string>(), std::move(columns),
+                         {numbers.data(), numbers.data() + numbers.size()},
+                         static_cast<std::size_t>(numbers.shape(0)), state[3].cast<bool>(),
+                         state[4].cast<std::size_t>());
+  if (state.size() > 5) table.warnings = state[5].cast<std::vector<std::string>>();  // since 1.0.1
+  return table;
 }
 
 }  // namespace bentaxis::python

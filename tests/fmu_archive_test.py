@@ -110,6 +110,7 @@ class Description:
         self.version = int(self.root.get("fmiVersion")[0])
         self.variables = [Variable(node, i + 1, self.version) for i, node in enumerate(self.root.find("ModelVariables"))]
         structure = self.root.find("ModelStructure")
+        self.structure = structure
         if self.version == 2:
             by_place = {v.place: v for v in self.variables}
             self.lists = {name: [by_place[int(one.get("index"))] for one in structure.findall(f"{name}/Unknown")]
@@ -286,6 +287,89 @@ class Archives(unittest.TestCase):
         self.assertEqual(listed, expected)  # by their places, each once
         self.assertTrue(all("" != v.name for v in listed))
 
+    @of_every_unit
+    def test_dependencies_are_of_knowns_and_in_order(self, it):
+        """FMI 2.0.4, 2.2.8; FMI 3.0, 2.4.8: knowns are inputs, states and time; at the start inputs and what begins as
+        it is said."""
+        by_number = {(v.place if it.version == 2 else v.reference): v for v in it.variables}
+        states = [it.state_of(v) for v in it.lists["Derivatives"]]
+        unknowns = list(it.structure.iter("Unknown")) if it.version == 2 else list(it.structure)
+        initial = set(it.structure.findall("InitialUnknowns/Unknown" if it.version == 2 else "InitialUnknown"))
+        kinds, sizes = set(), []
+        for unknown in unknowns:
+            self.assertIsNotNone(unknown.get("dependencies"))
+            numbers = [int(number) for number in unknown.get("dependencies").split()]
+            self.assertEqual(numbers, sorted(set(numbers)))
+            knowns = [by_number[number] for number in numbers]
+            for known in knowns:
+                if unknown in initial:
+                    self.assertTrue(known.causality == "input" or known.initial == "exact", known.name)
+                else:
+                    self.assertTrue(known.causality in ("input", "independent") or known in states, known.name)
+            if unknown not in initial:
+                sizes.append(len(knowns))
+            words = unknown.get("dependenciesKind", "").split()
+            kinds |= set(words)
+            itself = by_number[int(unknown.get("index" if it.version == 2 else "valueReference"))]
+            if words:
+                self.assertEqual(len(words), len(numbers))
+                self.assertTrue(itself.real, itself.name)
+        self.assertLessEqual(kinds, {"dependent", "constant"})
+        # What depends on everything would say nothing.
+        everything = len(states) + sum(v.causality == "input" for v in it.variables)
+        self.assertLess(sum(sizes), 0.9 * everything * len(sizes))
+
+    def test_the_load_does_not_reach_the_reactions_at_once(self):
+        it = self.descriptions["bap63_rated_hydraulic", "speed", 2]
+        share = next(v.place for v in it.variables if v.name == "load_share")
+        moved = [by for by in it.structure.findall("Outputs/Unknown") if share in map(int, by.get("dependencies").split())]
+        names = [v.name for v in it.variables if v.place in [int(one.get("index")) for one in moved]]
+        self.assertEqual(names, ["flow_delivery_l_per_min"])
+
+    def test_drive_torque_starts_with_that_of_the_case_or_of_its_operating_point(self):
+        def torque(*more, case="bap63_rated"):
+            file = self.folder / "torque.fmu"
+            result = run("fmu", REPO / f"cases/{case}.toml", "--out", file, "--drive", "torque", *more)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            with zipfile.ZipFile(file) as archive:
+                it = Description(archive.read("modelDescription.xml"))
+            return float(next(v.start for v in it.variables if v.name == "drive_torque"))
+
+        # 292.5 Nm is printed for the model of this pump (docs/limits.md); the others are the means of `run`.
+        self.assertEqual(torque(), 292.5)
+        out = self.folder / "run"
+        for case, change in (("bap63_rated_hydraulic", "pressure.delivery_bar=100"), ("bap63_rated_hydraulic", "pressure.delivery_bar=275"),
+                             ("bap63_rated", "operation.speed_rpm=-1500"), ("bap63_rated", "pressure.delivery_bar=50")):
+            self.assertEqual(run("run", REPO / f"cases/{case}.toml", "--model", "analytic", "--channels", "Td",
+                                 "--set", change, "--out", out).returncode, 0)
+            lines = (out / "analytic.csv").read_text().splitlines()
+            column = lines[0].split(",").index("Td_z1_Nm")
+            values = [float(line.split(",")[column]) for line in lines[1:]]
+            found = torque("--set", change, case=case)
+            self.assertAlmostEqual(found / (sum(values) / len(values)), 1, delta=2e-3)
+        own = ["--set", "drive.kind=torque", "--set", "drive.duration_s=0.1", "--set", "drive.samples=10"]
+        self.assertEqual(torque(*own, "--set", "drive.torque_Nm=123"), 123)
+        self.assertEqual(torque(*own, "--set", "drive.torque_Nm=0"), 0)
+        self.assertEqual(torque("--set", "operation.speed_rpm=0"), 0)
+        # Where there is no operating point to be computed the unit is made all the same, and says so.
+        self.assertEqual(torque("--set", "operation.speed_rpm=-1500", case="bap63_rated_hydraulic"), 0)
+        said = run("fmu", REPO / "cases/bap63_rated_hydraulic.toml", "--out", self.folder / "torque.fmu", "--drive", "torque",
+                   "--set", "operation.speed_rpm=-1500").stdout
+        self.assertIn("drive_torque starts at 0 Nm: the mean torque of the operating point cannot be computed: ", said)
+
+    def test_the_version_of_glibc_that_is_stated_is_the_one_needed(self):
+        for (case, drive, version), file in self.files.items():
+            with zipfile.ZipFile(file) as archive:
+                library = next(name for name in archive.namelist() if name.endswith(".so"))
+                symbols = self.folder / "library.so"
+                symbols.write_bytes(archive.read(library))
+                page = archive.read("documentation/index.html").decode()
+            needed = subprocess.run(["nm", "-D", "--undefined-only", symbols], capture_output=True, text=True, check=True).stdout
+            least = max((int(number) for number in re.findall(r"@GLIBC_2\.(\d+)", needed)))
+            self.assertIn(f"glibc 2.{least} or newer", page)
+            self.assertIn(f"glibc 2.{least} or newer", self.said[case, drive, version])
+            break  # the same library is in all
+
     def test_both_versions_say_the_same(self):
         for case, drive, versions in UNITS:
             if len(versions) < 2:
@@ -294,6 +378,11 @@ class Archives(unittest.TestCase):
             facts = [[(v.name, v.reference, v.causality, v.variability, v.initial, v.start, v.all.get("unit"))
                       for v in it.variables] for it in both]
             self.assertEqual(*facts)
+            said = [[[next(v.name for v in it.variables if (v.place if it.version == 2 else v.reference) == int(number))
+                      for number in one.get("dependencies").split()]
+                     for one in (it.structure.iter("Unknown") if it.version == 2 else it.structure)
+                     if one.tag in ("Unknown", "Output", "ContinuousStateDerivative", "InitialUnknown")] for it in both]
+            self.assertEqual(*said)
             self.assertEqual(int(two.root.get("numberOfEventIndicators")), len(three.lists["Indicators"]))
 
     def test_inputs_are_those_of_the_drive(self):

@@ -1,7 +1,10 @@
 // What instances of a unit do: parameters, states, threads, steps, model exchange, derivatives.
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <sstream>
 #include <thread>
+#include <utility>
 
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/number.h"
@@ -312,6 +315,215 @@ TEST(Fmi2, DirectionalDerivativesAreDifferences) {
             fmi2Error);
   EXPECT_EQ(f.fmi2GetDirectionalDerivative(unit.it, &known, 1, &known, 1, &seed, &slope),
             fmi2Error);
+}
+
+// Times and angles of the events that a run tells, of co-simulation.
+std::vector<std::pair<double, double>> edges_told(Unit2& unit, int steps, double size) {
+  unit.messages.text.clear();
+  unit.steps(steps, size);
+  std::vector<std::pair<double, double>> edges;
+  std::istringstream lines(unit.messages.text);
+  for (std::string line; std::getline(lines, line);) {
+    double time = 0, angle = 0;
+    if (std::sscanf(line.c_str(),
+                    "0 logEvents: event at %lf s: the block passes a port edge at %lf", &time,
+                    &angle) == 2)
+      edges.emplace_back(time, angle);
+  }
+  return edges;
+}
+
+TEST(Fmi2, EdgesAreToldInCoSimulation) {
+  const Resources resources(kHydraulic);
+  Unit2 unit(resources, fmi2CoSimulation, true), finer(resources, fmi2CoSimulation, true);
+  const fmi2String all[] = {"logAll"};
+  EXPECT_EQ(unit.f.fmi2SetDebugLogging(unit.it, fmi2True, 1, all), fmi2OK);
+  unit.start();
+  finer.start();
+  const auto edges = edges_told(unit, 40, 1e-3), again = edges_told(finer, 4000, 1e-5);
+  // Four edges of kidneys and notches, at least, of five chambers in a turn of 40 ms.
+  EXPECT_GE(edges.size(), 20U) << unit.messages.text;
+  ASSERT_EQ(edges.size(), again.size());
+  constexpr double kDegreesPerSecond = 9000;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    EXPECT_NEAR(edges[i].second, kDegreesPerSecond * edges[i].first, 1e-2) << i;
+    EXPECT_NEAR(edges[i].first, again[i].first, 1e-9) << i;
+    EXPECT_TRUE(i == 0 || edges[i].first > edges[i - 1].first) << i;
+  }
+  // Those that are not asked for are not told.
+  const fmi2String other[] = {"logStatusWarning"};
+  EXPECT_EQ(unit.f.fmi2SetDebugLogging(unit.it, fmi2True, 1, other), fmi2OK);
+  EXPECT_TRUE(edges_told(unit, 40, 1e-3).empty());
+}
+
+TEST(Fmi2, TouchesOfTeethAndBreakpointsAreToldInCoSimulation) {
+  const Resources rattle("bap63_tooth_rattle.toml"), load("bap63_load_step.toml");
+  Unit2 teeth(rattle, fmi2CoSimulation, true), curve(load, fmi2CoSimulation, true);
+  teeth.start();
+  teeth.steps(20, 1e-3);
+  EXPECT_TRUE(teeth.messages.has("teeth touch, ")) << teeth.messages.text;
+  EXPECT_TRUE(teeth.messages.has("teeth leave contact, "));
+  curve.start();
+  curve.steps(11, 1e-2);
+  EXPECT_TRUE(curve.messages.has("event at 0.1 s: breakpoint of a curve over time"))
+      << curve.messages.text;
+}
+
+TEST(Fmi2, PressuresBelowVacuumAreRefused) {
+  for (const char* name : {kRated, kHydraulic, "bap63_motoring.toml"}) {
+    const Resources resources(name);
+    for (const fmi2Type type : {fmi2CoSimulation, fmi2ModelExchange}) {
+      Unit2 unit(resources, type);
+      unit.start();
+      for (const char* input : {"suction_pressure", "delivery_pressure"}) {
+        if (std::none_of(resources.variables().begin(), resources.variables().end(),
+                         [&](const Variable& it) { return it.name == input; }))
+          continue;
+        const double before = unit.get(input);
+        unit.messages.text.clear();
+        EXPECT_EQ(unit.set(input, -2e5), fmi2Error) << name;
+        EXPECT_TRUE(unit.messages.has(std::string(input) + " = -2e+05: must be >= -101324 Pa"))
+            << unit.messages.text;
+        EXPECT_EQ(unit.set(input, -101326), fmi2Error) << name;
+        EXPECT_EQ(unit.get(input), before);
+        EXPECT_EQ(unit.set(input, -0.5e5), fmi2OK) << name << unit.messages.text;
+      }
+    }
+  }
+}
+
+// The atmosphere is a parameter: the least gauge pressure follows it.
+TEST(Fmi2, VacuumIsThatOfTheAtmosphere) {
+  const Resources resources(kHydraulic);
+  Unit2 unit(resources);
+  EXPECT_EQ(unit.set("suction_pressure", -0.9e5), fmi2OK);
+  EXPECT_EQ(unit.set("hydraulics.atmosphere_bar", 0.8), fmi2OK) << unit.messages.text;
+  EXPECT_EQ(unit.set("suction_pressure", -0.85e5), fmi2Error);
+  EXPECT_TRUE(unit.messages.has("must be >= -79999")) << unit.messages.text;
+  EXPECT_EQ(unit.set("suction_pressure", -0.1e5), fmi2OK);
+  unit.start();
+}
+
+TEST(Fmi2, ASwitchSaysWhoseLoadItIs) {
+  const Resources resources("bap63_load_step.toml");
+  const Functions& f = library();
+  Unit2 unit(resources, fmi2ModelExchange);
+  unit.start();
+  const unsigned own = resources["load_share_replaces_curve"];
+  const auto flow = [&](fmi2Boolean replaces, double share) {
+    EXPECT_EQ(f.fmi2SetBoolean(unit.it, &own, 1, &replaces), fmi2OK) << unit.messages.text;
+    EXPECT_EQ(unit.set("load_share", share), fmi2OK);
+    fmi2Boolean is = 2;
+    EXPECT_EQ(f.fmi2GetBoolean(unit.it, &own, 1, &is), fmi2OK);
+    EXPECT_EQ(is, replaces);
+    return unit.get("flow_delivery_l_per_min");
+  };
+  ASSERT_EQ(f.fmi2SetTime(unit.it, 0.2), fmi2OK);  // the curve says 60 %
+  const double full = flow(fmi2True, 1);
+  EXPECT_NEAR(flow(fmi2True, 0.999), 0.999 * full, 1e-9 * full);
+  EXPECT_NEAR(flow(fmi2True, 0.6), 0.6 * full, 1e-9 * full);
+  // As it was: 1 leaves the load to its curve, any other value takes its place.
+  EXPECT_NEAR(flow(fmi2False, 1), 0.6 * full, 1e-9 * full);
+  EXPECT_NEAR(flow(fmi2False, 0.999), 0.999 * full, 1e-9 * full);
+  // It is part of the state.
+  flow(fmi2True, 1);
+  fmi2FMUstate state = nullptr;
+  ASSERT_EQ(f.fmi2GetFMUstate(unit.it, &state), fmi2OK);
+  flow(fmi2False, 1);
+  ASSERT_EQ(f.fmi2SetFMUstate(unit.it, state), fmi2OK);
+  EXPECT_NEAR(unit.get("flow_delivery_l_per_min"), full, 1e-9 * full);
+  ASSERT_EQ(f.fmi2FreeFMUstate(unit.it, &state), fmi2OK);
+  // Not between events, and not where it is no input.
+  const unsigned film = resources["valid_film"], speed = resources["drive_speed"];
+  const fmi2Boolean yes = fmi2True;
+  EXPECT_EQ(f.fmi2SetBoolean(unit.it, &film, 1, &yes), fmi2Error);
+  EXPECT_EQ(f.fmi2SetBoolean(unit.it, &speed, 1, &yes), fmi2Error);
+  ASSERT_EQ(f.fmi2EnterContinuousTimeMode(unit.it), fmi2OK);
+  EXPECT_EQ(f.fmi2SetBoolean(unit.it, &own, 1, &yes), fmi2Error);
+  // Where no curve is, no switch is needed.
+  const Resources without(kHydraulic);
+  EXPECT_THROW(without["load_share_replaces_curve"], std::runtime_error);
+}
+
+TEST(Fmi2, StartsWithTheTorqueOfItsResources) {
+  const Resources resources(kRated, "torque");
+  resources.write(
+      "unit.txt",
+      std::string("drive torque\ntolerance 1e-9\nstart_torque 292.5\ntoken ") + kToken + "\n");
+  Unit2 unit(resources);
+  EXPECT_EQ(unit.get("drive_torque"), 292.5);
+  unit.start();
+  unit.steps(40, 1e-3);  // a turn
+  EXPECT_NEAR(unit.get("shaft_rpm"), 1500, 15);
+}
+
+// However long what an importer gives is: a message is one line of a size that a log can hold.
+TEST(UnitLibrary, MessagesStayShort) {
+  const Resources resources(kRated);
+  Messages messages;
+  fmi2CallbackFunctions functions{log2, nullptr, nullptr, nullptr, &messages};
+  constexpr std::size_t kLong = 1 << 20;
+  const std::string text = std::string(kLong, 'x') + "\n\x1b[31m";
+  const auto said = [&] { return std::exchange(messages.text, ""); };
+  EXPECT_EQ(library().fmi2Instantiate("p", fmi2CoSimulation, text.c_str(), resources.uri().c_str(),
+                                      &functions, 0, 0),
+            nullptr);
+  const std::string token = said();
+  EXPECT_LT(token.size(), 2500U);
+  EXPECT_NE(token.find(".. (1048582 bytes)"), std::string::npos) << token;
+  const std::string place = "file:///" + text;
+  EXPECT_EQ(
+      library().fmi2Instantiate("p", fmi2CoSimulation, kToken, place.c_str(), &functions, 0, 0),
+      nullptr);
+  const std::string folder = said();
+  EXPECT_LT(folder.size(), 2500U);
+  EXPECT_EQ(std::count(folder.begin(), folder.end(), '\n'), 1);
+  EXPECT_EQ(folder.find('\x1b'), std::string::npos);
+  EXPECT_EQ(
+      library().fmi3InstantiateModelExchange(text.c_str(), text.c_str(), resources.path().c_str(),
+                                             false, false, &messages, log3),
+      nullptr);
+  EXPECT_LT(said().size(), 2500U);
+}
+
+TEST(Fmi3, MessagesNameTheFunctionThatWasCalled) {
+  const Resources resources(kRated);
+  const Functions& f = library();
+  const unsigned none = 100000;
+  double value = 0;
+  bool flag = false, a = false, b = false, c = false, d = false, e = false;
+  for (const bool exchange : {false, true}) {
+    Unit3 unit(resources, exchange);
+    const auto named = [&](const char* name, fmi3Status status) {
+      EXPECT_EQ(status, fmi3Error) << name;
+      EXPECT_TRUE(unit.messages.has(std::string(": ") + name + ": ")) << unit.messages.text;
+      EXPECT_FALSE(unit.messages.has("fmi2")) << unit.messages.text;
+      unit.messages.text.clear();
+    };
+    named("fmi3GetFloat64", f.fmi3GetFloat64(unit.it, &none, 1, &value, 1));
+    named("fmi3SetFloat64", f.fmi3SetFloat64(unit.it, &none, 1, &value, 1));
+    named("fmi3GetBoolean", f.fmi3GetBoolean(unit.it, &none, 1, &flag, 1));
+    named("fmi3SetBoolean", f.fmi3SetBoolean(unit.it, &none, 1, &flag, 1));
+    named("fmi3GetString", f.fmi3GetString(unit.it, &none, 1, nullptr, 1));
+    named("fmi3ExitInitializationMode", f.fmi3ExitInitializationMode(unit.it));
+    named("fmi3DoStep", f.fmi3DoStep(unit.it, 0, 1e-3, true, &a, &b, &c, &value));
+    named("fmi3Terminate", f.fmi3Terminate(unit.it));
+    named("fmi3EnterEventMode", f.fmi3EnterEventMode(unit.it));
+    named("fmi3UpdateDiscreteStates",
+          f.fmi3UpdateDiscreteStates(unit.it, &a, &b, &c, &d, &e, &value));
+    named("fmi3EnterContinuousTimeMode", f.fmi3EnterContinuousTimeMode(unit.it));
+    named("fmi3CompletedIntegratorStep", f.fmi3CompletedIntegratorStep(unit.it, true, &a, &b));
+    named("fmi3SetTime", f.fmi3SetTime(unit.it, 1));
+    named("fmi3SetContinuousStates", f.fmi3SetContinuousStates(unit.it, &value, 1));
+    named("fmi3GetContinuousStates", f.fmi3GetContinuousStates(unit.it, &value, 1));
+    named("fmi3GetContinuousStateDerivatives",
+          f.fmi3GetContinuousStateDerivatives(unit.it, &value, 1));
+    named("fmi3GetDirectionalDerivative",
+          f.fmi3GetDirectionalDerivative(unit.it, &none, 1, &none, 1, &value, 1, &value, 1));
+    named("fmi3SetFMUState", f.fmi3SetFMUState(unit.it, &value));
+    named("fmi3EnterStepMode", f.fmi3EnterStepMode(unit.it));
+    named("fmi3EnterConfigurationMode", f.fmi3EnterConfigurationMode(unit.it));
+  }
 }
 
 TEST(Fmi3, IsFmi2ByOtherNames) {

@@ -28,6 +28,12 @@ for version in 2 3; do
 done
 unknown=$(nm -D --undefined-only "$library" | awk '$1 == "U" {print $2}' | grep -v '@GLIBC_' || true)
 [ -z "$unknown" ] || say "needs symbols that are not libc's: $unknown"
+# The version of glibc that the documents state is the one that the symbols need.
+least=$(nm -D --undefined-only "$library" | grep -oE '@GLIBC_[0-9.]+' | sed 's/@GLIBC_//' | sort -V | tail -n 1)
+for page in fmu limits; do
+  stated=$(grep -oE 'glibc [0-9]+\.[0-9]+' "$sources/docs/$page.md" | sort -u)
+  [ "$stated" = "glibc $least" ] || say "docs/$page.md states \"$stated\", the library needs glibc $least"
+done
 if strings -a "$library" | grep -F "$sources/"; then say "names paths of the sources"; fi
 if [ -n "$(nm "$library" 2>/dev/null)" ]; then say "has symbols that are for debuggers"; fi
 [ $status = 0 ] && echo "libc and libm, $(wc -l <<< "$shown") functions of FMI"

@@ -83,6 +83,7 @@ class Resources {
     path_ = top_ / folder;
     std::filesystem::create_directories(path_);
     std::filesystem::copy_file(BENTAXIS_SOURCE_DIR "/cases/" + case_name, path_ / "case.toml");
+    std::filesystem::copy(BENTAXIS_SOURCE_DIR "/cases/curves", path_ / "curves");
     write("unit.txt", "drive " + drive + "\ntolerance 1e-9\ntoken " + kToken + "\n");
     choice_.drive = drive == "speed"    ? Drive::speed
                     : drive == "torque" ? Drive::torque
@@ -104,6 +105,9 @@ class Resources {
     ASSERT_NE(at, std::string::npos) << from;
     write("case.toml", all.replace(at, from.size(), to));
   }
+  /// The variables of the case as it now is.
+  void read_again() { variables_ = variables_of(read_case(path_ / "case.toml"), choice_); }
+  Drive drive() const { return choice_.drive; }
   const std::filesystem::path& path() const { return path_; }
   std::string uri() const { return "file://" + path_.string(); }
   const std::vector<Variable>& variables() const { return variables_; }

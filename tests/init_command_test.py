@@ -151,13 +151,39 @@ class InitTest(ProgramTest):
     def test_job_files_do_what_they_say(self):
         project = self.project()
         of_github, of_gitlab = self.jobs(project)
-        self.assertEqual(of_github, of_gitlab)
+        self.assertEqual(of_github, [command.partition(" ||")[0] for command in of_gitlab[:-1]])
         path = f"{pathlib.Path(program.PROGRAM).parent}:{os.environ['PATH']}"
         for command in of_github:
             subprocess.run(["bash", "-ec", command], cwd=project, env={**os.environ, "PATH": path}, check=True,
                            capture_output=True)
         for name in ("junit.xml", "regress.html", "report.html", "report.json"):
             self.assertTrue((project / "results" / name).is_file(), name)
+
+    def test_both_commands_run_and_either_fails_the_job(self):
+        project = self.project()
+        of_github, of_gitlab = self.jobs(project)
+        said = self.folder / "said"
+        (self.folder / "bin").mkdir()
+        stand_in = self.folder / "bin" / "bentaxis"
+        path = f"{self.folder / 'bin'}:{os.environ['PATH']}"
+        for regress, compare in ((0, 0), (1, 0), (0, 1), (1, 2), (2, 1), (3, 0)):
+            stand_in.write_text(f'#!/bin/sh\necho "$1" >> {said}\n[ "$1" = regress ] && exit {regress}\nexit {compare}\n')
+            stand_in.chmod(0o755)
+            environment = {**os.environ, "PATH": path}
+            with self.subTest(regress=regress, compare=compare):
+                # GitLab: one script of all lines, which ends where one fails.
+                said.unlink(missing_ok=True)
+                done = subprocess.run(["bash", "-c", "set -eo pipefail\n" + "\n".join(of_gitlab)], cwd=project, env=environment)
+                self.assertEqual(said.read_text().split(), ["regress", "compare"])
+                self.assertEqual(done.returncode, regress or compare)
+                # GitHub: a script per step; the job fails where a step does.
+                said.unlink(missing_ok=True)
+                codes = [subprocess.run(["sh", "-ec", command], cwd=project, env=environment).returncode for command in of_github]
+                self.assertEqual((said.read_text().split(), codes), (["regress", "compare"], [regress, compare]))
+        steps = yaml.safe_load((project / GITHUB).read_text())["jobs"]["regress"]["steps"]
+        condition = next(step["if"] for step in steps if step.get("name") == "compare")
+        self.assertEqual(condition, "${{ !cancelled() && steps.install.outcome == 'success' }}")
+        self.assertEqual(next(step["id"] for step in steps if step.get("name") == "install"), "install")
 
     def test_the_package_that_is_installed(self):
         project = self.project()

@@ -14,7 +14,7 @@ dpkg-deb -c "$package" | awk '{print $6}' > content
 for file in ./usr/bin/bentaxis ./usr/include/bentaxis/analytic/model.h ./usr/lib/libbentaxis_analytic.a \
     ./usr/lib/cmake/bentaxis/bentaxisConfig.cmake ./usr/lib/cmake/bentaxis/bentaxis-analytic.cmake \
     ./usr/share/bentaxis/cases/bap63_rated.toml ./usr/share/bentaxis/reference_data/README.md ./usr/share/man/man1/bentaxis.1 \
-    ./usr/share/bash-completion/completions/bentaxis ./usr/share/doc/bentaxis/copyright ./usr/share/doc/bentaxis/docs/theory.md; do
+    ./usr/share/bash-completion/completions/bentaxis ./usr/share/doc/bentaxis/copyright ./usr/share/doc/bentaxis/changelog.Debian.gz ./usr/share/doc/bentaxis/LICENSE ./usr/share/doc/bentaxis/docs/theory.md; do
   grep -qxF "$file" content || { echo "not in the package: $file"; exit 1; }
 done
 # Nothing of the tests, nothing outside of /usr.
@@ -29,7 +29,30 @@ field() { dpkg-deb -f "$package" "$1"; }
 for library in libsimbody librsvg2-2 libtbb libpugixml $(grep -q dist-packages content && echo python3-numpy); do
   field Depends | grep -q "$library" || { echo "Depends lacks $library: $(field Depends)"; exit 1; }
 done
-# Sanitized or not, the program of the package runs where it lies.
+# A maintainer and a home page are true or not there: no address that stands for one.
+maintainer=$(field Maintainer)
+[[ -n $maintainer ]] || { echo "Maintainer is missing"; exit 1; }
+for value in "$maintainer" "$(field Homepage)"; do
+  if grep -qiE 'example|invalid|localhost|noreply|changeme|your' <<< "$value"; then
+    echo "is a placeholder: $value"
+    exit 1
+  fi
+done
+# What dpkg makes of the changelog and, as far as this is here, of the package.
 dpkg-deb -x "$package" root
+documents=root/usr/share/doc/bentaxis
+gzip -dc $documents/changelog.Debian.gz > changelog
+version=$(dpkg-parsechangelog -l changelog -S Version 2> parsed) || { cat parsed; exit 1; }
+[[ $version == $(field Version) && ! -s parsed ]] || { echo "changelog: $version"; cat parsed changelog; exit 1; }
+[[ $(dpkg-parsechangelog -l changelog -S Source) == bentaxis ]]
+[[ $(dpkg-parsechangelog -l changelog -S Maintainer) == "$maintainer"* ]]
+if grep -qi example changelog; then echo "placeholder in the changelog"; exit 1; fi
+# The machine-readable form of copyright files: its first line, and a licence for all files.
+head -n 1 $documents/copyright |
+  grep -qxF 'Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/'
+grep -qx 'Files: \*' $documents/copyright
+[[ $(grep -cx 'License: Apache-2.0' $documents/copyright) == 2 ]]
+grep -q '^Copyright: ' $documents/copyright
+# Sanitized or not, the program of the package runs where it lies.
 root/usr/bin/bentaxis --version > /dev/null
 echo "$(wc -l < content) entries"

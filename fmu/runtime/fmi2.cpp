@@ -43,8 +43,9 @@ std::string as_format(const std::string& text) {
 
 Log::Sink sink_of(const fmi2CallbackFunctions& functions, const std::string& name) {
   if (functions.logger == nullptr) return {};
-  return [logger = functions.logger, environment = functions.componentEnvironment, name](
-             Status status, const char* category, const std::string& message) {
+  return [logger = functions.logger, environment = functions.componentEnvironment,
+          name = bentaxis::fmu::shown(name, 1000)](Status status, const char* category,
+                                                   const std::string& message) {
     logger(environment, name.c_str(), static_cast<fmi2Status>(status), category,
            as_format(message).c_str());
   };
@@ -189,8 +190,11 @@ fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
   return no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
-                          const fmi2Boolean /*value*/[]) {
-  return no_values(c, __func__, kSetDiscrete, vr, count, "Boolean");
+                          const fmi2Boolean value[]) {
+  return call(c, __func__, kSetDiscrete, [&](Instance& it) {
+    require_places(count, {vr, value});
+    it.set_flags(vr, count, value);
+  });
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          const fmi2String /*value*/[]) {

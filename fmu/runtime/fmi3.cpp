@@ -211,8 +211,12 @@ fmi3Status fmi3GetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], 
   });
 }
 fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
-                          const fmi3Boolean /*values*/[], size_t /*value_count*/) {
-  return no_values(instance, __func__, kSetDiscrete, vr, count, "Boolean");
+                          const fmi3Boolean values[], size_t value_count) {
+  return call(instance, __func__, kSetDiscrete, [&](Instance& it) {
+    require_places(count, {vr, values});
+    require_scalars(count, value_count);
+    it.set_flags(vr, count, values);
+  });
 }
 
 // Types that no variable has.

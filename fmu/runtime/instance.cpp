@@ -6,8 +6,6 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/pump/registry.h"
-#include "bentaxis/pump/validate.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -49,7 +47,7 @@ Instance::Instance(const std::filesystem::path& resources, const std::string& to
                    Log log)
     : kind_(kind), log_(std::move(log)), resources_(read_resources(resources)) {
   if (token != resources_.token)
-    throw Refused("the token " + token +
+    throw Refused("the token " + shown(token, 100) +
                   " is that of another unit than its resources: " + resources_.token);
   variables_ = variables_of(resources_.the_case, resources_.choice);
   for (const Variable& it : variables_)
@@ -156,20 +154,7 @@ void Instance::reset() {
 }
 
 Case Instance::case_as_set(const std::vector<double>& parameters) const {
-  Case changed = resources_.the_case;
-  const View view = view_of(changed);
-  for (const Variable& it : variables_) {
-    const double value = parameters[it.reference];
-    if (it.role != Role::parameter || value == first_parameters_[it.reference]) continue;
-    const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
-    Value whole = value_of(parameter, as_const(view)).value();
-    if (auto* pair = std::get_if<std::array<double, 2>>(&whole))
-      (*pair)[it.place] = value;
-    else
-      whole = value;
-    store(parameter, view, whole);
-  }
-  return validate(changed);
+  return case_with(resources_.the_case, variables_, parameters);
 }
 
 UnitChoice Instance::present_choice() const {
@@ -229,7 +214,12 @@ Status Instance::step(double time, double size) {
   open_.reset();
   try {
     // A step below the resolution of time is none.
-    if (end - start_time_ > plant_->time()) plant_->step(end - start_time_);
+    if (end - start_time_ > plant_->time()) {
+      plant_->step(end - start_time_);
+      if (log_.tells_events())
+        for (const Plant::Passed& event : plant_->passed())
+          log_.event("event at " + number_text(start_time_ + event.time) + " s: " + event.what);
+    }
   } catch (const ComputationError& error) {
     return log_.say(Status::discard, error.what());
   }

@@ -86,6 +86,11 @@ class Instance {
     for (std::size_t i = 0; i < count; ++i) values[i] = flag(references[i]);
   }
   void set_numbers(const Reference* references, std::size_t count, const double* values);
+  template <class Boolean>
+  void set_flags(const Reference* references, std::size_t count, const Boolean* values) {
+    for (std::size_t i = 0; i < count; ++i) require_settable_flag(references[i]);
+    for (std::size_t i = 0; i < count; ++i) set_flag(references[i], values[i] != Boolean{});
+  }
   /// @throws Refused where there is a variable among them: of types that have none to be set
   void refuse_values(const Reference* references, std::size_t count, const char* type) const;
   void derivative(const Reference* unknowns, std::size_t unknown_count, const Reference* knowns,
@@ -131,6 +136,10 @@ class Instance {
   double number(Reference reference);
   bool flag(Reference reference);
   void require_settable(const Variable& it, double value) const;
+  void require_settable_flag(Reference reference) const;
+  void set_flag(Reference reference, bool value);
+  /// The least value of an input, as parameters are set; none where it has no bound.
+  std::optional<double> least_of(const Variable& input) const;
   double& input(Input which);
 
   /// The case with the parameters as they are set.

@@ -4,6 +4,7 @@
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/units.h"
 #include "instance.h"
 
 namespace bentaxis::fmu {
@@ -32,6 +33,7 @@ double& Instance::input(Input which) {
     case Input::delivery:
       return inputs_.delivery;
     case Input::load_share:
+    case Input::load_share_replaces_curve:
       break;
   }
   return inputs_.load_share;
@@ -77,6 +79,7 @@ void Instance::numbers(const Reference* references, std::size_t count, double* v
 bool Instance::flag(Reference reference) {
   const Variable& it = variable(reference);
   if (!it.boolean) throw Refused(it.name + " is a real number");
+  if (it.role == Role::input) return inputs_.load_share_replaces_curve;
   if (mode_ == kInstantiated) throw Refused(it.name + " is not known before initialization");
   settle();
   if (!plant_) throw Refused(it.name + " is not known: the pump has not been started");
@@ -98,13 +101,39 @@ void Instance::require_settable(const Variable& it, double value) const {
     throw Refused(it.name + " = " + number_text(value) + ": must be " + allowed);
   };
   if (it.role == Role::input) {
-    if (it.least && value < *it.least) say(">= " + number_text(*it.least));
+    const std::optional<double> least = least_of(it);
+    const bool pressure = it.input == Input::suction || it.input == Input::delivery;
+    if (least && value < *least)
+      say(">= " + number_text(*least) +
+          (pressure ? " Pa (gauge): no absolute pressure is below zero" : ""));
     return;
   }
   const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
   // One that depends on other parameters is looked at with them.
   if (parameter.range_here != nullptr || value == first_parameters_[it.reference]) return;
   if (!parameter.range.contains(value)) say(parameter.range.text());
+}
+
+std::optional<double> Instance::least_of(const Variable& input) const {
+  if (input.input != Input::suction && input.input != Input::delivery) return input.least;
+  // That of the atmosphere, which is a parameter of hydraulic cases.
+  for (const Variable& it : variables_)
+    if (it.role == Role::parameter && it.name == "hydraulics.atmosphere_bar")
+      return least_pressure(resources_.the_case) +
+             (it.start.value() - wanted_[it.reference]) * kPascalPerBar;
+  return least_pressure(resources_.the_case);
+}
+
+void Instance::require_settable_flag(Reference reference) const {
+  const Variable& it = variable(reference);
+  if (!it.boolean) throw Refused(it.name + " is a real number");
+  if (it.role != Role::input) throw Refused(it.name + " is calculated: it cannot be set");
+}
+
+void Instance::set_flag(Reference /*reference*/, bool value) {
+  if (inputs_.load_share_replaces_curve == value) return;
+  inputs_.load_share_replaces_curve = value;
+  inputs_changed_ = true;
 }
 
 void Instance::set_numbers(const Reference* references, std::size_t count, const double* values) {
@@ -148,7 +177,7 @@ void Instance::derivative(const Reference* unknowns, std::size_t unknown_count,
   }
   for (std::size_t i = 0; i < known_count; ++i) {
     const Variable& it = variable(knowns[i]);
-    if (it.role != Role::input && it.role != Role::state)
+    if (it.boolean || (it.role != Role::input && it.role != Role::state))
       throw Refused(it.name + " is no known: derivatives are by inputs and states");
     if (!std::isfinite(seed[i])) throw Refused("the seed of " + it.name + " is not finite");
     open = open || it.role != Role::input;

@@ -42,9 +42,22 @@ bool Log::set_debug(bool on, const std::vector<std::string>& categories) {
   return true;
 }
 
+std::string shown(std::string text, std::size_t longest) {
+  const std::size_t size = text.size();
+  if (size > longest) {
+    while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0U) == 0x80U) --longest;
+    text.resize(longest);
+    text += ".. (" + std::to_string(size) + " bytes)";
+  }
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
+}
+
 Status Log::say(Status status, const std::string& message) const noexcept {
   try {
-    if (sink_) sink_(status, category_of(status), message);
+    constexpr std::size_t kLongest = 2000;
+    if (sink_) sink_(status, category_of(status), shown(message, kLongest));
   } catch (...) {  // an importer's function that throws is no reason to stop
   }
   return status;

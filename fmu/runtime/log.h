@@ -1,6 +1,7 @@
 // What an instance has to say to whoever imports it. Internal.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,6 +10,10 @@ namespace bentaxis::fmu {
 
 /// As FMI has it, in its order.
 enum class Status { ok, warning, discard, error, fatal };
+
+/// A text as people may be shown it: on one line, cut where it is longer than `longest` bytes
+/// (between characters of UTF-8), with its size then.
+std::string shown(std::string text, std::size_t longest);
 
 class Log {
  public:

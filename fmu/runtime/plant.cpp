@@ -36,6 +36,7 @@ double nominal_of(Input input, const Case& the_case) {
     case Input::delivery:
       return kPressure;
     case Input::load_share:
+    case Input::load_share_replaces_curve:
       break;
   }
   return 1;
@@ -54,6 +55,7 @@ double& input_of(Inputs& inputs, Input which) {
     case Input::delivery:
       return inputs.delivery;
     case Input::load_share:
+    case Input::load_share_replaces_curve:
       break;
   }
   return inputs.load_share;
@@ -64,6 +66,7 @@ double& input_of(Inputs& inputs, Input which) {
 bool operator==(const Inputs& a, const Inputs& b) {
   return a.speed == b.speed && a.acceleration == b.acceleration && a.torque == b.torque &&
          a.suction == b.suction && a.delivery == b.delivery && a.load_share == b.load_share &&
+         a.load_share_replaces_curve == b.load_share_replaces_curve &&
          a.acceleration_given == b.acceleration_given;
 }
 
@@ -148,6 +151,22 @@ class Plant::Implementation {
     time_ = time;
     state_ = stepper_->state();
     fresh_ = false;
+  }
+
+  std::vector<Passed> passed() const {
+    using Kind = coupled::PassedEvent::Kind;
+    std::vector<Passed> all;
+    for (const coupled::PassedEvent& event : stepper_->passed()) {
+      const std::string flank = event.flank > 0 ? "forward flank" : "backward flank";
+      std::string what = "breakpoint of a curve over time";
+      if (event.kind == Kind::edge)
+        what =
+            "the block passes a port edge at " + rounded_text(event.angle / kRadPerDegree) + " deg";
+      if (event.kind == Kind::touch) what = "teeth touch, " + flank;
+      if (event.kind == Kind::release) what = "teeth leave contact, " + flank;
+      all.push_back({event.time, what});
+    }
+    return all;
   }
 
   coupled::OpenSystem& open() { return *open_; }
@@ -288,7 +307,7 @@ class Plant::Implementation {
     const Case& c = machine_->the_case;
     Inputs inputs;
     inputs.speed = rad_per_second(c.operation.speed_rpm);
-    inputs.torque = c.drive->torque;
+    inputs.torque = choice_.start_torque.value_or(c.drive->torque);
     inputs.suction = c.pressure.ports.suction;
     inputs.delivery = c.pressure.ports.delivery;
     return inputs;
@@ -310,7 +329,8 @@ class Plant::Implementation {
     if (given.torque) now.torque = inputs_.torque;
     if (given.suction) now.suction = inputs_.suction;
     if (given.delivery) now.delivery = inputs_.delivery;
-    if (given.load_share && inputs_.load_share != 1) now.load_share = inputs_.load_share;
+    if (given.load_share && (inputs_.load_share_replaces_curve || inputs_.load_share != 1))
+      now.load_share = inputs_.load_share;
     return now;
   }
 
@@ -447,6 +467,7 @@ void Plant::set_inputs(const Inputs& inputs) { it_->set_inputs(inputs); }
 const Inputs& Plant::inputs() const { return it_->inputs(); }
 double Plant::time() const { return it_->time(); }
 void Plant::step(double time) { it_->step(time); }
+std::vector<Plant::Passed> Plant::passed() const { return it_->passed(); }
 std::size_t Plant::state_count() const { return it_->open().states().size(); }
 std::vector<double> Plant::states() const { return it_->open().values(); }
 const std::vector<double>& Plant::nominals() const { return it_->nominals(); }

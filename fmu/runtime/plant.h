@@ -20,6 +20,7 @@ struct Inputs {
   double torque = 0;                   ///< Nm
   double suction = 0, delivery = 0;    ///< Pa gauge
   double load_share = 1;
+  bool load_share_replaces_curve = false;  ///< also where it is 1
   bool acceleration_given = false;  ///< by whoever sets inputs: else reactions lack inertia by it
 };
 bool operator==(const Inputs& a, const Inputs& b);
@@ -68,6 +69,12 @@ class Plant {
   /// of the integrator go on over communication points where inputs stay.
   /// @throws ComputationError where the motion cannot be followed; the plant then stands at time()
   void step(double time);
+  /// Events of the last step: when, s (FMI's less the start time), and in words.
+  struct Passed {
+    double time = 0;
+    std::string what;
+  };
+  std::vector<Passed> passed() const;
 
   // Model exchange: states, their rates and events for an integrator outside.
   std::size_t state_count() const;

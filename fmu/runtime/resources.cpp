@@ -49,6 +49,11 @@ void read_choice(const std::filesystem::path& file, Resources& all) {
     const std::string value = blank == std::string::npos ? "" : line.substr(blank + 1);
     if (key == "drive") all.choice.drive = drive_in(value, file.string());
     if (key == "token") all.token = value;
+    if (key == "start_torque") {
+      all.choice.start_torque = number_in(value);
+      if (!all.choice.start_torque)
+        throw InputError(file.string() + ": start_torque " + value + ": must be a number");
+    }
     if (key != "tolerance") continue;
     const auto tolerance = number_in(value);
     if (!tolerance || !(*tolerance > 0))

@@ -11,7 +11,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "bytes of states are little-endian");
 
-constexpr std::string_view kTag = "bentaxis unit state 1\n";
+constexpr std::string_view kTag = "bentaxis unit state 2\n";
 
 // FNV-1a, 64 bits: against bytes that were cut or changed, not against forgers.
 std::uint64_t checksum(const char* bytes, std::size_t size) {
@@ -86,6 +86,7 @@ void go_through(Stream& stream, TheInputs& inputs) {
   stream.part(inputs.suction);
   stream.part(inputs.delivery);
   stream.part(inputs.load_share);
+  stream.part(inputs.load_share_replaces_curve);
   stream.part(inputs.acceleration_given);
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bentaxis/pump/registry.h"
+#include "bentaxis/pump/validate.h"
 #include "plant.h"
 
 namespace bentaxis::fmu {
@@ -114,6 +115,14 @@ class List {
       }
   }
 
+  void add_switch(Input input, const char* name, const char* description) {
+    Variable& it = add(name, "", Role::input, Causality::input, Variability::discrete);
+    it.description = description;
+    it.input = input;
+    it.boolean = true;
+    it.start = 0;
+  }
+
   void add_input(Input input, const char* name, const char* unit, const char* description,
                  double start) {
     Variable& it = add(name, unit, Role::input, Causality::input, Variability::continuous);
@@ -122,7 +131,8 @@ class List {
     it.start = start;
   }
 
-  void add_inputs(const Inputs& first, const TakesFromOutside& takes) {
+  /// @param the_case  whose atmosphere and load they are
+  void add_inputs(const Case& the_case, const Inputs& first, const TakesFromOutside& takes) {
     if (takes.shaft) {
       add_input(Input::speed, "drive_speed", "rad/s", "speed of the shaft, positive about +z1",
                 first.speed);
@@ -137,15 +147,22 @@ class List {
     if (takes.suction)
       add_input(Input::suction, "suction_pressure", "Pa", "gauge, of what the pump draws from",
                 first.suction);
+    if (takes.suction) bound_pressure(the_case);
     if (takes.delivery)
       add_input(Input::delivery, "delivery_pressure", "Pa", "gauge, of what the pump delivers to",
                 first.delivery);
+    if (takes.delivery) bound_pressure(the_case);
     if (takes.load_share) {
       add_input(Input::load_share, "load_share", "",
                 "share of the load's size: of an orifice's area, a laminar load's conductance, a "
                 "motor's flow or the opening of a valve",
                 first.load_share);
       all_.back().least = 0;
+      if (!the_case.hydraulics->load.value_or(LoadData()).share.time.empty())
+        add_switch(
+            Input::load_share_replaces_curve, "load_share_replaces_curve",
+            "true: load_share acts at every value, in place of the load's curve over time; "
+            "false: the curve acts while load_share is 1, and load_share at any other value");
     }
   }
 
@@ -181,11 +198,38 @@ class List {
   }
 
  private:
+  void bound_pressure(const Case& the_case) {
+    const double least = least_pressure(the_case);
+    if (all_.back().start >= least) all_.back().least = least;
+  }
+
   std::vector<Variable> all_;
   std::set<std::string> names_;
 };
 
 }  // namespace
+
+double least_pressure(const Case& the_case) {
+  constexpr double kStandard = 101325, kLeastAbsolute = 1;  // Pa
+  const double atmosphere = the_case.hydraulics ? the_case.hydraulics->atmosphere : kStandard;
+  return kLeastAbsolute - atmosphere;
+}
+
+Case case_with(Case the_case, const std::vector<Variable>& variables,
+               const std::vector<double>& values) {
+  const View view = view_of(the_case);
+  for (const Variable& it : variables) {
+    if (it.role != Role::parameter || values[it.reference] == *it.start) continue;
+    const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
+    Value whole = value_of(parameter, as_const(view)).value();
+    if (auto* pair = std::get_if<std::array<double, 2>>(&whole))
+      (*pair)[it.place] = values[it.reference];
+    else
+      whole = values[it.reference];
+    store(parameter, view, whole);
+  }
+  return validate(the_case);
+}
 
 std::vector<Variable> variables_of(const Case& the_case, const UnitChoice& choice) {
   const Case driven = with_drive(the_case, choice.drive);
@@ -195,7 +239,7 @@ std::vector<Variable> variables_of(const Case& the_case, const UnitChoice& choic
   list.add("time", "s", Role::time, Causality::independent, Variability::continuous).description =
       "time of the simulation";
   list.add_parameters(driven, plant.takes());
-  list.add_inputs(plant.first_inputs(), plant.takes());
+  list.add_inputs(driven, plant.first_inputs(), plant.takes());
   list.add_states(columns.states);
   list.add_columns(columns.outputs, Role::output, "");
   list.add_columns(columns.flags, Role::flag, "");

@@ -29,7 +29,15 @@ enum class Role {
   flag,        ///< place in Plant::flags(); Boolean
   indicator,   ///< event indicator `place` (FMI 3 lists them)
 };
-enum class Input { speed, acceleration, torque, suction, delivery, load_share };
+enum class Input {
+  speed,
+  acceleration,
+  torque,
+  suction,
+  delivery,
+  load_share,
+  load_share_replaces_curve  ///< Boolean
+};
 
 struct Variable {
   std::uint32_t reference = 0;
@@ -54,12 +62,22 @@ struct Variable {
 struct UnitChoice {
   Drive drive = Drive::speed;
   double tolerance = 1e-9;  ///< of a step of co-simulation, as in coupled::Options
+  /// Nm, start value of the input drive_torque; without it: that of the case, or 0.
+  std::optional<double> start_torque = {};
 };
 
 /// All variables of a unit, `reference` rising from 0 and equal to the place in the list. The same
 /// case and choice give the same list: the description and the library agree because both ask here.
 /// @throws InputError where the case cannot be simulated so
 std::vector<Variable> variables_of(const Case& the_case, const UnitChoice& choice);
+
+/// The case with values of its parameters, by reference and in their units.
+/// @throws InputError where a file that says the same would be refused
+Case case_with(Case the_case, const std::vector<Variable>& variables,
+               const std::vector<double>& values);
+
+/// The least gauge pressure that an input may have, Pa: 1 Pa absolute.
+double least_pressure(const Case& the_case);
 
 /// The case with its [drive] as the choice has it: a unit of a case without [drive] starts at the
 /// speed of [operation].

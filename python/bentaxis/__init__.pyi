@@ -4,7 +4,7 @@ import pathlib
 from typing import Any, Iterator, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy
-import pandas
+import pandas  # type: ignore[import]
 from numpy.typing import ArrayLike as _Array, NDArray as _NDArray
 
 _Path = Union[str, os.PathLike[str]]
@@ -40,7 +40,7 @@ class Case:
     def __len__(self) -> int:
         """Of keys()."""
 
-    def items(self) -> list:
+    def items(self) -> list[Tuple[str, Any]]:
         """Keys with their values."""
 
     def validate(self) -> None:
@@ -271,7 +271,7 @@ class Comparison:
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the results."""
+        """What is doubtful about the case and the results, which was warned of."""
 
     def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes report.html, report.json and the curves as the program does; returns their paths."""
@@ -530,6 +530,10 @@ class PeriodicMotion:
         """Whether disturbances die away."""
 
 
+class PlausibilityWarning(DoubtWarning):
+    """A case is valid but implausible: a value, or values together, as Case.doubts() lists them."""
+
+
 class ReferenceGroup:
     """A group of channels of one model, held against one reference."""
 
@@ -655,6 +659,10 @@ class Simulation:
         """What must vanish."""
 
     @property
+    def warnings(self) -> list[str]:
+        """What is doubtful about the case and the motion, which was warned of."""
+
+    @property
     def judged_until_s(self) -> float:
         """Later a disturbance of the wanted error would change results altogether."""
 
@@ -725,8 +733,8 @@ class Table:
         """A column as an array; its name may lack the unit and, of a quantity of one component, the axis:
         "Td_z1_Nm", "Td_z1", "Td_Nm", "Td"."""
 
-    def __contains__(self, name: str) -> bool:
-        """Whether there is such a column."""
+    def __contains__(self, name: Any) -> bool:
+        """Whether there is such a column: whether [name] gives one."""
 
     def __iter__(self) -> Iterator[str]:
         """Over names."""
@@ -744,6 +752,13 @@ class Table:
     @property
     def name(self) -> str:
         """Who computed it."""
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        """All columns as one array, row by row, in the order of `names`; a copy."""
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is doubtful about the case or the results, which was warned of."""
 
     @property
     def values(self) -> _NDArray[numpy.float64]:

@@ -142,7 +142,62 @@ class RunTest(ModuleTest):
         program = self.run_program("run", CASES / "bap63_rated.toml", "--model", "analytic", "--set", "pump.tilt_deg=1e-7",
                                    "--channels", "Td").stderr
         self.assertEqual([str(one.message) in program for one in caught], [True] * len(caught))
-        self.assertTrue(all(one.category is bentaxis.DoubtWarning for one in caught))
+        self.assertTrue(all(issubclass(one.category, bentaxis.DoubtWarning) for one in caught))
+
+    def test_implausible_cases_are_warned_of(self):
+        case = self.case(pump__tilt_deg=1e-7)
+        codes = [doubt.code for doubt in case.doubts()]
+        self.assertTrue(codes)
+        case.update({"drive.kind": "speed", "drive.duration_s": 1e-3, "drive.samples": 4})
+
+        def warned(call):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                result = call()
+            implausible = [str(one.message) for one in caught if one.category is bentaxis.PlausibilityWarning]
+            self.assertEqual([text.partition(":")[0] for text in implausible], codes)
+            self.assertEqual([one.filename for one in caught], [__file__] * len(caught))
+            self.assertEqual([str(one.message) for one in caught], result.warnings)
+            return result
+
+        table = warned(lambda: bentaxis.run(case, channels="Td"))
+        self.assertEqual(pickle.loads(pickle.dumps(table)).warnings, table.warnings)
+        warned(lambda: bentaxis.run_states(case, motion()))
+        warned(lambda: bentaxis.compare(case, channels="Td"))
+        warned(lambda: bentaxis.simulate(case, "analytic"))
+        warned(lambda: bentaxis.sweep(case, {"pump.bore_diameter_mm": [22.5]}, "mean:Td"))
+        # A case that is as pumps are warns of nothing.
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(bentaxis.run(self.case(), channels="Td").warnings, [])
+            self.assertEqual(bentaxis.compare(self.case(), channels="Td").warnings, [])
+        # As errors, they end the call.
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", bentaxis.PlausibilityWarning)
+            for call in (bentaxis.run, bentaxis.compare, bentaxis.simulate):
+                self.assertRaises(bentaxis.PlausibilityWarning, call, case)
+
+    def test_names_membership_and_arrays_agree(self):
+        tables = [bentaxis.run(self.case()), bentaxis.run_states(self.case(), motion()),
+                  bentaxis.sweep(self.case(), {"pump.tilt_deg": [38, 39, 40]}, ["mean:Td", "max:Rb1_z1"])]
+        for table in tables:
+            array = numpy.asarray(table)
+            self.assertEqual(array.shape, (len(table), len(table.names)))
+            self.assertEqual(list(table), table.names)
+            for i, name in enumerate(table.names):
+                self.assertIn(name, table)
+                numpy.testing.assert_array_equal(array[:, i], table[name])
+            numpy.testing.assert_array_equal(array[:, -len(table.channels):], table.values)
+            self.assertEqual(numpy.asarray(table, dtype="float32").dtype, numpy.float32)
+            for name in ("Td", "Td_z1", "Rs", "Rs_1", "theta", "nothing", "", 3, None):
+                try:
+                    table[name]
+                    there = True
+                except (KeyError, TypeError):
+                    there = False
+                self.assertEqual(name in table, there, name)
+        self.assertIn("Td", tables[0])
+        self.assertNotIn("Rs", tables[0])
 
     def test_states_from_arrays_and_from_a_file_are_the_program_s(self):
         states = motion()

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bentaxis/coupled/system_state.h"
 #include "bentaxis/results/mechanics.h"
@@ -10,6 +11,20 @@
 #include "bentaxis/results/surroundings.h"
 
 namespace bentaxis::coupled {
+
+/// What happened in a step.
+struct PassedEvent {
+  enum class Kind {
+    edge,     ///< the block has passed an edge of a port
+    touch,    ///< a flank of the teeth has begun to touch
+    release,  ///< it has left the other
+    knot      ///< a law over time has changed
+  };
+  Kind kind = Kind::edge;
+  double time = 0;   ///< s
+  double angle = 0;  ///< of an edge: rad, of the block
+  int flank = 1;     ///< of a touch and a release: +1, -1
+};
 
 /// Follows motion and oil as simulate() does. Steps of the integrator go on over communication
 /// points and are read there by its own polynomial, so that without changes the result is
@@ -37,6 +52,8 @@ class Stepper {
   /// state()
   ///         are then what they were
   void step_to(double time);
+  /// Events of the last step_to(), up to time(), in their order.
+  std::vector<PassedEvent> passed() const;
   double time() const;
   const SystemState& state() const;
   long steps() const;
