@@ -1,4 +1,4 @@
-// A .fmu unpacked into a folder that goes with its owner. Internal.
+// A .fmu unpacked into a folder. Internal.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,16 @@ namespace bentaxis::fmu {
 /// Of what is unpacked, whatever the archive says of its sizes.
 inline constexpr std::uint64_t kMostUnpacked = 1ULL << 30;
 
+/// @throws InputError where it does not exist or is no regular file
+void check_archive(const std::filesystem::path& archive);
+
 class Unpacked {
  public:
   /// Description, resources and the libraries of this machine.
+  /// @param folder  that is there
   /// @throws InputError where the file is no archive, or one that should not be unpacked
-  explicit Unpacked(const std::filesystem::path& archive, std::uint64_t most = kMostUnpacked);
-  ~Unpacked();
-  Unpacked(const Unpacked&) = delete;
-  Unpacked& operator=(const Unpacked&) = delete;
+  Unpacked(const std::filesystem::path& archive, std::filesystem::path folder,
+           std::uint64_t most = kMostUnpacked);
 
   const std::filesystem::path& folder() const { return folder_; }
   std::string description() const;
@@ -27,9 +29,8 @@ class Unpacked {
 
  private:
   void unpack(const std::filesystem::path& file, std::uint64_t most);
-  void remove() noexcept;
 
-  std::filesystem::path file_, folder_;
+  std::filesystem::path folder_;
   std::vector<std::string> platforms_;
 };
 
