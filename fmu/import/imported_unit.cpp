@@ -1,11 +1,11 @@
 #include <mutex>
+#include <optional>
 
 #include "bentaxis/fmu/slave.h"
 #include "bentaxis/pump/error.h"
 #include "channel.h"
 #include "process_slave.h"
 #include "supervisor.h"
-#include "temporary_folder.h"
 #include "unpacked.h"
 
 namespace bentaxis::fmu {
@@ -43,14 +43,23 @@ std::filesystem::path library_of(const std::filesystem::path& file, const Unpack
 class ImportedUnit::Implementation {
  public:
   Implementation(const std::filesystem::path& archive, Limits wanted)
-      : file((check_archive(archive), archive)),
+      : file(archive),
         limits(std::move(wanted)),
-        supervisor(folder.path(), archive.string()),
-        unpacked(archive, folder.path()),
+        unpacked(archive, kMostUnpacked,
+                 [this](const std::filesystem::path& folder) {
+                   supervisor.emplace(folder, file.string());
+                 }),
         description(
             read_description(unpacked.description(), archive.string() + ": modelDescription.xml")),
         library(library_of(archive, unpacked, description)),
         spare_(new_process()) {}
+
+  ~Implementation() {
+    spare_.reset();
+    supervisor.reset();  // No process uses the folder any more.
+  }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
 
   // A process that has loaded the library.
   std::unique_ptr<Channel> take_process() {
@@ -63,15 +72,14 @@ class ImportedUnit::Implementation {
 
   const std::filesystem::path file;
   const Limits limits;
-  const TemporaryFolder folder;
-  Supervisor supervisor;  // from here on it removes the folder, whatever comes
+  std::optional<Supervisor> supervisor;  // removes the folder, too, in whatever way all this ends
   const Unpacked unpacked;
   const UnitDescription description;
   const std::filesystem::path library;
 
  private:
   std::unique_ptr<Channel> new_process() {
-    auto channel = std::make_unique<Channel>(supervisor, file.string(), limits);
+    auto channel = std::make_unique<Channel>(*supervisor, file.string(), limits);
     const std::string name = library.filename().string();
     const Returned returned = channel->call({process::Task::load,
                                              {"loading " + name},
@@ -95,11 +103,11 @@ ImportedUnit::ImportedUnit(const std::filesystem::path& file, const Limits& limi
 ImportedUnit::~ImportedUnit() = default;
 const UnitDescription& ImportedUnit::description() const { return it_->description; }
 const std::filesystem::path& ImportedUnit::file() const { return it_->file; }
-const std::filesystem::path& ImportedUnit::folder() const { return it_->folder.path(); }
+const std::filesystem::path& ImportedUnit::folder() const { return it_->unpacked.folder(); }
 
 std::unique_ptr<Slave> ImportedUnit::instantiate(const std::string& name) const {
-  return process_slave({it_, it_->description, it_->folder.path() / "resources", it_->file.string(),
-                        name, it_->take_process()});
+  return process_slave({it_, it_->description, it_->unpacked.folder() / "resources",
+                        it_->file.string(), name, it_->take_process()});
 }
 
 }  // namespace bentaxis::fmu

@@ -12,7 +12,6 @@
 
 #include "bentaxis/pump/error.h"
 #include "process/remove_tree.h"
-#include "temporary_folder.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -57,29 +56,29 @@ std::string platform_folder(int version) {
 #endif
 }
 
-void check_archive(const fs::path& archive) {
+Unpacked::Unpacked(const fs::path& archive, std::uint64_t most,
+                   const std::function<void(const fs::path& folder)>& made)
+    : file_(archive) {
   if (!fs::exists(archive)) fail(archive, "does not exist");
   if (fs::is_directory(archive)) fail(archive, "is a folder: must be a .fmu");
-  if (!fs::is_regular_file(archive)) fail(archive, "is not a regular file: must be a .fmu");
-}
-
-Unpacked::Unpacked(const fs::path& archive, fs::path folder, std::uint64_t most)
-    : folder_(std::move(folder)) {
-  check_archive(archive);
-  unpack(archive, most);
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::error_code failed;
-  const fs::path place = fs::temp_directory_path(failed);
-  if (failed) fail("TMPDIR", "is no folder for temporary files: " + failed.message());
-  std::string pattern = (fs::absolute(place) / "bentaxis-fmu-XXXXXX").string();
+  std::string pattern = (fs::absolute(fs::temp_directory_path()) / "bentaxis-fmu-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr)
-    fail(pattern, "a folder to unpack an FMU into cannot be made");
-  path_ = pattern;
+    fail(pattern, "a folder to unpack a unit into cannot be made");
+  folder_ = pattern;
+  try {
+    if (made) made(folder_);
+    unpack(archive, most);
+  } catch (...) {
+    remove();
+    throw;
+  }
 }
 
-TemporaryFolder::~TemporaryFolder() { process::remove_tree(path_); }
+Unpacked::~Unpacked() { remove(); }
+
+void Unpacked::remove() noexcept {
+  if (!folder_.empty()) process::remove_tree(folder_);
+}
 
 void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
   int error = 0;

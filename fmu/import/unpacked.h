@@ -1,8 +1,9 @@
-// A .fmu unpacked into a folder. Internal.
+// A .fmu unpacked into a folder that goes with its owner. Internal.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,16 +12,16 @@ namespace bentaxis::fmu {
 /// Of what is unpacked, whatever the archive says of its sizes.
 inline constexpr std::uint64_t kMostUnpacked = 1ULL << 30;
 
-/// @throws InputError where it does not exist or is no regular file
-void check_archive(const std::filesystem::path& archive);
-
 class Unpacked {
  public:
   /// Description, resources and the libraries of this machine.
-  /// @param folder  that is there
+  /// @param made  called once the folder is there, and nothing in it
   /// @throws InputError where the file is no archive, or one that should not be unpacked
-  Unpacked(const std::filesystem::path& archive, std::filesystem::path folder,
-           std::uint64_t most = kMostUnpacked);
+  explicit Unpacked(const std::filesystem::path& archive, std::uint64_t most = kMostUnpacked,
+                    const std::function<void(const std::filesystem::path& folder)>& made = {});
+  ~Unpacked();
+  Unpacked(const Unpacked&) = delete;
+  Unpacked& operator=(const Unpacked&) = delete;
 
   const std::filesystem::path& folder() const { return folder_; }
   std::string description() const;
@@ -29,8 +30,9 @@ class Unpacked {
 
  private:
   void unpack(const std::filesystem::path& file, std::uint64_t most);
+  void remove() noexcept;
 
-  std::filesystem::path folder_;
+  std::filesystem::path file_, folder_;
   std::vector<std::string> platforms_;
 };
 
