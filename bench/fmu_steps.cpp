@@ -1,7 +1,9 @@
 // What does a step of co-simulation cost? A unit through its C interface, and the same motion by
-// the library in one go, in one run of this program. Prints a Markdown table (docs/fmu.md).
+// the library in one go, in one run of this program. And what does it cost that FMUs run in
+// processes of their own? Prints Markdown tables (docs/fmu.md, docs/fmu_coupling.md).
 //
 //   fmu_steps [CASE] [steps] [seconds simulated]
+#include <dlfcn.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -10,6 +12,9 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "bentaxis/analytic/mechanics.h"
 #include "bentaxis/coupled/simulation.h"
@@ -17,6 +22,7 @@
 #include "bentaxis/fmu/slave.h"
 #include "bentaxis/fmu/unit.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
+#include "process/calls.h"
 
 namespace {
 
@@ -36,14 +42,20 @@ double in_one_go(const Case& the_case, double tolerance) {
   return coupled::simulate("analytic", *mechanics, *oil, *the_case.drive, options).record.seconds;
 }
 
-// Seconds of the unit's steps; after each the drive torque is read, for which all outputs are
-// computed.
-double by_steps(const Case& the_case, fmu::UnitOptions options) {
+fmu::ImportedUnit unit_of(const Case& the_case, const fmu::UnitOptions& options) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("fmu_steps_" + std::to_string(getpid()) + ".fmu");
   std::ofstream(file, std::ios::binary) << fmu::unit_archive(the_case, options);
-  const fmu::ImportedUnit unit(file);
-  std::filesystem::remove(file);
+  struct Remove {
+    const std::filesystem::path& file;
+    ~Remove() { std::filesystem::remove(file); }
+  } const remove{file};
+  return fmu::ImportedUnit(file);
+}
+
+// Seconds of the unit's steps; after each the drive torque is read, for which all outputs are
+// computed.
+double by_steps(const fmu::ImportedUnit& unit, const Case& the_case) {
   const auto pump = unit.instantiate("pump");
   const DriveSpec& drive = *the_case.drive;
   pump->enter_initialisation(0, drive.duration);
@@ -61,19 +73,70 @@ double by_steps(const Case& the_case, fmu::UnitOptions options) {
   return seconds;
 }
 
+// A value that was read before, so that the FMU computes nothing: by an FMU in a process of its
+// own, and by the same calls in this one.
+void measure_exchange(const fmu::ImportedUnit& unit, double duration) {
+  constexpr int kExchanges = 20000;
+  const fmu::UnitVariable& torque = *unit.description().find("Td_z1_Nm");
+  const auto per_call = [&](const auto& call) {
+    call();
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < kExchanges; ++i) call();
+    return seconds_since(start) / kExchanges * 1e6;
+  };
+  const auto start = std::chrono::steady_clock::now();
+  const auto pump = unit.instantiate("pump");
+  const double start_up = seconds_since(start);
+  pump->enter_initialisation(0, duration);
+  pump->exit_initialisation();
+  const std::vector<const fmu::UnitVariable*> twenty(20, &torque);
+  const double one_apart = per_call([&] { pump->get(torque); });
+  const double twenty_apart = per_call([&] { pump->get(twenty); });
+
+  void* library = nullptr;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(unit.folder() / "binaries"))
+    if (entry.is_regular_file()) library = dlopen(entry.path().c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) throw std::runtime_error("the library cannot be loaded");
+  fmu::process::Shared shared{};
+  fmu::process::Log log(shared);
+  std::string missing;
+  const auto calls = fmu::process::fmi2_calls(library, log, missing);
+  const std::string resources = "file://" + (unit.folder() / "resources").string();
+  if (!calls || !calls->instantiate("pump", unit.description().token.c_str(), resources.c_str()))
+    throw std::runtime_error("the unit does not start");
+  calls->set_up(0, duration);
+  calls->enter_initialisation(0, duration);
+  calls->exit_initialisation();
+  double value = 0;
+  const auto get = [&] { calls->get(fmu::process::Type::float64, torque.reference, value); };
+  const double one_within = per_call(get);
+  const double twenty_within = per_call([&] {
+    for (std::size_t i = 0; i < twenty.size(); ++i) get();
+  });
+  calls->free_instance();
+  std::printf(
+      "\n| exchange with an FMU | in a process of its own | in this process |\n|---|---|---|\n");
+  std::printf("| 1 value read | %.1f us | %.2f us |\n", one_apart, one_within);
+  std::printf("| 20 values read at once | %.1f us | %.2f us |\n", twenty_apart, twenty_within);
+  std::printf("| process, library, instance | %.1f ms | |\n", start_up * 1e3);
+}
+
 int measure(const char* file, int steps, double duration) {
   Case the_case = read_case(file);
   the_case.drive = DriveSpec();
   the_case.drive->duration = duration;
   the_case.drive->samples = steps;
   fmu::UnitOptions options;
-  const double unit = by_steps(the_case, options);
+  const fmu::ImportedUnit opened = unit_of(the_case, options);
+  const double unit = by_steps(opened, the_case);
   const double library = in_one_go(the_case, options.tolerance);
   std::printf("| %d steps over %g s, to %g per step | elapsed | per step |\n|---|---|---|\n", steps,
               duration, options.tolerance);
   std::printf("| unit, through FMI 2 | %.2f s | %.1f us |\n", unit, unit / steps * 1e6);
   std::printf("| library, `simulate` | %.2f s | %.1f us |\n\n", library, library / steps * 1e6);
   std::printf("the unit takes %.2f times as long\n", unit / library);
+  measure_exchange(opened, duration);
   return 0;
 }
 

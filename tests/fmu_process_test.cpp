@@ -241,8 +241,8 @@ TEST_F(FmuProcessTest, WhatAnFmuLogsIsCutAndPlain) {
     EXPECT_THAT(log_of("strange_log"), ElementsAre("warning: a [31mred ?? bar\xc3\xa9"));
     EXPECT_THAT(log_of("long_log"), ElementsAre("warning: " + std::string(400, 'x') + ".."));
     const std::vector<std::string> flood = log_of("flood");
-    EXPECT_LE(flood.size(), 1000U);
-    EXPECT_EQ(flood.back(), "warning: message 19999");
+    EXPECT_EQ(flood.size(), 1000U);
+    EXPECT_THAT(flood.back(), StartsWith("warning: message 1"));
   }
 }
 
@@ -276,13 +276,19 @@ TEST_F(FmuProcessTest, TheCallerIsAskedWhileAnFmuComputes) {
 }
 
 TEST_F(FmuProcessTest, AnInstanceThatIsNotEndedIsFreed) {
-  for (const char* action : {"none", "hang", "exit0"}) {
-    setenv("BENTAXIS_TEST_HOSTILE", (std::string("free ") + action).c_str(), 1);
-    const ImportedUnit opened(unit("hostile_rotor", 2));
-    const auto slave = opened.instantiate("it");
-    slave->enter_initialisation(0, 1);
+  for (const char* action :
+       {"free trace", "terminate trace", "unload trace", "free hang", "free exit0"}) {
+    setenv("BENTAXIS_TEST_HOSTILE", action, 1);
+    {
+      const ImportedUnit opened(unit("hostile_rotor", 2));
+      const auto slave = opened.instantiate("it");
+      slave->enter_initialisation(0, 1);
+      slave->exit_initialisation();
+    }
+    EXPECT_EQ(fs::remove(folder_ / "trace"), std::string(action).find("trace") != std::string::npos)
+        << action;
+    expect_nothing_left();
   }
-  expect_nothing_left();
 }
 
 TEST_F(FmuProcessTest, InstancesHaveProcessesOfTheirOwn) {

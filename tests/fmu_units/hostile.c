@@ -35,6 +35,13 @@ static void hang(void) {
   for (;;) pause();
 }
 
+/* In the folder for temporary files. */
+static void make_file(const char* name) {
+  char file[1000];
+  snprintf(file, sizeof file, "%s/%s", getenv("TMPDIR"), name);
+  close(open(file, O_WRONLY | O_CREAT, 0600));
+}
+
 static void ignore_all(void) {
   for (int i = 1; i < NSIG; ++i) signal(i, SIG_IGN);
 }
@@ -51,10 +58,14 @@ static void act(const char* action, void (*log)(void*, const char*), void* envir
     log(environment, "the licence has run out");
     abort();
   }
-  if (!strcmp(action, "divide")) zero = 1 / zero;
+  if (!strcmp(action, "divide")) zero = 7 / zero;
   if (!strcmp(action, "kill")) raise(SIGKILL);
   if (!strcmp(action, "stop")) raise(SIGSTOP);
   if (!strcmp(action, "hang")) hang();
+  if (!strcmp(action, "say_and_hang")) {
+    make_file("hangs");
+    hang();
+  }
   if (!strcmp(action, "hang_deaf")) {
     ignore_all();
     sigset_t all;
@@ -90,6 +101,7 @@ static void act(const char* action, void (*log)(void*, const char*), void* envir
   if (!strcmp(action, "endless_print"))
     for (;;) printf("and another line\n");
   /* After these it goes on. */
+  if (!strcmp(action, "trace")) make_file("trace");
   if (!strcmp(action, "close_standard"))
     for (int i = 0; i < 3; ++i) close(i);
   if (!strcmp(action, "chdir")) (void)!chdir("/");
