@@ -2,10 +2,12 @@
 // the function, and nothing is left behind. tests/fmu_units/hostile.c has what is done.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cfenv>
 #include <chrono>
 #include <clocale>
@@ -372,6 +374,40 @@ TEST_F(FmuProcessTest, AProgramThatIgnoresItsChildrenMayUseFmus) {
   const std::vector<double> values = live(2);
   std::signal(SIGCHLD, SIG_DFL);
   EXPECT_EQ(values, live(2));
+}
+
+TEST_F(FmuProcessTest, WithoutRoomForFoldersOrProcessesItSaysSo) {
+  const auto refused = [&] {
+    try {
+      const ImportedUnit opened(unit("rotor", 2));
+    } catch (const std::exception& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  setenv("TMPDIR", (folder_ / "none").c_str(), 1);
+  EXPECT_THAT(refused(), AllOf(HasSubstr("TMPDIR = "), HasSubstr("not a directory")));
+  setenv("TMPDIR", folder_.c_str(), 1);
+  // No descriptor is left for sockets.
+  int report[2];
+  ASSERT_EQ(pipe(report), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    struct rlimit few {};
+    getrlimit(RLIMIT_NOFILE, &few);
+    few.rlim_cur = static_cast<rlim_t>(report[1] + 2);
+    setrlimit(RLIMIT_NOFILE, &few);
+    const std::string said = refused();
+    (void)!write(report[1], said.data(), said.size());
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  std::array<char, 1000> text{};
+  EXPECT_GT(read(report[0], text.data(), text.size() - 1), 0);
+  EXPECT_THAT(std::string(text.data()), HasSubstr("Too many open files"));
+  close(report[0]);
+  close(report[1]);
 }
 
 TEST_F(FmuProcessTest, AProgramWithoutStandardStreamsMayUseFmus) {

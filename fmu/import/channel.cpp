@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <system_error>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -30,7 +31,9 @@ struct Vanished {};
 // How a process ended.
 std::string end_in_words(const Returned& end) {
   std::string text;
-  if (end.outcome == Outcome::exited) {
+  if (end.outcome == Outcome::not_made) {
+    text = "no process can be made for the FMU: " + std::generic_category().message(end.status);
+  } else if (end.outcome == Outcome::exited) {
     text = "the FMU ended its process, by exit status " + std::to_string(end.status);
   } else if (end.outcome == Outcome::lost_channel) {
     text = "the FMU closed the descriptor by which it is called";
@@ -88,6 +91,7 @@ Returned Channel::call(const Call& call) {
   Returned returned = exchange(call);
   const std::string& what = call.names[std::min(returned.index, call.names.size() - 1)];
   switch (returned.outcome) {
+    case Outcome::not_made:
     case Outcome::exited:
     case Outcome::signalled:
     case Outcome::lost_channel:

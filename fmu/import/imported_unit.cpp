@@ -1,5 +1,7 @@
+#include <cstdlib>
 #include <mutex>
 #include <optional>
+#include <system_error>
 
 #include "bentaxis/fmu/slave.h"
 #include "bentaxis/pump/error.h"
@@ -38,12 +40,24 @@ std::filesystem::path library_of(const std::filesystem::path& file, const Unpack
   return library;
 }
 
+// @return the file, where it can be unpacked at all
+const std::filesystem::path& with_room(const std::filesystem::path& file) {
+  std::error_code failed;
+  (void)std::filesystem::temp_directory_path(failed);
+  const char* place = std::getenv("TMPDIR");
+  if (failed)
+    throw InputError(file.string() + ": cannot be unpacked: TMPDIR = \"" +
+                     (place != nullptr ? place : "/tmp") +
+                     "\" is not a directory for temporary files: " + failed.message());
+  return file;
+}
+
 }  // namespace
 
 class ImportedUnit::Implementation {
  public:
   Implementation(const std::filesystem::path& archive, Limits wanted)
-      : file(archive),
+      : file(with_room(archive)),
         limits(std::move(wanted)),
         unpacked(archive, kMostUnpacked,
                  [this](const std::filesystem::path& folder) {

@@ -59,6 +59,7 @@ enum class Outcome : std::uint32_t {
   exception,     ///< A C++ exception came out of the FMU; text: its message.
   lost_channel,  ///< The FMU has closed the descriptor of this channel.
   // The following are said by the supervisor, once the process is no more.
+  not_made,  ///< status: errno: there never was one
   exited,    ///< status: of exit()
   signalled  ///< status: the signal that ended or stopped it
 };

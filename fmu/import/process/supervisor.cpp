@@ -99,6 +99,14 @@ void say_how_it_ended(Child& child, int status) {
   send(child.channel, packet.data(), packet.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
+// Of the error that has just been met.
+void say_there_is_none(int channel) {
+  Reply reply{};
+  reply.outcome = Outcome::not_made;
+  reply.status = errno;
+  send(channel, &reply, sizeof reply, MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
 void kill_group(const Child& child) {
   kill(-child.process, SIGKILL);
   kill(child.process, SIGKILL);
@@ -189,6 +197,7 @@ class Supervisor {
     void* shared =
         mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED || pipe2(output.data(), O_CLOEXEC) != 0) {
+      say_there_is_none(child->channel);
       close(child->channel);
       return true;
     }
@@ -196,11 +205,12 @@ class Supervisor {
     const pid_t supervisor = getpid();
     child->process = fork();
     if (child->process == 0) become_instance(child->channel, output[1], *child->shared, supervisor);
+    if (child->process < 0) say_there_is_none(child->channel);
     close(output[1]);
     child->output = output[0];
     fcntl(child->output, F_SETFL, O_NONBLOCK);
     if (child->process < 0)
-      close_all(*child);  // The program sees that its channel has been closed.
+      close_all(*child);
     else
       children_.push_back(std::move(child));
     return true;
