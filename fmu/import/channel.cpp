@@ -157,7 +157,7 @@ void Channel::send(const Call& call) {
 
 std::optional<Returned> Channel::receive_until(Clock::time_point end, bool interruptible) {
   for (;;) {
-    const ssize_t size = recv(channel_, packet_.data(), packet_.size(), 0);
+    const ssize_t size = receiver_.receive(channel_, packet_.data(), packet_.size());
     if (size >= 0) {
       Returned returned;
       Reply head{};

@@ -9,6 +9,7 @@
 
 #include "bentaxis/fmu/slave.h"
 #include "process/messages.h"
+#include "process/receiver.h"
 #include "supervisor.h"
 
 namespace bentaxis::fmu {
@@ -74,6 +75,7 @@ class Channel {
   Limits limits_;
   int channel_ = -1;
   std::vector<char> packet_;
+  process::Receiver receiver_;
 };
 
 }  // namespace bentaxis::fmu

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "calls.h"
+#include "receiver.h"
 
 namespace bentaxis::fmu::process {
 namespace {
@@ -36,7 +37,7 @@ class Instance {
 
   [[noreturn]] void run() {
     for (;;) {
-      const ssize_t size = recv(kChannel, packet_.data(), packet_.size(), 0);
+      const ssize_t size = receiver_.receive(kChannel, packet_.data(), packet_.size());
       if (size < 0 && errno == EINTR) continue;
       if (size < static_cast<ssize_t>(sizeof(Request))) leave(size == 0 ? 0 : kLostChannel);
       Answer answer;
@@ -149,6 +150,7 @@ class Instance {
   pid_t process_;
   ino_t channel_ = 0;
   std::vector<char> packet_;
+  Receiver receiver_;
   void* library_ = nullptr;
   std::unique_ptr<Calls> calls_;
 };
