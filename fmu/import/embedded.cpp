@@ -1,17 +1,17 @@
 #include "embedded.h"
 
-asm(".pushsection .rodata\n.balign 16\nbentaxis_fmu_supervisor:\n.incbin \"" BENTAXIS_FMU_SUPERVISOR
-    "\"\nbentaxis_fmu_supervisor_end:\n.byte 0\n.popsection\n");
+asm(".pushsection .rodata\n.balign 16\nkBentaxisFmuSupervisor:\n.incbin \"" BENTAXIS_FMU_SUPERVISOR
+    "\"\nkBentaxisFmuSupervisorEnd:\n.byte 0\n.popsection\n");
 
 extern "C" {
-extern const char bentaxis_fmu_supervisor[], bentaxis_fmu_supervisor_end[];
+extern const char kBentaxisFmuSupervisor[], kBentaxisFmuSupervisorEnd[];
 }
 
 namespace bentaxis::fmu {
 
 std::string_view embedded_supervisor() {
-  return {bentaxis_fmu_supervisor,
-          static_cast<std::size_t>(bentaxis_fmu_supervisor_end - bentaxis_fmu_supervisor)};
+  return {kBentaxisFmuSupervisor,
+          static_cast<std::size_t>(kBentaxisFmuSupervisorEnd - kBentaxisFmuSupervisor)};
 }
 
 }  // namespace bentaxis::fmu

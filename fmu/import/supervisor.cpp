@@ -17,8 +17,6 @@
 #include "embedded.h"
 #include "process/messages.h"
 
-extern char** environ;
-
 namespace bentaxis::fmu {
 namespace {
 
