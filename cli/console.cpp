@@ -29,6 +29,10 @@ void watch_for_interruption() {
   std::signal(SIGHUP, on_signal);
 }
 
+void stop_if_interrupted() {
+  if (interrupted != 0) throw Interrupted();
+}
+
 Progress progress_of(const std::string& job) {
   using Clock = std::chrono::steady_clock;
   const bool terminal = isatty(STDERR_FILENO) == 1;

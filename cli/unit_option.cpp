@@ -1,6 +1,7 @@
 #include "unit_option.h"
 
 #include "bentaxis/pump/error.h"
+#include "console.h"
 
 namespace bentaxis::cli {
 
@@ -28,17 +29,24 @@ void UnitOption::add_to(CommandParser command) {
               "s between the points at which pump and unit exchange values")
       .positive_number()
       .text("SECONDS [that of the unit, or between rows]");
+  command
+      .option("--fmu-timeout", choice_.limits.call_seconds,
+              "s, elapsed: the longest time that one call of a function of the FMU may take; 0: no "
+              "limit")
+      .number_in(0, 1e6)
+      .text("SECONDS [60]");
 }
 
 std::shared_ptr<const study::UnitCoupling> UnitOption::coupling(const CommandParser& command,
                                                                 const Case& the_case,
                                                                 bool oil_follows) const {
-  for (const char* option : {"--fmu-set", "--connect", "--communication-step"})
+  for (const char* option : {"--fmu-set", "--connect", "--communication-step", "--fmu-timeout"})
     if (command.given(option) && !given())
       throw InputError(std::string(option) + ": changes nothing: there is no --fmu");
   if (!given()) return nullptr;
   study::UnitChoice choice = choice_;
   choice.file = file_;
+  choice.limits.while_waiting = stop_if_interrupted;
   return std::make_shared<study::UnitCoupling>(choice, the_case, oil_follows);
 }
 

@@ -10,7 +10,7 @@
 
 namespace bentaxis::cli {
 
-/// --fmu, --fmu-set, --connect, --communication-step.
+/// --fmu, --fmu-set, --connect, --communication-step, --fmu-timeout.
 class UnitOption {
  public:
   void add_to(CommandParser command);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
@@ -15,31 +16,45 @@
 
 namespace bentaxis::study {
 
-struct UnitCoupling::Said {
-  std::vector<std::string> lines;
-  void add(const std::vector<std::string>& more) {
-    for (const std::string& line : more)
-      if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
-  }
-};
-
 namespace {
 
 constexpr double kMostPoints = 1e6;
+constexpr std::size_t kMostSaid = 1000;  // lines
+
+}  // namespace
+
+// What instances have said, without repetition.
+class UnitCoupling::Said {
+ public:
+  /// @param from  of the lines: those before have been added
+  void add(const std::vector<std::string>& lines, std::size_t from = 0) {
+    for (std::size_t i = from; i < lines.size() && lines_.size() < kMostSaid; ++i)
+      if (seen_.insert(lines[i]).second) lines_.push_back(lines[i]);
+  }
+  const std::vector<std::string>& lines() const { return lines_; }
+
+ private:
+  std::vector<std::string> lines_;
+  std::unordered_set<std::string> seen_;
+};
 
 // An instance of the unit, always a communication step ahead of the pump.
-class Partner {
+class UnitCoupling::Partner {
  public:
   Partner(std::unique_ptr<fmu::Slave> slave, std::vector<Connection> connections, double step,
-          double end, std::string place, std::shared_ptr<UnitRecord> record)
+          double end, std::string place, std::shared_ptr<UnitRecord> record,
+          std::shared_ptr<Said> said)
       : slave_(std::move(slave)),
         connections_(std::move(connections)),
         step_(step),
         end_(end),
         place_(std::move(place)),
-        record_(std::move(record)) {
+        record_(std::move(record)),
+        said_(std::move(said)) {
     if (record_) record_->columns.emplace_back("time_s");
     for (const Connection& c : connections_) {
+      all_.push_back(&c.unit);
+      (c.to_pump ? outputs_ : inputs_).push_back(&c.unit);
       if (record_)
         record_->columns.push_back(c.unit.unit.empty() ? c.unit.name
                                                        : c.unit.name + " (" + c.unit.unit + ")");
@@ -51,15 +66,19 @@ class Partner {
   // What acts from a communication point on.
   Surroundings at(const coupled::PumpOutputs& pump) {
     if (points_ == 0) slave_->enter_initialisation(0, end_);
-    for (const Connection& c : connections_)
-      if (!c.to_pump) tell(c, pump);
+    tell(pump);
     if (points_ == 0) slave_->exit_initialisation();
     Surroundings outside;
-    for (const Connection& c : connections_)
-      if (c.to_pump) take(c, pump.time, outside);
+    // What is recorded is read at once with what acts.
+    const std::vector<double> values = slave_->get(record_ ? all_ : outputs_);
+    std::size_t at = 0;
+    for (const Connection& c : connections_) {
+      if (c.to_pump) take(c, values[at], pump.time, outside);
+      if (c.to_pump || record_) ++at;
+    }
     if (record_) {
       record_->values.push_back(pump.time);
-      for (const Connection& c : connections_) record_->values.push_back(slave_->get(c.unit));
+      record_->values.insert(record_->values.end(), values.begin(), values.end());
     }
     slave_->step(step_ * static_cast<double>(points_), step_);
     ++points_;
@@ -67,16 +86,34 @@ class Partner {
     if (speed_given_ && !acceleration_given_) {
       Surroundings later;
       for (const Connection& c : connections_)
-        if (c.to_pump && c.pump == "drive_speed") take(c, pump.time + step_, later);
+        if (c.to_pump && c.pump == "drive_speed")
+          take(c, slave_->get(c.unit), pump.time + step_, later);
       outside.shaft->acceleration = (later.shaft->speed - outside.shaft->speed) / step_;
     }
+    note_log();
     return outside;
   }
 
-  const std::vector<std::string>& log() const { return slave_->log(); }
+  /// No more is asked of it.
+  void end() {
+    slave_->end();
+    note_log();
+  }
 
  private:
-  void tell(const Connection& c, const coupled::PumpOutputs& pump) {
+  void note_log() {
+    said_->add(slave_->log(), noted_);
+    noted_ = slave_->log().size();
+  }
+
+  void tell(const coupled::PumpOutputs& pump) {
+    std::vector<double> values;
+    for (const Connection& c : connections_)
+      if (!c.to_pump) values.push_back(told(c, pump));
+    if (!inputs_.empty()) slave_->set(inputs_, values);
+  }
+
+  double told(const Connection& c, const coupled::PumpOutputs& pump) const {
     double value = pump[c.pump];
     if (!is_computed(value))
       throw ComputationError(fmt::format("{}: input \"{}\" at {} s: {} is not computed", place_,
@@ -84,11 +121,11 @@ class Partner {
     value = fmu::converted(value, c.from, c.to);
     // What counts takes the nearest number.
     const bool counts = c.unit.type != "Real" && c.unit.type.rfind("Float", 0) != 0;
-    slave_->set(c.unit, counts ? std::round(value) : value);
+    return counts ? std::round(value) : value;
   }
 
-  void take(const Connection& c, double time, Surroundings& outside) {
-    const double value = fmu::converted(slave_->get(c.unit), c.from, c.to);
+  void take(const Connection& c, double read, double time, Surroundings& outside) const {
+    const double value = fmu::converted(read, c.from, c.to);
     if (c.pump == "load_share") {
       if (value < 0)
         throw ComputationError(
@@ -107,19 +144,25 @@ class Partner {
 
   std::unique_ptr<fmu::Slave> slave_;
   std::vector<Connection> connections_;
+  std::vector<const fmu::UnitVariable*> inputs_, outputs_, all_;  // of the unit, of connections_
   double step_, end_;
   std::string place_;
   std::shared_ptr<UnitRecord> record_;
+  std::shared_ptr<Said> said_;
+  std::size_t noted_ = 0;  // lines of its log
   bool speed_given_ = false, acceleration_given_ = false;
   long points_ = 0;
 };
 
-}  // namespace
+struct UnitCoupling::Instances {
+  std::shared_ptr<Said> said = std::make_shared<Said>();
+  std::vector<std::shared_ptr<Partner>> running;
+};
 
 UnitCoupling::UnitCoupling(const UnitChoice& choice, const Case& the_case, bool oil_follows)
-    : driven_(the_case), said_(std::make_shared<Said>()) {
+    : driven_(the_case), instances_(std::make_shared<Instances>()) {
   drive_of(the_case);
-  unit_ = std::make_shared<fmu::ImportedUnit>(choice.file);
+  unit_ = std::make_shared<fmu::ImportedUnit>(choice.file, choice.limits);
   InputLog::note(choice.file);
   connections_ = connect(unit_->description(), pump_side(the_case, oil_follows), choice.connect,
                          choice.file.string());
@@ -206,7 +249,8 @@ void UnitCoupling::find_drive() {
     }
   }
   if (torque) drive.start_speed = start;
-  said_->add(slave->log());
+  slave->end();
+  instances_->said->add(slave->log());
 }
 
 std::vector<std::string> UnitCoupling::loose_inputs() const {
@@ -233,12 +277,17 @@ coupled::Exchange UnitCoupling::exchange(int parts, std::shared_ptr<UnitRecord> 
   const double step = step_ / parts;
   const auto partner =
       std::make_shared<Partner>(instance("drive"), connections_, step, driven_.drive->duration,
-                                unit_->file().string(), std::move(record));
-  return {step, [partner, said = said_](const coupled::PumpOutputs& pump) {
-            const Surroundings outside = partner->at(pump);
-            said->add(partner->log());
-            return outside;
-          }};
+                                unit_->file().string(), std::move(record), instances_->said);
+  instances_->running.push_back(partner);
+  return {step, [partner](const coupled::PumpOutputs& pump) { return partner->at(pump); }};
+}
+
+void UnitCoupling::end_instances() const {
+  while (!instances_->running.empty()) {
+    const std::shared_ptr<Partner> partner = instances_->running.back();
+    instances_->running.pop_back();
+    partner->end();
+  }
 }
 
 std::string UnitRecord::csv() const {
@@ -261,6 +310,6 @@ std::string UnitRecord::csv() const {
   return text;
 }
 
-std::vector<std::string> UnitCoupling::log() const { return said_->lines; }
+std::vector<std::string> UnitCoupling::log() const { return instances_->said->lines(); }
 
 }  // namespace bentaxis::study

@@ -205,7 +205,7 @@ class Study {
     peaks_ = peaks_of(run);
     coupled::Options disturbed = options_for(tolerance);
     r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
-    note_growth(run, pump_->simulate(first, disturbed, progress_of_("sensitivity")));
+    note_growth(run, follow(first, disturbed, "sensitivity"));
     const auto error = [&] { return change_of(loose, run) / kChangeOverError; };
     while (error() > 1 && tolerance > kFinestStep) {
       tolerance = std::max(kFinestStep, tolerance / kLooser);
@@ -234,31 +234,34 @@ class Study {
   }
 
   Trajectory integrate(Model model, double tolerance, const std::string& part) const {
-    coupled::Options options = options_for(tolerance);
+    std::shared_ptr<UnitRecord>& record = r_.exchanged[static_cast<int>(model)];
+    if (r_.choice.unit) record = std::make_shared<UnitRecord>();
+    coupled::Options options = options_for(tolerance, 1, record);
     tolerance_ = tolerance;
     options.body_loads = true;
-    if (r_.choice.unit) {
-      std::shared_ptr<UnitRecord>& record = r_.exchanged[static_cast<int>(model)];
-      record = std::make_shared<UnitRecord>();
-      options.exchange = r_.choice.unit->exchange(1, record);
-    }
-    return pump_->simulate(model, options, progress_of_(to_string(model) + ", " + part));
+    return follow(model, options, to_string(model) + ", " + part);
+  }
+
+  // The instances of a unit go with the run that they were for.
+  Trajectory follow(Model model, const coupled::Options& options, const std::string& part) const {
+    Trajectory run = pump_->simulate(model, options, progress_of_(part));
+    if (r_.choice.unit) r_.choice.unit->end_instances();
+    return run;
   }
 
   // Each run with a unit has an instance of its own.
-  coupled::Options options_for(double tolerance) const {
+  coupled::Options options_for(double tolerance, int parts = 1,
+                               std::shared_ptr<UnitRecord> record = nullptr) const {
     coupled::Options options;
     options.tolerance = tolerance;
-    if (r_.choice.unit) options.exchange = r_.choice.unit->exchange();
+    if (r_.choice.unit) options.exchange = r_.choice.unit->exchange(parts, std::move(record));
     return options;
   }
 
   // What exchanging values at points alone has changed: from a run with points between them.
   void note_coupling(Model model, const Trajectory& run) {
-    coupled::Options options = options_for(tolerance_);
-    options.exchange = r_.choice.unit->exchange(2);
-    const Trajectory half =
-        pump_->simulate(model, options, progress_of_("half the communication step"));
+    const coupled::Options options = options_for(tolerance_, 2);
+    const Trajectory half = follow(model, options, "half the communication step");
     std::map<std::string, CouplingChange> groups;
     for (std::size_t row = 0; row < judged_rows(); ++row)
       for_each_difference(run, half, peaks_, row, [&](const Compared& what, double share) {
@@ -503,7 +506,7 @@ class Study {
     if (!pump_) return analytic(options, "analytic, over the angle");
     coupled::Options with_oil = options_for(tolerance_);
     with_oil.times = options.times;
-    return pump_->simulate(Model::analytic, with_oil, progress_of_("analytic, over the angle"));
+    return follow(Model::analytic, with_oil, "analytic, over the angle");
   }
 
   void check() {

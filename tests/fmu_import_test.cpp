@@ -139,6 +139,22 @@ TEST_F(FmuImportTest, RefusesDescriptionsByElementAndValue) {
   EXPECT_THAT(with("<CoSimulation", "<Other"), HasSubstr("has no <CoSimulation>"));
 }
 
+TEST_F(FmuImportTest, RefusesNamesThatStandTwice) {
+  EXPECT_THAT(with("\"moving\"", "\"load_share\""),
+              AllOf(HasSubstr("variable \"load_share\": duplicate name"),
+                    HasSubstr("valueReference 0 and 1"), HasSubstr("must be unique")));
+  // Of a long one no more than fits into a line.
+  const std::string name(1U << 20, 'x');
+  const std::string variable = "<ScalarVariable name='" + name + "' valueReference='1'/>";
+  const std::string said = message_of<InputError>([&] {
+    read_description("<fmiModelDescription fmiVersion='2.0' guid='g'><ModelVariables>" + variable +
+                         variable + "</ModelVariables></fmiModelDescription>",
+                     "here");
+  });
+  EXPECT_THAT(said, HasSubstr("xxx..\": duplicate name"));
+  EXPECT_LT(said.size(), 600U);
+}
+
 TEST_F(FmuImportTest, SaysWhichBinaryIsMissing) {
   std::ifstream in(fs::path(BENTAXIS_SOURCE_DIR) / "tests/fmu_units/valve.fmi2.xml");
   const std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -343,7 +359,7 @@ TEST_F(FmuImportTest, TellsWhyAUnitDoesNotStart) {
       }
     const ImportedUnit other(archive({{"modelDescription.xml", text}, {name, library}}));
     EXPECT_THAT(message_of<InputError>([&] { (void)other.instantiate("it"); }),
-                HasSubstr("the unit does not start, it says: error: token \"valve-2\""));
+                HasSubstr("the FMU does not start, it says: error: token \"valve-2\""));
   }
 }
 

@@ -6,8 +6,13 @@ usage: simulate_fmu_test.py BENTAXIS REPO_ROOT UNITS [options of unittest]
 
 import csv
 import json
+import os
 import pathlib
+import re
+import signal
+import subprocess
 import sys
+import time
 import unittest
 
 import jsonschema
@@ -19,12 +24,19 @@ UNITS = None  # set in main
 SHORT = ("--set", "drive.duration_s=0.004", "--set", "drive.samples=20")
 
 
-class SimulateFmuTest(ProgramTest):
+def without_times(text):
+    return re.sub(r"[0-9.e-]+ s\b", "", text)
+
+
+class FmuTest(ProgramTest):
     def case(self, name="bap63_motor_start"):
         return str(program.REPO / "cases" / f"{name}.toml")
 
     def unit(self, name, version=2):
         return str(UNITS / f"{name}_fmi{version}.fmu")
+
+
+class SimulateFmuTest(FmuTest):
 
     def simulate(self, *arguments, case="bap63_motor_start", status=0):
         return self.run_program("simulate", self.case(case), *SHORT, "--out", "out", *arguments, status=status)
@@ -98,7 +110,7 @@ class SimulateFmuTest(ProgramTest):
 
     def test_refusals(self):
         rotor = self.unit("rotor")
-        for option, value in (("--connect", "a=b"), ("--communication-step", "1e-3"), ("--fmu-set", "a=1")):
+        for option, value in (("--connect", "a=b"), ("--communication-step", "1e-3"), ("--fmu-set", "a=1"), ("--fmu-timeout", "3")):
             self.says(option, value, contains=[option, "there is no --fmu"])
         self.says("--fmu", "none.fmu", contains="none.fmu: does not exist")
         self.says("--fmu", self.case(), contains="no zip archive")
@@ -110,6 +122,8 @@ class SimulateFmuTest(ProgramTest):
         self.says("--fmu", rotor, "--connect", "drive_torque", contains="must be A=B")
         self.says("--fmu", rotor, "--communication-step", "1", contains=["--communication-step 1", "<= 0.004"])
         self.says("--fmu", rotor, "--communication-step", "0", contains="--communication-step")
+        for limit in "-1", "nan", "1e9":
+            self.says("--fmu", rotor, "--fmu-timeout", limit, contains=["--fmu-timeout", "[0, 1e+06]"])
         self.says("--fmu", rotor, "--fmu-set", "torque", contains="must be NAME=VALUE")
         self.says("--fmu", rotor, "--fmu-set", "drive_speed=3", contains=["no such parameter", "torque, inertia"])
         self.says("--fmu", rotor, "--steady", contains="--steady")
@@ -120,6 +134,106 @@ class SimulateFmuTest(ProgramTest):
     def test_a_unit_that_fails_ends_it_in_its_words(self):
         self.says("--fmu", self.unit("stubborn"), "--fmu-set", "fail_at=0.002", "--communication-step", "1e-3",
                      contains=["DoStep at 0.001 s", "no level of oil at 0.001 s"], status=program.COMPUTATION_FAILED)
+
+
+class HostileFmuTest(FmuTest):
+    """An FMU that does anything: the program ends with status 3 and its name, or goes on as if nothing had been."""
+
+    def setUp(self):
+        super().setUp()
+        self.temporary = self.folder / "tmp"
+        self.temporary.mkdir()
+
+    def environment(self, hostile=""):
+        return {**os.environ, "TMPDIR": str(self.temporary), "BENTAXIS_TEST_HOSTILE": hostile}
+
+    def processes(self):
+        """Those of FMUs, with what they have started."""
+        found = []
+        for process in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                if f"TMPDIR={self.temporary}".encode() in (process / "environ").read_bytes():
+                    found.append(int(process.name))
+            except OSError:
+                pass
+        return found
+
+    def nothing_is_left(self):
+        return not any(self.temporary.iterdir()) and not self.processes()
+
+    def command(self, *arguments, fmu="hostile_rotor", version=2, out="out"):
+        return ("simulate", self.case(), *SHORT, "--model", "analytic", "--out", out, "--fmu", self.unit(fmu, version),
+                "--communication-step", "1e-3", *arguments)
+
+    def test_an_fmu_that_ends_or_hangs(self):
+        for hostile, *words in (("step exit0", "fmi2DoStep at 0 s", "by exit status 0"),
+                                ("step segv", "fmi2DoStep at 0 s", "SIGSEGV"),
+                                ("get abort", "fmi2GetReal of \"drive_speed\"", "SIGABRT", "no licence for this pump"),
+                                ("load exit0", "loading rotor.so", "by exit status 0"),
+                                ("free exit0", "fmi2FreeInstance", "by exit status 0"),
+                                ("terminate segv", "fmi2Terminate", "SIGSEGV"),
+                                ("step close_all", "fmi2DoStep", "closed the descriptor"),
+                                ("step hang", "fmi2DoStep", "has not come back after 2 s", "--fmu-timeout")):
+            with self.subTest(hostile=hostile):
+                line = self.refused(*self.command("--fmu-timeout", "2"), status=program.COMPUTATION_FAILED,
+                                    env=self.environment(hostile))
+                self.assert_mentions(line, "hostile_rotor_fmi2.fmu", *words)
+                self.assertTrue(self.nothing_is_left())
+
+    def test_an_fmu_that_is_only_impolite_changes_nothing(self):
+        plain = self.run_program(*self.command(fmu="rotor", out="plain"), env=self.environment())
+        for hostile in "step chdir", "step close_standard", "step print", "step handlers", "step fork", "enter daemon":
+            with self.subTest(hostile=hostile):
+                result = self.run_program(*self.command(), env=self.environment(hostile))
+                self.assertEqual(without_times(result.out), without_times(plain.out.replace("plain/", "out/")))
+                self.assertEqual(result.err, "")
+                for name in "simulation_analytic.csv", "unit_analytic.csv":
+                    self.assertEqual((self.folder / "out" / name).read_bytes(), (self.folder / "plain" / name).read_bytes())
+                self.assertTrue(self.nothing_is_left())
+
+    def hanging(self):
+        """The program while its FMU hangs in a step."""
+        process = self.start(*self.command(), env=self.environment("step say_and_hang"))
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + program.SECONDS
+        while not (self.temporary / "hangs").exists():
+            self.assertIsNone(process.poll())
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+        return process
+
+    def test_a_signal_ends_it_while_an_fmu_hangs(self):
+        for number in signal.SIGTERM, signal.SIGINT, signal.SIGHUP:
+            process = self.hanging()
+            (self.temporary / "hangs").unlink()
+            process.send_signal(number)
+            self.finish(process, program.INTERRUPTED)
+            self.assertIn("interrupted; nothing was written", process.err)
+            self.assertEqual([p.name for p in self.folder.iterdir()], ["tmp"])
+            self.assertTrue(self.nothing_is_left())
+
+    def test_nothing_is_left_of_a_program_that_is_killed(self):
+        process = self.hanging()
+        (self.temporary / "hangs").unlink()
+        process.kill()
+        process.communicate()
+        deadline = time.monotonic() + program.SECONDS
+        while not self.nothing_is_left():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+
+    @unittest.skipUnless(hasattr(os, "mkfifo"), "needs named pipes")
+    def test_a_program_whose_output_nobody_reads(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        result = subprocess.run([program.PROGRAM, *self.command(fmu="rotor")], cwd=self.folder, env=self.environment(),
+                                stdout=writer, stderr=subprocess.DEVNULL, timeout=program.SECONDS, check=False)
+        os.close(writer)
+        self.assertNotEqual(result.returncode, 0)
+        deadline = time.monotonic() + program.SECONDS
+        while not self.nothing_is_left():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
 
 
 if __name__ == "__main__":

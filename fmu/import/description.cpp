@@ -9,9 +9,12 @@
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "plain_text.h"
 
 namespace bentaxis::fmu {
 namespace {
+
+constexpr std::size_t kLongestName = 400;  // bytes that a message shows
 
 using Types = std::map<std::string, std::string, std::less<>>;  // names of types -> units
 
@@ -48,6 +51,7 @@ class Reader {
     read_types();
     for (const auto& node : root_.child("ModelVariables").children())
       if (node.type() == pugi::node_element) d.variables.push_back(variable(node, d.version));
+    check_names(d.variables);
     return d;
   }
 
@@ -152,6 +156,16 @@ class Reader {
     else if (!v.unit.empty())
       v.measure = measure_named(v.unit);
     return v;
+  }
+
+  // A name says which variable is meant: of one that stands twice nobody could.
+  void check_names(const std::vector<UnitVariable>& variables) const {
+    std::map<std::string_view, std::uint32_t> references;
+    for (const UnitVariable& v : variables)
+      if (const auto [first, fresh] = references.emplace(v.name, v.reference); !fresh)
+        fail("variable \"" + plain_text(v.name, kLongestName) +
+             "\": duplicate name, of valueReference " + std::to_string(first->second) + " and " +
+             std::to_string(v.reference) + ": names must be unique");
   }
 
   std::string place_;

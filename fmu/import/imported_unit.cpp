@@ -1,7 +1,13 @@
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <system_error>
+
 #include "bentaxis/fmu/slave.h"
 #include "bentaxis/pump/error.h"
-#include "shared_library.h"
-#include "slave_kinds.h"
+#include "channel.h"
+#include "process_slave.h"
+#include "supervisor.h"
 #include "unpacked.h"
 
 namespace bentaxis::fmu {
@@ -34,58 +40,88 @@ std::filesystem::path library_of(const std::filesystem::path& file, const Unpack
   return library;
 }
 
+// @return the file, where it can be unpacked at all
+const std::filesystem::path& with_room(const std::filesystem::path& file) {
+  std::error_code failed;
+  (void)std::filesystem::temp_directory_path(failed);
+  const char* place = std::getenv("TMPDIR");
+  if (failed)
+    throw InputError(file.string() + ": cannot be unpacked: TMPDIR = \"" +
+                     (place != nullptr ? place : "/tmp") +
+                     "\" is not a directory for temporary files: " + failed.message());
+  return file;
+}
+
 }  // namespace
 
 class ImportedUnit::Implementation {
  public:
-  explicit Implementation(const std::filesystem::path& archive)
-      : file(archive),
-        unpacked(archive),
+  Implementation(const std::filesystem::path& archive, Limits wanted)
+      : file(with_room(archive)),
+        limits(std::move(wanted)),
+        unpacked(archive, kMostUnpacked,
+                 [this](const std::filesystem::path& folder) {
+                   supervisor.emplace(folder, file.string());
+                 }),
         description(
             read_description(unpacked.description(), archive.string() + ": modelDescription.xml")),
-        library(library_of(archive, unpacked, description), archive.string()) {}
+        library(library_of(archive, unpacked, description)),
+        spare_(new_process()) {}
+
+  ~Implementation() {
+    spare_.reset();
+    supervisor.reset();  // No process uses the folder any more.
+  }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  // A process that has loaded the library.
+  std::unique_ptr<Channel> take_process() {
+    {
+      const std::lock_guard<std::mutex> lock(busy_);
+      if (spare_) return std::move(spare_);
+    }
+    return new_process();
+  }
 
   const std::filesystem::path file;
+  const Limits limits;
+  std::optional<Supervisor> supervisor;  // removes the folder, too, in whatever way all this ends
   const Unpacked unpacked;
   const UnitDescription description;
-  const SharedLibrary library;
-};
-
-namespace {
-
-// An instance holds what it is made of.
-class Kept : public Slave {
- public:
-  Kept(std::shared_ptr<const void> origin, std::unique_ptr<Slave> slave)
-      : origin_(std::move(origin)), slave_(std::move(slave)) {}
-  void set(const UnitVariable& variable, double value) override { slave_->set(variable, value); }
-  double get(const UnitVariable& variable) override { return slave_->get(variable); }
-  void enter_initialisation(double start, double end) override {
-    slave_->enter_initialisation(start, end);
-  }
-  void exit_initialisation() override { slave_->exit_initialisation(); }
-  void step(double time, double step) override { slave_->step(time, step); }
-  const std::vector<std::string>& log() const override { return slave_->log(); }
+  const std::filesystem::path library;
 
  private:
-  std::shared_ptr<const void> origin_;
-  std::unique_ptr<Slave> slave_;  // goes first
+  std::unique_ptr<Channel> new_process() {
+    auto channel = std::make_unique<Channel>(*supervisor, file.string(), limits);
+    const std::string name = library.filename().string();
+    const Returned returned = channel->call({process::Task::load,
+                                             {"loading " + name},
+                                             description.version,
+                                             0,
+                                             0,
+                                             {},
+                                             {library.string()}});
+    if (returned.outcome == process::Outcome::not_loaded)
+      throw InputError(file.string() + ": " + name + " cannot be loaded: " +
+                       (returned.text.empty() ? "no reason given" : returned.text));
+    return channel;
+  }
+
+  std::mutex busy_;
+  std::unique_ptr<Channel> spare_;
 };
 
-}  // namespace
-
-ImportedUnit::ImportedUnit(const std::filesystem::path& file)
-    : it_(std::make_shared<Implementation>(file)) {}
+ImportedUnit::ImportedUnit(const std::filesystem::path& file, const Limits& limits)
+    : it_(std::make_shared<Implementation>(file, limits)) {}
 ImportedUnit::~ImportedUnit() = default;
 const UnitDescription& ImportedUnit::description() const { return it_->description; }
 const std::filesystem::path& ImportedUnit::file() const { return it_->file; }
 const std::filesystem::path& ImportedUnit::folder() const { return it_->unpacked.folder(); }
 
 std::unique_ptr<Slave> ImportedUnit::instantiate(const std::string& name) const {
-  const SlaveOrigin origin{it_->description, it_->library, it_->unpacked.folder() / "resources",
-                           it_->file.string(), name};
-  return std::make_unique<Kept>(
-      it_, it_->description.version == 2 ? fmi2_slave(origin) : fmi3_slave(origin));
+  return process_slave({it_, it_->description, it_->unpacked.folder() / "resources",
+                        it_->file.string(), name, it_->take_process()});
 }
 
 }  // namespace bentaxis::fmu

@@ -12,6 +12,7 @@
 
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
+#include "process/remove_tree.h"
 
 namespace bentaxis::fmu {
 namespace {
@@ -58,7 +59,9 @@ std::string platform_folder(int version) {
 #endif
 }
 
-Unpacked::Unpacked(const fs::path& archive, std::uint64_t most) : file_(archive) {
+Unpacked::Unpacked(const fs::path& archive, std::uint64_t most,
+                   const std::function<void(const fs::path& folder)>& made)
+    : file_(archive) {
   if (!fs::exists(archive)) fail(archive, "does not exist");
   if (fs::is_directory(archive)) fail(archive, "is a folder: must be a .fmu");
   if (!fs::is_regular_file(archive))
@@ -70,6 +73,7 @@ Unpacked::Unpacked(const fs::path& archive, std::uint64_t most) : file_(archive)
     fail(pattern, "a folder to unpack a unit into cannot be made");
   folder_ = pattern;
   try {
+    if (made) made(folder_);
     unpack(archive, most);
   } catch (...) {
     remove();
@@ -80,8 +84,7 @@ Unpacked::Unpacked(const fs::path& archive, std::uint64_t most) : file_(archive)
 Unpacked::~Unpacked() { remove(); }
 
 void Unpacked::remove() noexcept {
-  std::error_code ignored;
-  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+  if (!folder_.empty()) process::remove_tree(folder_);
 }
 
 void Unpacked::unpack(const fs::path& file, std::uint64_t most) {

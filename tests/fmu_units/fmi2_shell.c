@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hostile.h"
 #include "interface/fmi2.h"
 #include "model.h"
 
@@ -12,6 +13,13 @@ typedef struct {
   fmi2CallbackFunctions callbacks;
   char name[64];
 } Instance;
+
+static void log_text(void* environment, const char* text) {
+  Instance* instance = environment;
+  if (instance != NULL)
+    instance->callbacks.logger(instance->callbacks.componentEnvironment, instance->name,
+                               fmi2Warning, "logStatusWarning", "%s", text);
+}
 
 const char* fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 #ifdef OTHER_VERSION
@@ -36,10 +44,14 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   instance->callbacks = *functions;
   snprintf(instance->name, sizeof instance->name, "%s", name);
   model_start(instance->values);
+  misbehave("instantiate", log_text, instance);
   return instance;
 }
 
-void fmi2FreeInstance(fmi2Component c) { free(c); }
+void fmi2FreeInstance(fmi2Component c) {
+  misbehave("free", log_text, c);
+  free(c);
+}
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance,
                                fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
@@ -47,20 +59,21 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, f
   (void)tolerance;
   (void)stop_defined;
   (void)stop;
+  misbehave("set_up", log_text, c);
   ((Instance*)c)->time = start;
   return fmi2OK;
 }
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  (void)c;
+  misbehave("enter", log_text, c);
   return fmi2OK;
 }
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  (void)c;
+  misbehave("exit", log_text, c);
   return fmi2OK;
 }
 #ifndef WITHOUT_TERMINATE
 fmi2Status fmi2Terminate(fmi2Component c) {
-  (void)c;
+  misbehave("terminate", log_text, c);
   return fmi2OK;
 }
 #endif
@@ -69,6 +82,7 @@ fmi2Status fmi2Terminate(fmi2Component c) {
   fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference vr[], size_t count, \
                            fmi2##TYPE value[]) {                                         \
     Instance* instance = c;                                                              \
+    misbehave("get", log_text, c);                                                       \
     model_outputs(instance->values, instance->time);                                     \
     for (size_t i = 0; i < count; ++i) value[i] = (fmi2##TYPE)instance->values[vr[i]];   \
     return fmi2OK;                                                                       \
@@ -76,6 +90,7 @@ fmi2Status fmi2Terminate(fmi2Component c) {
   fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference vr[], size_t count, \
                            const fmi2##TYPE value[]) {                                   \
     Instance* instance = c;                                                              \
+    misbehave("set", log_text, c);                                                       \
     for (size_t i = 0; i < count; ++i) instance->values[vr[i]] = value[i];               \
     return fmi2OK;                                                                       \
   }
@@ -87,6 +102,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
   Instance* instance = c;
   char message[200] = "";
   (void)keep;
+  misbehave("step", log_text, c);
   const int status = model_step(instance->values, time, step, message, sizeof message);
   if (message[0] != '\0')
     instance->callbacks.logger(instance->callbacks.componentEnvironment, instance->name,

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hostile.h"
 #include "interface/fmi3.h"
 #include "model.h"
 
@@ -12,6 +13,11 @@ typedef struct {
   fmi3InstanceEnvironment environment;
   fmi3LogMessageCallback log;
 } Instance;
+
+static void log_text(void* environment, const char* text) {
+  Instance* instance = environment;
+  if (instance != NULL) instance->log(instance->environment, fmi3Warning, "logStatusWarning", text);
+}
 
 #ifdef OTHER_VERSION
 const char* fmi3GetVersion(void) { return "2.9"; }
@@ -47,10 +53,14 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
   instance->environment = environment;
   instance->log = log;
   model_start(instance->values);
+  misbehave("instantiate", log_text, instance);
   return instance;
 }
 
-void fmi3FreeInstance(fmi3Instance instance) { free(instance); }
+void fmi3FreeInstance(fmi3Instance instance) {
+  misbehave("free", log_text, instance);
+  free(instance);
+}
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_defined,
                                        fmi3Float64 tolerance, fmi3Float64 start,
@@ -59,16 +69,17 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_def
   (void)tolerance;
   (void)stop_defined;
   (void)stop;
+  misbehave("enter", log_text, c);
   ((Instance*)c)->time = start;
   return fmi3OK;
 }
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-  (void)c;
+  misbehave("exit", log_text, c);
   return fmi3OK;
 }
 #ifndef WITHOUT_TERMINATE
 fmi3Status fmi3Terminate(fmi3Instance c) {
-  (void)c;
+  misbehave("terminate", log_text, c);
   return fmi3OK;
 }
 #endif
@@ -77,6 +88,7 @@ fmi3Status fmi3Terminate(fmi3Instance c) {
   fmi3Status fmi3Get##TYPE(fmi3Instance c, const fmi3ValueReference vr[], size_t count, \
                            fmi3##TYPE value[], size_t value_count) {                    \
     Instance* instance = c;                                                             \
+    misbehave("get", log_text, c);                                                      \
     if (count != value_count) return fmi3Error;                                         \
     model_outputs(instance->values, instance->time);                                    \
     for (size_t i = 0; i < count; ++i) value[i] = (fmi3##TYPE)instance->values[vr[i]];  \
@@ -85,6 +97,7 @@ fmi3Status fmi3Terminate(fmi3Instance c) {
   fmi3Status fmi3Set##TYPE(fmi3Instance c, const fmi3ValueReference vr[], size_t count, \
                            const fmi3##TYPE value[], size_t value_count) {              \
     Instance* instance = c;                                                             \
+    misbehave("set", log_text, c);                                                      \
     if (count != value_count) return fmi3Error;                                         \
     for (size_t i = 0; i < count; ++i) instance->values[vr[i]] = (double)value[i];      \
     return fmi3OK;                                                                      \
@@ -107,6 +120,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
   Instance* instance = c;
   char message[200] = "";
   (void)keep;
+  misbehave("step", log_text, c);
   *event = *terminate = *early = false;
   *reached = time;
   const int status = model_step(instance->values, time, step, message, sizeof message);

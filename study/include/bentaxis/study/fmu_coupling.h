@@ -20,6 +20,7 @@ struct UnitChoice {
   std::vector<std::string> connect;          ///< "A=B": A gets B; equal names need none
   std::optional<double> step;                ///< s, between communication points
   std::vector<std::string> parameters = {};  ///< of the unit: "NAME=VALUE", in its own units
+  fmu::Limits limits = {};                   ///< of what the unit may do
 };
 
 /// A value that goes from the unit to the pump or back.
@@ -76,11 +77,16 @@ class UnitCoupling {
   /// @param parts   of the communication step that are stepped one by one
   /// @param record  if given: filled as the simulation goes on
   coupled::Exchange exchange(int parts = 1, std::shared_ptr<UnitRecord> record = nullptr) const;
+  /// Terminates and frees the instances of the exchanges so far, whose simulations are done.
+  /// @throws ComputationError where an instance does not come back from that
+  void end_instances() const;
   /// What instances have said, without repetition.
   std::vector<std::string> log() const;
 
  private:
-  struct Said;
+  class Said;
+  class Partner;
+  struct Instances;
   bool drives(const char* input) const;
   void find_parameters(const std::vector<std::string>& wanted);
   std::unique_ptr<fmu::Slave> instance(const std::string& name) const;
@@ -92,7 +98,7 @@ class UnitCoupling {
   std::vector<std::pair<fmu::UnitVariable, double>> parameters_;
   Case driven_;
   double step_ = 0;
-  std::shared_ptr<Said> said_;
+  std::shared_ptr<Instances> instances_;
 };
 
 }  // namespace bentaxis::study
