@@ -34,9 +34,9 @@ std::complex<double> fourier(const ResultTable& table, std::size_t column, int o
   return sum * 2.0 / static_cast<double>(table.rows());
 }
 
-double least_scale(const Channel& channel, const ZeroScales& loads) {
+double load_of(const Channel& channel, const ZeroScales& loads) {
   const auto load = loads.find(channel.unit);
-  return load == loads.end() ? 0 : kLeastScale * load->second;
+  return load == loads.end() ? 0 : load->second;
 }
 
 // A value that a table lacks.
@@ -143,7 +143,8 @@ const char* to_string(Verdict verdict) {
 }
 
 std::string scale_in_words(const ChannelComparison& channel) {
-  return channel.at_floor ? "a thousandth of the loads, which its peak is below" : "its peak";
+  return channel.at_floor ? "the scale that the loads give, as its own peak is far below"
+                          : "its peak";
 }
 
 Options above_round_off(double tolerance, const ZeroScales& scales) {
@@ -202,8 +203,12 @@ const ChannelComparison* Comparison::find(const std::string& channel_name) const
   return nullptr;
 }
 
+double scale_of(double peak, double load) {
+  return peak <= kNoSignal * load ? load : std::max(peak, kLeastScale * load);
+}
+
 double scale_of(const ResultTable& table, const Channel& channel, const ZeroScales& zero_scales) {
-  return std::max(table.peak(channel.group), least_scale(channel, zero_scales));
+  return scale_of(table.peak(channel.group), load_of(channel, zero_scales));
 }
 
 Comparison compare_tables(const ResultTable& first, const ResultTable& second,
@@ -225,7 +230,7 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
     result.judged = channel.kind == ChannelKind::reaction || channel.kind == ChannelKind::derived;
     auto peak = peaks.find(channel.group);
     if (peak == peaks.end()) peak = peaks.emplace(channel.group, first.peak(channel.group)).first;
-    result.peak = std::max(peak->second, least_scale(channel, options.zero_scales));
+    result.peak = scale_of(peak->second, load_of(channel, options.zero_scales));
     result.at_floor = peak->second < result.peak;
     const auto absolute = options.absolute.find(channel.unit);
     result.allowed = options.tolerance * result.peak +

@@ -195,7 +195,7 @@ struct Sweep::Implementation {
       // A small value is what is left of loads that cancel, and carries their round-off.
       const auto load = floors.find(plan.outputs[i].unit);
       if (scales[i].kind != ScaleKind::none && is_computed(scale) && load != floors.end())
-        scale = std::max(scale, compare::kLeastScale * load->second);
+        scale = compare::scale_of(scale, load->second);
       result.push_back(is_computed(scale) ? scale : 0);
     }
     return result;

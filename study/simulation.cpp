@@ -163,21 +163,22 @@ LoadScale loads_of(const Case& the_case, const Trajectory& run) {
   return load_scale(the_case, samples);
 }
 
-// What differences are held to: peaks, at least a share of the loads (compare::kLeastScale). An
-// angle of the teeth has the round-off of the bodies' angles.
+// What differences are held to: as compare::scale_of(). An angle of the teeth has the round-off of
+// the bodies' angles.
 std::map<std::string, double> scales_of(const Trajectory& run, const LoadScale& loads,
                                         double error) {
   std::map<std::string, double> scales = peaks_of(run);
   if (run.lag.empty()) return scales;
   const double bar = scales.count("p") > 0 ? scales.at("p") : 0;
   for_each_value(run, 0, [&](const Compared& what, double) {
-    const double least = what.unit == "N"     ? compare::kLeastScale * loads.force
-                         : what.unit == "Nm"  ? compare::kLeastScale * loads.moment
-                         : what.unit == "bar" ? compare::kLeastScale * bar
-                         : what.unit == "rad" ? compare::kNoSignal / error
-                                              : 0;
     double& scale = scales.at(what.group);
-    scale = std::max(scale, least);
+    if (what.unit == "rad")
+      scale = std::max(scale, compare::kNoSignal / error);
+    else
+      scale = compare::scale_of(scale, what.unit == "N"     ? loads.force
+                                       : what.unit == "Nm"  ? loads.moment
+                                       : what.unit == "bar" ? bar
+                                                            : 0);
   });
   return scales;
 }

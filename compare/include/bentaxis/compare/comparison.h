@@ -58,7 +58,8 @@ struct ChannelComparison {
   double rms_over_peak() const { return peak > 0 ? rms / peak : (rms > 0 ? 1e300 : 0); }
 };
 
-/// Largest load of the case per unit ("N", "Nm", ...): the scales of groups have a floor from it.
+/// Largest load of the case per unit ("N", "Nm", ...), from which the scales of groups have a
+/// floor.
 using ZeroScales = std::map<std::string, double>;
 
 /// Limits of a curve that is known only to lie between them: tables of the same shape as the first.
@@ -121,8 +122,10 @@ struct Comparison {
 Comparison compare_tables(const ResultTable& first, const ResultTable& second,
                           const Options& options);
 
-/// What differences of a channel are held to: the peak of its group in the table, at least
-/// kLeastScale of the largest load of its unit.
+/// What differences of a group are held to: its peak, at least kLeastScale of the largest load; the
+/// load itself where the peak is round-off of it, so that the group is zero.
+double scale_of(double peak, double load);
+/// That of a channel: by the peak of its group in the table and the largest load of its unit.
 double scale_of(const ResultTable& table, const Channel& channel, const ZeroScales& zero_scales);
 
 /// A channel that must vanish, over a whole table.

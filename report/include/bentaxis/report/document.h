@@ -278,7 +278,7 @@ struct WorstChannel {
 
 /// What is absent does not apply to this report.
 struct Verdict {
-  /// The worst of all verdicts of the report, which the exit status says too; nothing where nothing
+  /// The worst of all verdicts of the report, as the exit status; nothing where nothing
   /// was compared: a finding, not a verdict.
   std::optional<bool> agrees;
   std::string headline;
