@@ -417,6 +417,7 @@ std::vector<std::string> carried_by(const std::string& group) {
   if (group == "xh_yh") return {"Th", "Fh"};
   if (group == "Tcs") return {"Rcs"};
   if (group == "Tc") return {"Rc"};
+  if (group == "teeth") return {"Rcs", "Rcn", "Th"};  // by forces of pairs and where these act
   return {group};
 }
 
@@ -437,7 +438,7 @@ std::vector<Failure> failures_of(const ComparisonResult& r) {
   if (r.teeth && !r.split)
     for (const auto& c : r.teeth->comparison.channels)
       if (c.judged && c.verdict == compare::Verdict::differs)
-        failures.push_back({"Rcs", c.largest, c.peak});
+        failures.push_back({"teeth", c.largest, c.peak});
   for (const auto& check : r.checks)
     if (!check.holds()) failures.push_back({check.group, check.worst, check.scale});
   return failures;
