@@ -163,6 +163,18 @@ LoadScale loads_of(const Case& the_case, const Trajectory& run) {
   return load_scale(the_case, samples);
 }
 
+// Of shaft, block and pistons at the largest speed of a run, J.
+double kinetic_energy(const Case& the_case, const Trajectory& run) {
+  const PumpParameters& pump = the_case.pump;
+  double speed = 0;
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    for (const std::size_t column : {3, 4})
+      speed = std::max(speed, kRadPerSecondPerRpm * std::abs(run.table.state(row, column)));
+  const double pistons = pump.geometry.pistons * pump.piston.mass *
+                         pump.geometry.joint_circle_radius * pump.geometry.joint_circle_radius;
+  return 0.5 * (pump.shaft.axial_inertia + pump.block.axial_inertia + pistons) * speed * speed;
+}
+
 // What differences are held to: as compare::scale_of(). An angle of the teeth has the round-off of
 // the bodies' angles.
 std::map<std::string, double> scales_of(const Trajectory& run, const LoadScale& loads,
@@ -562,8 +574,10 @@ class Study {
       const ResultTable& table = t.table.results;
       constexpr double kLeastTurn = 1e-6;
       constexpr double kLeastWork = 1e-12;  // J: nor is there a torque
+      // Energy that goes to and fro between bodies leaves its round-off too.
+      const double kinetic = compare::kLeastScale * kinetic_energy(r_.ready.the_case, t);
       const double work =
-          std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
+          std::max({kinetic, std::abs(record.work_of_loads), std::abs(record.work_of_drives),
                     std::abs(record.kinetic_energy_gained),
                     kLeastTurn * std::max(table.peak("Td"), loads.moment), kLeastWork});
       // Simbody's work is integrated with its motion, to the same error.
