@@ -242,8 +242,8 @@ BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, do
   struct Sum {
     const char *open, *whole, *group;
   };
-  const Sum sums[] = {{"Td_open_Nm", "Td_z1_Nm", "Td"},
-                      {"Tcs_open_Nm", "Tcs_z2_Nm", "Tcs"},
+  const Sum sums[] = {{"Td_open_Nm", "Td_z1_Nm", "parts of Td"},
+                      {"Tcs_open_Nm", "Tcs_z2_Nm", "parts of Tcs"},
                       {"Fh_open_N", "Fpress_z2_N", "Fh"}};
   for (const ResultTable* table : {&analytic, &multibody})
     for (const auto& [open, whole, group] : sums) {

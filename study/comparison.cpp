@@ -8,6 +8,7 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/published_section.h"
@@ -106,6 +107,7 @@ class Maker {
   void integrate_all();
   double torque_driven_speed_error(const multibody::IntegrationOptions& integration) const;
   compare::Options comparison_options() const;
+  void note_film_point_errors();
   bool may_be_missing(const Channel& channel, std::size_t row) const;
   void compare_tables();
   void split_assumptions();
@@ -117,6 +119,7 @@ class Maker {
   const PartProgress& progress_of_;
   Samples samples_, multibody_samples_;
   compare::ZeroScales zero_scales_;
+  ResultTable film_point_errors_;
   std::optional<ResultTable> analytic_budget_, multibody_budget_;
 };
 
@@ -145,6 +148,7 @@ void Maker::run_models() {
   r.analytic = std::move(analytic.table);
   r.analytic_loads = std::move(analytic.loads);
   analytic_budget_ = std::move(analytic.budget);
+  note_film_point_errors();
   if (integrated()) {
     integrate_all();
     return;
@@ -199,12 +203,38 @@ double Maker::torque_driven_speed_error(const multibody::IntegrationOptions& int
       .whole.speed_error;
 }
 
+// The point of the film force is Th over Fh (53): where Fh passes 0 it is known as well as what is
+// allowed of these two leaves it.
+void Maker::note_film_point_errors() {
+  const ComparisonResult& r = result_;
+  const ChannelLayout layout(r.first.the_case.pump.geometry.pistons);
+  const std::vector<Channel>& channels = layout.channels();
+  const auto allowed = [&](std::size_t column) {
+    return r.tolerance * compare::scale_of(r.analytic, channels[column], zero_scales_);
+  };
+  const double of_force = allowed(layout.Fh()), of_moment = allowed(layout.Th(0));
+  constexpr double kMillimetre = 1e-3;
+  film_point_errors_ = r.analytic;
+  std::fill(film_point_errors_.values.begin(), film_point_errors_.values.end(), 0.0);
+  for (std::size_t row = 0; row < r.analytic.rows(); ++row) {
+    const double force = std::abs(r.analytic.at(row, layout.Fh()));
+    if (!is_computed(force) || force == 0) continue;
+    for (const std::size_t column : {layout.xh(), layout.yh()}) {
+      const double at = std::abs(r.analytic.at(row, column));
+      if (is_computed(at))
+        film_point_errors_.values[row * film_point_errors_.columns() + column] =
+            (of_moment / kMillimetre + at * of_force) / force;
+    }
+  }
+}
+
 compare::Options Maker::comparison_options() const {
   const int n = result_.first.the_case.pump.geometry.pistons;
   compare::Options options;
   options.tolerance = result_.tolerance;
   options.orders = {n, 2 * n};
   options.zero_scales = zero_scales_;
+  if (film_point_errors_.rows() > 0) options.uncertainty = &film_point_errors_;
   options.may_be_missing = [this](const Channel& channel, std::size_t row) {
     return may_be_missing(channel, row);
   };
@@ -417,13 +447,18 @@ std::vector<std::string> carried_by(const std::string& group) {
   if (group == "xh_yh") return {"Th", "Fh"};
   if (group == "Tcs") return {"Rcs"};
   if (group == "Tc") return {"Rc"};
+  // Parts of torques, by the forces of the pistons that make them.
+  if (group == "parts of Tcs") return {"Rcs", "Rc"};
+  if (group == "parts of Td") return {"Td", "Rs"};
   if (group == "teeth") return {"Rcs", "Rcn", "Th"};  // by forces of pairs and where these act
   return {group};
 }
 
 // Of a column of the budgets: the whole that it is a part of.
 std::string whole_of(const std::string& column) {
-  return column.rfind("Tcs_", 0) == 0 ? "Tcs" : column.rfind("Td_", 0) == 0 ? "Td" : "Fh";
+  return column.rfind("Tcs_", 0) == 0  ? "parts of Tcs"
+         : column.rfind("Td_", 0) == 0 ? "parts of Td"
+                                       : "Fh";
 }
 
 std::vector<Failure> failures_of(const ComparisonResult& r) {
@@ -475,8 +510,8 @@ std::optional<DifferenceCause> ComparisonResult::cause() const {
   }
   if (group.empty()) return std::nullopt;
   least.text = fmt::format(
-      "The cause is round-off: moving every input of this case by one unit in the last place "
-      "changes {} by {:.1e} of its scale.",
+      "The cause is round-off: rounding of inputs and intermediate results changes {} of this case "
+      "by about {:.1e} of its scale.",
       group, least.round_off);
   return least;
 }
