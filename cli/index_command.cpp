@@ -78,13 +78,17 @@ int index(const Options& options) {
   output.add("index.html", report::index_page("Reports in " + options.folder, entries, skipped));
   output.add("index.json", report::index_json(entries));
   const auto paths = output.commit();
-  for (const report::IndexEntry& e : entries)
-    std::printf("%-10s %s: %s\n",
+  for (const report::IndexEntry& e : entries) {
+    const std::string warned =
+        e.warnings.empty() ? "" : " (warnings: " + std::to_string(e.warnings.size()) + ")";
+    std::printf("%-10s %s: %s%s\n",
                 !e.agrees   ? "-"
                 : *e.agrees ? "agrees"
                             : "differs",
                 without_control_characters(e.json).c_str(),
-                without_control_characters(e.headline.empty() ? e.title : e.headline).c_str());
+                without_control_characters(e.headline.empty() ? e.title : e.headline).c_str(),
+                warned.c_str());
+  }
   if (!skipped.empty())
     std::printf("%zu JSON files are no report and were left out\n", skipped.size());
   std::printf("%s\n", paths.front().c_str());

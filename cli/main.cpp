@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -23,20 +25,25 @@ namespace {
 using namespace bentaxis;
 using namespace bentaxis::cli;
 
+// In a line of its own, also where a terminal still shows how far a job was.
+void say(const char* text) {
+  std::fprintf(stderr, "%sbentaxis: %s\n", isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", text);
+}
+
 int guarded(const std::function<int()>& job) {
   try {
     return job();
   } catch (const InputError& error) {
-    std::fprintf(stderr, "bentaxis: %s\n", without_control_characters(error.what(), false).c_str());
+    say(without_control_characters(error.what(), false).c_str());
     return kBadInput;
   } catch (const Interrupted&) {
-    std::fprintf(stderr, "bentaxis: interrupted; nothing was written\n");
+    say("interrupted; nothing was written");
     return kInterrupted;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "bentaxis: not enough memory; fewer samples or revolutions take less\n");
+    say("not enough memory; fewer samples or revolutions take less");
     return kComputationFailed;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "bentaxis: %s\n", without_control_characters(error.what(), false).c_str());
+    say(without_control_characters(error.what(), false).c_str());
     return kComputationFailed;
   }
 }

@@ -11,8 +11,8 @@
 namespace bentaxis::compare {
 namespace {
 
-// A peak below this share of the load scale is the round-off of loads that cancel, not a signal.
-constexpr double kZeroPeak = 1e-12;
+// An amplitude below this share of the peak is round-off: it has no phase.
+constexpr double kZeroAmplitude = 1e-12;
 
 // Samples per turn if the table covers whole turns evenly, else 0.
 std::size_t samples_per_turn(const std::vector<double>& theta) {
@@ -32,6 +32,11 @@ std::complex<double> fourier(const ResultTable& table, std::size_t column, int o
   for (std::size_t row = 0; row < table.rows(); ++row)
     sum += table.at(row, column) * std::polar(1.0, order * radians(table.theta_deg[row]));
   return sum * 2.0 / static_cast<double>(table.rows());
+}
+
+double load_of(const Channel& channel, const ZeroScales& loads) {
+  const auto load = loads.find(channel.unit);
+  return load == loads.end() ? 0 : load->second;
 }
 
 // A value that a table lacks.
@@ -70,6 +75,7 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
     const double y = second.at(row, b);
     if (!is_computed(x)) continue;
     ++both;
+    result.own_peak = std::max(result.own_peak, std::abs(x));
     double difference = y - x;
     if (options.band) {
       const double low = options.band->low->at(row, a);
@@ -111,7 +117,7 @@ void add_harmonics(const ResultTable& first, std::size_t a, const ResultTable& s
     if (!std::isfinite(std::abs(values[0]))) continue;  // not computed everywhere
     for (int i = 0; i < 2; ++i) {
       harmonic.amplitude[i] = std::abs(values[i]);
-      if (harmonic.amplitude[i] > kZeroPeak * result.peak)
+      if (harmonic.amplitude[i] > kZeroAmplitude * result.peak)
         harmonic.phase_deg[i] = std::arg(values[i]) / kRadPerDegree;
     }
     result.harmonics.push_back(harmonic);
@@ -136,12 +142,20 @@ const char* to_string(Verdict verdict) {
   return "not computed";
 }
 
+std::string scale_in_words(const ChannelComparison& channel) {
+  return channel.at_floor ? "the scale that the loads give, as its own peak is far below"
+                          : "its peak";
+}
+
 Options above_round_off(double tolerance, const ZeroScales& scales) {
   Options options;
   options.tolerance = tolerance;
   options.zero_scales = scales;
-  for (const auto& [unit, scale] : scales) options.absolute[unit] = kNoSignal * scale;
   return options;
+}
+
+bool ChannelComparison::is_small_component() const {
+  return judged && compared() && own_peak < kSmallComponent * peak && own_peak > kNoSignal * peak;
 }
 
 bool Comparison::agrees() const {
@@ -156,7 +170,20 @@ const ChannelComparison* Comparison::incomplete() const {
   return nullptr;
 }
 
+const ChannelComparison* Comparison::failed() const {
+  const ChannelComparison* failed = nullptr;
+  const auto beyond = [](const ChannelComparison& c) {
+    return c.allowed > 0 ? c.largest / c.allowed : c.largest > 0 ? 1e300 : 0;
+  };
+  for (const auto& c : channels)
+    if (c.judged && c.verdict == Verdict::differs &&
+        (failed == nullptr || !(beyond(c) <= beyond(*failed))))
+      failed = &c;
+  return failed;
+}
+
 const ChannelComparison* Comparison::worst() const {
+  if (const ChannelComparison* const beyond = failed()) return beyond;
   const ChannelComparison* worst = nullptr;
   for (const auto& c : channels) {
     if (!c.judged || !c.compared()) continue;
@@ -176,11 +203,12 @@ const ChannelComparison* Comparison::find(const std::string& channel_name) const
   return nullptr;
 }
 
+double scale_of(double peak, double load) {
+  return peak <= kNoSignal * load ? load : std::max(peak, kLeastScale * load);
+}
+
 double scale_of(const ResultTable& table, const Channel& channel, const ZeroScales& zero_scales) {
-  const double peak = table.peak(channel.group);
-  const auto scale = zero_scales.find(channel.unit);
-  if (scale != zero_scales.end() && peak <= kZeroPeak * scale->second) return scale->second;
-  return peak;
+  return scale_of(table.peak(channel.group), load_of(channel, zero_scales));
 }
 
 Comparison compare_tables(const ResultTable& first, const ResultTable& second,
@@ -193,17 +221,17 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
   comparison.second = second.name;
   comparison.tolerance = options.tolerance;
   const std::size_t per_turn = samples_per_turn(first.theta_deg);
-  std::map<std::string, double> scales;  // by group
+  std::map<std::string, double> peaks;  // by group
   const auto add = [&](const Channel& channel, std::size_t a, std::size_t b) {
     if (channel.kind == ChannelKind::check) return;
     ChannelComparison result;
     result.channel = channel;
     result.tolerance = options.tolerance;
     result.judged = channel.kind == ChannelKind::reaction || channel.kind == ChannelKind::derived;
-    auto scale = scales.find(channel.group);
-    if (scale == scales.end())
-      scale = scales.emplace(channel.group, scale_of(first, channel, options.zero_scales)).first;
-    result.peak = scale->second;
+    auto peak = peaks.find(channel.group);
+    if (peak == peaks.end()) peak = peaks.emplace(channel.group, first.peak(channel.group)).first;
+    result.peak = scale_of(peak->second, load_of(channel, options.zero_scales));
+    result.at_floor = peak->second < result.peak;
     const auto absolute = options.absolute.find(channel.unit);
     result.allowed = options.tolerance * result.peak +
                      (absolute == options.absolute.end() ? 0 : absolute->second);
@@ -224,6 +252,15 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
   return comparison;
 }
 
+const Check* failed_check(const std::vector<Check>& checks) {
+  const Check* failed = nullptr;
+  const auto beyond = [](const Check& check) { return check.relative() / check.tolerance; };
+  for (const Check& check : checks)
+    if (!check.holds() && (failed == nullptr || !(beyond(check) <= beyond(*failed))))
+      failed = &check;
+  return failed;
+}
+
 std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scales,
                                 double tolerance) {
   std::vector<Check> checks;
@@ -241,6 +278,7 @@ std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scal
       check.table = table.name;
       check.name = channel.meaning;
       check.unit = channel.unit;
+      if (channel.quantity == "power_residual") check.group = "Td";
       const auto scale = scales.find(channel.unit);
       check.scale = scale == scales.end() ? 1 : scale->second;
       check.tolerance = tolerance;

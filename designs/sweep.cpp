@@ -6,10 +6,11 @@
 #include <optional>
 #include <utility>
 
+#include "bentaxis/compare/comparison.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
-#include "bentaxis/results/load_scale.h"
+#include "bentaxis/study/achieved_error.h"
 #include "random_bits.h"
 
 namespace bentaxis::designs {
@@ -178,7 +179,8 @@ struct Sweep::Implementation {
     for (const Scale& scale : scales)
       if (scale.peak) peaks.push_back(*scale.peak);
     const std::vector<double> found = outputs_of(peaks, ready, study::Model::analytic);
-    const LoadScale loads = load_scale(ready.the_case, ready.samples(study::Way::driven));
+    const compare::ZeroScales floors =
+        study::zero_scales(ready.the_case, ready.samples(study::Way::driven));
     std::vector<double> result;
     auto next = found.begin();
     for (std::size_t i = 0; i < scales.size(); ++i) {
@@ -187,13 +189,13 @@ struct Sweep::Implementation {
         scale = std::max(std::abs(c.own[i]), std::abs(c.values[i]));
       if (scales[i].kind == ScaleKind::percentage) scale = 100;
       if (scales[i].kind == ScaleKind::vector) {
-        // A peak that is round-off of loads that cancel is no measure; the loads are.
-        constexpr double kZeroPeak = 1e-12;
-        const std::string& unit = scales[i].peak->unit;
-        const double load = unit == "N" ? loads.force : unit == "Nm" ? loads.moment : 0;
-        scale = *next > kZeroPeak * load ? *next : load;
+        scale = *next;
         ++next;
       }
+      // A small value is what is left of loads that cancel, and carries their round-off.
+      const auto load = floors.find(plan.outputs[i].unit);
+      if (scales[i].kind != ScaleKind::none && is_computed(scale) && load != floors.end())
+        scale = compare::scale_of(scale, load->second);
       result.push_back(is_computed(scale) ? scale : 0);
     }
     return result;

@@ -122,7 +122,11 @@ void add_comparison_pieces(py::module_& module) {
           [](const ChannelComparison& self) { return std::string(to_string(self.verdict)); },
           "In a word.")
       .def_readonly("judged", &ChannelComparison::judged, "Whether it counts for the verdict.")
-      .def_readonly("peak", &ChannelComparison::peak, "Largest magnitude of the channel's group.")
+      .def_readonly("peak", &ChannelComparison::peak,
+                    "Largest magnitude of the channel's group, at least a thousandth of the "
+                    "largest load of the case.")
+      .def_readonly("own_peak", &ChannelComparison::own_peak,
+                    "Largest magnitude of this channel alone.")
       .def_readonly("largest", &ChannelComparison::largest, "Largest difference.")
       .def_property_readonly("largest_over_peak", &ChannelComparison::largest_over_peak,
                              "Largest difference over the peak.")
@@ -156,7 +160,7 @@ void add_comparison(py::module_& module) {
   py::class_<Comparison>(module, "Comparison",
                          "Both models on one case, and how far they are apart.")
       .def_property_readonly(
-          "agrees", [](const Comparison& self) { return self.result->agrees(); },
+          "agrees", [](const Comparison& self) { return self.result->passes(); },
           "The verdict: every difference is within tolerance, or what no assumption explains is, "
           "and "
           "every check holds.")

@@ -409,6 +409,11 @@ Json json_of(const Verdict& verdict) {
                    {"p_value", value_or_null(verdict.fit->p_value)},
                    {"refuted_below", verdict.fit->refuted_below},
                    {"refuted", verdict.fit->refuted}};
+  if (verdict.models_agree) json["models_agree"] = *verdict.models_agree;
+  if (verdict.cause)
+    json["cause"] = {{"text", verdict.cause->text},
+                     {"round_off_over_peak", verdict.cause->round_off_over_peak},
+                     {"max_over_peak", verdict.cause->over_peak}};
   return json;
 }
 
@@ -494,17 +499,19 @@ Json json_of(const compare::ChannelComparison& c) {
               {"kind", to_string(channel.kind)},
               {"compared", c.judged},
               {"peak", c.peak},
+              {"peak_is_floor", c.at_floor},
               {"verdict", compare::to_string(c.verdict)},
               {"tolerance", c.tolerance}};
   if (!c.gap.empty()) row["gap"] = c.gap;
   if (!c.compared()) {
     for (const char* key : {"max_abs", "max_over_peak", "rms", "rms_over_peak", "theta_of_max_deg",
-                            "mean_difference", "digits"})
+                            "mean_difference", "digits", "own_peak"})
       row[key] = nullptr;
     row["mean"] = {nullptr, nullptr};
     row["orders"] = Json::array();
     return row;
   }
+  row["own_peak"] = c.own_peak;
   row["max_abs"] = c.largest;
   row["max_over_peak"] = number_or_null(c.largest_over_peak());
   row["rms"] = c.rms;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "bentaxis/report/page.h"
 #include "bentaxis/report/picture.h"
@@ -54,7 +55,19 @@ std::string address(const std::string& path) {
 }
 
 const char* tone_of(const IndexEntry& entry) {
-  return !entry.agrees ? "neutral" : *entry.agrees ? "good" : "bad";
+  if (entry.agrees && !*entry.agrees) return "bad";
+  if (!entry.warnings.empty()) return "warn";
+  return entry.agrees ? "good" : "neutral";
+}
+
+// Each name once.
+std::string warnings_of(const IndexEntry& entry) {
+  if (entry.warnings.empty()) return {};
+  std::string names;
+  for (const auto& name : std::set<std::string>(entry.warnings.begin(), entry.warnings.end()))
+    names += (names.empty() ? "" : ", ") + name;
+  return fmt::format("{} warning{}: {}", entry.warnings.size(),
+                     entry.warnings.size() == 1 ? "" : "s", names);
 }
 
 std::string word_of(const IndexEntry& entry) {
@@ -71,14 +84,14 @@ std::string row_of(const IndexEntry& entry) {
   return fmt::format(
       "<tr><th scope=\"row\"><a href=\"{}\">{}</a><small>{}</small><small>{}</small></th>"
       "<td data-head=\"Verdict\"><div><span class=\"chip {}\">{}</span><small "
-      "class=\"headline\">{}</small></div></td>"
+      "class=\"headline\">{}</small><small class=\"headline\">{}</small></div></td>"
       "<td data-head=\"Worst channel\"><div>{}</div></td>"
       "<td data-head=\"Made\"><div>{}<small>{}</small></div></td>"
       "<td data-head=\"Pump\"><div>{}</div></td></tr>\n",
       markup_of(address(target)), markup_of(entry.title), markup_of(target),
       markup_of(entry.case_file), tone_of(entry), markup_of(word_of(entry)),
-      markup_of(entry.headline), worst, markup_of(entry.date), markup_of(entry.command),
-      image(entry.picture));
+      markup_of(entry.headline), markup_of(warnings_of(entry)), worst, markup_of(entry.date),
+      markup_of(entry.command), image(entry.picture));
 }
 
 std::string counts_of(const std::vector<IndexEntry>& entries) {
@@ -87,8 +100,10 @@ std::string counts_of(const std::vector<IndexEntry>& entries) {
                          [&](const IndexEntry& e) { return tone_of(e) == std::string_view(tone); });
   };
   std::string text = fmt::format("{} report{}", entries.size(), entries.size() == 1 ? "" : "s");
-  for (const auto& [tone, words] :
-       {std::pair{"bad", "differ"}, {"good", "agree"}, {"neutral", "without a verdict"}})
+  for (const auto& [tone, words] : {std::pair{"bad", "differ"},
+                                    {"warn", "with warnings"},
+                                    {"good", "agree"},
+                                    {"neutral", "without a verdict"}})
     if (const auto n = count(tone); n > 0) text += fmt::format(", {} {}", n, words);
   return text;
 }
@@ -119,9 +134,21 @@ std::optional<IndexEntry> index_entry(const std::string& json_text) {
   entry.date = text_in(provenance, "date");
   entry.version = text_in(provenance, "version");
   const Json& verdict = member(json, "verdict");
-  if (const Json& agrees = member(verdict, "agrees"); agrees.is_boolean())
-    entry.agrees = agrees.get<bool>();
+  // The worst decides, of a report that says it part by part too (before 1.0.1).
+  for (const Json* part : {&verdict, &member(verdict, "reference")})
+    if (const Json& agrees = member(*part, "agrees"); agrees.is_boolean())
+      entry.agrees = entry.agrees.value_or(true) && agrees.get<bool>();
+  for (const Json* list :
+       {&member(json, "warnings"), &member(member(json, "plausibility"), "warnings")})
+    for (const Json& warning : *list) {
+      const std::string name = text_in(warning, "name");
+      entry.warnings.push_back(name.empty() ? text_in(warning, "code") : name);
+    }
   entry.word = text_in(verdict, "word");
+  const Json& reference = member(verdict, "reference");
+  if (const Json& held = member(reference, "agrees");
+      held.is_boolean() && !held.get<bool>() && entry.word.empty())
+    entry.word = "Reference differs";
   entry.headline = text_in(verdict, "headline");
   const Json& worst = member(verdict, "worst");
   entry.worst_channel = text_in(worst, "channel");
@@ -144,7 +171,9 @@ std::string picture_of_page(const std::string& html) {
 }
 
 void sort_by_worst(std::vector<IndexEntry>& entries) {
-  const auto rank = [](const IndexEntry& e) { return !e.agrees ? 2 : *e.agrees ? 1 : 0; };
+  const auto rank = [](const IndexEntry& e) {
+    return e.agrees && !*e.agrees ? 0 : !e.warnings.empty() ? 1 : e.agrees ? 2 : 3;
+  };
   std::stable_sort(entries.begin(), entries.end(), [&](const IndexEntry& a, const IndexEntry& b) {
     if (rank(a) != rank(b)) return rank(a) < rank(b);
     const double first = a.worst_over_peak.value_or(-1), second = b.worst_over_peak.value_or(-1);
@@ -176,6 +205,7 @@ std::string index_json(const std::vector<IndexEntry>& entries) {
                     {"date", e.date},
                     {"version", e.version},
                     {"agrees", e.agrees ? Json(*e.agrees) : Json()},
+                    {"warnings", e.warnings},
                     {"word", word_of(e)},
                     {"headline", e.headline},
                     {"worst_channel", e.worst_channel},

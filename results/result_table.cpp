@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -42,10 +43,15 @@ std::size_t ResultTable::find(const std::string& channel_name) const {
 }
 
 double ResultTable::peak(const std::string& group) const {
-  // Components of one vector share group, frame and piston.
-  std::map<std::pair<std::string, int>, std::vector<std::size_t>> vectors;
-  for (std::size_t c = 0; c < columns(); ++c)
-    if (channels[c].group == group) vectors[{channels[c].frame, channels[c].piston}].push_back(c);
+  // Components of one vector share group, frame and piston. What is named by its column alone, as
+  // what a pair of teeth does, is no component of a vector.
+  std::map<std::tuple<std::string, int, std::string>, std::vector<std::size_t>> vectors;
+  for (std::size_t c = 0; c < columns(); ++c) {
+    const Channel& channel = channels[c];
+    if (channel.group != group) continue;
+    const std::string alone = channel.quantity == channel.name ? channel.name : "";
+    vectors[{channel.frame, channel.piston, alone}].push_back(c);
+  }
   double peak = 0;
   for (const auto& [key, components] : vectors) {
     for (std::size_t row = 0; row < rows(); ++row) {

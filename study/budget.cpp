@@ -230,14 +230,19 @@ BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, do
   BudgetComparison budgets;
   budgets.comparison =
       compare::compare_tables(analytic, multibody, compare::above_round_off(tolerance, scales));
-  const std::pair<const char*, const char*> sums[] = {
-      {"Td_open_Nm", "Td_z1_Nm"}, {"Tcs_open_Nm", "Tcs_z2_Nm"}, {"Fh_open_N", "Fpress_z2_N"}};
+  struct Sum {
+    const char *open, *whole, *group;
+  };
+  const Sum sums[] = {{"Td_open_Nm", "Td_z1_Nm", "parts of Td"},
+                      {"Tcs_open_Nm", "Tcs_z2_Nm", "parts of Tcs"},
+                      {"Fh_open_N", "Fpress_z2_N", "Fh"}};
   for (const ResultTable* table : {&analytic, &multibody})
-    for (const auto& [open, whole] : sums) {
+    for (const auto& [open, whole, group] : sums) {
       const Channel& channel = table->channels[table->find(open)];
       compare::Check check;
       check.table = table->name;
       check.name = channel.meaning;
+      check.group = group;
       check.unit = channel.unit;
       check.scale = compare::scale_of(*table, table->channels[table->find(whole)], scales);
       check.tolerance = tolerance;

@@ -8,6 +8,7 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/published_section.h"
@@ -21,6 +22,26 @@ double worst_of_group(const compare::Comparison& comparison, const std::string& 
   for (const auto& c : comparison.channels)
     if (c.channel.group == group && c.compared()) worst = std::max(worst, c.largest_over_peak());
   return worst;
+}
+
+// Components whose vector, or the loads, are so much larger that a difference of much of themselves
+// would pass: the smallest of each quantity and axis.
+std::string small_components(const compare::Comparison& comparison) {
+  std::map<std::string, const compare::ChannelComparison*> smallest;
+  for (const auto& c : comparison.channels) {
+    if (!c.is_small_component()) continue;
+    auto& least = smallest[c.channel.quantity + "_" + c.channel.axis];
+    if (least == nullptr || c.own_peak / c.peak < least->own_peak / least->peak) least = &c;
+  }
+  std::string text;
+  for (const auto& [name, c] : smallest)
+    text += fmt::format("{}{} ({:.1e} of itself)", text.empty() ? "" : ", ", name,
+                        c->allowed / c->own_peak);
+  if (text.empty()) return text;
+  return fmt::format(
+      "below {:g} of the peak of their vector, to which differences are held, so that errors up to "
+      "these pass: {}",
+      compare::kSmallComponent, text);
 }
 
 // The comparison while it is made.
@@ -86,6 +107,7 @@ class Maker {
   void integrate_all();
   double torque_driven_speed_error(const multibody::IntegrationOptions& integration) const;
   compare::Options comparison_options() const;
+  void note_film_point_errors();
   bool may_be_missing(const Channel& channel, std::size_t row) const;
   void compare_tables();
   void split_assumptions();
@@ -97,6 +119,7 @@ class Maker {
   const PartProgress& progress_of_;
   Samples samples_, multibody_samples_;
   compare::ZeroScales zero_scales_;
+  ResultTable film_point_errors_;
   std::optional<ResultTable> analytic_budget_, multibody_budget_;
 };
 
@@ -125,6 +148,7 @@ void Maker::run_models() {
   r.analytic = std::move(analytic.table);
   r.analytic_loads = std::move(analytic.loads);
   analytic_budget_ = std::move(analytic.budget);
+  note_film_point_errors();
   if (integrated()) {
     integrate_all();
     return;
@@ -139,7 +163,7 @@ void Maker::run_models() {
   multibody_budget_ = std::move(multibody.budget);
   if (analytic.teeth)
     r.teeth = compare_teeth(std::move(*analytic.teeth), std::move(*multibody.teeth), r.tolerance,
-                            zero_scales_);
+                            zero_scales_, r.first.the_case.pump);
 }
 
 // Integrated runs at every accuracy asked for. The last one's table is the one compared.
@@ -179,12 +203,38 @@ double Maker::torque_driven_speed_error(const multibody::IntegrationOptions& int
       .whole.speed_error;
 }
 
+// The point of the film force is Th over Fh (53): where Fh passes 0 it is known as well as what is
+// allowed of these two leaves it.
+void Maker::note_film_point_errors() {
+  const ComparisonResult& r = result_;
+  const ChannelLayout layout(r.first.the_case.pump.geometry.pistons);
+  const std::vector<Channel>& channels = layout.channels();
+  const auto allowed = [&](std::size_t column) {
+    return r.tolerance * compare::scale_of(r.analytic, channels[column], zero_scales_);
+  };
+  const double of_force = allowed(layout.Fh()), of_moment = allowed(layout.Th(0));
+  constexpr double kMillimetre = 1e-3;
+  film_point_errors_ = r.analytic;
+  std::fill(film_point_errors_.values.begin(), film_point_errors_.values.end(), 0.0);
+  for (std::size_t row = 0; row < r.analytic.rows(); ++row) {
+    const double force = std::abs(r.analytic.at(row, layout.Fh()));
+    if (!is_computed(force) || force == 0) continue;
+    for (const std::size_t column : {layout.xh(), layout.yh()}) {
+      const double at = std::abs(r.analytic.at(row, column));
+      if (is_computed(at))
+        film_point_errors_.values[row * film_point_errors_.columns() + column] =
+            (of_moment / kMillimetre + at * of_force) / force;
+    }
+  }
+}
+
 compare::Options Maker::comparison_options() const {
   const int n = result_.first.the_case.pump.geometry.pistons;
   compare::Options options;
   options.tolerance = result_.tolerance;
   options.orders = {n, 2 * n};
   options.zero_scales = zero_scales_;
+  if (film_point_errors_.rows() > 0) options.uncertainty = &film_point_errors_;
   options.may_be_missing = [this](const Channel& channel, std::size_t row) {
     return may_be_missing(channel, row);
   };
@@ -353,10 +403,14 @@ void Maker::warn() {
   r.rounding = rounding_lines(r.first.the_case, r.first.the_case.analytic);
   for (const auto& text : rounding_warnings(r.rounding))
     r.warnings.push_back({"digits lost to rounding", text});
-  if (!integrated())
-    for (const auto& text : multibody_warnings(r.second.the_case, r.second.the_case.multibody,
-                                               r.options.scene, r.rounding))
+  if (!integrated()) {
+    r.losses = multibody_losses(r.second.the_case, r.second.the_case.multibody, r.options.scene);
+    for (const auto& text :
+         multibody_warnings(r.second.the_case, r.options.scene, r.rounding, r.losses))
       r.warnings.push_back({"digits lost in Simbody", text});
+  }
+  if (const std::string text = small_components(r.comparison); !text.empty())
+    r.warnings.push_back({"small channels", text});
 }
 
 }  // namespace
@@ -378,35 +432,127 @@ bool ComparisonResult::agrees() const {
   return split ? split->explained() : comparison.agrees();
 }
 
+bool ComparisonResult::passes() const {
+  return agrees() && (!with || with->state == Outcome::State::agrees);
+}
+
+namespace {
+
+// A result in which the models differ, or that a check says must vanish and does not.
+struct Failure {
+  std::string group;  ///< of the reactions whose round-off it carries
+  double off = 0;     ///< in its unit
+  double scale = 0;
+};
+
+// The reactions whose round-off a quantity carries: the film force's point is Th over Fh, torques
+// about z2 are those of forces.
+std::vector<std::string> carried_by(const std::string& group) {
+  if (group == "xh_yh") return {"Th", "Fh"};
+  if (group == "Tcs") return {"Rcs"};
+  if (group == "Tc") return {"Rc"};
+  // Parts of torques, by the forces of the pistons that make them.
+  if (group == "parts of Tcs") return {"Rcs", "Rc"};
+  if (group == "parts of Td") return {"Td", "Rs"};
+  if (group == "teeth") return {"Rcs", "Rcn", "Th"};  // by forces of pairs and where these act
+  return {group};
+}
+
+// Of a column of the budgets: the whole that it is a part of.
+std::string whole_of(const std::string& column) {
+  return column.rfind("Tcs_", 0) == 0  ? "parts of Tcs"
+         : column.rfind("Td_", 0) == 0 ? "parts of Td"
+                                       : "Fh";
+}
+
+std::vector<Failure> failures_of(const ComparisonResult& r) {
+  std::vector<Failure> failures;
+  for (const auto& c : r.comparison.channels)
+    if (c.judged && c.verdict == compare::Verdict::differs)
+      failures.push_back({c.channel.group, c.largest, c.peak});
+  if (r.budget)
+    for (const auto& c : r.budget->comparison.channels)
+      if (c.judged && c.verdict == compare::Verdict::differs)
+        failures.push_back({whole_of(c.channel.name), c.largest, c.peak});
+  if (r.teeth && !r.split)
+    for (const auto& c : r.teeth->comparison.channels)
+      if (c.judged && c.verdict == compare::Verdict::differs)
+        failures.push_back({"teeth", c.largest, c.peak});
+  for (const auto& check : r.checks)
+    if (!check.holds()) failures.push_back({check.group, check.worst, check.scale});
+  return failures;
+}
+
+std::string where_in_words(const compare::ChannelComparison& c) {
+  return fmt::format("{} at {:g} deg: {:.1e} {}, {:.1e} of {}", c.channel.name,
+                     c.theta_of_largest_deg, c.largest, c.channel.unit, c.largest_over_peak(),
+                     compare::scale_in_words(c));
+}
+
+}  // namespace
+
+std::optional<DifferenceCause> ComparisonResult::cause() const {
+  if (agrees() || split) return std::nullopt;
+  std::map<std::string, double> known = losses.groups;
+  for (const RoundingLine& line : rounding)
+    known[line.group] = std::max(known[line.group], line.total());
+  constexpr double kEstimateFactor = 10;
+  DifferenceCause least;
+  std::string group;
+  double worst = 0;
+  for (const Failure& failure : failures_of(*this)) {
+    if (!(failure.scale > 0)) return std::nullopt;
+    double estimate = 0;
+    for (const std::string& carrier : carried_by(failure.group)) estimate += known[carrier];
+    const double over = failure.off / failure.scale;
+    if (!(over <= kEstimateFactor * estimate)) return std::nullopt;
+    if (over / estimate <= worst) continue;
+    worst = over / estimate;
+    least.round_off = estimate;
+    least.over_scale = over;
+    group = failure.group;
+  }
+  if (group.empty()) return std::nullopt;
+  least.text = fmt::format(
+      "The cause is round-off: rounding of inputs and intermediate results changes {} of this case "
+      "by about {:.1e} of its scale.",
+      group, least.round_off);
+  return least;
+}
+
 std::string ComparisonResult::headline() const {
   if (const auto* gap = comparison.incomplete())
     return fmt::format("The two models cannot be said to agree: {} of {}.", gap->gap,
                        gap->channel.name);
+  const auto found = cause();
+  const std::string because = found ? " " + found->text : "";
   const bool channels_agree = split ? split->explained() : comparison.agrees();
-  if (budget && channels_agree && !budget->comparison.agrees()) {
-    const auto* apart = &budget->comparison.channels.front();
-    for (const auto& line : budget->comparison.channels)
-      if (line.verdict == compare::Verdict::differs) apart = &line;
-    return fmt::format(
-        "The torque budgets of the two models differ: {} at {:g} deg by {:.1e} {} (tolerance {:g} "
-        "of its peak).",
-        apart->channel.name, apart->theta_of_largest_deg, apart->largest, apart->channel.unit,
-        split ? split->tolerance : budget->comparison.tolerance);
-  }
+  if (budget && channels_agree && !budget->comparison.agrees())
+    if (const auto* apart = budget->comparison.failed())
+      return fmt::format("The torque budgets of the two models differ: {} (tolerance {:g}).{}",
+                         where_in_words(*apart),
+                         split ? split->tolerance : budget->comparison.tolerance, because);
   if (teeth && channels_agree && !split && !teeth->comparison.agrees()) {
-    const auto* apart = teeth->comparison.incomplete() != nullptr ? teeth->comparison.incomplete()
-                                                                  : teeth->comparison.worst();
-    return fmt::format(
-        "The teeth of the two models differ: {} at {:g} deg by {:.1e} {} (tolerance {:g} of its "
-        "peak).",
-        apart->channel.name, apart->theta_of_largest_deg, apart->largest, apart->channel.unit,
-        teeth->comparison.tolerance);
+    if (const auto* gap = teeth->comparison.incomplete())
+      return fmt::format("The teeth of the two models cannot be said to agree: {} of {}.", gap->gap,
+                         gap->channel.name);
+    if (const auto* apart = teeth->comparison.failed())
+      return fmt::format("The teeth of the two models differ: {} (tolerance {:g}).{}",
+                         where_in_words(*apart), teeth->comparison.tolerance, because);
   }
+  if (channels_agree)
+    if (const auto* check = compare::failed_check(checks))
+      return fmt::format(
+          "A check of the {} model fails: {} is {:.1e} {} at {:g} deg, {:.1e} of its scale "
+          "(tolerance {:g}).{}",
+          check->table, check->name, check->worst, check->unit, check->theta_deg, check->relative(),
+          check->tolerance, because);
   const auto* worst = comparison.worst();
   const std::string where =
       worst == nullptr ? ""
-                       : fmt::format("{} at {:g} deg: {:.1e} of its peak", worst->channel.name,
-                                     worst->theta_of_largest_deg, worst->largest_over_peak());
+                       : fmt::format("{} at {:g} deg: {:.1e} of {}", worst->channel.name,
+                                     worst->theta_of_largest_deg, worst->largest_over_peak(),
+                                     compare::scale_in_words(*worst));
   if (split)
     return fmt::format(
         "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak is "
@@ -414,9 +560,9 @@ std::string ComparisonResult::headline() const {
         agrees() ? "Explained." : "Not explained.", where,
         agrees() ? "After accounting for each assumption" : "Each assumption accounted for",
         split->largest_rest(), split->tolerance);
-  return fmt::format("{} Largest difference {} (tolerance {:g}).",
+  return fmt::format("{} Largest difference {} (tolerance {:g}).{}",
                      agrees() ? "The two models agree." : "The two models differ.", where,
-                     comparison.tolerance);
+                     comparison.tolerance, because);
 }
 
 void check_same_run(const Case& first, const Case& second) {

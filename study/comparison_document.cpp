@@ -22,7 +22,16 @@ namespace bentaxis::study {
 namespace {
 
 report::Verdict verdict_of(const ComparisonResult& r) {
-  report::Verdict verdict{r.agrees(), r.headline()};
+  report::Verdict verdict{r.passes(), r.headline()};
+  if (r.with) {
+    verdict.models_agree = r.agrees();
+    if (r.agrees() && !r.passes()) {
+      verdict.word = "Reference differs";
+      verdict.headline += fmt::format(" They differ from {}: {}", r.with->name, held_text(*r.with));
+    }
+  }
+  if (const auto cause = r.cause())
+    verdict.cause = {cause->text, cause->round_off, cause->over_scale};
   verdict.tolerance = r.tolerance;
   verdict.compared = r.comparison.compared();
   verdict.checks_hold = r.checks_hold();
@@ -31,7 +40,7 @@ report::Verdict verdict_of(const ComparisonResult& r) {
     verdict.worst = {worst->channel.name, worst->largest_over_peak(), worst->theta_of_largest_deg};
   }
   if (r.split) {
-    verdict.word = r.agrees() ? "Explained" : "Not explained";
+    if (verdict.word.empty()) verdict.word = r.agrees() ? "Explained" : "Not explained";
     verdict.rest_over_peak = r.split->largest_rest();
     verdict.rest_tolerance = r.split->tolerance;
   }

@@ -359,8 +359,16 @@ std::string headline(const InertiaStudy& s) {
     text += fmt::format("{}: {} is off by {}, the others by less",
                         missed.empty() ? "" : ". They do for the rest", largest->group,
                         of_peak(*largest));
-  return text + fmt::format(". The limit is {:g} %. The models agree to {:.1e} of peak.",
-                            100 * kTwoMassesDo, s.models_apart);
+  text += fmt::format(". The limit is {:g} %.", 100 * kTwoMassesDo);
+  if (!s.agrees())
+    return (s.models_apart > kInertiaModelsAgree
+                ? fmt::format("The models differ by {:.1e} of peak (tolerance {:g}). ",
+                              s.models_apart, kInertiaModelsAgree)
+                : fmt::format("The multibody model of one piston differs from that of the full "
+                              "pump by {:.1e} of peak (tolerance {:g}). ",
+                              s.scenes_apart, kInertiaScenesAgree)) +
+           text;
+  return text + fmt::format(" The models agree to {:.1e} of peak.", s.models_apart);
 }
 
 }  // namespace

@@ -58,25 +58,33 @@ std::vector<std::string> rounding_warnings(const std::vector<RoundingLine>& line
   return warnings;
 }
 
-std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
-                                            const multibody::SceneChoice& scene,
-                                            const std::vector<RoundingLine>& lines) {
+MultibodyLosses multibody_losses(const Case& the_case, const Assumptions& assumptions,
+                                 const multibody::SceneChoice& scene) {
   const Case thin = at_few_angles(the_case);
   const PressureTrace pressure(thin.pressure);
   const Samples samples = sample_case(thin, pressure);
   const auto run = [&](const Case& c) {
     return multibody::run_driven(c, assumptions, samples, {}, scene.scene, scene.method);
   };
-  std::map<std::string, double> lost;
+  MultibodyLosses losses;
   try {
     compare::Options options;
     options.zero_scales = zero_scales(thin, samples);
-    lost = rounding_spread(thin, run(thin), options, run);
+    losses.groups = rounding_spread(thin, run(thin), options, run);
   } catch (const NoEstimate& none) {
-    return {std::string("the multibody model: ") + none.what()};
+    losses.no_estimate = none.what();
   } catch (const ComputationError&) {
-    return {};  // the run itself will say why
+    // The run itself will say why.
   }
+  return losses;
+}
+
+std::vector<std::string> multibody_warnings(const Case& the_case,
+                                            const multibody::SceneChoice& scene,
+                                            const std::vector<RoundingLine>& lines,
+                                            const MultibodyLosses& losses) {
+  if (!losses.no_estimate.empty()) return {"the multibody model: " + losses.no_estimate};
+  std::map<std::string, double> lost = losses.groups;
   for (const RoundingLine& line : lines)
     if (lost[line.group] < kMoreThanEstimated * line.total()) lost.erase(line.group);
   std::string groups;
@@ -91,6 +99,12 @@ std::vector<std::string> multibody_warnings(const Case& the_case, const Assumpti
       multibody::method_for(the_case.pump, scene.method) == multibody::Method::multipliers
           ? "Simbody's constraint multipliers may be the cause: try --reactions residual"
           : "the analytic model loses less")};
+}
+
+std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
+                                            const multibody::SceneChoice& scene,
+                                            const std::vector<RoundingLine>& lines) {
+  return multibody_warnings(the_case, scene, lines, multibody_losses(the_case, assumptions, scene));
 }
 
 }  // namespace bentaxis::study

@@ -43,6 +43,12 @@ report::Document pressure_document(const OperatingPoint& point,
                    orders_section(the_case, point.state())};
   document.timing = timing_rows(the_case, point.state());
   document.warnings = timing_warnings(*document.timing);
+  document.verdict = report::Verdict{
+      std::nullopt,
+      fmt::format("Mean drive torque {:.5g} Nm by the analytic model, {:.5g} Nm by the multibody "
+                  "model, at {:.4g} bar.",
+                  mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"), bar(point)),
+      "Pressure"};
   document.figures = hydraulic_figures(the_case, point.state());
   for (report::Figure& figure : result_figures(the_case, point.state(), power))
     document.figures->push_back(std::move(figure));
@@ -170,6 +176,11 @@ void add_published(report::Document& document, const compare::Published& publish
       "Calibrated: a parameter was set so that the number comes out. Only predicted rows say "
       "something about the models; a window is the range of a printed axis, in which the lost "
       "curve must have been.";
+  document.verdict->agrees = section.calibrated();
+  document.verdict->word = section.calibrated() ? "Calibrated" : "Not calibrated";
+  document.verdict->headline +=
+      (section.calibrated() ? " Every" : " Not every") +
+      std::string(" printed number that a parameter was set to is inside.");
   document.published = report::PublishedTable{text, std::move(section)};
 }
 

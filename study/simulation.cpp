@@ -12,6 +12,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/load_scale.h"
 #include "bentaxis/results/worst.h"
 #include "coupled_pump.h"
 #include "simulation_pieces.h"
@@ -145,25 +146,74 @@ std::map<std::string, double> peaks_of(const Trajectory& run) {
   return peaks;
 }
 
-// Difference of a value over its peak.
+// Largest loads of a run: those of the case under the pressures and at the speeds that it came to.
+LoadScale loads_of(const Case& the_case, const Trajectory& run) {
+  Samples samples;
+  samples.pistons = the_case.pump.geometry.pistons;
+  samples.ports = the_case.pressure.ports;
+  const ResultTable& table = run.table.results;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (const std::size_t speed : {3, 4})
+      samples.omega =
+          std::max(samples.omega, kRadPerSecondPerRpm * std::abs(run.table.state(row, speed)));
+    for (std::size_t c = 0; c < table.columns(); ++c)
+      if (table.channels[c].quantity == "p" && is_computed(table.at(row, c)))
+        samples.chamber_pressure.push_back(table.at(row, c) * table.channels[c].unit_in_si);
+  }
+  return load_scale(the_case, samples);
+}
+
+// Of shaft, block and pistons at the largest speed of a run, J.
+double kinetic_energy(const Case& the_case, const Trajectory& run) {
+  const PumpParameters& pump = the_case.pump;
+  double speed = 0;
+  for (std::size_t row = 0; row < run.lag.size(); ++row)
+    for (const std::size_t column : {3, 4})
+      speed = std::max(speed, kRadPerSecondPerRpm * std::abs(run.table.state(row, column)));
+  const double pistons = pump.geometry.pistons * pump.piston.mass *
+                         pump.geometry.joint_circle_radius * pump.geometry.joint_circle_radius;
+  return 0.5 * (pump.shaft.axial_inertia + pump.block.axial_inertia + pistons) * speed * speed;
+}
+
+// What differences are held to: as compare::scale_of(). An angle of the teeth has the round-off of
+// the bodies' angles.
+std::map<std::string, double> scales_of(const Trajectory& run, const LoadScale& loads,
+                                        double error) {
+  std::map<std::string, double> scales = peaks_of(run);
+  if (run.lag.empty()) return scales;
+  const double bar = scales.count("p") > 0 ? scales.at("p") : 0;
+  for_each_value(run, 0, [&](const Compared& what, double) {
+    double& scale = scales.at(what.group);
+    if (what.unit == "rad")
+      scale = std::max(scale, compare::kNoSignal / error);
+    else
+      scale = compare::scale_of(scale, what.unit == "N"     ? loads.force
+                                       : what.unit == "Nm"  ? loads.moment
+                                       : what.unit == "bar" ? bar
+                                                            : 0);
+  });
+  return scales;
+}
+
+// Difference of a value over its scale.
 template <class Use>
 void for_each_difference(const Trajectory& a, const Trajectory& b,
-                         const std::map<std::string, double>& peaks, std::size_t row,
+                         const std::map<std::string, double>& scales, std::size_t row,
                          const Use& use) {
   std::vector<double> others;
   for_each_value(b, row, [&](const Compared&, double value) { others.push_back(value); });
   std::size_t next = 0;
   for_each_value(a, row, [&](const Compared& what, double value) {
     const double other = others[next++];
-    const double peak = peaks.at(what.group);
-    if (peak > 0) use(what, std::abs(value - other) / peak);
+    const double scale = scales.at(what.group);
+    if (scale > 0) use(what, std::abs(value - other) / scale);
   });
 }
 
 double largest_difference(const Trajectory& a, const Trajectory& b,
-                          const std::map<std::string, double>& peaks, std::size_t row) {
+                          const std::map<std::string, double>& scales, std::size_t row) {
   double largest = 0;
-  for_each_difference(a, b, peaks, row, [&](const Compared& what, double share) {
+  for_each_difference(a, b, scales, row, [&](const Compared& what, double share) {
     if (what.judged) keep_worst(largest, share);
   });
   return largest;
@@ -202,7 +252,7 @@ class Study {
     double tolerance = this->tolerance();
     Trajectory loose = integrate(first, kLooser * tolerance, "looser");
     Trajectory run = integrate(first, tolerance, r_.oil_follows ? "with oil" : "motion");
-    peaks_ = peaks_of(run);
+    keep_scales(run);
     coupled::Options disturbed = options_for(tolerance);
     r_.disturbance = disturbed.disturbance = kDisturbanceWithOil;
     note_growth(run, follow(first, disturbed, "sensitivity"));
@@ -264,7 +314,7 @@ class Study {
     const Trajectory half = follow(model, options, "half the communication step");
     std::map<std::string, CouplingChange> groups;
     for (std::size_t row = 0; row < judged_rows(); ++row)
-      for_each_difference(run, half, peaks_, row, [&](const Compared& what, double share) {
+      for_each_difference(run, half, scales_, row, [&](const Compared& what, double share) {
         CouplingChange& group = groups[what.group];
         group.group = what.group;
         group.unit = what.unit;
@@ -294,7 +344,7 @@ class Study {
     r_.analytic = find(Model::analytic);
     r_.multibody = find(Model::multibody);
     if (!r_.analytic) return;
-    peaks_ = peaks_of(*r_.analytic);
+    keep_scales(*r_.analytic);
     if (r_.multibody) compare_periods();
     // Nothing grows: both are where the motion returns to.
     r_.growth.assign(r_.analytic->lag.size(), 1.0);
@@ -318,10 +368,15 @@ class Study {
           std::abs(m.multipliers[0]) - std::abs(a.multipliers[0]), 1, kOfMultiplier);
   }
 
+  void keep_scales(const Trajectory& run) {
+    peaks_ = peaks_of(run);
+    scales_ = scales_of(run, loads_of(r_.ready.the_case, run), r_.choice.error);
+  }
+
   void note_growth(const Trajectory& run, const Trajectory& disturbed) {
     double growth = 1;
     for (std::size_t row = 0; row < run.lag.size(); ++row) {
-      growth = std::max(growth, largest_difference(run, disturbed, peaks_, row) / r_.disturbance);
+      growth = std::max(growth, largest_difference(run, disturbed, scales_, row) / r_.disturbance);
       r_.growth.push_back(growth);
     }
     const std::size_t judged = judged_rows();
@@ -336,7 +391,7 @@ class Study {
   double apart(const Trajectory& a, const Trajectory& b) const {
     double largest = 0;
     for (std::size_t row = 0; row < judged_rows(); ++row)
-      keep_worst(largest, largest_difference(a, b, peaks_, row));
+      keep_worst(largest, largest_difference(a, b, scales_, row));
     return largest;
   }
 
@@ -346,7 +401,7 @@ class Study {
     options.body_loads = true;
     r_.analytic = analytic(options, "analytic");
     options.body_loads = false;
-    peaks_ = peaks_of(*r_.analytic);
+    keep_scales(*r_.analytic);
     analytic::SimulationOptions disturbed = options;
     r_.disturbance = disturbed.disturbance = kDisturbance;
     note_growth(*r_.analytic, analytic(disturbed, "sensitivity"));
@@ -414,13 +469,13 @@ class Study {
 
   // Of what is allowed; without the analytic model of the wanted error.
   double change_of(const Trajectory& a, const Trajectory& b) const {
-    const auto peaks = peaks_of(b);
+    const auto scales = scales_of(b, loads_of(r_.ready.the_case, b), r_.choice.error);
     const std::size_t judged = judged_rows();
     double change = 0;
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
       if (!r_.growth.empty() && row >= judged) break;
       const double allowed = row < r_.growth.size() ? r_.allowed(row) : r_.choice.error;
-      keep_worst(change, largest_difference(a, b, peaks, row) / allowed);
+      keep_worst(change, largest_difference(a, b, scales, row) / allowed);
     }
     return change;
   }
@@ -452,14 +507,15 @@ class Study {
     const std::size_t judged = judged_rows();
     double fastest = 0;
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
-      r_.difference.push_back(largest_difference(a, m, peaks_, row));
+      r_.difference.push_back(largest_difference(a, m, scales_, row));
       fastest = std::max(fastest, std::abs(a.table.state(row, 3)));
       if (row >= judged) continue;
-      for_each_difference(a, m, peaks_, row, [&](const Compared& what, double share) {
+      for_each_difference(a, m, scales_, row, [&](const Compared& what, double share) {
         GroupDifference& group = groups[what.group];
         group.group = what.group;
         group.unit = what.unit;
         group.peak = peaks_.at(what.group);
+        group.scale = scales_.at(what.group);
         if (!turned) group.over_angle = not_computed();
         if (std::isnan(share) || share > group.in_time) {
           group.in_time = share;
@@ -473,7 +529,7 @@ class Study {
       keep_worst(r_.speed_difference, a.table.state(row, 3) - m.table.state(row, 3));
       keep_worst(r_.lag_difference, a.lag[row] - m.lag[row]);
       if (!turned) continue;
-      for_each_difference(*turned, m, peaks_, row, [&](const Compared& what, double share) {
+      for_each_difference(*turned, m, scales_, row, [&](const Compared& what, double share) {
         keep_worst(groups[what.group].over_angle, share);
       });
     }
@@ -515,13 +571,18 @@ class Study {
       if (!*run) continue;
       const Trajectory& t = **run;
       const TrajectoryRecord& record = t.record;
-      // Where nothing moves there is no work: then that of the largest torque over 1e-6 rad.
+      // Where nothing moves there is no work: then that of the largest torque over 1e-6 rad. Loads
+      // that cancel leave the round-off of theirs.
+      const LoadScale loads = loads_of(r_.ready.the_case, t);
       const ResultTable& table = t.table.results;
       constexpr double kLeastTurn = 1e-6;
       constexpr double kLeastWork = 1e-12;  // J: nor is there a torque
-      const double work = std::max({std::abs(record.work_of_loads), std::abs(record.work_of_drives),
-                                    std::abs(record.kinetic_energy_gained),
-                                    kLeastTurn * table.peak("Td"), kLeastWork});
+      // Energy that goes to and fro between bodies leaves its round-off too.
+      const double kinetic = compare::kLeastScale * kinetic_energy(r_.ready.the_case, t);
+      const double work =
+          std::max({kinetic, std::abs(record.work_of_loads), std::abs(record.work_of_drives),
+                    std::abs(record.kinetic_energy_gained),
+                    kLeastTurn * std::max(table.peak("Td"), loads.moment), kLeastWork});
       // Simbody's work is integrated with its motion, to the same error.
       const double tolerance = model == Model::analytic && !pump_
                                    ? kAnalyticError
@@ -536,10 +597,13 @@ class Study {
           worst = value;
           angle = table.theta_deg[row];
         }
-        // Of the torque at the faster body's speed; at rest at 1 rad/s, as in virtual work.
+        // Of the torque, at least a share of the loads, at the faster body's speed; at rest at
+        // 1 rad/s, as in virtual work.
         const double speed = std::max({1.0, kRadPerSecondPerRpm * std::abs(t.table.state(row, 3)),
                                        kRadPerSecondPerRpm * std::abs(t.table.state(row, 4))});
-        scale = std::max(scale, std::abs(table.at(row, table.find("Td_z1_Nm"))) * speed);
+        const double torque = std::max(std::abs(table.at(row, table.find("Td_z1_Nm"))),
+                                       compare::kLeastScale * loads.moment);
+        scale = std::max(scale, torque * speed);
       }
       constexpr double kPowerTolerance = 1e-8;
       r_.checks.push_back({to_string(model), "power of all loads less the change of kinetic energy",
@@ -568,9 +632,9 @@ class Study {
 
   SimulationResult& r_;
   const PartProgress& progress_of_;
-  std::map<std::string, double> peaks_;
-  std::optional<CoupledPump> pump_;  // with oil, or for a periodic motion
-  mutable double tolerance_ = 0;     // of its last run
+  std::map<std::string, double> peaks_, scales_;  // by group, of the run that is the measure
+  std::optional<CoupledPump> pump_;               // with oil, or for a periodic motion
+  mutable double tolerance_ = 0;                  // of its last run
 };
 
 // What changes in time leaves no motion that repeats itself.
@@ -586,6 +650,14 @@ void refuse_course(const Case& the_case) {
   if (the_case.hydraulics && the_case.hydraulics->load &&
       !the_case.hydraulics->load->share.time.empty())
     refuse("[load] file", the_case.hydraulics->load->share.file);
+}
+
+// The check that is furthest beyond its tolerance; "" where all hold.
+std::string failed_check_text(const SimulationResult& r) {
+  const compare::Check* const check = compare::failed_check(r.checks);
+  if (check == nullptr) return "";
+  return fmt::format("A check fails: {}: {} is {:.1e} of its scale, {:g} allowed", check->table,
+                     check->name, check->relative(), check->tolerance);
 }
 
 std::string periodic_headline(const SimulationResult& r) {
@@ -604,6 +676,7 @@ std::string periodic_headline(const SimulationResult& r) {
     return fmt::format("periodic motion of the {} model found: {}", to_string(*r.choice.only),
                        about);
   const GroupDifference& w = *r.worst();
+  if (w.of_allowed <= 1 && !r.agrees()) return failed_check_text(r) + "; " + about;
   return fmt::format(
       "{}: largest difference {:.1e} of peak ({}), {:g} allowed; {}",
       r.agrees() ? "Both models find the same periodic motion" : "The periodic motions differ",
@@ -647,7 +720,7 @@ std::string SimulationResult::headline() const {
   if (choice.only)
     return fmt::format("{} s simulated by the {} model; work and power {}",
                        number_text(ready.the_case.drive->duration), to_string(*choice.only),
-                       agrees() ? "balance" : "do not balance");
+                       agrees() ? "balance" : "do not balance. " + failed_check_text(*this));
   if (worst() == nullptr)
     return "Nothing can be judged: from the start a disturbance of the wanted error changes the "
            "motion altogether";
@@ -659,15 +732,16 @@ std::string SimulationResult::headline() const {
                 "end",
                 judged_until_s, growth.back())
           : fmt::format("; disturbances of the start grow {:.3g} times", growth.back());
+  const bool check_fails = w.of_allowed <= 1 && !agrees();
   std::string text = fmt::format(
       "{}: largest difference {:.1e} of peak ({}, at {:.4g} s), {:.2g} of what is "
       "allowed ({:g} of peak, grown as disturbances grow){}",
-      agrees() ? "Both models move alike" : "The models differ", w.in_time, w.group, w.time_s,
-      w.of_allowed, choice.error, sensitive);
-  for (const compare::Check& check : checks)
-    if (!check.holds())
-      text +=
-          fmt::format("; {}: {} is {:.1e} of its scale", check.table, check.name, check.relative());
+      check_fails ? failed_check_text(*this) + ". The motions agree"
+      : agrees()  ? "Both models move alike"
+                  : "The models differ",
+      w.in_time, w.group, w.time_s, w.of_allowed, choice.error, sensitive);
+  if (!agrees() && !check_fails && compare::failed_check(checks) != nullptr)
+    text += ". " + failed_check_text(*this);
   return text;
 }
 

@@ -87,14 +87,65 @@ report::ScatterSeries path_of(const ResultTable& table, const PumpParameters& pu
 
 }  // namespace
 
+namespace {
+
+// The pairs of a table of teeth: the first column of each and the first of its point and direction.
+struct PairColumns {
+  std::size_t force, point;
+};
+constexpr std::size_t kOfPoint = 6;  // point and direction
+
+std::vector<PairColumns> pairs_of(const ResultTable& table) {
+  std::vector<PairColumns> pairs;
+  for (const char* flank : {"plus", "minus"})
+    for (const char* which : {"at", "before", "after"})
+      pairs.push_back({table.find(fmt::format("{}_{}_force_N", flank, which)),
+                       table.find(fmt::format("{}_{}_x1_mm", flank, which))});
+  return pairs;
+}
+
+// A pair that carries no more than the round-off of a force may carry nothing in the other model:
+// then neither has a point of contact. Where it carries more the point is known as well as the
+// force is: from one end of the teeth, `reach`, to the other where it is all round-off.
+ResultTable point_errors(ResultTable& first, ResultTable& second, double round_off, double reach) {
+  ResultTable errors = first;
+  std::fill(errors.values.begin(), errors.values.end(), 0.0);
+  const auto value = [](ResultTable& table, std::size_t row, std::size_t column) -> double& {
+    return table.values[row * table.columns() + column];
+  };
+  for (const PairColumns& pair : pairs_of(first))
+    for (std::size_t row = 0; row < first.rows(); ++row) {
+      const double force = std::min(first.at(row, pair.force), second.at(row, pair.force));
+      for (std::size_t c = pair.point; c < pair.point + kOfPoint; ++c)
+        if (force <= round_off) {
+          value(first, row, c) = value(second, row, c) = not_computed();
+        } else {
+          const double unit = first.channels[c].unit.empty() ? 1 : reach;
+          value(errors, row, c) = unit * round_off / force;
+        }
+    }
+  return errors;
+}
+
+}  // namespace
+
 TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, double tolerance,
-                              compare::ZeroScales scales) {
+                              compare::ZeroScales scales, const PumpParameters& pump) {
   TeethComparison teeth;
-  // Where no force acts: lengths of a tooth under its usual load.
-  for (const auto& [unit, scale] : {std::pair{"urad", 10.0}, {"um", 1.0}, {"mm", 1.0}, {"", 1.0}})
+  // Contact is a difference of lengths as long as the way from O2 to the teeth, and of angles.
+  const analytic::BevelTeeth shape(pump);
+  const double distance = pump.gear.pitch_diameter / 2 / std::sin(kPi / 2 - pump.geometry.tilt / 2);
+  for (const auto& [unit, scale] :
+       {std::pair{"urad", 1e6}, {"um", 1e6 * distance}, {"mm", 1e3 * distance}, {"", 1.0}})
     scales.emplace(unit, scale);
-  teeth.comparison =
-      compare::compare_tables(analytic, multibody, compare::above_round_off(tolerance, scales));
+  scales["N"] = std::max(scales["N"], shape.stiffness() * distance);
+  compare::Options options = compare::above_round_off(tolerance, scales);
+  ResultTable first = analytic, second = multibody;
+  const double round_off = tolerance * compare::kLeastScale * scales["N"];
+  const ResultTable errors =
+      point_errors(first, second, round_off, 1e3 * pump.gear.teeth->face_width);
+  options.uncertainty = &errors;
+  teeth.comparison = compare::compare_tables(first, second, options);
   // Forces tell, pair by pair; the share of a force that vanishes is round-off over round-off.
   for (auto& line : teeth.comparison.channels)
     if (line.channel.group == "share") line.judged = false;
@@ -144,9 +195,12 @@ report::Section teeth_section(const TeethComparison& teeth, const PumpParameters
       section.facts.emplace_back(
           fmt::format("{} {} under load", pairs, pairs == 1 ? "pair" : "pairs"),
           fmt::format("{:.3g} % of the turn", 100 * share));
-  section.table.columns = {"furthest apart", "peak of its kind", "unit",
-                           "difference",     "of peak",          "verdict"};
-  // The worst of each group.
+  section.table.columns = {"furthest apart", "peak of its kind", "unit",        "difference",
+                           "of peak",        "verdict",          "its own peak"};
+  // The worst of each group: what differs before what does not.
+  const auto beyond = [](const compare::ChannelComparison& line) {
+    return std::pair{line.verdict == compare::Verdict::differs, line.largest_over_peak()};
+  };
   std::vector<const compare::ChannelComparison*> worst;
   for (const auto& line : teeth.comparison.channels) {
     const auto same = std::find_if(worst.begin(), worst.end(), [&](const auto* other) {
@@ -154,13 +208,13 @@ report::Section teeth_section(const TeethComparison& teeth, const PumpParameters
     });
     if (same == worst.end())
       worst.push_back(&line);
-    else if (!(line.largest_over_peak() <= (*same)->largest_over_peak()))
+    else if (beyond(line) > beyond(**same))
       *same = &line;
   }
   for (const auto* line : worst)
     section.table.rows.push_back({line->channel.name, line->peak, line->channel.unit, line->largest,
                                   line->largest_over_peak(),
-                                  std::string(compare::to_string(line->verdict))});
+                                  std::string(compare::to_string(line->verdict)), line->own_peak});
   return section;
 }
 

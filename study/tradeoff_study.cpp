@@ -297,6 +297,11 @@ report::Document tradeoff_document(const TradeoffStudy& study, const report::Lin
   document.program = program;
   describe_case(document, study.the_case);
   document.summary = summary_of(study);
+  if (!document.summary->groups.empty() && !document.summary->groups.front().lines.empty())
+    document.verdict = report::Verdict{std::nullopt,
+                                       document.summary->groups.front().title + ": " +
+                                           document.summary->groups.front().lines.front(),
+                                       "Trade-off"};
   document.records = records(study);
   document.runs.emplace();
   document.figures.emplace();

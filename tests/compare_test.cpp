@@ -135,6 +135,83 @@ TEST(Comparison, ZeroReactionIsHeldToTheLoadScale) {
   EXPECT_FALSE(compare_tables(a, b, options).agrees());
 }
 
+// What is left of loads that cancel carries their round-off: 1e-12 of them is allowed at 1e-9.
+TEST(Comparison, SmallReactionIsHeldToAThousandthOfTheLoad) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto with = [&](double peak, double difference) {
+    Options options;
+    options.zero_scales = {{"N", 1e4}};
+    return compare_tables(table("a", channels, {[=](double t) { return peak * wave(t, 1); }}),
+                          table("b", channels, {[=](double t) {
+                                  return peak * wave(t, 1) + (t == 90 ? difference : 0);
+                                }}),
+                          options)
+        .channels[0];
+  };
+  for (const double peak : {1e-6, 1e-3, 1.0, 9.9}) {
+    EXPECT_EQ(with(peak, 0.99e-8).verdict, Verdict::agrees) << peak;
+    EXPECT_EQ(with(peak, 1.01e-8).verdict, Verdict::differs) << peak;
+    EXPECT_TRUE(with(peak, 0).at_floor) << peak;
+    EXPECT_DOUBLE_EQ(with(peak, 0).peak, 10) << peak;
+    EXPECT_DOUBLE_EQ(with(peak, 0).own_peak, peak);
+    EXPECT_DOUBLE_EQ(with(peak, 1e-8).largest_over_peak(), 1e-9) << peak;
+  }
+  // A signal is held to itself, as before: a millionth of it is noticed.
+  EXPECT_FALSE(with(20, 0).at_floor);
+  EXPECT_EQ(with(20, 2.1e-8).verdict, Verdict::differs);
+  EXPECT_EQ(with(0.02, 2e-8).verdict, Verdict::differs);
+  // Round-off of the loads is no signal: zero is held to the load itself.
+  EXPECT_DOUBLE_EQ(with(0.9e-8, 0).peak, 1e4);
+}
+
+// Neither the largest difference over the peak nor the first: the one that is beyond its limit.
+TEST(Comparison, WorstIsTheChannelThatFailed) {
+  const std::vector<Channel> channels = {channel("X_N", "X"), channel("Y_Nm", "Y", "Nm"),
+                                         channel("Z_Nm", "Z", "Nm")};
+  const auto of = [&](double x, double y, double z) {
+    Options options;
+    options.tolerance = 1e-3;
+    options.absolute = {{"N", 1}};
+    const auto constant = [](double value) { return [=](double) { return value; }; };
+    return compare_tables(
+        table("a", channels, {constant(1), constant(100), constant(100)}),
+        table("b", channels, {constant(1 + x), constant(100 + y), constant(100 + z)}), options);
+  };
+  const Comparison c = of(0.5, 0.2, 0.3);
+  ASSERT_NE(c.failed(), nullptr);
+  EXPECT_EQ(c.failed()->channel.name, "Z_Nm");
+  EXPECT_EQ(c.worst()->channel.name, "Z_Nm");
+  EXPECT_EQ(c.worst()->verdict, Verdict::differs);
+  EXPECT_EQ(of(0.5, 0, 0).failed(), nullptr);
+  EXPECT_EQ(of(0.5, 0, 0).worst()->channel.name, "X_N");
+}
+
+TEST(Comparison, SmallComponentsOfALargeVectorAreMarked) {
+  std::vector<Channel> channels = {channel("R_x_N", "R"), channel("R_y_N", "R"),
+                                   channel("R_z_N", "R")};
+  const auto of = [&](double y) {
+    const auto a = table("a", channels,
+                         {[](double) { return 1000.0; }, [=](double t) { return y * wave(t, 1); },
+                          [](double) { return 0.0; }});
+    return compare_tables(a, a, {});
+  };
+  EXPECT_FALSE(of(1.1).channels[1].is_small_component());
+  EXPECT_TRUE(of(0.9).channels[1].is_small_component());
+  EXPECT_TRUE(of(1e-8).channels[1].is_small_component());
+  EXPECT_FALSE(of(1e-10).channels[1].is_small_component());  // zero but for round-off
+  for (const std::size_t large : {0, 2}) EXPECT_FALSE(of(0.9).channels[large].is_small_component());
+}
+
+// What is named by its column is no component of a vector: pairs of teeth that carry together.
+TEST(Comparison, PeakOfPairsIsTheLargestOfThem) {
+  std::vector<Channel> channels = {channel("plus_at_N", "tooth"), channel("plus_after_N", "tooth")};
+  const auto three = [](double) { return 3.0; };
+  const auto four = [](double) { return -4.0; };
+  EXPECT_DOUBLE_EQ(table("a", channels, {three, four}).peak("tooth"), 5);  // of one vector
+  for (Channel& c : channels) c.quantity = c.name;
+  EXPECT_DOUBLE_EQ(table("a", channels, {three, four}).peak("tooth"), 4);
+}
+
 // One spike in a turn: 1.2 times what is allowed, and by its rms a sixth of it.
 TEST(Verdict, IsAboutTheLargestDifferenceNotTheRms) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
@@ -348,6 +425,16 @@ TEST(Checks, AreJudgedTogetherOverThePistons) {
   EXPECT_DOUBLE_EQ(checks[0].theta_deg, 90);
   EXPECT_FALSE(checks[0].holds());
   EXPECT_TRUE(judge_checks(t, {{"Nm", 1e4}}, 1e-9)[0].holds());
+}
+
+TEST(Checks, TheFailedOneIsFurthestBeyondItsTolerance) {
+  const std::vector<Check> checks = {{"a", "holds", "N", 9, 0, 10, 1},
+                                     {"a", "beyond", "N", 3, 0, 1, 1},
+                                     {"b", "further", "N", 1, 0, 1, 0.1}};
+  ASSERT_NE(failed_check(checks), nullptr);
+  EXPECT_EQ(failed_check(checks)->name, "further");
+  EXPECT_EQ(failed_check({checks[0]}), nullptr);
+  EXPECT_EQ(failed_check({}), nullptr);
 }
 
 // Two assumptions with an interaction: contributions must add up and share it evenly.

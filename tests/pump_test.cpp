@@ -410,6 +410,7 @@ TEST(LoadScale, IsTheLargestLoadApplied) {
     pump.shaft.mass = pump.block.mass = pump.block.spring_force = pump.block.bottom_area = 0;
     pump.friction = {};
     pump.gravity = 0;
+    pump.port_plate.reset();
     Samples samples;
     samples.pistons = 1;
     samples.omega = -200;
@@ -433,6 +434,13 @@ TEST(LoadScale, IsTheLargestLoadApplied) {
                        p.block.bottom_area = bottom;
                      }).force,
                      3e6 * std::max(area, bottom));
+  EXPECT_DOUBLE_EQ(scale([](P& p, Samples& s) {
+                     s.ports.delivery = 3e6;
+                     p.port_plate = PortPlate{0.02, 0.03, 0.04, 0.05, {}, {}};
+                   }).force,
+                   3e6 * kPi / 2 * (0.05 * 0.05 - 0.02 * 0.02));
+  EXPECT_DOUBLE_EQ(scale([](P& p, Samples&) { p.friction.piston_viscous = 50; }).force,
+                   50 * 200 * 0.04 * std::sin(radians(40)));
   EXPECT_EQ(scale([](P& p, Samples&) { p.block.spring_force = 400; }).force, 400);
   EXPECT_EQ(scale([](P& p, Samples&) { p.friction.piston_coulomb = 30; }).force, 30);
   EXPECT_DOUBLE_EQ(scale([](P& p, Samples&) { p.piston.mass = 0.1; }).force, 0.1 * 4e4 * 0.04);

@@ -150,7 +150,11 @@ TEST(SimulationStudy, HeadlineOfBothModels) {
   EXPECT_THAT(result(0.5, 2.5 * (1 - 2e-12)).headline(), HasSubstr("Later"));
   SimulationResult r = result(0.5, 2.5);
   r.checks = {{"multibody", "work", "J", 6, 0, 2, 1}, {"analytic", "power", "W", 1, 0, 2, 1}};
-  EXPECT_THAT(r.headline(), HasSubstr("; multibody: work is 3.0e+00 of its scale"));
+  // The motions agree: what failed comes first, and no group that agrees is said to differ.
+  EXPECT_THAT(r.headline(),
+              testing::StartsWith("A check fails: multibody: work is 3.0e+00 of its scale, 1 "
+                                  "allowed. The motions agree: largest difference"));
+  EXPECT_THAT(r.headline(), Not(HasSubstr("models differ")));
   EXPECT_THAT(r.headline(), Not(HasSubstr("power")));
   EXPECT_FALSE(r.agrees());
   r.groups.clear();
@@ -162,7 +166,9 @@ TEST(SimulationStudy, HeadlineOfBothModels) {
   EXPECT_TRUE(r.agrees());
   EXPECT_EQ(r.headline(), "2.5 s simulated by the analytic model; work and power balance");
   r.checks = {{"analytic", "power", "W", 3, 0, 2, 1}};
-  EXPECT_EQ(r.headline(), "2.5 s simulated by the analytic model; work and power do not balance");
+  EXPECT_EQ(r.headline(),
+            "2.5 s simulated by the analytic model; work and power do not balance. A check fails: "
+            "analytic: power is 1.5e+00 of its scale, 1 allowed");
 }
 
 TEST(SimulationStudy, HeadlineOfAPeriodicMotion) {
@@ -184,6 +190,11 @@ TEST(SimulationStudy, HeadlineOfAPeriodicMotion) {
   EXPECT_THAT(r.headline(), HasSubstr("3000 rpm, unstable: of a disturbance 1 is left"));
   r.groups[0].of_allowed = 2;
   EXPECT_THAT(r.headline(), HasSubstr("The periodic motions differ: "));
+  r.groups[0].of_allowed = 0.5;
+  r.checks = {{"both", "period", "s", 6, 0, 2, 1}};
+  EXPECT_THAT(r.headline(), testing::StartsWith("A check fails: both: period is 3.0e+00 of its "
+                                                "scale, 1 allowed; 3000 rpm"));
+  r.checks.clear();
   r.periodic[0]->multipliers.clear();
   EXPECT_TRUE(r.periodic[0]->stable());
   r.choice.only = Model::analytic;

@@ -159,7 +159,11 @@ class ChannelComparison:
 
     @property
     def peak(self) -> float:
-        """Largest magnitude of the channel's group."""
+        """Largest magnitude of the channel's group, at least a thousandth of the largest load of the case."""
+
+    @property
+    def own_peak(self) -> float:
+        """Largest magnitude of this channel alone."""
 
     @property
     def largest(self) -> float:

@@ -4,6 +4,7 @@
 const STATISTICS = [
   { key: "peak", head: "Peak", worst: 1, show: c => unit(number(c.peak), c.unit) },
   { key: "max_abs", head: "Largest difference", worst: 1, show: c => unit(small(c.max_abs), c.unit) },
+  { key: "own_peak", head: "Its own", worst: 1, show: c => unit(number(c.own_peak), c.unit) },
   { key: "max_over_peak", head: "of peak", worst: 1, show: c => ratio(c.max_over_peak) },
   { key: "rms_over_peak", head: "RMS of peak", worst: 1, show: c => ratio(c.rms_over_peak) },
   { key: "theta_of_max_deg", head: "at", worst: 1, show: c => degrees(c.theta_of_max_deg) },

@@ -31,11 +31,12 @@ struct Harmonic {
 struct ChannelComparison {
   Channel channel;
   Verdict verdict = Verdict::not_computed;
-  bool judged = false;  ///< counts for the overall verdict (reactions and what follows from them)
-  double peak = 0;      ///< largest magnitude of the channel's group in the first table, or the
-                        ///< case's load scale where that is zero
-  double largest = 0;   ///< largest magnitude of the difference; where the first table is
-                        ///< uncertain: at the row that is furthest beyond or nearest to its limit
+  bool judged = false;    ///< counts for the overall verdict (reactions and what follows from them)
+  double peak = 0;        ///< scale of the verdict: scale_of() the channel in the first table
+  double own_peak = 0;    ///< largest magnitude of this channel alone in the first table
+  bool at_floor = false;  ///< `peak` is the floor from the loads: the group's own is smaller
+  double largest = 0;     ///< largest magnitude of the difference; where the first table is
+                          ///< uncertain: at the row that is furthest beyond or nearest to its limit
   double theta_of_largest_deg = 0;
   double rms = 0;
   double mean[2] = {0, 0};
@@ -50,11 +51,15 @@ struct ChannelComparison {
   bool compared() const {
     return verdict != Verdict::not_computed && verdict != Verdict::incomplete;
   }
+  /// It is so small beside its scale that a difference of much of itself passes: below
+  /// kSmallComponent of it, and no round-off of 0.
+  bool is_small_component() const;
   double largest_over_peak() const { return peak > 0 ? largest / peak : (largest > 0 ? 1e300 : 0); }
   double rms_over_peak() const { return peak > 0 ? rms / peak : (rms > 0 ? 1e300 : 0); }
 };
 
-/// Scale per unit ("N", "Nm", ...) for groups whose peak is zero to round-off.
+/// Largest load of the case per unit ("N", "Nm", ...), from which the scales of groups have a
+/// floor.
 using ZeroScales = std::map<std::string, double>;
 
 /// Limits of a curve that is known only to lie between them: tables of the same shape as the first.
@@ -78,10 +83,19 @@ struct Options {
   std::function<bool(const Channel& channel, std::size_t row)> may_be_missing;
 };
 
+/// Least scale of a group, as a share of the largest load of the case. A group whose peak is
+/// smaller is what is left of loads that cancel, and carries their error: judged over its own peak
+/// the round-off of the loads would differ. With the tolerance of two exact models, 1e-9, this
+/// allows 1e-12 of the loads: five times the largest error of either model against curves of 50
+/// digits (2e-13, docs/trust.md). A tolerance that a user names scales it alike.
+inline constexpr double kLeastScale = 1e-3;
+/// A channel below this share of its scale is warned of: a thousandth of itself may be wrong for
+/// each millionth that the tolerance allows.
+inline constexpr double kSmallComponent = 1e-3;
 /// Share of a load scale up to which a value is round-off of it.
 inline constexpr double kNoSignal = 1e-12;
 
-/// Options in which what is round-off of these scales counts as nothing.
+/// Options with this tolerance, and with these loads as the floor of every scale.
 Options above_round_off(double tolerance, const ZeroScales& scales);
 
 struct Comparison {
@@ -93,7 +107,10 @@ struct Comparison {
   bool agrees() const;
   /// The first judged channel that lacks a value it should have; nullptr if there is none.
   const ChannelComparison* incomplete() const;
-  /// The judged channel with the largest difference over its peak; nullptr if none was compared.
+  /// The judged channel that differs and is furthest beyond what is allowed; nullptr if none does.
+  const ChannelComparison* failed() const;
+  /// failed(), or where none differs the judged channel with the largest difference over its peak;
+  /// nullptr if none was compared.
   const ChannelComparison* worst() const;
   int compared() const;
   const ChannelComparison* find(const std::string& channel_name) const;
@@ -105,7 +122,10 @@ struct Comparison {
 Comparison compare_tables(const ResultTable& first, const ResultTable& second,
                           const Options& options);
 
-/// A group's peak, or the scale of its unit where the peak is zero to round-off of that scale.
+/// What differences of a group are held to: its peak, at least kLeastScale of the largest load; the
+/// load itself where the peak is round-off of it, so that the group is zero.
+double scale_of(double peak, double load);
+/// That of a channel: by the peak of its group in the table and the largest load of its unit.
 double scale_of(const ResultTable& table, const Channel& channel, const ZeroScales& zero_scales);
 
 /// A channel that must vanish, over a whole table.
@@ -117,9 +137,13 @@ struct Check {
   double theta_deg = 0;
   double scale = 0;
   double tolerance = 0;
+  std::string group = {};  ///< of the reactions whose round-off it carries, or ""
   double relative() const { return scale > 0 ? worst / scale : worst; }
   bool holds() const { return relative() <= tolerance; }
 };
+
+/// The check that is furthest beyond its tolerance; nullptr where all hold.
+const Check* failed_check(const std::vector<Check>& checks);
 
 /// Judges every check channel of a table, the pistons' together.
 /// @param scales  per unit
@@ -127,5 +151,8 @@ std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scal
                                 double tolerance);
 
 const char* to_string(Verdict verdict);
+
+/// What `peak` of a channel is, in words: "its peak", or the floor from the loads.
+std::string scale_in_words(const ChannelComparison& channel);
 
 }  // namespace bentaxis::compare

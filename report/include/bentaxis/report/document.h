@@ -278,7 +278,9 @@ struct WorstChannel {
 
 /// What is absent does not apply to this report.
 struct Verdict {
-  std::optional<bool> agrees;  ///< nothing where nothing was compared: a finding, not a verdict
+  /// The worst of all verdicts of the report, as the exit status; nothing where nothing
+  /// was compared: a finding, not a verdict.
+  std::optional<bool> agrees;
   std::string headline;
   std::string word = {};  ///< instead of "Agrees" or "Differs", or ""
   std::optional<double> tolerance = std::nullopt;
@@ -303,6 +305,13 @@ struct Verdict {
     bool refuted = false;
   };
   std::optional<Fit> fit = std::nullopt;
+  std::optional<bool> models_agree = std::nullopt;  ///< beside a reference: the models alone
+  /// Why models differ that should not, as far as it is known.
+  struct Cause {
+    std::string text;
+    double round_off_over_peak, over_peak;  ///< estimated, and found
+  };
+  std::optional<Cause> cause = std::nullopt;
 };
 
 /// Values that are possible but hardly meant.

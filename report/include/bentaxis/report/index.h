@@ -11,7 +11,10 @@ namespace bentaxis::report {
 struct IndexEntry {
   std::string json, page;  ///< paths from the folder that is indexed; page: "" where there is none
   std::string title, case_file, command, date, version;
-  std::optional<bool> agrees;  ///< nothing where nothing was compared
+  /// The worst of all verdicts of the report: of the models, of a reference, of calibrated numbers.
+  /// Nothing where nothing was compared.
+  std::optional<bool> agrees;
+  std::vector<std::string> warnings;  ///< names: limits, timing, lost digits, implausible inputs
   std::string word, headline;
   std::string worst_channel;
   std::optional<double> worst_over_peak;
@@ -24,7 +27,8 @@ std::optional<IndexEntry> index_entry(const std::string& json_text);
 /// The pump's drawing in a report's page; "" where it has none.
 std::string picture_of_page(const std::string& html);
 
-/// Differing ones first, then by the worst channel, those without a verdict last.
+/// Differing ones first, then those with warnings, each by the worst channel; those that have
+/// neither a verdict nor a warning last.
 void sort_by_worst(std::vector<IndexEntry>& entries);
 
 /// The page: a table that needs no script, and a filter for those who have one.

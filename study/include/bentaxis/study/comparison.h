@@ -51,6 +51,13 @@ struct IntegrationRow {
   double torque_driven_speed_error = 0;  ///< of omega
 };
 
+/// Why models differ that should not: what is known of it.
+struct DifferenceCause {
+  std::string text;       ///< in a sentence
+  double round_off = 0;   ///< of the result that explains it least: estimated, share of its scale
+  double over_scale = 0;  ///< and by how much the models differ in it
+};
+
 /// Everything that a comparison came to.
 struct ComparisonResult {
   ReadyCase first, second;                        ///< of the analytic and of the multibody model
@@ -69,6 +76,7 @@ struct ComparisonResult {
   std::vector<ResultTable> without_viscous;  ///< both models with Cc = 0 (Fig. 32), where it is not
   std::vector<analytic::ValidityLimit> limits;
   std::vector<RoundingLine> rounding;
+  MultibodyLosses losses;  ///< of a driven run
   std::vector<report::Warning> warnings;
   std::optional<report::PublishedTable> published;
   std::optional<Outcome> with;  ///< both models held to a reference
@@ -79,7 +87,13 @@ struct ComparisonResult {
   /// what no assumption explains.
   /// What a reference says is a verdict of its own (`with`).
   bool agrees() const;
-  /// The verdict in a sentence, with the tolerance that counted.
+  /// That, and both models agree with the reference where there is one: what the exit status says.
+  bool passes() const;
+  /// Why the models differ, where the round-off that was estimated for this case is at least a
+  /// tenth of each difference: an estimate of the first order at some angles is no closer.
+  std::optional<DifferenceCause> cause() const;
+  /// The verdict in a sentence, with the tolerance that counted: where it is that they differ, the
+  /// result or the check that failed.
   std::string headline() const;
 };
 

@@ -1,6 +1,7 @@
 // What rounding leaves of the digits of a case.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,5 +32,20 @@ std::vector<std::string> rounding_warnings(const std::vector<RoundingLine>& line
 std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,
                                             const multibody::SceneChoice& scene,
                                             const std::vector<RoundingLine>& lines);
+
+/// What moving every input by one unit in the last place changes in the driven multibody model.
+struct MultibodyLosses {
+  std::map<std::string, double> groups;  ///< by group of reactions, share of its scale; empty where
+                                         ///< the model refuses the case
+  std::string no_estimate;               ///< why there is none, or ""
+};
+/// At up to 24 angles.
+MultibodyLosses multibody_losses(const Case& the_case, const Assumptions& assumptions,
+                                 const multibody::SceneChoice& scene);
+/// multibody_warnings() of losses that are known already.
+std::vector<std::string> multibody_warnings(const Case& the_case,
+                                            const multibody::SceneChoice& scene,
+                                            const std::vector<RoundingLine>& lines,
+                                            const MultibodyLosses& losses);
 
 }  // namespace bentaxis::study

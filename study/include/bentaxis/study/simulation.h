@@ -33,7 +33,7 @@ struct SimulationChoice {
   multibody::Integrator integrator = multibody::Integrator::runge_kutta_merson;
 };
 
-/// How far apart the models are in a group of channels, over its peak.
+/// How far apart the models are in a group of channels, over its scale.
 struct GroupDifference {
   std::string group, unit;
   double peak = 0;
@@ -42,6 +42,8 @@ struct GroupDifference {
   /// Largest difference in time over what is allowed then: 1 is the limit; not_computed() of flows,
   /// which are not judged.
   double of_allowed = 0;
+  /// What differences are over: the peak, at least compare::kLeastScale of the loads of the run.
+  double scale = 0;
 };
 
 /// Touches of both models that belong together.

@@ -14,9 +14,11 @@ struct TeethComparison {
   compare::Comparison comparison;
 };
 
+/// What is round-off of the lengths of the gear, and of the forces that teeth as stiff as these
+/// make of it, counts as nothing; where a pair carries no more, neither does its point of contact.
 /// @param scales  of the case's loads
 TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, double tolerance,
-                              compare::ZeroScales scales);
+                              compare::ZeroScales scales, const PumpParameters& pump);
 
 /// The teeth for a report: transmission error, share of the pairs, largest force, and the
 /// comparison line by line.
