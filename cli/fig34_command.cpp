@@ -83,6 +83,11 @@ Command add_fig34_command(CommandParser program) {
               "turns after the start that do not count")
       .integer_in(0, 1000)
       .text("NUMBER [2]");
+  command
+      .option("--windows", options->study.windows,
+              "windows of two turns each; where they differ, the motion does not repeat")
+      .integer_in(1, 1000)
+      .text("NUMBER [3]");
   return {command, [options] { return run(*options); }};
 }
 

@@ -166,6 +166,7 @@ std::string compact_json(const Scene& scene) {
   for (const auto& [name, axes] : scene.frames)
     json["frames"].push_back({{"name", name}, {"axes", axes}});
   if (scene.film_point) json["film_point"] = json_of(*scene.film_point);
+  if (!scene.film_path.empty()) json["film_path"] = scene.film_path;
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   // The curves in the format of their own block, behind the rest.
   if (scene.curves)

@@ -36,7 +36,7 @@ void find_extremes(const std::vector<double>& force, Fig34Curve& curve) {
   }
 }
 
-/// What samples of whole turns show.
+/// What samples of whole turns show. Its ranges are those of one window.
 Fig34Curve seen_in(const std::vector<double>& force, int turns, int pistons) {
   Fig34Curve curve;
   find_extremes(force, curve);
@@ -63,6 +63,33 @@ Fig34Curve seen_in(const std::vector<double>& force, int turns, int pistons) {
     if (pushed && pulled) ++both;
   }
   curve.both_signs = static_cast<double>(both) / static_cast<double>(pitches);
+  curve.largest_over = {curve.largest(), curve.largest()};
+  curve.apart_over = {curve.apart, curve.apart};
+  return curve;
+}
+
+void widen(Fig34Range& range, const Fig34Range& by) {
+  range.minimum = std::min(range.minimum, by.minimum);
+  range.maximum = std::max(range.maximum, by.maximum);
+}
+
+/// What the first window shows, with the ranges of all. Motions that impacts make chaotic never
+/// repeat: how far their windows differ says how far one window can be trusted.
+Fig34Curve seen_in_windows(const std::vector<double>& force, int windows, int turns, int pistons) {
+  Fig34Curve curve;
+  const std::size_t length = force.size() / static_cast<std::size_t>(windows);
+  for (int w = 0; w < windows; ++w) {
+    const auto from = force.begin() + static_cast<std::ptrdiff_t>(length) * w;
+    const Fig34Curve window =
+        seen_in({from, from + static_cast<std::ptrdiff_t>(length)}, turns, pistons);
+    if (w == 0) {
+      curve = window;
+      continue;
+    }
+    widen(curve.largest_over, window.largest_over);
+    widen(curve.apart_over, window.apart_over);
+    curve.both_signs = std::min(curve.both_signs, window.both_signs);
+  }
   return curve;
 }
 
@@ -92,7 +119,7 @@ class Study {
     return curve;
   }
 
-  Fig34Curve simulate(const Fig34Point& point, bool keep) const {
+  Fig34Curve simulate(const Fig34Point& point, int windows, bool keep) const {
     Case the_case = point.drag ? ready_.the_case : without_drag(ready_.the_case);
     Gear& gear = the_case.pump.gear;
     gear.contact = ToothContact::compliant;
@@ -104,7 +131,8 @@ class Study {
     gear.compliance->dissipation = point.dissipation;
     the_case.pump.block.axial_inertia = point.block_inertia;
     const double turn = 2 * kPi / std::abs(rad_per_second(the_case.operation.speed_rpm));
-    const int all = options_.turns_left_out + options_.turns;
+    const int counted = windows * options_.turns;
+    const int all = options_.turns_left_out + counted;
     the_case.drive.emplace();
     the_case.drive->kind = DriveKind::speed;
     the_case.drive->duration = all * turn;
@@ -112,7 +140,7 @@ class Study {
     analytic::SimulationOptions asked;
     asked.error = kError;
     const int samples = options_.samples_per_turn;
-    for (int i = 1; i <= options_.turns * samples; ++i)
+    for (int i = 1; i <= counted * samples; ++i)
       asked.times.push_back(turn * (options_.turns_left_out + static_cast<double>(i) / samples));
     try {
       const Trajectory run =
@@ -122,7 +150,8 @@ class Study {
       std::vector<double> force;
       for (std::size_t row = 0; row < table.rows(); ++row)
         force.push_back(along_x2(the_case, table.at(row, column)));
-      Fig34Curve curve = seen_in(force, options_.turns, the_case.pump.geometry.pistons);
+      Fig34Curve curve =
+          seen_in_windows(force, windows, options_.turns, the_case.pump.geometry.pistons);
       if (keep) {
         for (int i = 1; i <= samples; ++i) curve.theta_deg.push_back(360.0 * i / samples);
         curve.force.assign(force.begin(), force.begin() + samples);
@@ -136,12 +165,12 @@ class Study {
   }
 
   /// All points, by as many threads as there are processors.
-  std::vector<Fig34Curve> simulate(const std::vector<Fig34Point>& points,
+  std::vector<Fig34Curve> simulate(const std::vector<Fig34Point>& points, int windows,
                                    const Progress& progress) const {
     std::vector<Fig34Curve> curves(points.size());
     Reporting reporting(points.size(), progress);
     in_threads(0, points.size(), [&](std::size_t i) {
-      curves[i] = simulate(points[i], false);
+      curves[i] = simulate(points[i], windows, false);
       reporting.done();
     });
     return curves;
@@ -196,10 +225,17 @@ constexpr double kStiff = 0.5e-6;  // 200 N/um, m at 100 N
 const std::vector<double> kDissipations = {0.05, 0.5, 5, 50};
 const std::vector<double> kInertias = {1e-3, 1.5e-3, 2e-3};
 
+/// What one law shows in all its windows joins what others show.
+void include(Fig34Expectation::Found& found, const Fig34Range& range, double factor) {
+  found.least = std::min(found.least, factor * range.minimum);
+  found.greatest = std::max(found.greatest, factor * range.maximum);
+  found.spread = std::max(found.spread, range.spread());
+}
+
 void add_expectations(const Study& study, Fig34Study& result, const Progress& progress) {
   const auto add_rigid = [&](const std::string& what, const std::string& unit, double low,
                              double high, double found) {
-    result.expectations.push_back({what, unit, low, high, {{0, found, found}}});
+    result.expectations.push_back({what, unit, low, high, {{0, found, found, 0}}});
   };
   add_rigid("rigid teeth without Cc, 0 deg", "N", -114.6 * 1.05, -114.6 * 0.95, result.rigid_at_0);
   add_rigid("rigid teeth without Cc, 38 deg", "N", 84.5 * 0.95, 84.5 * 1.05, result.rigid_at_38);
@@ -222,7 +258,7 @@ void add_expectations(const Study& study, Fig34Study& result, const Progress& pr
       {"the same, 50 um of backlash", 2.2, adams_approach(), {50e-6}, 345, 393, 0, 100},
       {"stiff (200 N/um, linear), 20 and 50 um", 1, kStiff, {20e-6, 50e-6}, 750, 1300, 70, 90}};
   Fig34Expectation with_drag{"all of these with Cc: without contact", "%", 0, 0, {}};
-  for (const double dissipation : kDissipations) with_drag.found.push_back({dissipation, 0, 0});
+  for (const double dissipation : kDissipations) with_drag.found.push_back({dissipation, 0, 0, 0});
   int done = 0;
   for (const Try& t : tries) {
     Fig34Expectation force{t.name + ": largest force", "N", t.low, t.high, {}};
@@ -233,22 +269,20 @@ void add_expectations(const Study& study, Fig34Study& result, const Progress& pr
         for (const double backlash : t.backlashes)
           for (const double inertia : kInertias)
             points.push_back({t.exponent, t.approach, backlash, kDissipations[d], inertia, drag});
-      const auto curves = study.simulate(points, [&](double f) {
+      const auto curves = study.simulate(points, result.options.windows, [&](double f) {
         progress((done + f) / static_cast<double>(std::size(tries) * kDissipations.size()));
       });
       ++done;
-      Fig34Expectation::Found f{kDissipations[d], HUGE_VAL, 0}, a{kDissipations[d], 100, 0};
+      Fig34Expectation::Found f{kDissipations[d], HUGE_VAL, 0, 0}, a{kDissipations[d], 100, 0, 0};
       for (std::size_t i = 0; i < points.size(); ++i) {
         if (!curves[i].done()) f.greatest = HUGE_VAL;
-        const double share = 100 * curves[i].apart;
+        const Fig34Range &largest = curves[i].largest_over, &share = curves[i].apart_over;
         if (points[i].drag) {
-          with_drag.found[d].greatest = std::max(with_drag.found[d].greatest, share);
+          include(with_drag.found[d], share, 100);
           continue;
         }
-        f.least = std::min(f.least, curves[i].largest());
-        f.greatest = std::max(f.greatest, curves[i].largest());
-        a.least = std::min(a.least, share);
-        a.greatest = std::max(a.greatest, share);
+        include(f, largest, 1);
+        include(a, share, 100);
       }
       force.found.push_back(f);
       apart.found.push_back(a);
@@ -262,7 +296,7 @@ void add_expectations(const Study& study, Fig34Study& result, const Progress& pr
 void add_pictured(const Study& study, Fig34Study& result) {
   const double inertia = kInertias[1];
   const auto add = [&](const std::string& name, const Fig34Point& point) {
-    result.pictured.emplace_back(name, study.simulate(point, true));
+    result.pictured.emplace_back(name, study.simulate(point, result.options.windows, true));
   };
   result.pictured = {{"rigid, no Cc", result.rigid}, {"rigid, with Cc", result.rigid_with_drag}};
   add("as ADAMS by default, c 5 s/m", adams_by_default());
@@ -278,6 +312,8 @@ double adams_approach() { return 1e-3 * std::pow(kFig34Force / 1e5, 1 / 2.2); }
 
 Fig34Point adams_by_default() { return {2.2, adams_approach(), 0, 5, kInertias[1], false}; }
 
+double Fig34Range::spread() const { return maximum > 0 ? (maximum - minimum) / maximum : 0; }
+
 double Fig34Curve::largest() const { return std::max(std::abs(least), std::abs(greatest)); }
 
 bool Fig34Expectation::holds() const {
@@ -291,7 +327,8 @@ bool Fig34Study::as_expected() const {
 
 Fig34Curve fig34_curve(const Case& as_read, const Fig34Point& point, const Fig34Options& options,
                        const PartProgress& progress_of) {
-  return Study(with_rigid_teeth(as_read, progress_of), options).simulate(point, true);
+  return Study(with_rigid_teeth(as_read, progress_of), options)
+      .simulate(point, options.windows, true);
 }
 
 Fig34Study run_fig34_study(const Case& as_read, const Fig34Options& options,
@@ -317,7 +354,8 @@ Fig34Study run_fig34_study(const Case& as_read, const Fig34Options& options,
   add_expectations(study, result, progress_of("what was expected"));
   add_pictured(study, result);
   result.points = grid(result.options, drag);
-  result.curves = study.simulate(result.points, progress_of("grid of contact laws"));
+  result.curves =
+      study.simulate(result.points, result.options.windows, progress_of("grid of contact laws"));
   return result;
 }
 

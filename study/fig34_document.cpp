@@ -50,7 +50,7 @@ std::vector<double> values_of(const Fig34Study& s, const Parameter& of) {
 }
 
 struct Count {
-  int all = 0, inside = 0, reverses = 0, both = 0, failed = 0;
+  int all = 0, inside = 0, reverses = 0, both = 0, failed = 0, unsettled = 0;
 };
 
 Count count(const Fig34Study& s, const std::function<bool(const Fig34Point&)>& wanted) {
@@ -60,6 +60,7 @@ Count count(const Fig34Study& s, const std::function<bool(const Fig34Point&)>& w
     const Fig34Curve& curve = s.curves[i];
     ++c.all;
     c.failed += curve.done() ? 0 : 1;
+    c.unsettled += curve.done() && !curve.repeats() ? 1 : 0;
     c.inside += curve.inside() ? 1 : 0;
     c.reverses += curve.reverses() ? 1 : 0;
     c.both += curve.inside() && curve.reverses() ? 1 : 0;
@@ -133,13 +134,22 @@ Lines about(const Fig34Study& s, bool drag) {
                                            "turn.",
                                            as_rigid, rigid));
   if (c.failed > 0) lines.push_back(fmt::format("{} could not be simulated.", c.failed));
+  if (c.unsettled > 0) {
+    double spread = 0;
+    for (std::size_t i = 0; i < s.points.size(); ++i)
+      if (s.points[i].drag == drag) spread = std::max(spread, s.curves[i].largest_over.spread());
+    lines.push_back(fmt::format(
+        "The motion of {} laws does not repeat: their largest force differs between {} windows of "
+        "{} turns by up to {:.0f} %. Longer runs can exceed the forces stated for them.",
+        c.unsettled, s.options.windows, s.options.turns, 100 * spread));
+  }
   double least_apart = 1, most_apart = 0, least = HUGE_VAL, greatest = 0;
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     if (s.points[i].drag != drag || !s.curves[i].inside() || !s.curves[i].reverses()) continue;
-    least_apart = std::min(least_apart, s.curves[i].apart);
-    most_apart = std::max(most_apart, s.curves[i].apart);
-    least = std::min(least, s.curves[i].largest());
-    greatest = std::max(greatest, s.curves[i].largest());
+    least_apart = std::min(least_apart, s.curves[i].apart_over.minimum);
+    most_apart = std::max(most_apart, s.curves[i].apart_over.maximum);
+    least = std::min(least, s.curves[i].largest_over.minimum);
+    greatest = std::max(greatest, s.curves[i].largest_over.maximum);
   }
   if (c.both == 0) {
     lines.emplace_back("So none of them can be what is printed.");
@@ -187,9 +197,11 @@ report::Summary summary_of(const Fig34Study& s) {
   report::Summary summary{
       fmt::format(
           "The tooth force along x2 of compliant flanks at the case's pressure and {:g} rpm, "
-          "{} turns after {} that are left out. Nothing here is a fit: the paper prints axes "
-          "and a periodic change of sign, no contact parameter.",
-          s.the_case.operation.speed_rpm, s.options.turns, s.options.turns_left_out),
+          "{} windows of {} turns each after {} turns that are left out. A law stays inside and "
+          "reverses only where it does so in every window. Nothing here is a fit: the paper prints "
+          "axes and a periodic change of sign, no contact parameter.",
+          s.the_case.operation.speed_rpm, s.options.windows, s.options.turns,
+          s.options.turns_left_out),
       {}};
   Lines rigid = {
       fmt::format("Without Cc {}, {:.1f} N at 0 deg and {:.1f} N at 38 deg; {:g} changes "
@@ -212,22 +224,36 @@ report::Summary summary_of(const Fig34Study& s) {
 
 // ---- Tables
 
+/// To two significant digits where the motion does not repeat: more would be those of the windows
+/// that happen to be looked at.
+double stated(double value, const Fig34Expectation::Found& f) {
+  if (f.spread <= kFig34Repeats || value == 0 || !std::isfinite(value)) return value;
+  const double step = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
+  return std::round(value / step) * step;
+}
+
 report::Section expectations_section(const Fig34Study& s) {
-  report::Table table{
-      {"what", "unit", "expected from", "to", "c, s/m", "found from", "to", "verdict"}, {}};
+  report::Table table{{"what", "unit", "expected from", "to", "c, s/m", "found from", "to",
+                       "differs between windows, %", "verdict"},
+                      {}};
   for (const Fig34Expectation& e : s.expectations)
     for (const auto& f : e.found)
       table.rows.push_back({e.what, e.unit, e.low, e.high,
-                            e.found.size() > 1 ? Cell(f.dissipation) : Cell(), f.least, f.greatest,
+                            e.found.size() > 1 ? Cell(f.dissipation) : Cell(), stated(f.least, f),
+                            stated(f.greatest, f),
+                            e.found.size() > 1 ? Cell(std::round(1000 * f.spread) / 10) : Cell(),
                             e.inside(f) ? "inside" : "outside"});
-  return {"Expectations",
-          "Written down before the study: first tries with another program, and what follows from "
-          "the printed torques. The first tries name no damping that could be repeated: each is "
-          "shown for several, and counts as one that holds if it is inside for any of them. Found "
-          "over block inertias of 1000, 1500 and 2000 kg mm2. The windows are of the paper's pump "
-          "at 275 bar and 1500 rpm, whatever the case is.",
-          {},
-          std::move(table)};
+  return {
+      "Expectations",
+      "Written down before the study: first tries with another program, and what follows from "
+      "the printed torques. The first tries name no damping that could be repeated: each is "
+      "shown for several, and counts as one that holds if it is inside for any of them. Found "
+      "over block inertias of 1000, 1500 and 2000 kg mm2 and over consecutive windows of the "
+      "same motion. Where these windows differ by more than 1 %, the motion does not repeat and "
+      "the range has two significant digits. The expected ranges are of the paper's pump "
+      "at 275 bar and 1500 rpm, whatever the case is.",
+      {},
+      std::move(table)};
 }
 
 report::Section counts_section(const Fig34Study& s) {
@@ -269,6 +295,10 @@ std::vector<report::Record> records(const Fig34Study& s) {
                     {"share_of_pitches_with_both_signs", of(c.both_signs)},
                     {"inside_axes", c.inside()},
                     {"reverses", c.reverses()},
+                    {"largest_Rcs_x2_N_least_window", of(c.largest_over.minimum)},
+                    {"largest_Rcs_x2_N_greatest_window", of(c.largest_over.maximum)},
+                    {"share_without_contact_least_window", of(c.apart_over.minimum)},
+                    {"share_without_contact_greatest_window", of(c.apart_over.maximum)},
                     {"status", c.done() ? "done" : "failed: " + c.failure}});
   }
   return rows;
@@ -350,7 +380,9 @@ std::string fig34_csv(const Fig34Study& s) {
   std::string text =
       "drag,exponent,approach_at_100N_um,backlash_um,dissipation_s_per_m,block_inertia_kg_mm2,"
       "least_Rcs_x2_N,greatest_Rcs_x2_N,share_without_contact,sign_changes_per_turn,"
-      "share_of_pitches_with_both_signs,inside_axes,reverses,failure\n";
+      "share_of_pitches_with_both_signs,inside_axes,reverses,failure,"
+      "largest_Rcs_x2_N_least_window,largest_Rcs_x2_N_greatest_window,"
+      "share_without_contact_least_window,share_without_contact_greatest_window\n";
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     const Fig34Point& p = s.points[i];
     const Fig34Curve& c = s.curves[i];
@@ -362,7 +394,12 @@ std::string fig34_csv(const Fig34Study& s) {
                         c.inside() ? 1.0 : 0.0, c.reverses() ? 1.0 : 0.0});
     else
       text += ",,,,,,";
-    text += c.done() ? "," : ",\"" + c.failure + "\"";
+    text += c.done() ? ",," : ",\"" + c.failure + "\",";
+    if (c.done())
+      append_row(text, {c.largest_over.minimum, c.largest_over.maximum, c.apart_over.minimum,
+                        c.apart_over.maximum});
+    else
+      text += ",,,";
     text += '\n';
   }
   return text;
@@ -389,10 +426,10 @@ std::string fig34_text(const Fig34Study& s) {
       fmt::format("\n{:<68} {:>18}  {:>7} {:>18}\n", "expectation", "window", "c, s/m", "found");
   for (const Fig34Expectation& e : s.expectations)
     for (const auto& f : e.found)
-      text +=
-          fmt::format("{:<68} {:>8.4g}..{:>8.4g}  {:>7} {:>8.4g}..{:>8.4g} {:<2} {}\n", e.what,
-                      e.low, e.high, e.found.size() > 1 ? fmt::format("{:g}", f.dissipation) : "",
-                      f.least, f.greatest, e.unit, e.inside(f) ? "inside" : "OUTSIDE");
+      text += fmt::format(
+          "{:<68} {:>8.4g}..{:>8.4g}  {:>7} {:>8.4g}..{:>8.4g} {:<2} {}\n", e.what, e.low, e.high,
+          e.found.size() > 1 ? fmt::format("{:g}", f.dissipation) : "", stated(f.least, f),
+          stated(f.greatest, f), e.unit, e.inside(f) ? "inside" : "OUTSIDE");
   return text;
 }
 

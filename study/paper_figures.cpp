@@ -229,7 +229,10 @@ class PaperRun {
     if (curve.compliant_teeth) {
       Fig34Point law = adams_by_default();
       law.drag = curve.variant.empty();
-      const Fig34Curve force = fig34_curve(at(curve.condition).as_read(), law, {}, progress_of_);
+      Fig34Options options;
+      options.windows = 1;  // one turn is drawn
+      const Fig34Curve force =
+          fig34_curve(at(curve.condition).as_read(), law, options, progress_of_);
       if (!force.done()) throw ComputationError("compliant teeth: " + force.failure);
       // Its samples are at the ends of intervals.
       theta = force.theta_deg;

@@ -477,6 +477,50 @@ BodyLoadTable every(std::size_t step, const BodyLoadTable& table) {
   return thin;
 }
 
+// A path of at least so many points per turn is a curve to the eye, however few rows a run has.
+constexpr int kPathPerTurn = 1440, kPathPerPitch = 60;
+// Between neighbours of a path of continuous pressure lies a hundredth of it; more is a jump.
+constexpr double kPathJump = 0.1;
+
+/// Fh's point in the plate's x and y over one N-th of a turn, which all others repeat.
+std::vector<std::vector<std::array<double, 2>>> film_path(Case turn) {
+  const int pistons = turn.pump.geometry.pistons;
+  const int pitch = std::max(kPathPerPitch, kPathPerTurn / pistons);
+  turn.operation.samples_per_revolution = pistons * pitch;
+  const Samples samples = sample_case(turn, PressureTrace(turn.pressure));
+  const ResultTable table = analytic::run(turn, turn.analytic, samples);
+  const ChannelLayout layout(pistons);
+  std::vector<std::array<double, 2>> points;
+  double reach = 0;
+  for (int i = 0; i <= pitch; ++i) {
+    const auto row = static_cast<std::size_t>(i) % table.rows();
+    const double x = table.at(row, layout.xh()), y = table.at(row, layout.yh());
+    if (!is_computed(x) || !is_computed(y)) return {};
+    // To the nanometre: more cannot be seen, and the page is smaller.
+    points.push_back({std::round(x * 1e6) * 1e-9, std::round(y * 1e6) * 1e-9});
+    reach = std::max({reach, std::abs(x - table.at(0, layout.xh())) * 1e-3,
+                      std::abs(y - table.at(0, layout.yh())) * 1e-3});
+  }
+  std::vector<std::vector<std::array<double, 2>>> pieces;
+  for (const auto& point : points) {
+    const bool joined =
+        !pieces.empty() && std::hypot(point[0] - pieces.back().back()[0],
+                                      point[1] - pieces.back().back()[1]) <= kPathJump * reach;
+    if (!joined) pieces.emplace_back();
+    pieces.back().push_back(point);
+  }
+  return pieces;
+}
+
+/// None where turns do not repeat by N-ths (teeth with errors of their own), or costs too much.
+void add_film_path(report::Scene& scene, const Case& the_case, const SceneMotion* motion) {
+  if (motion != nullptr || the_case.pump.gear.contact == ToothContact::teeth) return;
+  try {
+    scene.film_path = film_path(the_case);
+  } catch (const ComputationError&) {  // between the rows: their path is shown
+  }
+}
+
 }  // namespace
 
 report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs,
@@ -490,6 +534,7 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
   if (step <= 1) {
     report::Scene scene = SceneMaker(the_case, runs).scene(motion);
     scene.sums = std::move(sums);
+    add_film_path(scene, the_case, motion);
     return scene;
   }
   std::deque<std::pair<ResultTable, BodyLoadTable>> thin;
@@ -505,6 +550,7 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
   report::Scene scene = SceneMaker(the_case, thinned).scene(of_some);
   scene.curves = curves_of(thinned, of_some);
   scene.sums = std::move(sums);
+  add_film_path(scene, the_case, motion);
   scene.note += fmt::format(" Shown: one of {} rows.", step);
   return scene;
 }

@@ -57,6 +57,7 @@ class Fig34Test(ProgramTest):
         self.assertEqual(rigid[-1], "inside")
         self.check_counts()
         self.check_points()
+        self.check_windows(result)
         self.check_torque_that_keeps_the_sign()
 
     def check_counts(self):
@@ -71,6 +72,28 @@ class Fig34Test(ProgramTest):
             rows = [r for r in self.rows if drag == ("with Cc" if r["drag"] == "1" else "without Cc") and float(r[key]) == number]
             self.assertEqual(found, [len(rows), sum(r["inside_axes"] == "1" for r in rows), sum(r["reverses"] == "1" for r in rows),
                                      sum(r["inside_axes"] == r["reverses"] == "1" for r in rows)])
+
+    def check_windows(self, result):
+        """Chaotic motions do not repeat: the spread between windows is stated, and limits the digits."""
+        for row in self.rows:
+            least, greatest = (float(row[f"largest_Rcs_x2_N_{end}_window"]) for end in ("least", "greatest"))
+            first = max(-float(row["least_Rcs_x2_N"]), float(row["greatest_Rcs_x2_N"]))
+            self.assertLessEqual(least, first)
+            self.assertLessEqual(first, greatest)
+            self.assertEqual(row["inside_axes"] == "1", greatest <= 250)
+        spread = {(r["drag"], float(r["backlash_um"]), float(r["dissipation_s_per_m"])):
+                  1 - float(r["largest_Rcs_x2_N_least_window"]) / float(r["largest_Rcs_x2_N_greatest_window"]) for r in self.rows}
+        self.assertGreater(spread["0", 20, 0.5], 0.05)  # rattles without a period
+        self.assertLess(spread["1", 20, 5], 0.01)  # carried in one direction
+        chaotic = sum(value > 0.01 for (drag, *_), value in spread.items() if drag == "0")
+        self.assertIn(f"The motion of {chaotic} laws does not repeat", result.out)
+        wide = 0
+        for row in self.report["runs"][0]["table"]["rows"]:
+            if row[7] is not None and row[7] > 1 and row[1] == "N":
+                wide += 1
+                for value in row[5:7]:
+                    self.assertEqual(float(f"{value:.1e}"), value, row)
+        self.assertGreater(wide, 0)
 
     def check_points(self):
         """The figure of all laws, from the rows of the file."""
@@ -98,8 +121,13 @@ class Fig34Test(ProgramTest):
             least = min(float(row["Rcs_z4_N"]) for row in csv.DictReader(file))
         self.assertLess(abs(least), 0.02)  # of 100 N
 
+    def test_one_window_states_no_spread(self):
+        self.study("--approaches-um", "0.5", "--backlashes-um", "20", "--windows", "1")
+        for row in self.rows:
+            self.assertEqual(row["largest_Rcs_x2_N_least_window"], row["largest_Rcs_x2_N_greatest_window"])
+
     def test_a_case_without_drag(self):
-        self.study(self.case(**{"friction.block_viscous_Nm_per_rpm": 0.0}), "--approaches-um", "5", "--backlashes-um", "0")
+        self.study(self.case(**{"friction.block_viscous_Nm_per_rpm": 0.0}), "--approaches-um", "5", "--backlashes-um", "0", "--windows", "1")
         self.assertEqual({r["drag"] for r in self.rows}, {"0"})
         self.assertNotIn("Compliant teeth with Cc", [g["title"] for g in self.report["summary"]["groups"]])
 

@@ -324,6 +324,36 @@ TEST(PumpScene, AloneBringsItsCurves) {
     EXPECT_TRUE(json["curves"]["tables"][0]["columns"].contains(name)) << name;
 }
 
+// Fh's path is drawn closer than few rows have it, and each row is on it: every N-th of a turn
+// repeats.
+TEST(PumpScene, FilmPathIsDenseAndHasEveryRow) {
+  for (const char* name : {"bap63_rated", "bap63_as_compared_in_the_paper"}) {
+    const Case the_case = shipped_case(name);
+    const auto scene = study::analytic_scene(the_case);
+    ASSERT_TRUE(scene) << name;
+    const Reader reader(*scene, {}, scene->curves->theta_deg);
+    const auto& columns = scene->curves->tables.at(0).columns;
+    const auto column = [&](const std::string& wanted) -> const report::Values& {
+      for (const auto& [key, values] : columns)
+        if (key == wanted) return values;
+      throw std::runtime_error(wanted);
+    };
+    const report::Values &x = column("xh_x2_mm"), &y = column("yh_y2_mm");
+    ASSERT_EQ(x.size(), 120U);
+    std::size_t points = 0;
+    for (const Json& piece : reader.json["film_path"]) points += piece.size();
+    EXPECT_GE(points, 288U) << name;
+    for (std::size_t row = 0; row < x.size(); ++row) {
+      double nearest = HUGE_VAL;
+      for (const Json& piece : reader.json["film_path"])
+        for (const Json& point : piece)
+          nearest = std::min(nearest, std::hypot(point[0].get<double>() - x[row] * 1e-3,
+                                                 point[1].get<double>() - y[row] * 1e-3));
+      EXPECT_LE(nearest, 1e-9) << name << ", row " << row;  // it is rounded to the nanometre
+    }
+  }
+}
+
 TEST(PumpScene, ComputesThePressureThatItNeeds) {
   const Case hydraulic = shipped_case("bap63_rated_hydraulic");
   const auto scene = study::analytic_scene(hydraulic);

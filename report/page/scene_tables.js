@@ -81,15 +81,25 @@ function filmInset(state) {
   for (const o of outlines)
     root.append(svg(o.closed ? "polygon" : "polyline", { points: text(o.points), class: "outline", fill: "none",
       stroke: ["delivery", "suction"].includes(o.look) ? onGround(LOOKS[o.look]) : "currentColor", "vector-effect": "non-scaling-stroke" }));
+  // Closer than the rows where the scene has it: lines between few rows would cross the plate as a star.
+  const dense = list(state.scene.film_path);
+  const line = (points, m) => points.length > 1 && root.append(svg("polyline", { points: text(points), fill: "none",
+    stroke: onGround(COLOURS[m ? 6 : 3]), "stroke-width": m ? 1.2 : 3, "stroke-dasharray": m ? "5 3" : "none", "vector-effect": "non-scaling-stroke" }));
+  dense.forEach(piece => line(piece, 0));
   path.forEach((points, m) => {
+    const known = points.filter(p => p.every(Number.isFinite));
+    if (dense.length) {
+      if (m) known.forEach(([x, y]) => root.append(svg("circle", { cx: (1e3 * x).toFixed(3), cy: (-1e3 * y).toFixed(3),
+        r: (0.006 * 1e3 * size).toFixed(3), fill: onGround(COLOURS[6]) })));
+      return;
+    }
     let run = [];
-    const end = () => {
-      if (run.length > 1) root.append(svg("polyline", { points: text(run), fill: "none", stroke: onGround(COLOURS[m ? 6 : 3]),
-        "stroke-width": m ? 1.2 : 3, "stroke-dasharray": m ? "5 3" : "none", "vector-effect": "non-scaling-stroke" }));
+    points.forEach(p => {
+      if (p.every(Number.isFinite)) return run.push(p);
+      line(run, m);
       run = [];
-    };
-    points.forEach(p => (p.every(Number.isFinite) ? run.push(p) : end()));
-    end();
+    });
+    line(run, m);
   });
   const dot = svg("circle", { r: (0.035 * 1e3 * size).toFixed(3), fill: onGround("#d55e00"), stroke: "currentColor", "vector-effect": "non-scaling-stroke" });
   root.append(dot);

@@ -137,6 +137,9 @@ struct Scene {
   double radius = 0;  ///< m
   /// Fh's point on the plate: in this body's coordinates, with the plate's outlines as wires.
   std::optional<Place> film_point = std::nullopt;
+  /// Its path by the first model in the plate's x and y, m, closer than the rows are: pieces
+  /// between jumps. Empty: the path is that of the rows.
+  std::vector<std::vector<std::array<double, 2>>> film_path = {};
   std::string note = {};  ///< what is not to scale, or left out
 };
 

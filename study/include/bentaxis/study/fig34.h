@@ -34,20 +34,35 @@ double adams_approach();
 /// They, without backlash and drag on the block; c = 5 s/m, which no default corresponds to.
 Fig34Point adams_by_default();
 
-/// The force along x2 over the turns that count, N, and what it shows.
-struct Fig34Curve {
-  std::vector<double> theta_deg, force;  ///< of the first of them; empty where not kept
-  double least = 0, greatest = 0;        ///< N
-  double apart = 0;                      ///< share of the time without contact
-  double sign_changes = 0;               ///< per turn, between visible forces
-  double both_signs = 0;                 ///< share of pitches (360/N) that see both
-  std::string failure;                   ///< why it could not be simulated, or ""
+/// Motions whose largest force differs by more than this share between windows do not repeat:
+/// their statistics have two significant digits at most.
+inline constexpr double kFig34Repeats = 0.01;
 
-  double largest() const;
+/// A quantity over the windows of one simulation.
+struct Fig34Range {
+  double minimum = 0, maximum = 0;
+  /// (maximum - minimum) / maximum; 0 where all are 0.
+  double spread() const;
+};
+
+/// The force along x2, N, in windows of as many turns each, and what it shows.
+struct Fig34Curve {
+  std::vector<double> theta_deg, force;  ///< of the first turn that counts; empty where not kept
+  double least = 0, greatest = 0;        ///< N, in the first window
+  double apart = 0;                      ///< share of the time without contact, first window
+  double sign_changes = 0;               ///< per turn, between visible forces, first window
+  double both_signs = 0;    ///< share of pitches (360/N) that see both, least of all windows
+  Fig34Range largest_over;  ///< N, largest magnitude of each window
+  Fig34Range apart_over;    ///< share of the time without contact in each window
+  std::string failure;      ///< why it could not be simulated, or ""
+
+  double largest() const;  ///< N, in the first window
   bool done() const { return failure.empty(); }
-  bool inside() const { return done() && largest() <= kFig34Axes; }
-  /// As the text describes it: it changes its sign periodically.
+  /// In every window.
+  bool inside() const { return done() && largest_over.maximum <= kFig34Axes; }
+  /// As the text describes it: it changes its sign periodically. In every window.
   bool reverses() const { return done() && both_signs == 1; }
+  bool repeats() const { return done() && largest_over.spread() <= kFig34Repeats; }
 };
 
 struct Fig34Options {
@@ -56,7 +71,8 @@ struct Fig34Options {
   std::vector<double> backlashes = {0, 20e-6, 50e-6};
   std::vector<double> dissipations = {0.05, 0.5, 5, 50};
   std::vector<double> block_inertias = {1e-3, 1.5e-3, 2e-3};
-  int turns_left_out = 2, turns = 2;
+  int turns_left_out = 2, turns = 2;  ///< turns of a window
+  int windows = 3;                    ///< one behind the other
   int samples_per_turn = 1440;
 };
 
@@ -64,7 +80,8 @@ struct Fig34Options {
 struct Fig34Expectation {
   struct Found {
     double dissipation = 0;          ///< c, s/m; of rigid teeth 0
-    double least = 0, greatest = 0;  ///< over block inertias and backlashes
+    double least = 0, greatest = 0;  ///< over block inertias, backlashes and windows
+    double spread = 0;               ///< largest spread between the windows of one law
   };
   std::string what, unit;
   double low = 0, high = 0;  ///< window
