@@ -27,7 +27,8 @@ struct SmallSweep {
   designs::SweepRecord record;
   designs::SweepParts parts;
 
-  SmallSweep() : record{"", {}, "", std::string(64, '0')}, parts(scratch_folder(), record) {
+  SmallSweep()
+      : record{"", {}, "", std::string(64, '0'), {2, 2, 1, 1}}, parts(scratch_folder(), record) {
     designs::SweepBlock block;
     block.designs = 2;
     block.values = {20, 30};
