@@ -62,6 +62,7 @@ class LifeTest(ProgramTest):
         self.assertEqual(*said)
         self.assertEqual(self.rows("life.csv", "a.out")[0].keys(), self.rows("life.csv", "b.out")[0].keys())
         for small, large in zip(self.rows("life.csv", "a.out"), self.rows("life.csv", "b.out")):
+            self.assertEqual((small.pop("reason"), large.pop("reason")), ("", ""))
             for name, value in small.items():
                 self.assertAlmostEqual(float(large[name]) / float(value), 1, 12, name)
 

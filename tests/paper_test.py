@@ -350,7 +350,8 @@ class HandOnTest(unittest.TestCase):
         self.assertIn("The two models agree.", done.stdout)
         self.assertRegex(done.stdout, r"bad_rig differs: 2 of 2 reactions compared differ\. Worst: ")
         report = json.loads((self.folder / "bad" / "report.json").read_text())
-        self.assertTrue(report["verdict"]["agrees"])
+        self.assertFalse(report["verdict"]["agrees"])
+        self.assertTrue(report["verdict"]["models_agree"])
         self.assertFalse(report["verdict"]["reference"]["agrees"])
 
     def test_a_tube_is_drawn(self):

@@ -541,8 +541,13 @@ TEST(CaseWriter, EveryReferenceCaseReadsBackAsItself) {
 
 TEST(CaseWriter, NamesAreQuoted) {
   Case the_case = reference_case("zero_tilt");
-  the_case.name = "a \"pump\" \\ of\ntwo lines\x01 \xc3\xbc";
+  the_case.name = "a \"pump\" \\ of one line \xc3\xbc";
   EXPECT_EQ(parse_case(case_text(the_case), "/written.toml").name, the_case.name);
+  // Control characters are written as escapes, so that the line stays whole, and refused when read.
+  the_case.name = "two\nlines\x01";
+  const std::string text = case_text(the_case);
+  EXPECT_THAT(text, HasSubstr("two\\nlines\\u0001"));
+  EXPECT_THROW(parse_case(text, "/written.toml"), InputError);
 }
 
 // A limit in a message must itself be allowed.
