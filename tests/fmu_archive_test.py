@@ -324,7 +324,8 @@ class Archives(unittest.TestCase):
         share = next(v.place for v in it.variables if v.name == "load_share")
         moved = [by for by in it.structure.findall("Outputs/Unknown") if share in map(int, by.get("dependencies").split())]
         names = [v.name for v in it.variables if v.place in [int(one.get("index")) for one in moved]]
-        self.assertEqual(names, ["flow_delivery_l_per_min"])
+        # What leaves the delivery volume, and what that carries.
+        self.assertEqual(names, ["flow_delivery_l_per_min", "power_useful_W"])
 
     def test_drive_torque_starts_with_that_of_the_case_or_of_its_operating_point(self):
         def torque(*more, case="bap63_rated"):
