@@ -279,7 +279,8 @@ std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scal
       check.name = channel.meaning;
       check.unit = channel.unit;
       if (channel.quantity == "power_residual") check.group = "Td";
-      const auto scale = scales.find(channel.unit);
+      const auto own = scales.find(channel.quantity);
+      const auto scale = own != scales.end() ? own : scales.find(channel.unit);
       check.scale = scale == scales.end() ? 1 : scale->second;
       check.tolerance = tolerance;
       checks.push_back(check);

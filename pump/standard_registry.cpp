@@ -892,9 +892,12 @@ Table gear_table() {
                    return std::string("needs stiffness_N_per_um");
                  if (contact == ToothContact::teeth && v.teeth() == nullptr)
                    return std::string("needs tooth_number and face_width_mm");
-                 if (contact == ToothContact::teeth && v.pump->geometry.tilt == 0)
+                 // The cone distance grows as 1/tilt, and with it the round-off of contact points.
+                 constexpr double kLeastTilt = 1e-4 * kRadPerDegree;
+                 if (contact == ToothContact::teeth && v.pump->geometry.tilt < kLeastTilt)
                    return std::string(
-                       "bevel teeth need [pump] tilt_deg > 0: at 0 the axes do not meet");
+                       "bevel teeth need [pump] tilt_deg >= 0.0001: nearly parallel axes meet too "
+                       "far away for the contact of teeth to be computed");
                  return std::string();
                }}}};
 }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/load_scale.h"
 #include "bentaxis/results/worst.h"
+#include "bentaxis/study/comparison.h"
 
 namespace bentaxis::study {
 
@@ -13,7 +15,14 @@ compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
   const LoadScale scale = load_scale(the_case, samples);
   const double radius = std::max(the_case.pump.geometry.joint_circle_radius,
                                  the_case.pump.geometry.bore_circle_radius);
-  return {{"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}};
+  // The power of a piston's loads at its spin, over omega: round-off of the loads is multiplied by
+  // spin over omega there.
+  double power = scale.moment;
+  if (the_case.pump.piston.real && samples.omega != 0)
+    power *= std::max(1.0, std::numeric_limits<double>::epsilon() / kDrivenTolerance *
+                               std::abs(the_case.pump.piston.real->spin / samples.omega));
+  return {
+      {"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}, {"power_residual", power}};
 }
 
 AchievedError achieved_error(const Case& the_case, const Samples& samples,

@@ -12,10 +12,13 @@
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/published_section.h"
+#include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/timing.h"
 
 namespace bentaxis::study {
 namespace {
+
+std::string of_table(const compare::Check& check) { return check.table + ": " + check.name; }
 
 double worst_of_group(const compare::Comparison& comparison, const std::string& group) {
   double worst = 0;
@@ -113,6 +116,7 @@ class Maker {
   void split_assumptions();
   void run_without_viscous();
   void hold_to_reference();
+  void note_multiplier_errors();
   void warn();
 
   ComparisonResult result_;
@@ -214,16 +218,19 @@ void Maker::note_film_point_errors() {
   };
   const double of_force = allowed(layout.Fh()), of_moment = allowed(layout.Th(0));
   constexpr double kMillimetre = 1e-3;
+  constexpr double kAnyPoint = 1e300;  // mm
   film_point_errors_ = r.analytic;
   std::fill(film_point_errors_.values.begin(), film_point_errors_.values.end(), 0.0);
   for (std::size_t row = 0; row < r.analytic.rows(); ++row) {
     const double force = std::abs(r.analytic.at(row, layout.Fh()));
     if (!is_computed(force) || force == 0) continue;
+    // A force within its own error has no point of application that could be compared.
+    const double least = force - of_force;
     for (const std::size_t column : {layout.xh(), layout.yh()}) {
       const double at = std::abs(r.analytic.at(row, column));
       if (is_computed(at))
         film_point_errors_.values[row * film_point_errors_.columns() + column] =
-            (of_moment / kMillimetre + at * of_force) / force;
+            least > 0 ? (of_moment / kMillimetre + at * of_force) / least : kAnyPoint;
     }
   }
 }
@@ -408,9 +415,56 @@ void Maker::warn() {
     for (const auto& text :
          multibody_warnings(r.second.the_case, r.options.scene, r.rounding, r.losses))
       r.warnings.push_back({"digits lost in Simbody", text});
+    note_multiplier_errors();
   }
   if (const std::string text = small_components(r.comparison); !text.empty())
     r.warnings.push_back({"small channels", text});
+}
+
+// Where the models differ: what the multibody model's other method, which solves for no
+// multipliers, gives at the same angles. Both are the same equations, so that their difference is
+// round-off.
+void Maker::note_multiplier_errors() {
+  ComparisonResult& r = result_;
+  if (r.agrees() || r.split || r.options.scene.scene != multibody::Scene::full ||
+      multibody::method_for(r.second.the_case.pump, r.options.scene.method) !=
+          multibody::Method::multipliers)
+    return;
+  RunOptions without = multibody_run(0);
+  without.scene.method = multibody::Method::residual;
+  without.budget = r.budget.has_value();
+  const auto keep = [&](const compare::Comparison& changes) {
+    for (const auto& c : changes.channels)
+      if (c.compared() && c.largest_over_peak() > r.tolerance)
+        r.losses.multipliers[c.channel.name] = c.largest_over_peak();
+  };
+  try {
+    const ModelRun other = study::run(r.second, multibody_samples_, without, progress_of_);
+    compare::Options options = comparison_options();
+    options.uncertainty = nullptr;
+    // Scales are those of the verdict: of the analytic model's peaks.
+    compare::Comparison changes = compare::compare_tables(r.multibody, other.table, options);
+    for (auto& c : changes.channels)
+      for (const auto& of_verdict : r.comparison.channels)
+        if (of_verdict.channel.name == c.channel.name) c.peak = of_verdict.peak;
+    keep(changes);
+    std::vector<compare::Check> checks =
+        compare::judge_checks(other.table, zero_scales_, r.tolerance);
+    if (other.budget) {
+      const BudgetComparison budgets =
+          compare_budgets(r.budget->multibody, *other.budget, r.tolerance, zero_scales_);
+      keep(budgets.comparison);
+      checks.insert(checks.end(), budgets.checks.begin(), budgets.checks.end());
+    }
+    // Of a check that holds there: all that it is off by here.
+    for (const auto& check : r.checks)
+      for (const auto& there : checks)
+        if (!check.holds() && there.holds() && check.table == r.multibody.name &&
+            there.table == check.table && there.name == check.name)
+          r.losses.multipliers[of_table(check)] = check.relative();
+  } catch (const ComputationError&) {
+    // That method refuses the case: it says nothing.
+  }
 }
 
 }  // namespace
@@ -440,6 +494,7 @@ namespace {
 
 // A result in which the models differ, or that a check says must vanish and does not.
 struct Failure {
+  std::string name;   ///< of the column or the check
   std::string group;  ///< of the reactions whose round-off it carries
   double off = 0;     ///< in its unit
   double scale = 0;
@@ -469,17 +524,18 @@ std::vector<Failure> failures_of(const ComparisonResult& r) {
   std::vector<Failure> failures;
   for (const auto& c : r.comparison.channels)
     if (c.judged && c.verdict == compare::Verdict::differs)
-      failures.push_back({c.channel.group, c.largest, c.peak});
+      failures.push_back({c.channel.name, c.channel.group, c.largest, c.peak});
   if (r.budget)
     for (const auto& c : r.budget->comparison.channels)
       if (c.judged && c.verdict == compare::Verdict::differs)
-        failures.push_back({whole_of(c.channel.name), c.largest, c.peak});
+        failures.push_back({c.channel.name, whole_of(c.channel.name), c.largest, c.peak});
   if (r.teeth && !r.split)
     for (const auto& c : r.teeth->comparison.channels)
       if (c.judged && c.verdict == compare::Verdict::differs)
-        failures.push_back({"teeth", c.largest, c.peak});
+        failures.push_back({c.channel.name, "teeth", c.largest, c.peak});
   for (const auto& check : r.checks)
-    if (!check.holds()) failures.push_back({check.group, check.worst, check.scale});
+    if (!check.holds())
+      failures.push_back({of_table(check), check.group, check.worst, check.scale});
   return failures;
 }
 
@@ -498,12 +554,19 @@ std::optional<DifferenceCause> ComparisonResult::cause() const {
     known[line.group] = std::max(known[line.group], line.total());
   constexpr double kEstimateFactor = 10;
   DifferenceCause least;
-  std::string group;
-  double worst = 0;
+  std::string group, measured;
+  double worst = 0, largest_change = 0;
   for (const Failure& failure : failures_of(*this)) {
     if (!(failure.scale > 0)) return std::nullopt;
     double estimate = 0;
     for (const std::string& carrier : carried_by(failure.group)) estimate += known[carrier];
+    const auto change = losses.multipliers.find(failure.name);
+    const bool by_multipliers = change != losses.multipliers.end() && change->second > estimate;
+    if (by_multipliers) estimate = change->second;
+    if (by_multipliers && change->second > largest_change) {
+      largest_change = change->second;
+      measured = failure.name;
+    }
     const double over = failure.off / failure.scale;
     if (!(over <= kEstimateFactor * estimate)) return std::nullopt;
     if (over / estimate <= worst) continue;
@@ -513,10 +576,16 @@ std::optional<DifferenceCause> ComparisonResult::cause() const {
     group = failure.group;
   }
   if (group.empty()) return std::nullopt;
-  least.text = fmt::format(
-      "The cause is round-off: rounding of inputs and intermediate results changes {} of this case "
-      "by about {:.1e} of its scale.",
-      group, least.round_off);
+  if (!measured.empty())
+    least.text = fmt::format(
+        "The cause is round-off in Simbody's constraint multipliers: without them (--reactions "
+        "residual) {} changes by {:.1e} of its scale.",
+        measured, largest_change);
+  else
+    least.text = fmt::format(
+        "The cause is round-off: rounding of inputs and intermediate results changes {} of this "
+        "case by about {:.1e} of its scale.",
+        group, least.round_off);
   return least;
 }
 

@@ -253,6 +253,24 @@ class RoundOff(unittest.TestCase):
         self.assertIn("round-off", cause["text"])
         self.assertGreater(10 * cause["round_off_over_peak"], cause["max_over_peak"])
 
+    def test_round_off_of_the_multipliers_is_named(self):
+        """A block with next to no axial inertia: the constraint multipliers lose digits, the other method does not."""
+        light = [self.case, "--set", "block.axial_inertia_kg_mm2=1e-9", *FEW]
+        done, report = self.run_case("compare", *light)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        cause = report["verdict"]["cause"]
+        self.assertIn("Simbody's constraint multipliers", cause["text"])
+        self.assertIn(cause["text"], report["verdict"]["headline"])
+        self.assertGreater(10 * cause["round_off_over_peak"], cause["max_over_peak"])
+        done, report = self.run_case("compare", *light, "--reactions", "residual")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        # A wrong input is no round-off: the other method finds it too.
+        wrong = self.folder / "wrong.toml"
+        wrong.write_text(self.case.read_text().replace("spring_force_N = 250.0", "spring_force_N = 251.0"))
+        done, report = self.run_case("compare", *light, "--multibody-case", wrong)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertNotIn("cause", report["verdict"])
+
     def test_small_components_are_named(self):
         """With the channel's own peak beside that of its vector."""
         done, report = self.run_case("compare", self.case, *FEW, "--set", "piston.mass_kg=0.01")

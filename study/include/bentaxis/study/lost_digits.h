@@ -38,6 +38,9 @@ struct MultibodyLosses {
   std::map<std::string, double> groups;  ///< by group of reactions, share of its scale; empty where
                                          ///< the model refuses the case
   std::string no_estimate;               ///< why there is none, or ""
+  /// Of a comparison that differs: by how much columns change where they are found without
+  /// constraint multipliers, share of their scale, where that is more than the tolerance.
+  std::map<std::string, double> multipliers;
 };
 /// At up to 24 angles.
 MultibodyLosses multibody_losses(const Case& the_case, const Assumptions& assumptions,
