@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "bentaxis/pump/number.h"
@@ -226,7 +227,7 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
 }  // namespace
 
 BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, double tolerance,
-                                 const compare::ZeroScales& scales) {
+                                 const compare::ZeroScales& scales, ToothContact contact) {
   BudgetComparison budgets;
   budgets.comparison =
       compare::compare_tables(analytic, multibody, compare::above_round_off(tolerance, scales));
@@ -246,8 +247,13 @@ BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, do
       check.unit = channel.unit;
       check.scale = compare::scale_of(*table, table->channels[table->find(whole)], scales);
       check.tolerance = tolerance;
+      const bool linear = contact != ToothContact::teeth || std::string_view(group) == "Fh";
+      const ResultTable& other = table == &analytic ? multibody : analytic;
       for (std::size_t row = 0; row < table->rows(); ++row) {
-        const double value = std::abs(table->at(row, table->find(open)));
+        double value = std::abs(table->at(row, table->find(open)));
+        if (!linear)
+          value = std::min(
+              value, std::abs(table->at(row, table->find(open)) - other.at(row, other.find(open))));
         if (value <= check.worst) continue;
         check.worst = value;
         check.theta_deg = table->theta_deg[row];
