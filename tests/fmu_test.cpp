@@ -143,6 +143,15 @@ double apart(const Columns& a, const Columns& b, const char* what) {
   return worst;
 }
 
+#ifdef BENTAXIS_SANITIZER_RUNTIME
+// The process of an FMU is never sanitized. The pump's library is in this build, and needs the
+// sanitizer's runtime before all others.
+class RuntimeFirst : public testing::Environment {
+  void SetUp() override { setenv("LD_PRELOAD", BENTAXIS_SANITIZER_RUNTIME, 1); }
+};
+const auto* const kRuntimeFirst = testing::AddGlobalTestEnvironment(new RuntimeFirst);
+#endif
+
 TEST(PumpUnitTest, CoSimulationIsSimulateWhateverTheStep) {
   for (const int version : {2, 3}) {
     const Columns& truth = simulated(rated()).columns;
