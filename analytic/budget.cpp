@@ -70,7 +70,6 @@ struct BudgetModel::Implementation {
   PreparedPump prepared;
   double block_weight_and_spring;
   double torque_factor;
-  double passed_on = 1;  // torque that the gear takes from the shaft over what the block gets
   std::vector<double> values;
 };
 
@@ -81,8 +80,7 @@ void BudgetModel::Implementation::put(Budget& budget, Cause cause, double on_sha
   if (prepared.imposed) return;
   // The tooth force that carries the block against this load, as it acts on the shaft (43), (57).
   const closed_form::GearNumbers<double>& gear = prepared.numbers.gear;
-  budget.drive_of(cause) -=
-      passed_on * closed_form::tooth_on_shaft(gear, on_block * gear.inverse_arm).moment.z;
+  budget.drive_of(cause) -= closed_form::tooth_on_shaft(gear, on_block * gear.inverse_arm).moment.z;
 }
 
 template <class State>
@@ -156,10 +154,6 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
     model.reactions(instant, values, &teeth);
   const closed_form::Pump<double>& p = prepared.numbers;
   const bool toothed = model.has_teeth();
-  if (toothed) {
-    const double on_block = prepared.teeth->about_block_axis(teeth.moment);
-    passed_on = on_block == 0 ? 1 : BevelTeeth::about_shaft_axis(teeth.moment) / on_block;
-  }
   Budget budget;
   with_state<double>(instant, [&](const auto& state) { budget = causes(instant, state); });
 
@@ -177,6 +171,10 @@ Budget BudgetModel::Implementation::evaluate(const Instant& instant) {
         closed_form::Math<double>::direction(instant.shaft.speed) * values[at.Rcs()];
     const auto carried = closed_form::tooth_on_block(p.gear, tooth);
     budget.carrying_torque = carried.moment.z;
+    // Both gears turn at one speed: of what the shaft gives the teeth the block does not get all.
+    if (toothed)
+      budget.drive_of(Cause::teeth) =
+          BevelTeeth::about_shaft_axis(teeth.moment) - budget.carrying_torque;
     budget.pressing += toothed ? prepared.teeth->about_block_axis(teeth.force) : carried.force.z;
   }
   return budget;
@@ -189,13 +187,14 @@ BudgetModel::BudgetModel(BudgetModel&&) noexcept = default;
 BudgetModel& BudgetModel::operator=(BudgetModel&&) noexcept = default;
 
 bool BudgetModel::has_ring() const { return implementation_->off_the_ring(); }
+bool BudgetModel::has_teeth() const { return implementation_->model.has_teeth(); }
 
 Budget BudgetModel::evaluate(const Instant& instant) { return implementation_->evaluate(instant); }
 
 ResultTable run_budget(const Case& the_case, const Assumptions& assumptions, const Samples& samples,
                        const Progress& progress) {
   BudgetModel model(the_case.pump, assumptions);
-  ResultTable table = budget_table("analytic", model.has_ring());
+  ResultTable table = budget_table("analytic", model.has_ring(), model.has_teeth());
   Instant instant;
   const std::size_t count = samples.theta_deg.size();
   for (std::size_t row = 0; row < count; ++row) {

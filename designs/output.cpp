@@ -126,10 +126,10 @@ std::string after(const std::string& text, const std::string& prefix) {
   return text.starts_with(prefix) ? text.substr(prefix.size()) : "";
 }
 
-const std::vector<Channel>& budget_channels(const Case& the_case) {
-  static const std::vector<Channel> plain = budget_table("", false).channels;
-  static const std::vector<Channel> with_ring = budget_table("", true).channels;
-  return the_case.pump.piston.contact ? with_ring : plain;
+std::vector<Channel> budget_channels(const Case& the_case) {
+  return budget_table("", the_case.pump.piston.contact.has_value(),
+                      the_case.pump.gear.contact == ToothContact::teeth)
+      .channels;
 }
 
 [[noreturn]] void unknown(const std::string& name, const Case& base) {

@@ -68,7 +68,8 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   }
   std::size_t next = 0;
   if (loads != nullptr) *loads = {};
-  if (budget != nullptr) *budget = budget_table("multibody", has_ring_off_b(the_case.pump));
+  if (budget != nullptr)
+    *budget = budget_table("multibody", has_ring_off_b(the_case.pump), model.has_teeth());
   if (teeth != nullptr) {
     *teeth = teeth_table("multibody");
     if (!model.has_teeth()) teeth = nullptr;

@@ -1,6 +1,7 @@
 #include "bentaxis/results/budget.h"
 
 #include <cmath>
+#include <vector>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -21,10 +22,20 @@ constexpr CauseWords kWords[kCauses] = {
     {"block_friction", "viscous friction of the block, Cc", true},
     {"shaft_friction", "viscous friction of the shaft, Cs", false},
     {"torque_factor", "proportional loss of the shaft, (1 - Ct) Td", false},
-    {"ring", "bore forces beside B, on the play of the pistons", true}};
+    {"ring", "bore forces beside B, on the play of the pistons", true},
+    {"teeth", "deformation of the teeth", false}};
 
-// Causes that a table has columns of: all, or all but the last.
-std::size_t causes_of(bool ring) { return ring ? kCauses : kCauses - 1; }
+// Causes that a table has columns of.
+std::vector<Cause> causes_of(bool ring, bool teeth) {
+  std::vector<Cause> causes;
+  for (std::size_t c = 0; c < kCauses; ++c) {
+    const auto cause = static_cast<Cause>(c);
+    if ((cause != Cause::ring || ring) && (cause != Cause::teeth || teeth)) causes.push_back(cause);
+  }
+  return causes;
+}
+
+const CauseWords& words_of(Cause cause) { return kWords[static_cast<std::size_t>(cause)]; }
 
 Channel channel_of(const std::string& name, const std::string& meaning, const std::string& unit,
                    const std::string& body, ChannelKind kind) {
@@ -39,28 +50,30 @@ Channel channel_of(const std::string& name, const std::string& meaning, const st
 
 }  // namespace
 
-const char* to_string(Cause cause) { return kWords[static_cast<std::size_t>(cause)].name; }
+const char* to_string(Cause cause) { return words_of(cause).name; }
 
 std::string drive_column(Cause cause) { return std::string("Td_") + to_string(cause) + "_Nm"; }
 std::string carrying_column(Cause cause) { return std::string("Tcs_") + to_string(cause) + "_Nm"; }
 
-ResultTable budget_table(const std::string& model, bool ring) {
-  const std::size_t causes = causes_of(ring);
+ResultTable budget_table(const std::string& model, bool ring, bool teeth) {
+  const std::vector<Cause> causes = causes_of(ring, teeth);
   ResultTable table;
   table.name = model;
   const auto add = [&](const std::string& name, const std::string& meaning, const std::string& unit,
                        const std::string& body, ChannelKind kind = ChannelKind::derived) {
     table.channels.push_back(channel_of(name, meaning, unit, body, kind));
   };
-  for (std::size_t c = 0; c < causes; ++c)
-    add(drive_column(static_cast<Cause>(c)), std::string("drive torque for ") + kWords[c].meaning,
-        "Nm", "shaft");
+  for (const Cause cause : causes)
+    add(drive_column(cause), std::string("drive torque for ") + words_of(cause).meaning, "Nm",
+        "shaft");
   add("Td_z1_Nm", "drive torque", "Nm", "shaft");
-  for (std::size_t c = 0; c < causes; ++c)
-    if (kWords[c].carries)
-      add(carrying_column(static_cast<Cause>(c)),
-          std::string("torque that carries the block round against ") + kWords[c].meaning, "Nm",
-          "block");
+  // A difference of two torques, it is known as well as these are.
+  if (teeth) table.channels[table.find(drive_column(Cause::teeth))].group = "Td_z1_Nm";
+  for (const Cause cause : causes)
+    if (words_of(cause).carries)
+      add(carrying_column(cause),
+          std::string("torque that carries the block round against ") + words_of(cause).meaning,
+          "Nm", "block");
   add("Tcs_z2_Nm", "torque that carries the block round", "Nm", "block");
   add("Fpress_z2_N", "force that presses the block onto the port plate", "N", "block");
   add("Fland_z2_N", "force of the pressure in the port-plate lands", "N", "block");
@@ -76,15 +89,18 @@ void append_budget(ResultTable& table, double theta_deg, const Budget& budget) {
   const auto add = [&](double value) { table.values.push_back(value); };
   double drive = 0;
   double carrying = 0;
-  const std::size_t causes = causes_of(table.find(drive_column(Cause::ring)) < table.columns());
-  for (std::size_t c = 0; c < causes; ++c) {
-    add(budget.drive[c]);
-    drive += budget.drive[c];
+  const auto has = [&](Cause cause) { return table.find(drive_column(cause)) < table.columns(); };
+  const std::vector<Cause> causes = causes_of(has(Cause::ring), has(Cause::teeth));
+  for (const Cause cause : causes) {
+    const double part = budget.drive[static_cast<std::size_t>(cause)];
+    add(part);
+    drive += part;
   }
   add(budget.drive_torque);
-  for (std::size_t c = 0; c < causes; ++c) {
-    if (kWords[c].carries) add(budget.carrying[c]);
-    carrying += budget.carrying[c];
+  for (const Cause cause : causes) {
+    const double part = budget.carrying[static_cast<std::size_t>(cause)];
+    if (words_of(cause).carries) add(part);
+    carrying += part;
   }
   add(budget.carrying_torque);
   add(budget.pressing);

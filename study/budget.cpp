@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include "bentaxis/pump/number.h"
@@ -29,6 +28,7 @@ constexpr CauseText kTexts[] = {
     {Cause::weight, "weight of the pistons", "stored"},
     {Cause::inertia, "inertia", "stored"},
     {Cause::ring, "bore forces beside B, on the play", "no body's"},
+    {Cause::teeth, "deformation of the teeth", "stored"},
 };
 
 // Causes that the budgets of a comparison have.
@@ -227,7 +227,7 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
 }  // namespace
 
 BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, double tolerance,
-                                 const compare::ZeroScales& scales, ToothContact contact) {
+                                 const compare::ZeroScales& scales) {
   BudgetComparison budgets;
   budgets.comparison =
       compare::compare_tables(analytic, multibody, compare::above_round_off(tolerance, scales));
@@ -247,13 +247,8 @@ BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, do
       check.unit = channel.unit;
       check.scale = compare::scale_of(*table, table->channels[table->find(whole)], scales);
       check.tolerance = tolerance;
-      const bool linear = contact != ToothContact::teeth || std::string_view(group) == "Fh";
-      const ResultTable& other = table == &analytic ? multibody : analytic;
       for (std::size_t row = 0; row < table->rows(); ++row) {
-        double value = std::abs(table->at(row, table->find(open)));
-        if (!linear)
-          value = std::min(
-              value, std::abs(table->at(row, table->find(open)) - other.at(row, other.find(open))));
+        const double value = std::abs(table->at(row, table->find(open)));
         if (value <= check.worst) continue;
         check.worst = value;
         check.theta_deg = table->theta_deg[row];

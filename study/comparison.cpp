@@ -270,7 +270,7 @@ void Maker::compare_tables() {
       r.checks.push_back(std::move(check));
   if (!analytic_budget_) return;
   r.budget = compare_budgets(std::move(*analytic_budget_), std::move(*multibody_budget_),
-                             r.tolerance, zero_scales_, r.first.the_case.pump.gear.contact);
+                             r.tolerance, zero_scales_);
   r.checks.insert(r.checks.end(), r.budget->checks.begin(), r.budget->checks.end());
 }
 
@@ -452,8 +452,7 @@ void Maker::note_multiplier_errors() {
         compare::judge_checks(other.table, zero_scales_, r.tolerance);
     if (other.budget) {
       const BudgetComparison budgets =
-          compare_budgets(r.budget->multibody, *other.budget, r.tolerance, zero_scales_,
-                          r.first.the_case.pump.gear.contact);
+          compare_budgets(r.budget->multibody, *other.budget, r.tolerance, zero_scales_);
       keep(budgets.comparison);
       checks.insert(checks.end(), budgets.checks.begin(), budgets.checks.end());
     }

@@ -261,8 +261,8 @@ TEST(MultibodyTeeth, OctoidsDifferFromInvolutesByWhereTheyTouch) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-9 * force);
 }
 
-// What each cause needs of the drive adds up to Td, though corners pass on a little more or less
-// than the block takes.
+// What each cause needs of the drive adds up to Td, though corners take a little more or less from
+// the shaft than they give the block: that goes into the teeth.
 TEST(MultibodyTeeth, BudgetAddsUp) {
   const Case the_case = teeth_case();
   multibody::Model model(the_case.pump, the_case.multibody, 1);
@@ -274,9 +274,13 @@ TEST(MultibodyTeeth, BudgetAddsUp) {
     const Instant now = turning(the_case, deg * kRadPerDegree, 157);
     model.evaluate(now, values);
     double closed = 0;
-    for (const double part : twin.evaluate(now).drive) closed += part;
+    Budget expected = twin.evaluate(now);
+    for (const double part : expected.drive) closed += part;
     EXPECT_NEAR(closed, values[model.layout().Td()], scaled(1e-9) * 300);
-    const Budget budget = model.budget();
+    Budget budget = model.budget();
+    for (std::size_t c = 0; c < kCauses; ++c)
+      EXPECT_NEAR(budget.drive[c], expected.drive[c], scaled(1e-9) * 300)
+          << to_string(static_cast<Cause>(c));
     double drive = 0, carrying = 0;
     for (const double part : budget.drive) drive += part;
     for (const double part : budget.carrying) carrying += part;
@@ -284,7 +288,9 @@ TEST(MultibodyTeeth, BudgetAddsUp) {
     EXPECT_NEAR(carrying, values[model.layout().Rcs()] * arm_of(the_case.pump.gear),
                 scaled(1e-11) * 300);
     EXPECT_NEAR(budget.carrying_torque, carrying, scaled(1e-11) * 300);
-    lost = std::max(lost, std::abs(model.teeth().moment[2] - carrying));
+    const double into_teeth = model.teeth().moment[2] - carrying;
+    EXPECT_NEAR(budget.drive_of(Cause::teeth), into_teeth, scaled(1e-11) * 300);
+    lost = std::max(lost, std::abs(into_teeth));
   }
   EXPECT_GT(lost, 1e-5);
 }

@@ -55,14 +55,9 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
   SimTK::Vector_<Vec3> particles;
   Vector mobilities;
   // The gear passes on to the shaft what the block needs; an imposed motion supplies it.
-  double passed_on = 1;
-  if (pump.bevel() != nullptr) {
-    const double on_block = pump.bevel_torque_on_block(state);
-    if (on_block != 0) passed_on = -pump.bevel_torque_on_shaft(state) / on_block;
-  }
   const auto put = [&](Cause cause, double on_shaft, double on_block) {
     budget.carrying_of(cause) = on_block;
-    budget.drive_of(cause) = pump.has_gear() ? on_shaft + passed_on * on_block : on_shaft;
+    budget.drive_of(cause) = pump.has_gear() ? on_shaft + on_block : on_shaft;
   };
   const auto along_axis = [&] { return dot(z2, forces[bodies.block.getMobilizedBodyIndex()][1]); };
   const auto put_forces = [&](Cause cause) {
@@ -119,6 +114,8 @@ Budget budget_of(PumpSystem& pump, Placement& placement, const Reactions& reacti
   budget.pressing += along_axis();
   if (pump.bevel() != nullptr) {
     budget.carrying_torque = reactions.tooth * pump.gear().arm();
+    // At one speed of shaft and block: what goes into the teeth and does not come out of them.
+    budget.drive_of(Cause::teeth) = -pump.bevel_torque_on_shaft(state) - budget.carrying_torque;
     budget.pressing += dot(z2, vector_of(pump.bevel()->action(state).force));
   } else if (pump.has_gear()) {
     const GearMesh& gear = pump.gear();

@@ -25,6 +25,8 @@ class BudgetModel {
 
   /// Whether the bore forces do work, so that Cause::ring is not 0.
   bool has_ring() const;
+  /// Whether the teeth are resolved, so that there is Cause::teeth.
+  bool has_teeth() const;
 
   /// @throws InputError as Model::reactions() does
   Budget evaluate(const Instant& instant);

@@ -22,8 +22,9 @@ enum class Cause {
   shaft_friction,   ///< Cs
   torque_factor,    ///< (1 - Ct) Td
   ring,             ///< bore forces that do not act at B, on the play between piston and bore
+  teeth,            ///< resolved teeth: what their deformation stores and gives back
 };
-inline constexpr std::size_t kCauses = 8;
+inline constexpr std::size_t kCauses = 9;
 
 /// "pressure", "piston_friction", ..: in the names of columns.
 const char* to_string(Cause cause);
@@ -48,8 +49,9 @@ struct Budget {
 /// Budgets of a run as a table: Td_CAUSE_Nm of each cause and Td_z1_Nm; Tcs_CAUSE_Nm and Tcs_z2_Nm;
 /// Fpress_z2_N, Fland_z2_N; and what must vanish: both torques and the forces of the block less the
 /// sum of their parts.
-/// @param ring  whether the bore forces do work: without it the table has no columns of Cause::ring
-ResultTable budget_table(const std::string& model, bool ring = false);
+/// @param ring   whether the bore forces do work: without it the table has no columns of Cause::ring
+/// @param teeth  whether the teeth are resolved: likewise for Cause::teeth
+ResultTable budget_table(const std::string& model, bool ring = false, bool teeth = false);
 /// Adds the row of an instant.
 /// @throws ComputationError where a value is not finite
 void append_budget(ResultTable& table, double theta_deg, const Budget& budget);

@@ -21,12 +21,8 @@ struct BudgetComparison {
 
 /// Compares each line with its own peak; what is round-off of the case's loads counts as nothing.
 /// Checks are over the peak of what the parts must add up to.
-/// @param contact  resolved tooth contact under one load alone is not that under all loads: the
-/// parts
-///                 then need not add up, but what is left must be the same in both models
 BudgetComparison compare_budgets(ResultTable analytic, ResultTable multibody, double tolerance,
-                                 const compare::ZeroScales& scales,
-                                 ToothContact contact = ToothContact::rigid);
+                                 const compare::ZeroScales& scales);
 
 /// Marks the lines that differ as explained where a split of the budgets by assumption leaves no
 /// more than its tolerance.
