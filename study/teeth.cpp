@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bentaxis/analytic/teeth.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/teeth.h"
@@ -127,6 +128,43 @@ ResultTable point_errors(ResultTable& first, ResultTable& second, double round_o
   return errors;
 }
 
+// How far the lag of every row may be off, urad and um: by what it moves where the torque on the
+// block changes by the round-off of a tooth force. Where nearly no torque is carried, that is from
+// one flank to the other.
+void add_lag_errors(ResultTable& errors, const ResultTable& table,
+                    const analytic::BevelTeeth& teeth, const Gear& gear, double round_off) {
+  constexpr double kLeastTorque = 2e-9;  // Nm: BevelTeeth::rest() takes less for none
+  const double radius = gear.pitch_diameter / 2;
+  const double change = std::max(round_off * radius, kLeastTorque);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    std::array<double, 3> moment = {};
+    for (const PairColumns& pair : pairs_of(table)) {
+      const double force = table.at(row, pair.force);
+      if (!(force > 0)) continue;
+      std::array<double, 6> at = {};  // point, mm, and direction
+      for (std::size_t i = 0; i < at.size(); ++i) at[i] = table.at(row, pair.point + i);
+      for (std::size_t i = 0; i < 3; ++i)
+        moment[i] +=
+            1e-3 * force *
+            (at[(i + 1) % 3] * at[3 + (i + 2) % 3] - at[(i + 2) % 3] * at[3 + (i + 1) % 3]);
+    }
+    const double torque = teeth.about_block_axis(moment);
+    const std::size_t lag = table.find("lag_urad");
+    double error = 0;  // rad
+    for (const double side : {-1, 1}) {
+      try {
+        const ToothLag moved = teeth.rest(radians(table.theta_deg[row]), torque + side * change);
+        error = std::max(error, std::abs(moved.angle - 1e-6 * table.at(row, lag)));
+      } catch (const ComputationError&) {
+        // So much torque is more than the teeth can carry.
+      }
+    }
+    errors.values[row * errors.columns() + lag] = 1e6 * error;
+    errors.values[row * errors.columns() + errors.find("transmission_error_um")] =
+        1e6 * error * radius * std::cos(gear.pressure_angle);
+  }
+}
+
 }  // namespace
 
 TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, double tolerance,
@@ -142,8 +180,8 @@ TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, doubl
   compare::Options options = compare::above_round_off(tolerance, scales);
   ResultTable first = analytic, second = multibody;
   const double round_off = tolerance * compare::kLeastScale * scales["N"];
-  const ResultTable errors =
-      point_errors(first, second, round_off, 1e3 * pump.gear.teeth->face_width);
+  ResultTable errors = point_errors(first, second, round_off, 1e3 * pump.gear.teeth->face_width);
+  add_lag_errors(errors, analytic, shape, pump.gear, round_off);
   options.uncertainty = &errors;
   teeth.comparison = compare::compare_tables(first, second, options);
   // Forces tell, pair by pair; the share of a force that vanishes is round-off over round-off.
