@@ -18,8 +18,9 @@ compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
   // The power of a piston's loads at its spin, over omega: round-off of the loads is multiplied by
   // spin over omega there.
   double power = scale.moment;
+  constexpr double kOperations = 16;  // whose round-off adds up
   if (the_case.pump.piston.real && samples.omega != 0)
-    power *= std::max(1.0, std::numeric_limits<double>::epsilon() / kDrivenTolerance *
+    power *= std::max(1.0, kOperations * std::numeric_limits<double>::epsilon() / kDrivenTolerance *
                                std::abs(the_case.pump.piston.real->spin / samples.omega));
   return {
       {"N", scale.force}, {"Nm", scale.moment}, {"mm", radius * 1e3}, {"power_residual", power}};

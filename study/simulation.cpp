@@ -577,8 +577,8 @@ class Study {
       const ResultTable& table = t.table.results;
       constexpr double kLeastTurn = 1e-6;
       constexpr double kLeastWork = 1e-12;  // J: nor is there a torque
-      // Energy that goes to and fro between bodies leaves its round-off too.
-      const double kinetic = compare::kLeastScale * kinetic_energy(r_.ready.the_case, t);
+      // A speed that is off by some share of itself leaves twice that share of the kinetic energy.
+      const double kinetic = kinetic_energy(r_.ready.the_case, t);
       const double work =
           std::max({kinetic, std::abs(record.work_of_loads), std::abs(record.work_of_drives),
                     std::abs(record.kinetic_energy_gained),
