@@ -191,7 +191,16 @@ void Equations::set_pressures(double block_angle) {
     instant_.chamber_pressure[k] = pressure_(piston_angle_deg(psi_deg, k + 1, pistons));
 }
 
-void Equations::at_own_angle(double time, const State& y) { set_pressures(block_angle(time, y)); }
+void Equations::at_own_angle(double time, const State& y) {
+  const double psi = block_angle(time, y);
+  const bool on_edge = std::min(psi - from_angle, to_angle - psi) <= kAtEdge;
+  set_pressures(on_edge ? a_hair_within(psi) : psi);
+}
+
+double Equations::a_hair_within(double angle) const {
+  constexpr double kHair = 1e-10;
+  return std::clamp(angle, from_angle + kHair, std::max(to_angle - kHair, from_angle + kHair));
+}
 
 double Equations::motor_torque(double rotor_speed) const {
   return curve_ ? curve_->value(rotor_speed)
@@ -213,10 +222,7 @@ double Equations::flank_force(double approach, double rate) const {
 
 Motion Equations::motion(double time, const State& y) {
   set_speeds(time, y);
-  // A hair within: at an edge the pressure is that of this side.
-  constexpr double kHair = 1e-10;
-  set_pressures(std::clamp(instant_.block.angle, from_angle + kHair,
-                           std::max(to_angle - kHair, from_angle + kHair)));
+  set_pressures(a_hair_within(instant_.block.angle));
   return accelerate(time, y);
 }
 

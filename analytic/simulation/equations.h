@@ -56,6 +56,8 @@ class Equations {
   // The piece of the motion that rates() follows.
   Teeth teeth;
   double from_angle = 0, to_angle = 0;  ///< rad, of psi: pressures are those of this interval
+  /// rad: so near to an end of the interval the block stands on it, but for rounding.
+  static constexpr double kAtEdge = 1e-12;
 
   /// Approach of a flank that is compliant, m, and its rate.
   double approach(const State& y, int flank) const {
@@ -103,6 +105,8 @@ class Equations {
   Teeth teeth_at(const State& y) const;
   void set_speeds(double time, const State& y);
   void set_pressures(double block_angle);
+  // At an edge the pressure is that of the interval's side.
+  double a_hair_within(double block_angle) const;
   void find_tooth_force(const State& y, Motion& m);
   double drive_torque_at(double time, const State& y) const;
   double spring_force(double approach) const;

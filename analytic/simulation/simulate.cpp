@@ -169,15 +169,18 @@ class Simulation {
     const double within = angle - 360 * turn_;
     edge_ = std::upper_bound(edges_deg_.begin(), edges_deg_.end(), within) - edges_deg_.begin();
     set_piece();
-    if (radians(edge_deg(edge_ - 1)) == equations_.block_angle(time_, y_)) {
-      State dy;
-      equations_.rates(time_, y_, dy);
-      const Motion m = equations_.motion(time_, y_);
-      if (m.block.speed < 0 || (m.block.speed == 0 && m.block.acceleration < 0)) {
-        --edge_;
-        set_piece();
-      }
-    }
+    // On an edge, but for the rounding of both: the interval is that which the block enters.
+    const double psi = equations_.block_angle(time_, y_);
+    const bool above = psi - equations_.from_angle <= Equations::kAtEdge;
+    const bool below = equations_.to_angle - psi <= Equations::kAtEdge;
+    if (!above && !below) return;
+    State dy;
+    equations_.rates(time_, y_, dy);
+    const Motion m = equations_.motion(time_, y_);
+    const bool back = m.block.speed < 0 || (m.block.speed == 0 && m.block.acceleration < 0);
+    if (back != above) return;
+    edge_ += back ? -1 : 1;
+    set_piece();
   }
 
   double edge_deg(std::ptrdiff_t index) const {
