@@ -80,6 +80,15 @@ Evaluation Evaluator::evaluate(std::span<const double> values) const {
   return result;
 }
 
+std::vector<double> Evaluator::outputs_at(std::span<const double> values) const {
+  std::vector<double> results(outputs().size());
+  auto scratch = implementation_->idle.take([&] { return implementation_->fresh(); });
+  family().make(values, scratch->the_case);
+  implementation_->find(*scratch, results);
+  implementation_->idle.give_back(std::move(scratch));
+  return results;
+}
+
 void Evaluator::evaluate(std::size_t count, std::span<const double> values,
                          std::span<double> results, std::span<std::string> reasons) const {
   const std::size_t n = family().variables().size(), m = outputs().size();

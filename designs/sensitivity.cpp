@@ -460,11 +460,10 @@ Sensitivities begin(const Case& base, const std::vector<Variable>& variables,
       output.statistic = Statistic::peak;
     all.push_back(output);
   }
-  const Evaluation found = Evaluator(Family(base, {}), all, model).evaluate({});
-  if (!found.feasible()) throw InputError(found.reason);
-  const auto half = found.values.begin() + static_cast<std::ptrdiff_t>(outputs.size());
-  s.values.assign(found.values.begin(), half);
-  s.scales.assign(half, found.values.end());
+  const std::vector<double> found = Evaluator(Family(base, {}), all, model).outputs_at({});
+  const auto half = found.begin() + static_cast<std::ptrdiff_t>(outputs.size());
+  s.values.assign(found.begin(), half);
+  s.scales.assign(half, found.end());
   for (double& scale : s.scales) scale = std::abs(scale);
   for (std::size_t o = 0; o < outputs.size(); ++o)
     s.derivatives.emplace_back(variables.size(), Derivative{not_computed()});

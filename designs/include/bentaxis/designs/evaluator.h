@@ -43,6 +43,11 @@ class Evaluator {
   /// refused for, and a computation that fails, is its reason, never an exception.
   Evaluation evaluate(std::span<const double> values) const;
 
+  /// The outputs alone.
+  /// @throws InputError where the case is refused
+  /// @throws ComputationError where the computation fails
+  std::vector<double> outputs_at(std::span<const double> values) const;
+
   /// The same of `count` designs, by the calling thread: faster than one by one.
   /// @param values   count x variables, row by row
   /// @param results  count x outputs, row by row
