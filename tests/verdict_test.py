@@ -140,6 +140,26 @@ class Verdicts(unittest.TestCase):
         self.check("sweep/yes", 0, [*sweep, "--check", "100%"])
         self.check("sweep/no", 1, [*sweep, "--check", "100%", "--set", "bearings.cylindrical_z_mm=-26.001"])
 
+    def test_life(self):
+        life = ["life", REPO / "cases/bap63_bearing_life.toml", *FEW]
+        self.check("life/yes", 0, life, "h at 1500 rpm")
+        self.check("life/no", 1, [*life, "--set", "assumptions.multibody.piston_friction=false"])
+
+    def test_sensitivity(self):
+        sensitivity = ["sensitivity", self.case, *FEW]
+        self.check("sensitivity/unchecked", 0, sensitivity)
+        self.check("sensitivity/yes", 0, [*sensitivity, "--check"])
+        self.check("sensitivity/no", 1, [*sensitivity, "--check", "--set", "bearings.cylindrical_z_mm=-26.01"])
+        # A computation that fails is no wrong input.
+        done = run(*sensitivity, "--check", "--set", "bearings.cylindrical_z_mm=-26.001", "--out", self.folder / "fails")
+        self.assertEqual(done.returncode, 3, done.stderr)
+
+    def test_rattle(self):
+        rattle = ["rattle", REPO / "cases/bap63_tooth_rattle.toml", "--speeds", "500:1500:#2", "--delivery-bar", "100:200:#2", "--check", "2",
+                  "--turns", "2", "--discard", "2"]
+        self.check("rattle/yes", 0, rattle)
+        self.check("rattle/no", 1, [*rattle, "--set", "assumptions.multibody.piston_friction=false"])
+
     def test_pressure(self):
         numbers = REPO / "reference_data/published/bap63/numbers.toml"
         case = REPO / "cases/bap63_rated_hydraulic.toml"

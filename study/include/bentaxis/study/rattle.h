@@ -77,7 +77,7 @@ struct RattleCheck {
   int parts = 0;                        ///< of turns, kPartsOfTurn each, that were computed
   int judged = 0;                       ///< of them, until a disturbance has grown too much
   double growth = 1;                    ///< of a disturbance, within what is judged
-  double difference = 0;                ///< of the largest force, of it, within what is judged
+  double difference = 0;                ///< of the largest force, of the larger, within what is judged
   double allowed = 0;                   ///< likewise
   RattleClass analytic{}, multibody{};  ///< within what is judged
   RattleClass analytic_whole{}, multibody_whole{};     ///< over all
