@@ -10,12 +10,12 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/plausibility.h"
+#include "row_major.h"
 
 namespace bentaxis::designs {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Index = Eigen::Index;
 
 // A direction of the unknowns in which the data are weaker than this share of what bounds say is

@@ -5,6 +5,7 @@
 #include "bentaxis/designs/identify.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/in_threads.h"
+#include "row_major.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -181,7 +182,6 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
     const auto n = static_cast<Eigen::Index>(model.size());
     std::vector<double> slopes(datum.size() * model.size());
     if (!derivatives_of(number, refit.x, slopes)) return;
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const Eigen::Map<const RowMajor> jacobian(refit.jacobian.data(),
                                               static_cast<Eigen::Index>(refit.residuals.size()), n);
     const Eigen::LDLT<Eigen::MatrixXd> information(jacobian.transpose() * jacobian);

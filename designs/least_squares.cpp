@@ -8,6 +8,7 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/in_threads.h"
+#include "row_major.h"
 
 #ifdef BENTAXIS_HAS_CERES
 #include <ceres/ceres.h>
@@ -16,8 +17,6 @@
 
 namespace bentaxis::designs {
 namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Of the longest column: what is shorter is the error of derivatives by differences.
 constexpr double kRank = 1e-9;
