@@ -28,7 +28,7 @@ void add_gear_arm(const PumpParameters& pump, const Assumptions& assumptions,
   if (assumptions.gear == BlockDrive::imposed) return;
   const double loss = std::numeric_limits<double>::epsilon() *
                       (1 + std::abs(pump.geometry.axis_offset) / (pump.gear.pitch_diameter / 2));
-  for (const char* group : {"Rcs", "Rcn", "Fh", "Th", "Rb1", "Rb2"}) {
+  for (const char* group : {"Rcs", "Rcn", "Fh", "Th", "Rb1", "Rb2", "Td"}) {
     const auto known = groups.find(group);
     if (known != groups.end()) known->second = std::max(known->second, loss);
   }
