@@ -619,7 +619,7 @@ TEST_F(MatlabFileTest, AreRefusedAtEveryLengthButTheEndOfAVariable) {
                                                                       {"structure.mat", 3},
                                                                       {"version_4.mat", 0},
                                                                       {"version_7_3.mat", 0}}) {
-    const std::string content = content_of("fuzz/corpus/mat/" + name);
+    const std::string content = content_of("tests/fuzz/corpus/mat/" + name);
     EXPECT_EQ(refusal(content), "") << name;
     const auto ends = ends_of_variables(content);
     std::size_t read = 0;
@@ -633,20 +633,20 @@ TEST_F(MatlabFileTest, AreRefusedAtEveryLengthButTheEndOfAVariable) {
 }
 
 TEST_F(MatlabFileTest, SayWhatIsMissing) {
-  const std::string five = content_of("fuzz/corpus/mat/plain_5.mat");
+  const std::string five = content_of("tests/fuzz/corpus/mat/plain_5.mat");
   EXPECT_THAT(
       refusal(five.substr(0, five.size() - 1)),
       AllOf(HasSubstr("record.mat: is a truncated MATLAB file: "), HasSubstr("variable 3 takes")));
-  const std::string four = content_of("fuzz/corpus/mat/version_4.mat");
+  const std::string four = content_of("tests/fuzz/corpus/mat/version_4.mat");
   EXPECT_THAT(refusal(four.substr(0, four.size() - 1)), HasSubstr("variable 2 takes"));
-  const std::string seven = content_of("fuzz/corpus/mat/version_7_3.mat");
+  const std::string seven = content_of("tests/fuzz/corpus/mat/version_7_3.mat");
   EXPECT_THAT(refusal(seven.substr(0, seven.size() - 1)),
               HasSubstr("the file by its own count takes " + std::to_string(seven.size())));
 }
 
 // More values than there are, by the dimensions alone: the file has the length that it says.
 TEST_F(MatlabFileTest, HaveAsManyValuesAsTheirDimensionsSay) {
-  std::string content = content_of("fuzz/corpus/mat/plain_5.mat");
+  std::string content = content_of("tests/fuzz/corpus/mat/plain_5.mat");
   const std::size_t dimensions = 128 + 8 + 16 + 8;
   for (const char columns : {'\x0b', '\x0d', '\x78'}) {  // 12 values are there
     content[dimensions + 4] = columns;

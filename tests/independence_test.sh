@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fails if one model links the other, or reaches into its folder past the include path, or what couples them knows one. That a target finds
-# no headers but those of what it links is the build's doing (cmake/BentaxisTarget.cmake).
+# no headers but those of what it links is the build's doing (scripts/cmake/BentaxisTarget.cmake).
 # usage: independence_test.sh SOURCE_DIR ANALYTIC_LIBRARY MULTIBODY_LIBRARY
 set -euo pipefail
 source_dir=$1 analytic=$2 multibody=$3

@@ -8,7 +8,7 @@ import sys
 import bentaxis
 from support import REPO, ModuleTest, main
 
-STUB = REPO / "python/bentaxis/__init__.pyi"
+STUB = REPO / "interfaces/python/bentaxis/__init__.pyi"
 
 
 def of(cls):

@@ -31,7 +31,7 @@ function(bentaxis_target name standard)
   endif()
 endfunction()
 
-# A room is a folder of the top level: include/bentaxis/ROOM/ is what others see (and what is
+# A module is a folder: include/bentaxis/ROOM/ is what others see (and what is
 # installed), everything beside it is the room's own. A target finds the headers of what it links and no
 # others, so that what is not in target_link_libraries cannot be included.
 #   bentaxis_library(<room> STANDARD <17|20> SOURCES ...)
@@ -54,7 +54,7 @@ function(bentaxis_library room)
 endfunction()
 
 # A source that uses SUNDIALS, as an object with SUNDIALS joined to it statically and out of sight
-# (cmake/isolate.cmake says why). It sees bentaxis::results and the headers of its room.
+# (scripts/cmake/isolate.cmake says why). It sees bentaxis::results and the headers of its room.
 #   bentaxis_with_sundials(<target> <source> <variable that receives the object>)
 function(bentaxis_with_sundials name source variable)
   set(sundials SUNDIALS::cvodes_static SUNDIALS::nvecserial_static SUNDIALS::sunmatrixdense_static
@@ -72,8 +72,8 @@ function(bentaxis_with_sundials name source variable)
     OUTPUT ${isolated}
     COMMAND ${CMAKE_COMMAND} -DOUTPUT=${isolated} -DARCHIVE=$<TARGET_FILE:${name}>
       "-DLIBRARIES=${archives}" -DLINKER=${CMAKE_LINKER} -DNM=${CMAKE_NM} -DOBJCOPY=${CMAKE_OBJCOPY}
-      -P ${PROJECT_SOURCE_DIR}/cmake/isolate.cmake
-    DEPENDS ${name} ${PROJECT_SOURCE_DIR}/cmake/isolate.cmake
+      -P ${PROJECT_SOURCE_DIR}/scripts/cmake/isolate.cmake
+    DEPENDS ${name} ${PROJECT_SOURCE_DIR}/scripts/cmake/isolate.cmake
     COMMENT "Hiding SUNDIALS from Simbody" VERBATIM)
   set_source_files_properties(${isolated} PROPERTIES EXTERNAL_OBJECT TRUE GENERATED TRUE)
   set(${variable} ${isolated} PARENT_SCOPE)

@@ -1,5 +1,5 @@
 # Writes files as string constants: -DOUTPUT=file.cpp -DFILES=a;b -DHEADER=declares.h -DROOM=report -DFUNCTION=page_parts.
-set(text "// Made by cmake/embed.cmake.\n#include \"${HEADER}\"\n")
+set(text "// Made by scripts/cmake/embed.cmake.\n#include \"${HEADER}\"\n")
 string(APPEND text "namespace bentaxis::${ROOM} {\nconst std::map<std::string, std::string>& ${FUNCTION}() {\n")
 string(APPEND text "  static const std::map<std::string, std::string> parts = {\n")
 foreach(file IN LISTS FILES)

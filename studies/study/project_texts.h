@@ -1,4 +1,4 @@
-// The texts of study/project/, made by cmake/embed.cmake. Internal.
+// The texts of study/project/, made by scripts/cmake/embed.cmake. Internal.
 #pragma once
 
 #include <map>
