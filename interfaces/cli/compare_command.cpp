@@ -1,7 +1,7 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/designs/validation.h"
+#include "bentaxis/designs/validation_section.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/comparison.h"

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "bentaxis/pump/error.h"
-#include "bentaxis/study/fig34.h"
+#include "bentaxis/study/fig34_document.h"
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/study/failed_points.h"
 #include "bentaxis/study/inertia_document.h"
 #include "bentaxis/study/published_section.h"
 #include "commands.h"

@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "bentaxis/study/run.h"
-#include "bentaxis/study/tradeoff_study.h"
+#include "bentaxis/study/tradeoff_document.h"
 #include "commands.h"
 #include "console.h"
 #include "options.h"

@@ -34,23 +34,44 @@ endfunction()
 # A module is a folder: include/bentaxis/ROOM/ is what others see (and what is
 # installed), everything beside it is the room's own. A target finds the headers of what it links and no
 # others, so that what is not in target_link_libraries cannot be included.
-#   bentaxis_library(<room> STANDARD <17|20> SOURCES ...)
+#   bentaxis_library(<module> STANDARD <17|20> [FOLDERS <folder>..] SOURCES ...)    folders: where it lies in several
 function(bentaxis_library room)
-  cmake_parse_arguments(ARG "" "STANDARD" "SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "" "STANDARD" "SOURCES;FOLDERS" ${ARGN})
   set(name bentaxis_${room})
   add_library(${name} STATIC ${ARG_SOURCES})
   add_library(bentaxis::${room} ALIAS ${name})
   set_target_properties(${name} PROPERTIES EXPORT_NAME ${room})
   bentaxis_target(${name} ${ARG_STANDARD})
-  target_include_directories(${name}
-    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  if(NOT ARG_FOLDERS)
+    set(ARG_FOLDERS .)
+  endif()
+  foreach(folder IN LISTS ARG_FOLDERS)
+    cmake_path(ABSOLUTE_PATH folder NORMALIZE)
+    cmake_path(APPEND folder include OUTPUT_VARIABLE headers)
+    target_include_directories(${name}
+      PUBLIC $<BUILD_INTERFACE:${headers}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+      PRIVATE ${folder})
+    install(DIRECTORY ${headers}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+  endforeach()
   # A component of find_package(bentaxis) of its own.
   install(TARGETS ${name} EXPORT bentaxis_${room} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT bentaxis_${room} NAMESPACE bentaxis:: FILE bentaxis-${room}.cmake
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/bentaxis)
   set_property(GLOBAL APPEND PROPERTY BENTAXIS_ROOMS ${room})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+endfunction()
+
+# Several modules under one name: what programs written for 1.0.0 link.
+#   bentaxis_umbrella(<name> <target>..)
+function(bentaxis_umbrella room)
+  set(name bentaxis_${room})
+  add_library(${name} INTERFACE)
+  add_library(bentaxis::${room} ALIAS ${name})
+  set_target_properties(${name} PROPERTIES EXPORT_NAME ${room})
+  target_link_libraries(${name} INTERFACE ${ARGN})
+  install(TARGETS ${name} EXPORT bentaxis_${room})
+  install(EXPORT bentaxis_${room} NAMESPACE bentaxis:: FILE bentaxis-${room}.cmake
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/bentaxis)
+  set_property(GLOBAL APPEND PROPERTY BENTAXIS_ROOMS ${room})
 endfunction()
 
 # A source that uses SUNDIALS, as an object with SUNDIALS joined to it statically and out of sight

@@ -9,7 +9,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 check() { mypy --strict --python-executable /usr/bin/python3 --cache-dir "$scratch/cache" "$@"; }
-check "$sources/python/bentaxis/__init__.pyi"
+check "$sources/interfaces/python/bentaxis/__init__.pyi"
 
 cat > right.py << 'END'
 import bentaxis
@@ -33,7 +33,7 @@ case: int = bentaxis.read_case("case.toml")
 bentaxis.run(case, channels=3)
 bentaxis.run(bentaxis.read_case("case.toml")).torque
 END
-export MYPYPATH=$sources/python
+export MYPYPATH=$sources/interfaces/python
 check right.py
 if check wrong.py > said; then echo "nothing is said of wrong types"; exit 1; fi
 for line in 3 4 5; do grep -q "^wrong.py:$line: error" said || { cat said; exit 1; }; done

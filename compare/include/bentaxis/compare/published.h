@@ -164,4 +164,10 @@ PublishedSection judge_published(
         run,
     const std::string& study = "");
 
+/// Where the results stand against printed numbers.
+struct PublishedTable {
+  std::string text;
+  PublishedSection section;
+};
+
 }  // namespace bentaxis::compare

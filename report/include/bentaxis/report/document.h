@@ -15,12 +15,16 @@
 #include "bentaxis/pump/case.h"
 #include "bentaxis/report/curves.h"
 #include "bentaxis/report/scene.h"
+#include "bentaxis/results/remarks.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::report {
 
-/// Names and values of a short list of facts, in the order in which they are shown.
-using Lines = std::vector<std::pair<std::string, std::string>>;
+using bentaxis::AssumptionRow;
+using bentaxis::Lines;
+using bentaxis::TimingRow;
+using bentaxis::Warning;
+using compare::PublishedTable;
 
 // ---- Tables of the section "runs"
 
@@ -324,10 +328,6 @@ struct PlausibilitySection {
   std::vector<DoubtRow> warnings, meant;
 };
 
-struct Warning {
-  std::string name, text;
-};
-
 /// An input that both models share.
 struct CommonInput {
   std::string input, value, caught_by;
@@ -340,20 +340,6 @@ struct ValidityRow {
   double violated_share = 0, worst = 0, theta_deg = 0;
 };
 
-/// What the timing of the ports does, against its limit.
-struct TimingRow {
-  std::string code, quantity;
-  double value = 0;
-  std::string unit;
-  std::optional<double> limit = std::nullopt;
-  bool flagged = false;                                ///< beyond the limit
-  std::optional<double> theta_deg = std::nullopt;      ///< chamber angle of the value
-  std::vector<std::pair<double, double>> angles = {};  ///< stretches of chamber angles it is about
-  std::string meant = {};  ///< why it is beyond, where the case says so, or ""
-  std::string text = {};
-  std::string bound = {};  ///< "> 12000": what is known of a value that was not found
-};
-
 /// How a table was obtained.
 struct ModelSection {
   std::string name;
@@ -364,19 +350,10 @@ struct ModelSection {
 ModelSection model_of(const ResultTable& table, const Lines& assumptions);
 
 /// Contribution of each differing assumption to each channel.
-struct AssumptionRow {
-  std::string name, first, second;  ///< the assumption, its value in either model
-};
 struct AssumptionSplit {
   std::string text;
   std::vector<AssumptionRow> rows;
   compare::Split split;
-};
-
-/// Where the results stand against printed numbers.
-struct PublishedTable {
-  std::string text;
-  compare::PublishedSection section;
 };
 
 /// Torque and power by cause, efficiencies and the block's balance. Values are one per model.

@@ -1,0 +1,261 @@
+#include "bentaxis/study/comparison_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/study/reference_curves.h"
+#include "bentaxis/study/budget_section.h"
+#include "bentaxis/study/teeth_section.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/report/text.h"
+#include "bentaxis/study/calibration.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/force_figures.h"
+#include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/pump_scene.h"
+#include "bentaxis/study/regression_document.h"
+#include "bentaxis/study/timing.h"
+#include "comparison_figures.h"
+#include "hydraulic_sections.h"
+#include "key_figures.h"
+
+namespace bentaxis::study {
+namespace {
+
+report::Verdict verdict_of(const ComparisonResult& r) {
+  report::Verdict verdict{r.passes(), r.headline()};
+  if (r.with) {
+    verdict.models_agree = r.agrees();
+    if (r.agrees() && !r.passes()) {
+      verdict.word = "Reference differs";
+      verdict.headline += fmt::format(" They differ from {}: {}", r.with->name, held_text(*r.with));
+    }
+  }
+  if (const auto cause = r.cause())
+    verdict.cause = {cause->text, cause->round_off, cause->over_scale};
+  verdict.tolerance = r.tolerance;
+  verdict.compared = r.comparison.compared();
+  verdict.checks_hold = r.checks_hold();
+  if (const auto* worst = r.comparison.worst()) {
+    verdict.digits = worst->digits;
+    verdict.worst = {worst->channel.name, worst->largest_over_peak(), worst->theta_of_largest_deg};
+  }
+  if (r.split) {
+    if (verdict.word.empty()) verdict.word = r.agrees() ? "Explained" : "Not explained";
+    verdict.rest_over_peak = r.split->largest_rest();
+    verdict.rest_tolerance = r.split->tolerance;
+  }
+  return verdict;
+}
+
+report::KeyFigures key_figures_of(const ComparisonResult& r, const report::Document& document) {
+  report::KeyFigures key{
+      {r.analytic.name, r.multibody.name}, "deg", turn_figures({&r.analytic, &r.multibody})};
+  const auto add = [&](report::KeyFigures::Row row) { key.rows.push_back(std::move(row)); };
+  if (document.budget)
+    for (const auto& line : document.budget->efficiency)
+      if ((line.name == "hydraulic-mechanical" || line.name == "total") &&
+          is_computed(line.values.front()))
+        add(key_row(line.name + " efficiency", "", line.unit, line.values));
+  if (r.first.hydraulics)
+    for (auto& row : oil_figures(r.first.hydraulics->summary, key.models.size()))
+      add(std::move(row));
+  return key;
+}
+
+report::Section integration_section(const ComparisonResult& r) {
+  report::Section section;
+  section.title = "Integrated run and torque-driven run";
+  section.text = fmt::format(
+      "Integrator {}, {} revolution(s). Errors are the largest difference from the analytic model "
+      "over the peak. In the torque-driven run the shaft is free and fed the analytic Td; its "
+      "speed "
+      "error is relative to omega. Facts are of the last accuracy.",
+      name_of(r.options.integration.integrator), r.second.the_case.operation.revolutions);
+  section.table.columns = {"accuracy asked",
+                           "error Rs",
+                           "error Rc",
+                           "error Rb",
+                           "error Rcs",
+                           "error Td",
+                           "constraint error, m",
+                           "constraint rate error, m/s",
+                           "gear phase, deg",
+                           "work lost, J",
+                           "torque-driven speed error",
+                           "steps",
+                           "evaluations"};
+  for (const IntegrationRow& row : r.integrations)
+    section.table.rows.push_back({row.accuracy, row.rs, row.rc, row.bearings, row.rcs, row.td,
+                                  row.record.whole.position_error, row.record.whole.velocity_error,
+                                  row.record.whole.gear_phase / kRadPerDegree,
+                                  row.record.whole.work_residual, row.torque_driven_speed_error,
+                                  row.record.steps, row.record.evaluations});
+  const multibody::IntegrationRecord& last = r.integrations.back().record;
+  section.facts = {{"gear phase, worst (block minus shaft)",
+                    fmt::format("{:.2e} deg", last.whole.gear_phase / kRadPerDegree)},
+                   {"shaft angle against omega t, worst",
+                    fmt::format("{:.2e} deg", last.whole.shaft_angle / kRadPerDegree)},
+                   {"work of loads", fmt::format("{:.6g} J", last.work_of_loads)},
+                   {"work of the drive", fmt::format("{:.6g} J", last.work_of_drives)},
+                   {"kinetic energy gained", fmt::format("{:.3g} J", last.kinetic_energy_gained)},
+                   {"work unaccounted for", fmt::format("{:.3g} J", last.whole.work_residual)}};
+  if (!r.choice.empty()) section.facts.emplace_back("chosen", r.choice);
+  return section;
+}
+
+report::Section rounding_section(const std::vector<RoundingLine>& lines) {
+  report::Section section;
+  section.title = "What rounding leaves of the digits";
+  section.text =
+      "First-order estimate of the analytic model: the effect of one unit in the last place of "
+      "every input, and of rounding every operation the other way; shares of the reaction's peak.";
+  section.table.columns = {"reaction",    "inputs",        "arithmetic",
+                           "digits left", "weakest input", "at, deg"};
+  for (const RoundingLine& line : lines)
+    section.table.rows.push_back({line.group, line.inputs, line.arithmetic,
+                                  std::round(-10 * std::log10(std::max(line.total(), 1e-16))) / 10,
+                                  line.input, line.theta_deg});
+  return section;
+}
+
+// The verdict on a reference, its source, and what it says of each figure's reactions.
+void add_reference(report::Document& document, const Outcome& outcome) {
+  document.verdict->reference = {outcome.name, held_text(outcome),
+                                 outcome.state == Outcome::State::agrees};
+  report::Section section = source_section(outcome);
+  section.table = lines_table({outcome});
+  document.runs->insert(document.runs->begin(), std::move(section));
+  for (report::Figure& figure : *document.figures) {
+    const auto* content = std::get_if<report::ChannelFigure>(&figure.content);
+    if (content == nullptr) continue;
+    for (const GroupLine& line : outcome.lines) {
+      const bool shown =
+          &line == outcome.worst_line(line.group) &&
+          std::any_of(line.channels.begin(), line.channels.end(), [&](const auto& channel) {
+            const std::string& name = channel.comparison.channel.name;
+            return std::find(content->channels.begin(), content->channels.end(), name) !=
+                   content->channels.end();
+          });
+      if (shown)
+        figure.note +=
+            fmt::format("{}{}: {}.", figure.note.empty() ? "" : " ", outcome.name, line_text(line));
+    }
+  }
+}
+
+}  // namespace
+
+report::Document comparison_document(const ComparisonResult& r, const report::Lines& program) {
+  const Case& the_case = r.first.the_case;
+  report::Document document;
+  document.title = the_case.name;
+  document.program = program;
+  std::optional<report::Scene> scene;
+  // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
+  const bool all_loads = r.multibody_loads.rows() > 0;
+  if (all_loads)
+    scene =
+        pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
+  describe_case(document, the_case, std::move(scene));
+  document.derived = derived_section(the_case);
+  document.verdict = verdict_of(r);
+  document.meaning =
+      "Two models that agree have solved the same equations correctly: that is verification. It "
+      "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
+      "so is validation, and needs measurements.";
+  document.warnings = r.warnings;
+  document.common = common_inputs(the_case, false);
+  document.validity = validity_section(r.limits);
+  if (r.first.hydraulics) document.timing = timing_rows(r.first.the_case, *r.first.hydraulics);
+  document.models = {report::model_of(r.analytic, in_words(the_case.analytic)),
+                     report::model_of(r.multibody, in_words(r.second.the_case.multibody))};
+  document.comparison = r.comparison;
+  document.checks = r.checks;
+  if (r.budget)
+    document.budget = budget_section(*r.budget, r.first, r.second, r.analytic, r.multibody);
+  document.key_figures = key_figures_of(r, document);
+  if (r.split)
+    document.assumptions = {
+        "The models were asked to assume different things. Each assumption's contribution is its "
+        "effect in the analytic model (of the flanks' shape: in the multibody model), averaged "
+        "over the orders in which the assumptions can be "
+        "taken over; what is left is a difference between the models themselves.",
+        r.changes, *r.split};
+  document.published = r.published;
+  document.runs.emplace();
+  if (!r.integrations.empty()) document.runs->push_back(integration_section(r));
+  document.figures = comparison_figures(r);
+  if (r.options.channels.all())
+    for (auto& figure :
+         force_figures({the_case, r.analytic, all_loads ? &r.analytic_loads : nullptr}))
+      document.figures->push_back(std::move(figure));
+  if (r.first.hydraulics) {
+    document.runs->push_back(hydraulic_section(the_case, *r.first.hydraulics));
+    for (auto& figure : hydraulic_figures(the_case, *r.first.hydraulics))
+      document.figures->push_back(std::move(figure));
+  }
+  if (r.teeth) {
+    document.runs->push_back(teeth_section(*r.teeth, the_case.pump));
+    document.figures->push_back(teeth_picture(the_case.pump, r.teeth->analytic));
+    for (auto& figure : teeth_figures(*r.teeth, the_case.pump))
+      document.figures->push_back(std::move(figure));
+  }
+  document.runs->push_back(rounding_section(r.rounding));
+  if (r.with) add_reference(document, *r.with);
+  return document;
+}
+
+namespace {
+
+void add_budget(report::Curves& curves, const BudgetComparison& budget) {
+  const report::Curves more = report::curves_of(budget.analytic, budget.multibody);
+  // What a page has of the channels already is not added twice.
+  const auto add = [&](auto& columns, const auto& of_budget) {
+    for (const auto& column : of_budget)
+      if (std::none_of(columns.begin(), columns.end(),
+                       [&](const auto& c) { return c.first == column.first; }))
+        columns.push_back(column);
+  };
+  for (std::size_t t = 0; t < curves.tables.size(); ++t)
+    add(curves.tables[t].columns, more.tables[t].columns);
+  add(curves.difference, more.difference);
+}
+
+}  // namespace
+
+report::Curves comparison_curves(const ComparisonResult& r, const report::Document& document) {
+  report::Curves curves = report::curves_of(r.analytic, r.multibody);
+  if (r.budget) add_budget(curves, *r.budget);
+  if (!r.with) return curves;
+  std::vector<std::string> shown;
+  for (const report::Figure& figure : *document.figures)
+    if (const auto* content = std::get_if<report::ChannelFigure>(&figure.content))
+      for (const std::string& channel : content->channels)
+        if (std::find(shown.begin(), shown.end(), channel) == shown.end()) shown.push_back(channel);
+  curves.reference = reference_curves(*r.with, shown);
+  return curves;
+}
+
+std::string comparison_text(const ComparisonResult& r) {
+  std::string text = fmt::format("{}\n{}\n\n{}", r.first.the_case.name, r.headline(),
+                                 report::text_table(r.comparison));
+  if (!r.choice.empty()) text += fmt::format("chosen {}\n", r.choice);
+  if (r.budget) text += budget_text(*r.budget) + "\n";
+  for (const auto& check : r.checks)
+    text += fmt::format("{}: {}: {:.1e} of scale, {}\n", check.table, check.name, check.relative(),
+                        check.holds() ? "holds" : "violated");
+  for (const report::Warning& warning : r.warnings)
+    text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
+  if (r.published)
+    text += fmt::format("published numbers: {}\n", r.published->section.summary.text());
+  if (r.with)
+    text += fmt::format("\n{}{} {}: {}\n", regression_text({*r.with}), r.with->name,
+                        r.with->state == Outcome::State::agrees ? "agrees" : "differs",
+                        held_text(*r.with));
+  return text;
+}
+
+}  // namespace bentaxis::study

@@ -1,0 +1,436 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/fig34_document.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::study {
+namespace {
+
+using report::Cell;
+using Lines = std::vector<std::string>;
+
+// ---- Values of the grid and how often they can be what is printed
+
+struct Parameter {
+  std::string name;
+  double Fig34Point::*member;
+  double factor;  ///< to the unit of the text
+  std::string unit;
+};
+const std::vector<Parameter>& parameters() {
+  static const std::vector<Parameter> list = {
+      {"exponent", &Fig34Point::exponent, 1, ""},
+      {"approach at 100 N", &Fig34Point::approach, 1e6, " um"},
+      {"backlash", &Fig34Point::backlash, 1e6, " um"},
+      {"dissipation", &Fig34Point::dissipation, 1, " s/m"},
+      {"block inertia", &Fig34Point::block_inertia, 1e6, " kg mm2"}};
+  return list;
+}
+
+std::string number_of(const Parameter& of, double value) {
+  return fmt::format("{:g}", std::round(1e3 * value * of.factor) / 1e3);
+}
+std::string value_text(const Parameter& of, double value) {
+  return fmt::format("{} {}{}", of.name, number_of(of, value), of.unit);
+}
+
+std::vector<double> values_of(const Fig34Study& s, const Parameter& of) {
+  std::vector<double> values;
+  for (const Fig34Point& point : s.points)
+    if (std::find(values.begin(), values.end(), point.*of.member) == values.end())
+      values.push_back(point.*of.member);
+  return values;
+}
+
+struct Count {
+  int all = 0, inside = 0, reverses = 0, both = 0, failed = 0, unsettled = 0;
+};
+
+Count count(const Fig34Study& s, const std::function<bool(const Fig34Point&)>& wanted) {
+  Count c;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    if (!wanted(s.points[i])) continue;
+    const Fig34Curve& curve = s.curves[i];
+    ++c.all;
+    c.failed += curve.done() ? 0 : 1;
+    c.unsettled += curve.done() && !curve.repeats() ? 1 : 0;
+    c.inside += curve.inside() ? 1 : 0;
+    c.reverses += curve.reverses() ? 1 : 0;
+    c.both += curve.inside() && curve.reverses() ? 1 : 0;
+  }
+  return c;
+}
+
+std::string drag_name(bool drag) { return drag ? "with Cc" : "without Cc"; }
+
+/// Values, and pairs of values, none of whose laws stays inside and reverses; pairs only where
+/// neither value is ruled out alone.
+Lines ruled_out(const Fig34Study& s, bool drag) {
+  Lines lines;
+  struct Value {
+    const Parameter* of;
+    double value;
+  };
+  const auto has = [](const Fig34Point& point, const Value& v) {
+    return point.*v.of->member == v.value;
+  };
+  std::vector<Value> left;
+  for (const Parameter& of : parameters())
+    for (const double value : values_of(s, of)) {
+      const Value v{&of, value};
+      const Count c = count(s, [&](const Fig34Point& p) { return p.drag == drag && has(p, v); });
+      if (c.both == 0)
+        lines.push_back(
+            fmt::format("{}: {} of {} laws leave the axes, {} do not reverse in every "
+                        "pitch",
+                        value_text(of, value), c.all - c.inside, c.all, c.all - c.reverses));
+      else
+        left.push_back(v);
+    }
+  for (std::size_t i = 0; i < left.size(); ++i)
+    for (std::size_t j = i + 1; j < left.size(); ++j) {
+      if (left[i].of == left[j].of) continue;
+      const Count c = count(s, [&](const Fig34Point& p) {
+        return p.drag == drag && has(p, left[i]) && has(p, left[j]);
+      });
+      if (c.all > 0 && c.both == 0)
+        lines.push_back(fmt::format(
+            "{} together with {}: {} of {} leave the axes", value_text(*left[i].of, left[i].value),
+            value_text(*left[j].of, left[j].value), c.all - c.inside, c.all));
+    }
+  return lines;
+}
+
+std::string range_text(const Fig34Curve& curve) {
+  return fmt::format("{:.1f} to {:.1f} N", curve.least, curve.greatest);
+}
+
+bool has_drag(const Fig34Study& s) { return s.the_case.pump.friction.block_viscous > 0; }
+
+Count count(const Fig34Study& s, bool drag) {
+  return count(s, [&](const Fig34Point& p) { return p.drag == drag; });
+}
+
+Lines about(const Fig34Study& s, bool drag) {
+  const Count c = count(s, drag);
+  const double pitch = 360.0 / s.the_case.pump.geometry.pistons;
+  Lines lines = {fmt::format(
+      "Of {} contact laws {} stay within {:g} N, {} change the sign in every {:g} deg, {} do both.",
+      c.all, c.inside, kFig34Axes, c.reverses, pitch, c.both)};
+  const auto rigid = drag ? s.rigid_with_drag.sign_changes : s.rigid.sign_changes;
+  int as_rigid = 0;
+  for (std::size_t i = 0; i < s.points.size(); ++i)
+    if (s.points[i].drag == drag && s.curves[i].done() && s.curves[i].sign_changes == rigid)
+      ++as_rigid;
+  lines.push_back(rigid == 0 ? fmt::format("{} never change sign, as rigid teeth.", as_rigid)
+                             : fmt::format("{} change it as often as rigid teeth do, {:g} times a "
+                                           "turn.",
+                                           as_rigid, rigid));
+  if (c.failed > 0) lines.push_back(fmt::format("{} could not be simulated.", c.failed));
+  if (c.unsettled > 0) {
+    double spread = 0;
+    for (std::size_t i = 0; i < s.points.size(); ++i)
+      if (s.points[i].drag == drag) spread = std::max(spread, s.curves[i].largest_over.spread());
+    lines.push_back(fmt::format(
+        "The motion of {} laws does not repeat: their largest force differs between {} windows of "
+        "{} turns by up to {:.0f} %. Longer runs can exceed the forces stated for them.",
+        c.unsettled, s.options.windows, s.options.turns, 100 * spread));
+  }
+  double least_apart = 1, most_apart = 0, least = HUGE_VAL, greatest = 0;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    if (s.points[i].drag != drag || !s.curves[i].inside() || !s.curves[i].reverses()) continue;
+    least_apart = std::min(least_apart, s.curves[i].apart_over.minimum);
+    most_apart = std::max(most_apart, s.curves[i].apart_over.maximum);
+    least = std::min(least, s.curves[i].largest_over.minimum);
+    greatest = std::max(greatest, s.curves[i].largest_over.maximum);
+  }
+  if (c.both == 0) {
+    lines.emplace_back("So none of them can be what is printed.");
+    return lines;
+  }
+  lines.push_back(
+      fmt::format("Those that do both reach {:.0f} to {:.0f} N and are without contact "
+                  "{:.0f} to {:.0f} % of the time.",
+                  least, greatest, 100 * least_apart, 100 * most_apart));
+  const Lines out = ruled_out(s, drag);
+  lines.push_back(out.empty() ? "No value and no pair of values of the grid is ruled out."
+                              : "What none of them has:");
+  for (const std::string& line : out) lines.push_back("- " + line);
+  std::string open;
+  for (const Parameter& of : parameters()) {
+    std::string values;
+    for (const double value : values_of(s, of))
+      if (count(s, [&](const Fig34Point& p) {
+            return p.drag == drag && p.*of.member == value;
+          }).both > 0)
+        values += (values.empty() ? "" : ", ") + number_of(of, value);
+    open += fmt::format("{}{} {}{}", open.empty() ? "" : "; ", of.name, values, of.unit);
+  }
+  lines.push_back("What some of them have: " + open + ".");
+  return lines;
+}
+
+std::string headline(const Fig34Study& s) {
+  const Count c = count(s, false);
+  std::string text = fmt::format(
+      "Without Cc {} of {} contact laws stay inside the printed axes and reverse as printed{}",
+      c.both, c.all, c.both > 1 ? ": the figure does not tell which" : "");
+  if (has_drag(s)) {
+    const Count d = count(s, true);
+    text += fmt::format("; with Cc {} of {}", d.both, d.all);
+  }
+  int outside = 0;
+  for (const Fig34Expectation& e : s.expectations) outside += e.holds() ? 0 : 1;
+  return text + fmt::format(". {} of {} expectations hold.",
+                            static_cast<int>(s.expectations.size()) - outside,
+                            s.expectations.size());
+}
+
+report::Summary summary_of(const Fig34Study& s) {
+  report::Summary summary{
+      fmt::format(
+          "The tooth force along x2 of compliant flanks at the case's pressure and {:g} rpm, "
+          "{} windows of {} turns each after {} turns that are left out. A law stays inside and "
+          "reverses only where it does so in every window. Nothing here is a fit: the paper prints "
+          "axes and a periodic change of sign, no contact parameter.",
+          s.the_case.operation.speed_rpm, s.options.windows, s.options.turns,
+          s.options.turns_left_out),
+      {}};
+  Lines rigid = {
+      fmt::format("Without Cc {}, {:.1f} N at 0 deg and {:.1f} N at 38 deg; {:g} changes "
+                  "of sign per turn.",
+                  range_text(s.rigid), s.rigid_at_0, s.rigid_at_38, s.rigid.sign_changes)};
+  if (has_drag(s))
+    rigid.push_back(fmt::format("With Cc {}, {:g} changes of sign per turn.",
+                                range_text(s.rigid_with_drag), s.rigid_with_drag.sign_changes));
+  rigid.push_back(
+      fmt::format("Nothing reverses where the drag on the block exceeds {:.2f} Nm; Cc "
+                  "makes {:.2f} Nm.",
+                  s.reversing_torque,
+                  s.the_case.pump.friction.block_viscous *
+                      std::abs(s.the_case.operation.speed_rpm) * kRadPerSecondPerRpm));
+  summary.groups.push_back({"Rigid teeth", rigid});
+  summary.groups.push_back({"Compliant teeth without Cc", about(s, false)});
+  if (has_drag(s)) summary.groups.push_back({"Compliant teeth with Cc", about(s, true)});
+  return summary;
+}
+
+// ---- Tables
+
+/// To two significant digits where the motion does not repeat: more would be those of the windows
+/// that happen to be looked at.
+double stated(double value, const Fig34Expectation::Found& f) {
+  if (f.spread <= kFig34Repeats || value == 0 || !std::isfinite(value)) return value;
+  const double step = std::pow(10, std::floor(std::log10(std::abs(value))) - 1);
+  return std::round(value / step) * step;
+}
+
+report::Section expectations_section(const Fig34Study& s) {
+  report::Table table{{"what", "unit", "expected from", "to", "c, s/m", "found from", "to",
+                       "differs between windows, %", "verdict"},
+                      {}};
+  for (const Fig34Expectation& e : s.expectations)
+    for (const auto& f : e.found)
+      table.rows.push_back({e.what, e.unit, e.low, e.high,
+                            e.found.size() > 1 ? Cell(f.dissipation) : Cell(), stated(f.least, f),
+                            stated(f.greatest, f),
+                            e.found.size() > 1 ? Cell(std::round(1000 * f.spread) / 10) : Cell(),
+                            e.inside(f) ? "inside" : "outside"});
+  return {
+      "Expectations",
+      "Written down before the study: first tries with another program, and what follows from "
+      "the printed torques. The first tries name no damping that could be repeated: each is "
+      "shown for several, and counts as one that holds if it is inside for any of them. Found "
+      "over block inertias of 1000, 1500 and 2000 kg mm2 and over consecutive windows of the "
+      "same motion. Where these windows differ by more than 1 %, the motion does not repeat and "
+      "the range has two significant digits. The expected ranges are of the paper's pump "
+      "at 275 bar and 1500 rpm, whatever the case is.",
+      {},
+      std::move(table)};
+}
+
+report::Section counts_section(const Fig34Study& s) {
+  report::Table table{{"Cc", "value", "laws", "inside the axes", "reverse in every pitch", "both"},
+                      {}};
+  for (const bool drag : {false, true}) {
+    if (drag && !has_drag(s)) continue;
+    for (const Parameter& of : parameters())
+      for (const double value : values_of(s, of)) {
+        const Count c =
+            count(s, [&](const Fig34Point& p) { return p.drag == drag && p.*of.member == value; });
+        table.rows.push_back({drag_name(drag), value_text(of, value), long{c.all}, long{c.inside},
+                              long{c.reverses}, long{c.both}});
+      }
+  }
+  return {"By value",
+          "How many of the contact laws with a value stay inside the printed axes, change the sign "
+          "in every pitch, and do both.",
+          {},
+          std::move(table)};
+}
+
+std::vector<report::Record> records(const Fig34Study& s) {
+  std::vector<report::Record> rows;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    const Fig34Point& p = s.points[i];
+    const Fig34Curve& c = s.curves[i];
+    const auto of = [&](double value) { return c.done() ? Cell(value) : Cell(); };
+    rows.push_back({{"drag", p.drag},
+                    {"exponent", p.exponent},
+                    {"approach_at_100N_um", 1e6 * p.approach},
+                    {"backlash_um", 1e6 * p.backlash},
+                    {"dissipation_s_per_m", p.dissipation},
+                    {"block_inertia_kg_mm2", 1e6 * p.block_inertia},
+                    {"least_Rcs_x2_N", of(c.least)},
+                    {"greatest_Rcs_x2_N", of(c.greatest)},
+                    {"share_without_contact", of(c.apart)},
+                    {"sign_changes_per_turn", of(c.sign_changes)},
+                    {"share_of_pitches_with_both_signs", of(c.both_signs)},
+                    {"inside_axes", c.inside()},
+                    {"reverses", c.reverses()},
+                    {"largest_Rcs_x2_N_least_window", of(c.largest_over.minimum)},
+                    {"largest_Rcs_x2_N_greatest_window", of(c.largest_over.maximum)},
+                    {"share_without_contact_least_window", of(c.apart_over.minimum)},
+                    {"share_without_contact_greatest_window", of(c.apart_over.maximum)},
+                    {"status", c.done() ? "done" : "failed: " + c.failure}});
+  }
+  return rows;
+}
+
+// ---- Figures
+
+report::Figure curves_figure(const Fig34Study& s) {
+  report::XyFigure content{{"shaft angle", "deg"}, {"force along x2", "N"}, {}};
+  for (const auto& [name, curve] : s.pictured)
+    if (!curve.force.empty()) content.series.push_back({name, curve.theta_deg, curve.force});
+  for (const double end : {-kFig34Axes, kFig34Axes})
+    content.series.push_back(
+        {fmt::format("printed axes end at {:g} N", end), {0, 360}, {end, end}});
+  return {"fig34", "Tooth force along x2", "Fig. 34", std::move(content),
+          "Block inertia 1500 kg mm2."};
+}
+
+report::Figure scatter_figure(const Fig34Study& s) {
+  report::ScatterFigure content{{"time without contact", "%"}, {"largest force", "N", true}, {}};
+  const auto approaches = values_of(s, parameters()[1]);
+  double most_apart = 0;
+  for (const Fig34Curve& c : s.curves) most_apart = std::max(most_apart, 100 * c.apart);
+  content.series.push_back({fmt::format("printed axes end at {:g} N", kFig34Axes),
+                            std::nullopt,
+                            true,
+                            true,
+                            {{0, kFig34Axes, ""}, {most_apart, kFig34Axes, ""}}});
+  for (const bool drag : {false, true}) {
+    if (drag && !has_drag(s)) continue;
+    for (std::size_t a = 0; a < approaches.size(); ++a) {
+      report::ScatterSeries series;
+      series.name = fmt::format("{:.3g} um at 100 N, {}", 1e6 * approaches[a], drag_name(drag));
+      series.style = static_cast<int>(a + (drag ? approaches.size() : 0));
+      for (std::size_t i = 0; i < s.points.size(); ++i) {
+        const Fig34Point& p = s.points[i];
+        const Fig34Curve& c = s.curves[i];
+        if (p.drag != drag || p.approach != approaches[a] || !c.done()) continue;
+        series.points.push_back(
+            {100 * c.apart, c.largest(),
+             fmt::format("e {:g}, j {:g} um, c {:g} s/m, {:g} kg mm2, {}", p.exponent,
+                         1e6 * p.backlash, p.dissipation, 1e6 * p.block_inertia,
+                         c.reverses() ? "reverses" : "does not reverse in every pitch")});
+      }
+      content.series.push_back(std::move(series));
+    }
+  }
+  return {"fig34_laws", "Every contact law: largest force over loss of contact", "",
+          std::move(content)};
+}
+
+void append_row(std::string& text, const std::vector<double>& values) {
+  bool first = true;
+  for (const double value : values) {
+    if (!first) text += ',';
+    first = false;
+    append_number(text, value);
+  }
+}
+
+}  // namespace
+
+report::Document fig34_document(const Fig34Study& s, const report::Lines& program) {
+  report::Document document;
+  document.title = "What Fig. 34 can mean: " + s.the_case.name;
+  document.program = program;
+  describe_case(document, s.the_case);
+  document.derived = derived_section(s.the_case);
+  document.verdict = report::Verdict{std::nullopt, headline(s),
+                                     s.as_expected() ? "As expected" : "Not all as expected"};
+  document.summary = summary_of(s);
+  document.runs = {expectations_section(s), counts_section(s)};
+  document.records = records(s);
+  document.figures = {curves_figure(s), scatter_figure(s)};
+  return document;
+}
+
+std::string fig34_csv(const Fig34Study& s) {
+  std::string text =
+      "drag,exponent,approach_at_100N_um,backlash_um,dissipation_s_per_m,block_inertia_kg_mm2,"
+      "least_Rcs_x2_N,greatest_Rcs_x2_N,share_without_contact,sign_changes_per_turn,"
+      "share_of_pitches_with_both_signs,inside_axes,reverses,failure,"
+      "largest_Rcs_x2_N_least_window,largest_Rcs_x2_N_greatest_window,"
+      "share_without_contact_least_window,share_without_contact_greatest_window\n";
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    const Fig34Point& p = s.points[i];
+    const Fig34Curve& c = s.curves[i];
+    append_row(text, {p.drag ? 1.0 : 0.0, p.exponent, 1e6 * p.approach, 1e6 * p.backlash,
+                      p.dissipation, 1e6 * p.block_inertia});
+    text += ',';
+    if (c.done())
+      append_row(text, {c.least, c.greatest, c.apart, c.sign_changes, c.both_signs,
+                        c.inside() ? 1.0 : 0.0, c.reverses() ? 1.0 : 0.0});
+    else
+      text += ",,,,,,";
+    text += c.done() ? ",," : ",\"" + c.failure + "\",";
+    if (c.done())
+      append_row(text, {c.largest_over.minimum, c.largest_over.maximum, c.apart_over.minimum,
+                        c.apart_over.maximum});
+    else
+      text += ",,,";
+    text += '\n';
+  }
+  return text;
+}
+
+std::string fig34_curves_csv(const Fig34Study& s) {
+  std::string text = "curve,theta_deg,Rcs_x2_N\n";
+  for (const auto& [name, curve] : s.pictured)
+    for (std::size_t i = 0; i < curve.force.size(); ++i) {
+      text += '"' + name + "\",";
+      append_row(text, {curve.theta_deg[i], curve.force[i]});
+      text += '\n';
+    }
+  return text;
+}
+
+std::string fig34_text(const Fig34Study& s) {
+  std::string text = s.the_case.name + "\n" + headline(s) + "\n";
+  for (const auto& group : summary_of(s).groups) {
+    text += "\n" + group.title + "\n";
+    for (const std::string& line : group.lines) text += "  " + line + "\n";
+  }
+  text +=
+      fmt::format("\n{:<68} {:>18}  {:>7} {:>18}\n", "expectation", "window", "c, s/m", "found");
+  for (const Fig34Expectation& e : s.expectations)
+    for (const auto& f : e.found)
+      text += fmt::format(
+          "{:<68} {:>8.4g}..{:>8.4g}  {:>7} {:>8.4g}..{:>8.4g} {:<2} {}\n", e.what, e.low, e.high,
+          e.found.size() > 1 ? fmt::format("{:g}", f.dissipation) : "", stated(f.least, f),
+          stated(f.greatest, f), e.unit, e.inside(f) ? "inside" : "OUTSIDE");
+  return text;
+}
+
+}  // namespace bentaxis::study

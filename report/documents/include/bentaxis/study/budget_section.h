@@ -1,0 +1,22 @@
+// The torque budgets of a comparison for a report.
+#pragma once
+
+#include <string>
+
+#include "bentaxis/report/document.h"
+#include "bentaxis/study/budget.h"
+
+namespace bentaxis::study {
+
+/// The budgets with power, efficiencies and the block's balance, for a report.
+/// @param first       the analytic model's case; its hydraulics give the balance of the oil
+/// @throws ComputationError where that balance cannot be integrated
+/// @param analytic, multibody  all channels of the same runs
+report::Budget budget_section(const BudgetComparison& budgets, const ReadyCase& first,
+                              const ReadyCase& second, const ResultTable& analytic,
+                              const ResultTable& multibody);
+
+/// Mean torque by cause in a line of words, of the analytic model: "drive torque 294.7 Nm: ..".
+std::string budget_text(const BudgetComparison& budgets);
+
+}  // namespace bentaxis::study

@@ -1,0 +1,325 @@
+#include "bentaxis/designs/life_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/study/failed_points.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::designs {
+namespace {
+
+using report::Values;
+using study::Bearing;
+using study::BearingLife;
+using study::LifePoint;
+using study::PumpLife;
+
+const BearingRating& rating_of(const Case& the_case, Bearing bearing) {
+  return bearing == Bearing::tapered ? *the_case.ratings.tapered : *the_case.ratings.cylindrical;
+}
+
+std::string name_of(const Case& the_case, Bearing bearing) {
+  const std::string& designation = rating_of(the_case, bearing).designation;
+  return to_string(bearing) + (designation.empty() ? "" : " (" + designation + ")");
+}
+
+// Four digits, without an exponent.
+std::string digits(double value) {
+  if (!is_computed(value)) return "-";
+  return value < 1000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
+}
+
+std::string hours_text(double hours) { return is_computed(hours) ? digits(hours) + " h" : "none"; }
+
+// Of what part of the duty cycle the lives are, where that is not all of it.
+std::string part_text(const LifeStudy& s) {
+  if (s.failed.empty()) return "";
+  std::string rows;
+  for (const study::FailedPoint& f : s.failed)
+    rows += (rows.empty() ? "" : ", ") + fmt::format("{:g}", f.value);
+  return fmt::format(
+      "NOT the life under the whole duty cycle: row{} {} could not be computed. The other rows "
+      "alone: ",
+      s.failed.size() > 1 ? "s" : "", rows);
+}
+
+std::string headline(const LifeStudy& s) {
+  const PumpLife& life = s.analytic.life;
+  if (life.mean_speed_rpm == 0) return "no revolution: the bearings have no rating life";
+  return part_text(s) + fmt::format(
+                            "{} at {:.4g} rpm{} for both bearings together: tapered {}, "
+                            "cylindrical {}",
+                            hours_text(life.hours), life.mean_speed_rpm,
+                            s.duty.rows.size() > 1 ? " on average" : "",
+                            hours_text(life.of(Bearing::tapered).hours),
+                            hours_text(life.of(Bearing::cylindrical).hours));
+}
+
+std::string agreement_text(const LifeStudy& s) {
+  return fmt::format(
+      "The loads by both models {}: they differ by {:.1e} of the largest at most, "
+      "{:g} allowed.",
+      s.agrees() ? "agree" : "differ", s.models_apart(), kLifeModelsAgree);
+}
+
+report::Section bearings_section(const LifeStudy& s) {
+  report::Section section{
+      "Bearings",
+      "Rating life after ISO 281: nine bearings of ten last longer. P_m: the constant equivalent "
+      "load that costs as much life. No factor for lubrication, cleanliness or reliability "
+      "(a_ISO = a_1 = 1).",
+      {{"both together, million revolutions", rounded_text(s.analytic.life.revolutions)},
+       {"both together", hours_text(s.analytic.life.hours)},
+       {"mean speed", fmt::format("{:.6g} rpm", s.analytic.life.mean_speed_rpm)},
+       {"largest difference of the models",
+        fmt::format("{:.1e} of the largest load", s.models_apart())}},
+      {{"bearing", "C, N", "C0, N", "P_m, N", "P_m by Simbody, N", "C / P_m",
+        "L10, million revolutions", "L10h, h", "static safety C0 / P0"},
+       {}}};
+  for (const Bearing bearing : study::kBearings) {
+    const BearingRating& rating = rating_of(s.the_case, bearing);
+    const BearingLife& life = s.analytic.life.of(bearing);
+    section.table.rows.push_back(
+        {name_of(s.the_case, bearing), rating.dynamic_rating, rating.static_rating, life.mean_load,
+         s.multibody.life.of(bearing).mean_load, rating.dynamic_rating / life.mean_load,
+         life.revolutions, life.hours, life.static_safety});
+  }
+  return section;
+}
+
+// Mean equivalent load of one row.
+double load_of(const LifePoint& point, Bearing bearing) {
+  const auto& loads = point.loads[static_cast<std::size_t>(bearing)].equivalent;
+  return study::mean_load(loads, std::vector<double>(loads.size(), 1.0));
+}
+
+report::Section duty_section(const LifeStudy& s) {
+  report::Section section{"Duty cycle",
+                          "Loads count by revolutions, time at standstill by the hours only. Life: "
+                          "the part of it that each row uses up.",
+                          {},
+                          {{"row", "time, %", "revolutions, %"}, {}}};
+  if (!s.duty.file.empty()) section.facts.emplace_back("file", s.duty.file.filename().string());
+  auto& columns = section.table.columns;
+  for (const Variable& v : s.duty.variables)
+    columns.push_back(v.name() + (v.unit().empty() ? "" : ", " + v.unit()));
+  for (const Bearing bearing : study::kBearings) {
+    columns.push_back(to_string(bearing) + " P_m, N");
+    columns.push_back(to_string(bearing) + " life, %");
+  }
+  const study::DutyShares shares = study::duty_shares(s.analytic.points);
+  for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
+    std::vector<report::Cell> cells = {static_cast<long>(s.duty.rows[row].number),
+                                       100 * shares.time[row], 100 * shares.revolutions[row]};
+    for (std::size_t i = 0; i < s.duty.variables.size(); ++i)
+      cells.emplace_back(s.duty.variables[i].text(s.duty.rows[row].values[i]));
+    for (const Bearing bearing : study::kBearings) {
+      cells.emplace_back(load_of(s.analytic.points[row], bearing));
+      cells.emplace_back(100 * s.analytic.life.of(bearing).life_share[row]);
+    }
+    section.table.rows.push_back(std::move(cells));
+  }
+  return section;
+}
+
+std::string limit_name(const study::LifeLimit& limit) {
+  return to_string(limit.bearing) + " bearing: " + limit.limit;
+}
+
+std::vector<report::ValidityRow> validity_of(const LifeStudy& s) {
+  std::vector<report::ValidityRow> rows;
+  for (const study::LifeLimit& l : s.analytic.life.limits)
+    rows.push_back(
+        {limit_name(l), "N",
+         l.consequence +
+             (s.duty.rows.size() > 1 ? " (worst in " + s.duty.name_of(l.point) + ")" : ""),
+         true, l.violated_share, l.worst, l.theta_deg});
+  return rows;
+}
+
+// The row that uses up most of the life of the bearing that lasts shorter.
+std::size_t hardest_row(const LifeStudy& s) {
+  const PumpLife& life = s.analytic.life;
+  if (life.mean_speed_rpm == 0) return 0;
+  const bool tapered =
+      life.of(Bearing::tapered).revolutions <= life.of(Bearing::cylindrical).revolutions;
+  const auto& shares = life.of(tapered ? Bearing::tapered : Bearing::cylindrical).life_share;
+  return static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
+}
+
+// A bearing's loads over the turn of one row, by both models.
+report::Figure turn_figure(const LifeStudy& s, Bearing bearing, std::size_t row) {
+  report::Curves curves;
+  curves.theta_deg = s.analytic.points[row].theta_deg;
+  curves.tables = {{"analytic", {}}, {"multibody", {}}};
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name, std::vector<double> study::BearingLoads::*which) {
+    const auto i = static_cast<std::size_t>(bearing);
+    const Values& first = s.analytic.points[row].loads[i].*which;
+    const Values& second = s.multibody.points[row].loads[i].*which;
+    Values difference;
+    for (std::size_t k = 0; k < first.size(); ++k) difference.push_back(second[k] - first[k]);
+    names.push_back(name);
+    curves.tables[0].columns.emplace_back(name, first);
+    curves.tables[1].columns.emplace_back(name, second);
+    curves.difference.emplace_back(name, std::move(difference));
+  };
+  if (bearing == Bearing::tapered) {
+    add("P, equivalent load", &study::BearingLoads::equivalent);
+    add("Fr, radial load", &study::BearingLoads::radial);
+    add("Fa, axial load", &study::BearingLoads::axial);
+  } else {
+    add("P = Fr, radial load", &study::BearingLoads::equivalent);
+  }
+  report::Figure figure{to_string(bearing) + "_turn",
+                        fmt::format("Loads of the {} bearing over a turn", to_string(bearing)), "",
+                        report::ChannelFigure{"N", names, {}, std::move(curves)}};
+  if (s.duty.rows.size() > 1)
+    figure.note = "The row that uses up most of the life: " + s.duty.name_of(row) + ".";
+  return figure;
+}
+
+// Share of the revolutions above a load.
+report::Figure spectrum_figure(const LifeStudy& s) {
+  constexpr std::size_t kMostPoints = 400;  // of a curve
+  const study::DutyShares shares = study::duty_shares(s.analytic.points);
+  report::XyFigure plot{
+      {"share of the revolutions above it", "%"}, {"equivalent load", "N", false, 0}, {}};
+  for (const Bearing bearing : study::kBearings) {
+    std::vector<std::pair<double, double>> spectrum;  // load, share
+    for (std::size_t row = 0; row < s.analytic.points.size(); ++row) {
+      const auto& loads =
+          s.analytic.points[row].loads[static_cast<std::size_t>(bearing)].equivalent;
+      for (const double load : loads)
+        spectrum.emplace_back(load, shares.revolutions[row] / static_cast<double>(loads.size()));
+    }
+    std::sort(spectrum.begin(), spectrum.end(), std::greater<>());
+    report::XySeries series{to_string(bearing), {0}, {spectrum.front().first}};
+    double above = 0, shown = 0;
+    for (std::size_t k = 0; k < spectrum.size(); ++k) {
+      above += 100 * spectrum[k].second;
+      if (above - shown < 100.0 / kMostPoints && k + 1 < spectrum.size()) continue;
+      shown = above;
+      series.x.push_back(above);
+      series.y.push_back(spectrum[k].first);
+    }
+    plot.series.push_back(std::move(series));
+    const double mean = s.analytic.life.of(bearing).mean_load;
+    plot.series.push_back({to_string(bearing) + ", P_m", {0, 100}, {mean, mean}});
+  }
+  return {
+      "spectrum", "Load spectrum of both bearings", "", std::move(plot),
+      "Every angle of every row of the duty cycle, largest load first; P_m is the constant load "
+      "that costs as much life."};
+}
+
+}  // namespace
+
+report::Document life_document(const LifeStudy& s, const report::Lines& program) {
+  report::Document document;
+  document.title = s.the_case.name + ": life of the bearings";
+  document.program = program;
+  study::describe_case(document, s.the_case);
+  document.derived = study::derived_section(s.the_case);
+  document.verdict = report::Verdict{s.agrees(), headline(s)};
+  document.meaning =
+      agreement_text(s) +
+      " The rating life counts fatigue of the rolling contacts under these loads and nothing else; "
+      "it is worth what ratings and loads are worth.";
+  document.validity = validity_of(s);
+  document.runs = {bearings_section(s), duty_section(s)};
+  const std::size_t row = hardest_row(s);
+  document.figures = {turn_figure(s, Bearing::tapered, row),
+                      turn_figure(s, Bearing::cylindrical, row)};
+  if (s.analytic.life.mean_speed_rpm > 0) document.figures->push_back(spectrum_figure(s));
+  study::add_warnings(document, s.failed);
+  return document;
+}
+
+std::string life_csv(const LifeStudy& s) {
+  std::string text = "row,time_share,revolution_share";
+  for (const Variable& v : s.duty.variables) text += "," + v.name();
+  for (const Bearing bearing : study::kBearings)
+    for (const char* what : {"P_N", "P_multibody_N", "life_share"})
+      text += "," + to_string(bearing) + "_" + what;
+  text += ",reason\n";
+  const study::DutyShares shares = study::duty_shares(s.analytic.points);
+  const auto add = [&](double value) {
+    text += ',';
+    append_number(text, value);
+  };
+  for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
+    text += std::to_string(s.duty.rows[row].number);
+    add(shares.time[row]);
+    add(shares.revolutions[row]);
+    for (const double value : s.duty.rows[row].values) add(value);
+    for (const Bearing bearing : study::kBearings) {
+      add(load_of(s.analytic.points[row], bearing));
+      add(load_of(s.multibody.points[row], bearing));
+      add(s.analytic.life.of(bearing).life_share[row]);
+    }
+    text += ",\n";
+  }
+  const std::size_t empty = 2 + s.duty.variables.size() + 3 * std::size(study::kBearings);
+  for (const study::FailedPoint& f : s.failed)
+    text += fmt::format("{:g}", f.value) + std::string(empty + 1, ',') + csv_text(f.reason) + "\n";
+  return text;
+}
+
+std::string life_loads_csv(const LifeStudy& s) {
+  std::string text =
+      "row,theta_deg,model,tapered_Fr_N,tapered_Fa_N,tapered_P_N,tapered_P0_N,cylindrical_P_N\n";
+  for (std::size_t row = 0; row < s.duty.rows.size(); ++row)
+    for (std::size_t k = 0; k < s.analytic.points[row].theta_deg.size(); ++k)
+      for (const auto* of : {&s.analytic, &s.multibody}) {
+        const LifePoint& p = of->points[row];
+        text += std::to_string(s.duty.rows[row].number) + ",";
+        append_number(text, p.theta_deg[k]);
+        text += of == &s.analytic ? ",analytic" : ",multibody";
+        for (const double value :
+             {p.loads[0].radial[k], p.loads[0].axial[k], p.loads[0].equivalent[k],
+              p.loads[0].equivalent0[k], p.loads[1].equivalent[k]}) {
+          text += ',';
+          append_number(text, value);
+        }
+        text += "\n";
+      }
+  return text;
+}
+
+std::string life_text(const LifeStudy& s) {
+  std::string text = s.the_case.name + "\n" + headline(s) + "\n" + agreement_text(s) + "\n\n";
+  text += fmt::format("{:<28} {:>8} {:>8} {:>8} {:>10} {:>9} {:>7}\n", "bearing", "C kN", "C0 kN",
+                      "P_m kN", "L10 1e6", "L10h h", "C0/P0");
+  for (const Bearing bearing : study::kBearings) {
+    const BearingRating& rating = rating_of(s.the_case, bearing);
+    const BearingLife& life = s.analytic.life.of(bearing);
+    text += fmt::format("{:<28} {:>8.4g} {:>8.4g} {:>8} {:>10} {:>9} {:>7.3g}\n",
+                        name_of(s.the_case, bearing), rating.dynamic_rating / 1e3,
+                        rating.static_rating / 1e3, digits(life.mean_load / 1e3),
+                        digits(life.revolutions), digits(life.hours), life.static_safety);
+  }
+  if (s.duty.rows.size() > 1) {
+    const study::DutyShares shares = study::duty_shares(s.analytic.points);
+    text += fmt::format("\n{:>7} {:>7} {:>10} {:>12}  of time, revolutions, life used up, %\n",
+                        "time", "turns", "tapered", "cylindrical");
+    for (std::size_t row = 0; row < s.duty.rows.size(); ++row)
+      text += fmt::format(
+          "{:>7.3g} {:>7.3g} {:>10.3g} {:>12.3g}  {}\n", 100 * shares.time[row],
+          100 * shares.revolutions[row], 100 * s.analytic.life.of(Bearing::tapered).life_share[row],
+          100 * s.analytic.life.of(Bearing::cylindrical).life_share[row], s.duty.name_of(row));
+  }
+  for (const study::LifeLimit& l : s.analytic.life.limits)
+    if (l.violated_share > 0)
+      text += fmt::format("not kept over {:.3g} % of the revolutions: {} (worst {:.4g} N): {}\n",
+                          100 * l.violated_share, limit_name(l), l.worst, l.consequence);
+  return text;
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,251 @@
+#include "bentaxis/study/pressure_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bentaxis/study/failed_points.h"
+#include "bentaxis/compare/comparison.h"
+#include "bentaxis/files/csv.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/efficiency.h"
+#include "bentaxis/study/plausibility_section.h"
+#include "bentaxis/study/published_section.h"
+#include "hydraulic_results.h"
+#include "hydraulic_sections.h"
+#include "key_figures.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr int kOverlayTurns = 3;  // as in Fig. 19-24
+
+double bar(const OperatingPoint& point) {
+  return point.the_case().pressure.ports.delivery / kPascalPerBar;
+}
+
+}  // namespace
+
+report::Document pressure_document(const OperatingPoint& point,
+                                   const hydraulics::PowerBudget& power,
+                                   const report::Lines& program) {
+  const Case& the_case = point.the_case();
+  report::Document document;
+  document.title = the_case.name;
+  document.program = program;
+  describe_case(document, the_case);
+  document.derived = derived_section(the_case);
+  document.key_figures = {{"hydraulic model"}, "deg", oil_figures(point.state().summary, 1)};
+  document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
+  document.runs = {hydraulic_section(the_case, point.state()),
+                   power_section(the_case, point.state(), power), efficiency_section(point, power),
+                   orders_section(the_case, point.state())};
+  document.timing = timing_rows(the_case, point.state());
+  document.warnings = timing_warnings(*document.timing);
+  document.verdict = report::Verdict{
+      std::nullopt,
+      fmt::format("Mean drive torque {:.5g} Nm by the analytic model, {:.5g} Nm by the multibody "
+                  "model, at {:.4g} bar.",
+                  mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"), bar(point)),
+      "Pressure"};
+  document.figures = hydraulic_figures(the_case, point.state());
+  for (report::Figure& figure : result_figures(the_case, point.state(), power))
+    document.figures->push_back(std::move(figure));
+  document.figures->push_back(
+      {"td", "Drive torque Td", "Fig. 17", report::ChannelFigure{"Nm", {"Td_z1_Nm"}},
+       fmt::format("Mean torque: analytic {:.5g} Nm, multibody {:.5g} Nm.",
+                   mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"))});
+  return document;
+}
+
+void add_curve(report::Document& document, const TorqueCurve& curve) {
+  const char* axis = "mean delivery pressure (bar)";
+  report::Figure torque = own_figure("torque_curve", "Mean drive torque against delivery pressure",
+                                     "Fig. 18", "Nm", axis, curve.bar);
+  add_series(torque, "analytic", curve.analytic);
+  add_series(torque, "multibody", curve.multibody);
+  add_series(torque, "ideal: displacement x pressure / 2 pi", curve.ideal);
+  report::Figure flow =
+      own_figure("flow_curve", "Mean flow against delivery pressure", "", "l/min", axis, curve.bar);
+  add_series(flow, "to the load, at the density in the suction port", curve.flow);
+  add_series(flow, "to the load, at the density of the mean delivery pressure",
+             curve.flow_at_delivery);
+  document.figures->push_back(std::move(torque));
+  document.figures->push_back(std::move(flow));
+  report::Section section;
+  section.title = "Torque and flow against delivery pressure";
+  section.text =
+      "Each point: periodic hydraulic state, then both models over a turn. 0 bar is an open line. "
+      "The flow and the volumetric efficiency are at the density in the suction port, the last "
+      "column at that of the mean delivery pressure.";
+  section.table.columns = {"delivery, bar",
+                           "mean torque, analytic, Nm",
+                           "mean torque, multibody, Nm",
+                           "ideal torque, Nm",
+                           "flow, l/min",
+                           "volumetric efficiency, %",
+                           "flow at delivery pressure, l/min"};
+  for (std::size_t i = 0; i < curve.bar.size(); ++i)
+    section.table.rows.push_back({curve.bar[i], curve.analytic[i], curve.multibody[i],
+                                  curve.ideal[i], curve.flow[i], curve.efficiency[i],
+                                  curve.flow_at_delivery[i]});
+  for (const FailedPoint& failed : curve.failed) {
+    section.table.rows.push_back({failed.value, report::Cell(), report::Cell(), report::Cell(),
+                                  report::Cell(), report::Cell(), report::Cell()});
+    section.facts.emplace_back(failed.point + ": not computed", failed.reason);
+  }
+  add_warnings(document, curve.failed);
+  document.runs->push_back(std::move(section));
+}
+
+void add_overlay(report::Document& document, const OperatingPoint& first,
+                 const OperatingPoint& second) {
+  const std::size_t rows = first.analytic.rows();
+  if (second.analytic.rows() != rows)
+    throw InputError(second.the_case().file.string() +
+                     ": must have the same samples_per_revolution as " +
+                     first.the_case().file.string());
+  std::vector<double> theta;
+  for (int turn = 0; turn < kOverlayTurns; ++turn)
+    for (const double angle : first.analytic.theta_deg) theta.push_back(angle + 360 * turn);
+  const auto add = [&](const std::string& id, const std::string& title, const std::string& paper,
+                       const std::vector<std::string>& channels) {
+    report::Figure figure = angle_figure(id, title, paper, "N", theta);
+    double worst = 0;
+    for (const OperatingPoint* point : {&first, &second}) {
+      const auto comparison = compare::compare_tables(point->analytic, point->multibody, {});
+      for (const std::string& channel : channels) {
+        const std::vector<double> turn = report::values_of(point->analytic, channel);
+        std::vector<double> values;
+        for (int i = 0; i < kOverlayTurns; ++i)
+          values.insert(values.end(), turn.begin(), turn.end());
+        add_series(figure, fmt::format("{} at {:.4g} bar", channel, bar(*point)), values);
+        worst = std::max(worst, comparison.find(channel)->largest_over_peak());
+      }
+    }
+    figure.note = fmt::format(
+        "Analytic model, three times the same turn; the multibody model differs by up to {:.1e} of "
+        "peak.",
+        worst);
+    document.figures->push_back(std::move(figure));
+  };
+  add("overlay_rc_x2", "Bore force Rc on piston 1, x2: both loads", "Fig. 19", {"Rc_1_x2_N"});
+  add("overlay_rc_y2", "Bore force Rc on piston 1, y2: both loads", "Fig. 20", {"Rc_1_y2_N"});
+  add("overlay_rs_xy", "Joint force Rs on piston 1 across the block axis: both loads", "Fig. 21",
+      {"Rs_1_x2_N", "Rs_1_y2_N"});
+  add("overlay_rs_z2", "Joint force Rs on piston 1, z2: both loads", "Fig. 22", {"Rs_1_z2_N"});
+  add("overlay_rb1", "Tapered bearing force Rb1: both loads", "Fig. 23",
+      {"Rb1_x1_N", "Rb1_y1_N", "Rb1_z1_N"});
+  add("overlay_rb2", "Cylindrical bearing force Rb2: both loads", "Fig. 24",
+      {"Rb2_x1_N", "Rb2_y1_N"});
+  report::Section section = hydraulic_section(second.the_case(), second.state());
+  section.title = "Hydraulic model: " + second.the_case().name;
+  document.runs->push_back(std::move(section));
+}
+
+void add_published(report::Document& document, const compare::Published& published,
+                   const OperatingPoint& point, const PartProgress& progress_of) {
+  const Case& the_case = point.the_case();
+  const std::string mismatch = published.mismatch(facts_of(the_case, the_case.analytic));
+  if (!mismatch.empty())
+    throw InputError(the_case.file.string() + ": the printed numbers are of another pump (" +
+                     published.name + "): " + mismatch);
+  compare::PublishedSection section =
+      judge_case(published, {&the_case, the_case.analytic, &point.analytic},
+                 {&the_case, the_case.multibody, &point.multibody}, progress_of);
+  for (auto& row : section.rows) {
+    const compare::PublishedNumber& number = row.number;
+    if (!number.find_pressure || row.verdict == compare::PublishedVerdict::not_comparable) continue;
+    try {
+      const double pressure = delivery_pressure_for(
+          point, number.quantity, number.low,
+          [&](const ResultTable& table) {
+            return compare::value_of(number, {&table, {}})->low;
+          },
+          progress_of);
+      row.where +=
+          fmt::format("; needs a mean delivery pressure of {:.1f} bar", pressure / kPascalPerBar);
+    } catch (const ComputationError& error) {
+      row.where += fmt::format("; the delivery pressure it needs was not found: {}", error.what());
+    }
+  }
+  const std::string text =
+      section.summary.text() +
+      " Used to infer: the number went into the geometry of this case, which is not published. "
+      "Calibrated: a parameter was set so that the number comes out. Only predicted rows say "
+      "something about the models; a window is the range of a printed axis, in which the lost "
+      "curve must have been.";
+  document.verdict->agrees = section.calibrated();
+  document.verdict->word = section.calibrated() ? "Calibrated" : "Not calibrated";
+  document.verdict->headline +=
+      (section.calibrated() ? " Every" : " Not every") +
+      std::string(" printed number that a parameter was set to is inside.");
+  document.published = report::PublishedTable{text, std::move(section)};
+}
+
+std::string text_of(const compare::PublishedSection& section) {
+  std::string text;
+  for (const auto& row : section.rows) {
+    if (row.verdict == compare::PublishedVerdict::not_comparable) continue;
+    text += fmt::format("{:<60} {:>20} {:<8} {:<27} paper {} ({})\n",
+                        row.number.quantity + (row.at.empty() ? "" : ", " + row.at),
+                        row.values[0] ? compare::text_of(*row.values[0]) : "",
+                        row.verdict == compare::PublishedVerdict::inside ? "inside" : "OUTSIDE",
+                        row.number.status, row.printed, row.where);
+  }
+  return text;
+}
+
+void add_transient(report::Document& document, const ResultTable& transient) {
+  report::Figure figure =
+      angle_figure("transient", "From rest: pressures with the shaft at full speed at once", "",
+                   "bar", transient.theta_deg);
+  add_series(figure, "chamber 1", report::values_of(transient, transient.channels[0].name));
+  add_series(figure, "delivery volume", report::values_of(transient, transient.channels[1].name));
+  figure.note = "The load is that of the periodic state.";
+  document.figures->push_back(std::move(figure));
+}
+
+std::vector<std::pair<std::string, std::string>> pressure_csv(
+    const OperatingPoint& point, const hydraulics::PowerBudget& power) {
+  return {{"pressure.csv", bentaxis::to_csv(point.state().table)},
+          {"power.csv", power_csv(point.state(), power)},
+          {"orders.csv", orders_csv(point.the_case(), point.state())}};
+}
+
+void add_suction_speed(report::Document& document, const OperatingPoint& point,
+                       const SuctionSpeed& found) {
+  document.timing->push_back(suction_speed_row(point.the_case(), found));
+  document.warnings = timing_warnings(*document.timing);
+}
+
+std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power,
+                          const report::Document& document) {
+  std::string text = point.the_case().name + "\n\n";
+  const auto add = [&](const std::string& name, double value, const std::string& unit) {
+    text += fmt::format("{:<42} {:>12.6g} {}\n", name, value, unit);
+  };
+  for (const auto& line : hydraulics::lines(point.state())) add(line.name, line.value, line.unit);
+  for (const hydraulics::Place place : point.state().places)
+    add(fmt::format("power, {}", hydraulics::name_of(place)), power[place], "W");
+  add("power left over, of the pistons' power",
+      hydraulics::left_over(power) / power[hydraulics::Place::pistons], "");
+  const hydraulics::PumpPower oil = hydraulics::pump_power(power);
+  add("power of the flow to the load", oil.useful, "W");
+  add("power lost in the oil", oil.lost(), "W");
+  const double torque = mean(point.analytic, "Td_z1_Nm");
+  add("mean drive torque, analytic", torque, "Nm");
+  add("mean drive torque, multibody", mean(point.multibody, "Td_z1_Nm"), "Nm");
+  const Efficiencies all = efficiencies(point.ready, oil, torque);
+  for (const EfficiencyLine& line : efficiency_lines())
+    if (is_computed(all.*line.value) && line.value != &Efficiencies::volumetric)
+      add(std::string(line.name) + " efficiency", all.*line.value, "%");
+  text += "\n" + timing_text(*document.timing) + "\n";
+  for (const report::Warning& warning : *document.warnings)
+    text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
+  return text;
+}
+
+}  // namespace bentaxis::study

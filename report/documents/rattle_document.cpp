@@ -1,0 +1,383 @@
+#include "bentaxis/study/rattle_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bentaxis/study/failed_points.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::study {
+namespace {
+
+using report::Values;
+
+using Sweep = std::vector<RattlePoint> RattleRow::*;
+
+std::array<long, 4> counts_of(const RattleMap& map, Sweep sweep) {
+  std::array<long, 4> counts{};
+  for (const RattleRow& row : map.rows)
+    for (const RattlePoint& point : row.*sweep) ++counts.at(static_cast<std::size_t>(point.kind));
+  return counts;
+}
+
+bool rigid(const RattleMap& map) { return !map.the_case.pump.gear.gives_way(); }
+
+std::size_t two_states_of(const RattleMap& map) {
+  std::size_t count = 0;
+  for (const RattleRow& row : map.rows)
+    for (std::size_t j = 0; j < row.up.size(); ++j)
+      count += two_states(row.up[j], row.down[j]) ? 1 : 0;
+  return count;
+}
+
+std::size_t agreeing(const RattleMap& map) {
+  return static_cast<std::size_t>(
+      std::count_if(map.checks.begin(), map.checks.end(),
+                    [](const RattleCheck& check) { return check.agrees(); }));
+}
+
+double turns_of(int parts) { return static_cast<double>(parts) / kPartsOfTurn; }
+
+std::string headline(const RattleMap& map) {
+  const auto counts = counts_of(map, &RattleRow::up);
+  std::string text;
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    if (counts[k] > 0)
+      text +=
+          fmt::format("{}{} at {}", text.empty() ? "" : ", ", rattle_class_names()[k], counts[k]);
+  text += fmt::format(" of {} points", map.rows.size() * map.options.speed_rpm.size());
+  if (const std::size_t both = two_states_of(map); both > 0)
+    text += fmt::format("; another steady state swept down at {}", both);
+  if (map.checks.empty()) return text;
+  text += fmt::format("; Simbody agrees at {} of {} points", agreeing(map), map.checks.size());
+  const auto partly = std::count_if(map.checks.begin(), map.checks.end(),
+                                    [](const RattleCheck& check) { return check.chaotic(); });
+  if (partly > 0) text += fmt::format(", {} of them judged over part of their turns only", partly);
+  return text;
+}
+
+std::string against(RattleClass analytic, RattleClass multibody) {
+  return analytic == multibody ? to_string(analytic)
+                               : to_string(analytic) + " against " + to_string(multibody);
+}
+
+std::string agreement_text(const BoundaryAgreement& agreement) {
+  std::string text = fmt::format("the criterion says the same as the motion at {} of {} points",
+                                 agreement.same, agreement.points);
+  double sum = 0, most = 0, spacing = 0;
+  int count = 0;
+  for (const auto& place : agreement.places) {
+    if (!is_computed(place.simulated_rpm)) continue;
+    const double difference = place.simulated_rpm - place.criterion_rpm;
+    sum += difference;
+    most = std::max(most, std::abs(difference));
+    spacing = std::max(spacing, place.spacing_rpm);
+    ++count;
+  }
+  if (count > 0)
+    text += fmt::format(
+        "; the simulated boundary lies {:.3g} rpm {} it on average, {:.3g} rpm from it at most, "
+        "where speeds are {:.3g} rpm apart and leave {:.3g} rpm open on either side",
+        std::abs(sum / count), sum < 0 ? "below" : "above", most, spacing, spacing / 2);
+  return text;
+}
+
+report::Section settings_section(const RattleMap& map) {
+  const RattleOptions& o = map.options;
+  report::Section section{"How it was computed", "", {}, {}};
+  section.facts = {{"shaft", "turns at the constant speed of the point, whatever [drive] says"}};
+  if (rigid(map)) {
+    section.text =
+        "Teeth are rigid: the block turns as the shaft does, nothing moves between the flanks. "
+        "Only carrying and reversing are told apart, by the sign of the tooth force.";
+    return section;
+  }
+  const auto add = [&](const char* name, const std::string& text) {
+    section.facts.emplace_back(name, text);
+  };
+  add("first point",
+      "the lowest speed, from theta = psi = 0, the middle of the backlash, both at "
+      "the shaft's speed");
+  add("every other point", "from where the teeth ended at its neighbour: up in speed, then down");
+  add("discarded", fmt::format("{} turns, fewer where the motion repeats itself", o.discard));
+  add("observed", fmt::format("{} turns, or one period where the motion repeats itself", o.turns));
+  add("repeats itself",
+      fmt::format("lag and its rate as 1 to {} turns ago, within {:g} of their scales, twice "
+                  "running",
+                  kLongestPeriod, kRepeats));
+  add("in touch throughout",
+      fmt::format("{} turns without separation: the last of them is observed", kTurnsInTouch));
+  add("impact", fmt::format("a touch at {:g} m/s of approach or more", kImpactSpeed));
+  add("largest impulse",
+      "from an impact until its flank leaves (rattle.csv: largest_impulse_Ns): of teeth that hit "
+      "once and then carry, with what they carry");
+  add("loses contact", fmt::format("no flank touches for more than {:g} of the time", kNoGap));
+  add("two steady states",
+      fmt::format("up and down differ in class, or the largest force of every turn of one is above "
+                  "all of the other and {:g} % larger",
+                  100 * kOtherForce));
+  add("integration", fmt::format("BDF of variable order (CVODES), errors of a step for an error of "
+                                 "{:g} of peak (--error)",
+                                 o.error));
+  return section;
+}
+
+report::Section classes_section(const RattleMap& map) {
+  report::Section section{"Classes",
+                          "Of the points swept up and down. Share out of contact: of the upward "
+                          "points of the class, mean.",
+                          {},
+                          {{"class", "points, up", "points, down", "largest force over mean, up",
+                            "share out of contact, up"},
+                           {}}};
+  const auto up = counts_of(map, &RattleRow::up), down = counts_of(map, &RattleRow::down);
+  for (std::size_t k = 0; k < up.size(); ++k) {
+    double most = 0, apart = 0;
+    for (const RattleRow& row : map.rows)
+      for (const RattlePoint& p : row.up)
+        if (static_cast<std::size_t>(p.kind) == k) {
+          if (p.mean > 0) most = std::max(most, p.over_mean());
+          apart += p.apart / static_cast<double>(up[k]);
+        }
+    section.table.rows.push_back({rattle_class_names()[k], up[k], down[k],
+                                  up[k] > 0 ? report::Cell(most) : report::Cell(),
+                                  up[k] > 0 ? report::Cell(apart) : report::Cell()});
+  }
+  return section;
+}
+
+report::Section boundary_section(const BoundaryAgreement& agreement) {
+  report::Section section{
+      "Boundary by the criterion",
+      "Rigid teeth keep the sign of their force as long as the drag on the block, Cc psi', and "
+      "what "
+      "its pistons take exceed what they turn it on by, all through the turn. The speed at which "
+      "the smallest force passes 0, beside the speed half way between those where the upward "
+      "sweep ceases or begins to carry: " +
+          agreement_text(agreement) + ".",
+      {},
+      {{"delivery pressure, bar", "criterion, rpm", "simulated, rpm", "difference, rpm"}, {}}};
+  for (const auto& place : agreement.places)
+    section.table.rows.push_back({place.delivery_bar, place.criterion_rpm, place.simulated_rpm,
+                                  place.simulated_rpm - place.criterion_rpm});
+  if (agreement.places.empty())
+    section.facts.emplace_back("boundary", "none within these speeds and pressures");
+  return section;
+}
+
+report::Section states_section(const RattleMap& map) {
+  report::Section section{"Two steady states",
+                          "Where the upward and the downward sweep settle differently. No period: "
+                          "irregular, longer, or still ringing.",
+                          {{"points", std::to_string(two_states_of(map))}},
+                          {{"delivery pressure, bar", "speed, rpm", "up", "down", "largest up, N",
+                            "largest down, N", "period up, turns", "period down, turns"},
+                           {}}};
+  constexpr std::size_t kMostRows = 100;  // the rest is in the CSV file
+  const auto period = [](const RattlePoint& p) {
+    return p.period > 0 ? report::Cell(static_cast<long>(p.period)) : report::Cell("none");
+  };
+  for (const RattleRow& row : map.rows)
+    for (std::size_t j = 0; j < row.up.size(); ++j) {
+      const RattlePoint &u = row.up[j], &d = row.down[j];
+      if (!two_states(u, d) || section.table.rows.size() >= kMostRows) continue;
+      section.table.rows.push_back({row.delivery_bar, map.options.speed_rpm[j], to_string(u.kind),
+                                    to_string(d.kind), u.largest, d.largest, period(u), period(d)});
+    }
+  return section;
+}
+
+report::Section checks_section(const RattleMap& map) {
+  report::Section section{
+      "Recomputed by Simbody",
+      "Points spread over the classes, through the observed turns from the state at which they "
+      "begin. A second start of the closed form, moved a little, tells how disturbances grow: the "
+      "largest force may differ by the errors of the steps grown so. Where they have grown too far "
+      "nothing more is judged; such a motion is chaotic, and what follows agrees only in kind. "
+      "Where both "
+      "differ in class, the closed form's stands first.",
+      {{"agree", fmt::format("{} of {}", agreeing(map), map.checks.size())}},
+      {{"bar", "rpm", "class", "turns judged", "of", "growth", "largest force apart by", "allowed",
+        "agrees", "all turns: class", "largest, N", "Simbody, N"},
+       {}}};
+  for (const RattleCheck& c : map.checks)
+    section.table.rows.push_back({map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
+                                  against(c.analytic, c.multibody), turns_of(c.judged),
+                                  turns_of(c.parts), c.growth, c.difference, c.allowed, c.agrees(),
+                                  against(c.analytic_whole, c.multibody_whole), c.largest_analytic,
+                                  c.largest_multibody});
+  return section;
+}
+
+class MapFigures {
+ public:
+  explicit MapFigures(const RattleMap& map) : map_(map) {
+    std::size_t most = 0;
+    for (const RattleRow& row : map.rows) most = std::max(most, row.boundary_rpm.size());
+    for (std::size_t k = 0; k < most; ++k) {
+      report::XySeries line{
+          k == 0 ? "criterion: at lower speed rigid teeth reverse" : "criterion, again", {}, {}};
+      for (const RattleRow& row : map.rows) {
+        line.x.push_back(k < row.boundary_rpm.size() ? row.boundary_rpm[k] : not_computed());
+        line.y.push_back(row.delivery_bar);
+      }
+      lines_.push_back(std::move(line));
+    }
+    report::XySeries marks{"up and down differ", {}, {}};
+    for (const RattleRow& row : map.rows)
+      for (std::size_t j = 0; j < row.up.size(); ++j)
+        if (two_states(row.up[j], row.down[j])) {
+          marks.x.push_back(map.options.speed_rpm[j]);
+          marks.y.push_back(row.delivery_bar);
+        }
+    if (!marks.x.empty()) marks_ = std::move(marks);
+  }
+
+  template <class Value>
+  report::Figure figure(const std::string& id, const std::string& title, report::Axis z,
+                        Sweep sweep, const Value& value) const {
+    report::MapFigure m{{"speed", "rpm"},
+                        {"delivery pressure", "bar"},
+                        std::move(z),
+                        map_.options.speed_rpm,
+                        map_.options.delivery_bar,
+                        {},
+                        {},
+                        {}};
+    for (const RattleRow& row : map_.rows) {
+      m.values.emplace_back();
+      for (const RattlePoint& point : row.*sweep) m.values.back().push_back(value(point));
+    }
+    m.lines = lines_;
+    return {id, title, "", std::move(m)};
+  }
+
+  report::Figure classes(const std::string& id, const std::string& title, Sweep sweep) const {
+    report::Figure f = figure(id, title, {"class"}, sweep,
+                              [](const RattlePoint& p) { return static_cast<double>(p.kind); });
+    auto& m = std::get<report::MapFigure>(f.content);
+    m.classes = rattle_class_names();
+    m.marks = marks_;
+    return f;
+  }
+
+  template <class Value>
+  report::Figure linear(const std::string& id, const std::string& title, report::Axis z,
+                        const Value& value) const {
+    report::Figure f = figure(id, title, std::move(z), &RattleRow::up, value);
+    std::get<report::MapFigure>(f.content).linear = true;
+    return f;
+  }
+
+ private:
+  const RattleMap& map_;
+  std::vector<report::XySeries> lines_;
+  std::optional<report::XySeries> marks_;
+};
+
+std::vector<report::Figure> map_figures(const RattleMap& map) {
+  const MapFigures make(map);
+  std::vector<report::Figure> figures = {
+      make.classes("classes", "What the teeth do, swept up in speed", &RattleRow::up)};
+  figures.front().note =
+      "One rectangle per point. The line is where the smallest force of rigid teeth over the turn "
+      "passes 0.";
+  if (!rigid(map)) {
+    figures.push_back(
+        make.classes("classes_down", "What the teeth do, swept down in speed", &RattleRow::down));
+    figures.push_back(make.linear("apart", "Share of the time without contact, swept up",
+                                  {"share of the time", "%"},
+                                  [](const RattlePoint& p) { return 100 * p.apart; }));
+    figures.push_back(make.linear("impacts", "Impacts per turn, swept up", {"impacts per turn"},
+                                  [](const RattlePoint& p) { return p.impacts; }));
+  }
+  figures.push_back(make.figure("over_mean", "Largest tooth force over the mean, swept up",
+                                {"largest over mean"}, &RattleRow::up,
+                                [](const RattlePoint& p) { return p.over_mean(); }));
+  figures.push_back(make.figure("largest", "Largest tooth force, swept up", {"force", "N"},
+                                &RattleRow::up, [](const RattlePoint& p) { return p.largest; }));
+  return figures;
+}
+
+}  // namespace
+
+BoundaryAgreement boundary_agreement(const RattleMap& map) {
+  BoundaryAgreement found;
+  const std::vector<double>& speeds = map.options.speed_rpm;
+  for (const RattleRow& row : map.rows) {
+    const auto carries = [&](std::size_t j) { return row.up[j].kind == RattleClass::carries; };
+    for (std::size_t j = 0; j < row.up.size(); ++j) {
+      ++found.points;
+      if (carries(j) == carries_rigidly(row.least[j], row.greatest[j])) ++found.same;
+    }
+    for (const double criterion : row.boundary_rpm) {
+      BoundaryAgreement::Place place{row.delivery_bar, criterion, not_computed(), not_computed()};
+      for (std::size_t j = 0; j + 1 < row.up.size(); ++j) {
+        if (carries(j) == carries(j + 1)) continue;
+        const double middle = (speeds[j] + speeds[j + 1]) / 2;
+        if (is_computed(place.simulated_rpm) &&
+            std::abs(middle - criterion) >= std::abs(place.simulated_rpm - criterion))
+          continue;
+        place.simulated_rpm = middle;
+        place.spacing_rpm = speeds[j + 1] - speeds[j];
+      }
+      found.places.push_back(place);
+    }
+  }
+  return found;
+}
+
+report::Document rattle_document(const RattleMap& map, const report::Lines& program) {
+  report::Document document;
+  document.title = map.the_case.name + ": where the gear rattles";
+  document.program = program;
+  describe_case(document, map.the_case);
+  document.derived = derived_section(map.the_case);
+  document.verdict = report::Verdict{map.agrees(), headline(map)};
+  if (map.checks.empty()) {
+    document.verdict->agrees.reset();
+    document.verdict->word = "Map";
+  }
+  document.meaning =
+      map.checks.empty()
+          ? "What the closed form's teeth do; a class is that of the observed turns, under the "
+            "thresholds below. Nothing was compared: --check N recomputes points by Simbody."
+          : "What the closed form's teeth do; a class is that of the observed turns, under the "
+            "thresholds below. Simbody's model, from the same states, says whether both follow the "
+            "same description.";
+  document.runs.emplace();
+  document.runs->push_back(settings_section(map));
+  document.runs->push_back(classes_section(map));
+  document.runs->push_back(boundary_section(boundary_agreement(map)));
+  if (!rigid(map)) document.runs->push_back(states_section(map));
+  if (!map.checks.empty()) document.runs->push_back(checks_section(map));
+  document.figures = map_figures(map);
+  add_warnings(document, map.failed);
+  return document;
+}
+
+std::string rattle_text(const RattleMap& map) {
+  std::string text = map.the_case.name + "\n" + headline(map) + "\n\n";
+  const auto up = counts_of(map, &RattleRow::up), down = counts_of(map, &RattleRow::down);
+  text += fmt::format("{:<18} {:>8} {:>8}\n", "class", "up", "down");
+  for (std::size_t k = 0; k < up.size(); ++k)
+    text += fmt::format("{:<18} {:>8} {:>8}\n", rattle_class_names()[k], up[k], down[k]);
+  text += "\n" + agreement_text(boundary_agreement(map)) + "\n";
+  for (const RattleCheck& c : map.checks)
+    text += fmt::format(
+        "Simbody at {:g} bar, {:g} rpm: {}: {}, largest force {:.1e} apart, {:.1e} allowed, {:g} "
+        "of {:g} turns judged{}\n",
+        map.options.delivery_bar[c.row], map.options.speed_rpm[c.speed],
+        c.agrees() ? "agrees" : "differs", against(c.analytic, c.multibody), c.difference,
+        c.allowed, turns_of(c.judged), turns_of(c.parts),
+        c.chaotic() ? fmt::format(", chaotic; over all {} against {}", to_string(c.analytic_whole),
+                                  to_string(c.multibody_whole))
+                    : "");
+  return text;
+}
+
+}  // namespace bentaxis::study

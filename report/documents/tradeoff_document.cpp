@@ -1,0 +1,319 @@
+#include "bentaxis/study/tradeoff_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/calibration.h"
+#include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/plausibility_section.h"
+
+namespace bentaxis::study {
+namespace {
+
+using report::Cell;
+
+bool is_integrated(const TradeoffRun& run) { return run.method == "integrated"; }
+
+std::string name_of_run(const TradeoffRun& run) {
+  std::string name = run.model + " " + run.method;
+  if (!run.variant.empty()) name += " " + run.variant;
+  if (run.accuracy) name += " " + number_text(*run.accuracy);
+  return name;
+}
+
+std::string time_text(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
+  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
+  return fmt::format("{:.3g} s", seconds);
+}
+
+// What to use for which error, in words.
+std::vector<std::string> recommendations(const std::vector<TradeoffRun>& runs) {
+  std::vector<std::string> lines;
+  const TradeoffRun* previous = nullptr;
+  for (int digits = 2; digits <= 10; ++digits) {
+    const TradeoffRun* run = fastest_within(runs, std::pow(10.0, -digits));
+    if (run == nullptr) {
+      lines.push_back(fmt::format("For 1e-{} none of the integrated runs is good enough.", digits));
+      break;
+    }
+    const std::string text =
+        fmt::format("For 1e-{} use {} at accuracy {}: {} a turn, error {:.1e} of peak ({}).",
+                    digits, run->variant, number_text(*run->accuracy),
+                    time_text(run->seconds_per_turn), run->error.worst, run->error.worst_channel);
+    // One line for all errors that the same run meets: the smallest of them.
+    if (run == previous)
+      lines.back() = text;
+    else
+      lines.push_back(text);
+    previous = run;
+  }
+  for (const TradeoffRun& run : runs)
+    if (run.done() && run.method == "driven")
+      lines.push_back(fmt::format(
+          "Without integrating, the driven scene \"{}\" takes {} a turn and is right to {:.0e}.",
+          run.variant, time_text(run.seconds_per_turn), run.error.worst));
+  for (const TradeoffRun& run : runs)
+    if (run.model == "analytic" &&
+        (run.method == "scalar" || &run == &runs.back() || (&run)[1].method != "batch"))
+      lines.push_back(fmt::format("The closed form, {}{}, takes {} a turn and is right to {:.0e}.",
+                                  run.method, run.variant.empty() ? "" : " (" + run.variant + ")",
+                                  time_text(run.seconds_per_turn), run.error.worst));
+  return lines;
+}
+
+// ---- Columns of the table, the CSV and the JSON
+
+struct Column {
+  const char* key;
+  const char* heading;
+  Cell (*cell)(const TradeoffRun&);
+};
+Cell number_or_none(double value) { return std::isfinite(value) ? Cell(value) : Cell(); }
+template <double AchievedError::*member>
+Cell error_cell(const TradeoffRun& run) {
+  return run.done() ? number_or_none(run.error.*member) : Cell();
+}
+template <auto member>
+Cell record_cell(const TradeoffRun& run) {
+  return run.record ? Cell((*run.record).*member) : Cell();
+}
+template <double multibody::WorstErrors::*member>
+Cell drift_cell(const TradeoffRun& run) {
+  return run.record ? Cell(run.record->whole.*member) : Cell();
+}
+const std::vector<Column>& columns() {
+  static const std::vector<Column> list = {
+      {"pressure", "pressure", [](const TradeoffRun& r) { return Cell(r.pressure); }},
+      {"model", "model", [](const TradeoffRun& r) { return Cell(r.model); }},
+      {"method", "method", [](const TradeoffRun& r) { return Cell(r.method); }},
+      {"variant", "scene, integrator", [](const TradeoffRun& r) { return Cell(r.variant); }},
+      {"accuracy", "accuracy asked",
+       [](const TradeoffRun& r) { return r.accuracy ? Cell(*r.accuracy) : Cell(); }},
+      {"seconds_per_turn", "time per turn, s",
+       [](const TradeoffRun& r) { return r.done() ? Cell(r.seconds_per_turn) : Cell(); }},
+      {"error_worst", "error, worst", error_cell<&AchievedError::worst>},
+      {"error_Rs", "error Rs", error_cell<&AchievedError::rs>},
+      {"error_Rc", "error Rc", error_cell<&AchievedError::rc>},
+      {"error_bearings", "error Rb", error_cell<&AchievedError::bearings>},
+      {"error_Rcs", "error Rcs", error_cell<&AchievedError::rcs>},
+      {"error_Td", "error Td", error_cell<&AchievedError::td>},
+      {"position_drift_m", "constraint error, m",
+       drift_cell<&multibody::WorstErrors::position_error>},
+      {"velocity_drift_m_per_s", "constraint rate error, m/s",
+       drift_cell<&multibody::WorstErrors::velocity_error>},
+      {"gear_phase_rad", "gear phase, rad", drift_cell<&multibody::WorstErrors::gear_phase>},
+      {"steps", "steps", record_cell<&multibody::IntegrationRecord::steps>},
+      {"evaluations", "evaluations", record_cell<&multibody::IntegrationRecord::evaluations>},
+      {"status", "status",
+       [](const TradeoffRun& r) { return Cell(r.done() ? "done" : "failed: " + r.failure); }}};
+  return list;
+}
+
+std::string csv_field(const Cell& cell) {
+  if (const auto* count = std::get_if<long>(&cell)) return std::to_string(*count);
+  if (const auto* number = std::get_if<double>(&cell)) return number_text(*number);
+  const auto* text = std::get_if<std::string>(&cell);
+  if (text == nullptr) return "";
+  if (text->find_first_of(",\"") == std::string::npos) return *text;
+  std::string quoted = "\"";
+  for (const char c : *text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::vector<TradeoffRun> all_runs(const TradeoffStudy& study) {
+  std::vector<TradeoffRun> all;
+  for (const auto& pressure : study.pressures)
+    all.insert(all.end(), pressure.runs.begin(), pressure.runs.end());
+  return all;
+}
+
+std::vector<report::Record> records(const TradeoffStudy& study) {
+  std::vector<report::Record> rows;
+  for (const auto& pressure : study.pressures) {
+    const auto front = pareto_front(pressure.runs, is_integrated);
+    for (std::size_t i = 0; i < pressure.runs.size(); ++i) {
+      const TradeoffRun& run = pressure.runs[i];
+      report::Record row;
+      for (const Column& column : columns()) row.emplace_back(column.key, column.cell(run));
+      row.back().second = run.done() ? "done" : "failed";
+      row.emplace_back("reason", run.done() ? Cell() : Cell(run.failure));
+      row.emplace_back("on_front", std::find(front.begin(), front.end(), i) != front.end());
+      rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+// ---- Sections and figures
+
+report::Section table_of(const TradeoffStudy::Pressure& pressure, const TradeoffOptions& options) {
+  report::Table table;
+  for (std::size_t c = 1; c < columns().size(); ++c)
+    table.columns.emplace_back(columns()[c].heading);
+  for (const TradeoffRun& run : pressure.runs) {
+    auto& row = table.rows.emplace_back();
+    for (std::size_t c = 1; c < columns().size(); ++c) row.push_back(columns()[c].cell(run));
+  }
+  return {fmt::format("Every run, {} pressure", pressure.name),
+          fmt::format("One turn, results at {} angles; every one of them ends a step of an "
+                      "integrated run. Errors are the largest difference from the closed "
+                      "form in extended precision, over the peak.",
+                      options.samples_per_revolution),
+          {},
+          std::move(table)};
+}
+
+report::Section orders_of(const TradeoffStudy::Pressure& pressure, const TradeoffOptions& options) {
+  report::Table table{{"integrator", "runs", "order, last pair", "order, least squares",
+                       "order of the method", "outside it"},
+                      {}};
+  const auto cell = [](const std::optional<double>& value) {
+    return value ? Cell(*value) : Cell();
+  };
+  for (const auto integrator : options.integrators) {
+    const Order order = order_of(pressure.runs, name_of(integrator));
+    const auto theory = multibody::method_orders(integrator);
+    table.rows.push_back(
+        {order.integrator, long{order.runs}, cell(order.last_pair), cell(order.least_squares),
+         theory.first == theory.second ? fmt::format("{}", theory.first)
+                                       : fmt::format("{} to {}", theory.first, theory.second),
+         outside_theory(order, theory)});
+  }
+  return {fmt::format("Convergence, {} pressure", pressure.name),
+          "Exponent p of error = const x step^p, with the mean step of a run (one turn over "
+          "its steps). Runs whose step the samples set, not the accuracy, are left out; so "
+          "are errors above 1e-2. An exponent that is off the order of the method, as Simbody "
+          "states it, by more than half an order is marked: it is a property of these runs and "
+          "not of the method (an order that varies from step to step, edges of the pressure, an "
+          "extrapolation that the stated order does not count).",
+          {},
+          std::move(table)};
+}
+
+// The same symbol for the same series in every figure: what is not integrated comes first.
+int style_of(const TradeoffRun& run) {
+  if (run.model == "analytic") return run.method == "scalar" ? 0 : 1;
+  if (!is_integrated(run)) return 2;
+  const auto& names = multibody::integrator_names();
+  return 3 + static_cast<int>(std::find(names.begin(), names.end(), run.variant) - names.begin());
+}
+
+// Runs of the same kind and variant make one series each.
+report::Figure figure_of(const TradeoffStudy::Pressure& pressure, bool by_accuracy) {
+  const auto& runs = pressure.runs;
+  const auto point = [&](const TradeoffRun& run) {
+    return report::ScatterPoint{by_accuracy ? *run.accuracy : run.seconds_per_turn, run.error.worst,
+                                name_of_run(run)};
+  };
+  std::vector<report::ScatterSeries> series;
+  for (const TradeoffRun& run : runs) {
+    if (!run.done() || (by_accuracy && !run.accuracy)) continue;
+    const std::string name =
+        is_integrated(run)
+            ? run.variant
+            : run.model + " " + run.method + (run.method == "driven" ? " " + run.variant : "");
+    auto it = std::find_if(series.begin(), series.end(),
+                           [&](const report::ScatterSeries& s) { return s.name == name; });
+    if (it == series.end())
+      it = series.insert(it, {name, style_of(run), is_integrated(run), false, {}});
+    it->points.push_back(point(run));
+  }
+  if (!by_accuracy) {
+    report::ScatterSeries front{"front of the integrated runs", std::nullopt, true, true, {}};
+    for (const std::size_t i : pareto_front(runs, is_integrated))
+      front.points.push_back(point(runs[i]));
+    series.push_back(std::move(front));
+  }
+  report::Axis x{by_accuracy ? "accuracy asked" : "time per turn (s)", "", true};
+  return {
+      (by_accuracy ? "accuracy_" : "work_precision_") + pressure.name,
+      by_accuracy ? fmt::format("Achieved error against accuracy asked, {} pressure", pressure.name)
+                  : fmt::format("Error against time, {} pressure", pressure.name),
+      "",
+      report::ScatterFigure{std::move(x), {"achieved error, of peak", "", true}, std::move(series)},
+      by_accuracy ? ""
+                  : "Driven and analytic runs have no error to trade: what they show is "
+                    "round-off. Integrated runs have a front of their own."};
+}
+
+report::Summary summary_of(const TradeoffStudy& study) {
+  report::Summary summary{
+      "What a given error costs, and the fastest that is good enough. Times are of this machine; "
+      "compare them within this report only.",
+      {}};
+  for (const auto& pressure : study.pressures)
+    summary.groups.push_back({pressure.name + " pressure", recommendations(pressure.runs)});
+  return summary;
+}
+
+}  // namespace
+
+report::Document tradeoff_document(const TradeoffStudy& study, const report::Lines& program) {
+  report::Document document;
+  document.title = study.the_case.name + ": speed against error";
+  document.program = program;
+  describe_case(document, study.the_case);
+  document.summary = summary_of(study);
+  if (!document.summary->groups.empty() && !document.summary->groups.front().lines.empty())
+    document.verdict = report::Verdict{std::nullopt,
+                                       document.summary->groups.front().title + ": " +
+                                           document.summary->groups.front().lines.front(),
+                                       "Trade-off"};
+  document.records = records(study);
+  document.runs.emplace();
+  document.figures.emplace();
+  for (const auto& pressure : study.pressures) {
+    document.figures->push_back(figure_of(pressure, false));
+    document.figures->push_back(figure_of(pressure, true));
+    document.runs->push_back(table_of(pressure, study.options));
+    document.runs->push_back(orders_of(pressure, study.options));
+  }
+  return document;
+}
+
+std::string tradeoff_csv(const TradeoffStudy& study) {
+  std::string text;
+  for (const Column& column : columns())
+    text += (text.empty() ? "" : ",") + std::string(column.key);
+  text += "\n";
+  for (const TradeoffRun& run : all_runs(study)) {
+    bool first = true;
+    for (const Column& column : columns()) {
+      if (!first) text += ',';
+      first = false;
+      text += csv_field(column.cell(run));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string tradeoff_text(const TradeoffStudy& study) {
+  std::string text;
+  for (const auto& group : summary_of(study).groups) {
+    text += group.title + "\n";
+    for (const auto& line : group.lines) text += "  " + line + "\n";
+  }
+  text += fmt::format("\n{:<8} {:<44} {:>12} {:>9} {:>9} {:>8} {:>8}\n", "pressure", "run",
+                      "time a turn", "error", "drift, m", "steps", "evals");
+  for (const TradeoffRun& run : all_runs(study)) {
+    text += fmt::format("{:<8} {:<44} ", run.pressure, name_of_run(run));
+    if (!run.done()) {
+      text += "failed: " + run.failure + "\n";
+      continue;
+    }
+    text += fmt::format("{:>12} {:>9.1e}", time_text(run.seconds_per_turn), run.error.worst);
+    if (run.record)
+      text += fmt::format(" {:>9.1e} {:>8} {:>8}", run.record->whole.position_error,
+                          run.record->steps, run.record->evaluations);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace bentaxis::study

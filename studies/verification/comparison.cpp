@@ -1,0 +1,661 @@
+#include "bentaxis/study/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "bentaxis/analytic/model.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/published_section.h"
+#include "bentaxis/study/rounding_spread.h"
+#include "bentaxis/study/timing.h"
+
+namespace bentaxis::study {
+namespace {
+
+std::string of_table(const compare::Check& check) { return check.table + ": " + check.name; }
+
+double worst_of_group(const compare::Comparison& comparison, const std::string& group) {
+  double worst = 0;
+  for (const auto& c : comparison.channels)
+    if (c.channel.group == group && c.compared()) worst = std::max(worst, c.largest_over_peak());
+  return worst;
+}
+
+// Components whose vector, or the loads, are so much larger that a difference of much of themselves
+// would pass: the smallest of each quantity and axis.
+std::string small_components(const compare::Comparison& comparison) {
+  std::map<std::string, const compare::ChannelComparison*> smallest;
+  for (const auto& c : comparison.channels) {
+    if (!c.is_small_component()) continue;
+    auto& least = smallest[c.channel.quantity + "_" + c.channel.axis];
+    if (least == nullptr || c.own_peak / c.peak < least->own_peak / least->peak) least = &c;
+  }
+  std::string text;
+  for (const auto& [name, c] : smallest)
+    text += fmt::format("{}{} ({:.1e} of itself)", text.empty() ? "" : ", ", name,
+                        c->allowed / c->own_peak);
+  if (text.empty()) return text;
+  return fmt::format(
+      "below {:g} of the peak of their vector, to which differences are held, so that errors up to "
+      "these pass: {}",
+      compare::kSmallComponent, text);
+}
+
+// The comparison while it is made.
+class Maker {
+ public:
+  Maker(ReadyCase first, ReadyCase second, const ComparisonOptions& options,
+        const PartProgress& progress_of)
+      : progress_of_(progress_of),
+        samples_(first.samples(options.way)),
+        multibody_samples_(second.samples(options.way)),
+        zero_scales_(zero_scales(first.the_case, samples_)) {
+    result_.first = std::move(first);
+    result_.second = std::move(second);
+    result_.options = options;
+  }
+
+  ComparisonResult make() {
+    ComparisonResult& r = result_;
+    run_models();
+    compare_tables();
+    split_assumptions();
+    run_without_viscous();
+    r.published = published_section(
+        r.options.published, {&r.first.the_case, r.first.the_case.analytic, &r.analytic},
+        {&r.second.the_case, r.second.the_case.multibody, &r.multibody}, progress_of_);
+    r.limits =
+        analytic::check_validity(r.first.the_case, r.first.the_case.analytic, samples_, r.analytic);
+    warn();
+    if (!r.options.with.empty()) hold_to_reference();
+    return std::move(result_);
+  }
+
+ private:
+  bool integrated() const { return result_.options.way == Way::integrated; }
+  bool has_teeth() const {
+    return result_.first.the_case.pump.gear.contact == ToothContact::teeth && !integrated() &&
+           result_.options.scene.scene == multibody::Scene::full &&
+           result_.first.the_case.analytic.gear == BlockDrive::mesh &&
+           result_.second.the_case.multibody.gear == BlockDrive::mesh;
+  }
+  // Of another run they would be those beside its reactions, which no report shows.
+  bool has_loads() const {
+    return result_.options.loads && !integrated() &&
+           result_.options.scene.scene == multibody::Scene::full;
+  }
+  bool has_budget() const {
+    const ChannelLayout layout(result_.first.the_case.pump.geometry.pistons);
+    return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
+           result_.options.channels.wants(layout.channels()[layout.Td()]);
+  }
+
+  RunOptions multibody_run(double accuracy) const {
+    RunOptions options;
+    options.model = Model::multibody;
+    options.way = result_.options.way;
+    options.scene = result_.options.scene;
+    options.integration = result_.options.integration;
+    options.integration.accuracy = accuracy;
+    return options;
+  }
+
+  void run_models();
+  void integrate_all();
+  double torque_driven_speed_error(const multibody::IntegrationOptions& integration) const;
+  compare::Options comparison_options() const;
+  void note_film_point_errors();
+  bool may_be_missing(const Channel& channel, std::size_t row) const;
+  void compare_tables();
+  void split_assumptions();
+  void run_without_viscous();
+  void hold_to_reference();
+  void note_multiplier_errors();
+  void warn();
+
+  ComparisonResult result_;
+  const PartProgress& progress_of_;
+  Samples samples_, multibody_samples_;
+  compare::ZeroScales zero_scales_;
+  ResultTable film_point_errors_;
+  std::optional<ResultTable> analytic_budget_, multibody_budget_;
+};
+
+void Maker::run_models() {
+  ComparisonResult& r = result_;
+  ComparisonOptions& o = r.options;
+  if (o.target && !integrated())
+    throw InputError("only an integrated run of the multibody model has an error to choose");
+  if (o.target) {
+    RunOptions to_error = multibody_run(0);
+    to_error.target = o.target;
+    const ModelRun run = study::run(r.second, multibody_samples_, to_error, progress_of_);
+    r.choice = run.choice;
+    o.integration = run.integration;
+    o.accuracies = {run.integration.accuracy};
+  }
+  r.tolerance = o.tolerance    ? *o.tolerance
+                : o.target     ? o.target->error
+                : integrated() ? kIntegratedFactor * o.accuracies.back()
+                               : kDrivenTolerance;
+  RunOptions analytic_run;
+  analytic_run.budget = has_budget();
+  analytic_run.teeth = has_teeth();
+  analytic_run.loads = has_loads();
+  ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
+  r.analytic = std::move(analytic.table);
+  r.analytic_loads = std::move(analytic.loads);
+  analytic_budget_ = std::move(analytic.budget);
+  note_film_point_errors();
+  if (integrated()) {
+    integrate_all();
+    return;
+  }
+  RunOptions driven = multibody_run(0);
+  driven.budget = has_budget();
+  driven.teeth = has_teeth();
+  driven.loads = has_loads();
+  ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
+  r.multibody = std::move(multibody.table);
+  r.multibody_loads = std::move(multibody.loads);
+  multibody_budget_ = std::move(multibody.budget);
+  if (analytic.teeth)
+    r.teeth = compare_teeth(std::move(*analytic.teeth), std::move(*multibody.teeth), r.tolerance,
+                            zero_scales_, r.first.the_case.pump);
+}
+
+// Integrated runs at every accuracy asked for. The last one's table is the one compared.
+void Maker::integrate_all() {
+  ComparisonResult& r = result_;
+  for (const double accuracy : r.options.accuracies) {
+    const RunOptions options = multibody_run(accuracy);
+    ModelRun run = study::run(r.second, multibody_samples_, options, progress_of_);
+    r.multibody = std::move(run.table);
+    const auto comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
+    const auto worst = [&](const std::string& group) { return worst_of_group(comparison, group); };
+    r.integrations.push_back(
+        {accuracy, worst("Rs"), worst("Rc"), std::max(worst("Rb1"), worst("Rb2")), worst("Rcs"),
+         worst("Td"), std::move(*run.record), torque_driven_speed_error(options.integration)});
+  }
+}
+
+// The shaft free under the analytic torque: how far its speed strays from omega.
+double Maker::torque_driven_speed_error(const multibody::IntegrationOptions& integration) const {
+  const ComparisonResult& r = result_;
+  const analytic::Model model(r.first.the_case.pump, r.second.the_case.multibody);
+  std::vector<double> values(model.layout().size());
+  Instant instant;
+  instant.ports = samples_.ports;
+  instant.chamber_pressure.resize(samples_.pistons);
+  const auto torque = [&](double theta_deg) {
+    instant.turn(radians(std::fmod(theta_deg, 360.0)), samples_.omega);
+    for (int k = 1; k <= samples_.pistons; ++k)
+      instant.chamber_pressure[k - 1] =
+          r.first.pressure(piston_angle_deg(theta_deg, k, samples_.pistons));
+    model.reactions(instant, values);
+    return values[model.layout().Td()];
+  };
+  return multibody::run_torque_driven(r.second.the_case, r.second.the_case.multibody,
+                                      multibody_samples_, r.second.pressure, torque, integration,
+                                      progress_of_("torque-driven"))
+      .whole.speed_error;
+}
+
+// The point of the film force is Th over Fh (53): where Fh passes 0 it is known as well as what is
+// allowed of these two leaves it.
+void Maker::note_film_point_errors() {
+  const ComparisonResult& r = result_;
+  const ChannelLayout layout(r.first.the_case.pump.geometry.pistons);
+  const std::vector<Channel>& channels = layout.channels();
+  const auto allowed = [&](std::size_t column) {
+    return r.tolerance * compare::scale_of(r.analytic, channels[column], zero_scales_);
+  };
+  const double of_force = allowed(layout.Fh()), of_moment = allowed(layout.Th(0));
+  constexpr double kMillimetre = 1e-3;
+  constexpr double kAnyPoint = 1e300;  // mm
+  film_point_errors_ = r.analytic;
+  std::fill(film_point_errors_.values.begin(), film_point_errors_.values.end(), 0.0);
+  for (std::size_t row = 0; row < r.analytic.rows(); ++row) {
+    const double force = std::abs(r.analytic.at(row, layout.Fh()));
+    if (!is_computed(force) || force == 0) continue;
+    // A force within its own error has no point of application that could be compared.
+    const double least = force - of_force;
+    for (const std::size_t column : {layout.xh(), layout.yh()}) {
+      const double at = std::abs(r.analytic.at(row, column));
+      if (is_computed(at))
+        film_point_errors_.values[row * film_point_errors_.columns() + column] =
+            least > 0 ? (of_moment / kMillimetre + at * of_force) / least : kAnyPoint;
+    }
+  }
+}
+
+compare::Options Maker::comparison_options() const {
+  const int n = result_.first.the_case.pump.geometry.pistons;
+  compare::Options options;
+  options.tolerance = result_.tolerance;
+  options.orders = {n, 2 * n};
+  options.zero_scales = zero_scales_;
+  if (film_point_errors_.rows() > 0) options.uncertainty = &film_point_errors_;
+  options.may_be_missing = [this](const Channel& channel, std::size_t row) {
+    return may_be_missing(channel, row);
+  };
+  return options;
+}
+
+// What a run is known not to compute: what its scene or an imposed gear leaves out, and the point
+// of the film force where there is none (53).
+bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
+  const ComparisonResult& r = result_;
+  if (!computes({}, r.first.the_case.analytic, channel) ||
+      !computes(multibody_run(0), r.second.the_case.multibody, channel))
+    return true;
+  if (channel.quantity != "xh" && channel.quantity != "yh") return false;
+  const std::size_t fh = ChannelLayout(r.first.the_case.pump.geometry.pistons).Fh();
+  return r.analytic.at(row, fh) == 0 || r.multibody.at(row, fh) == 0;
+}
+
+void Maker::compare_tables() {
+  ComparisonResult& r = result_;
+  r.comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
+  std::erase_if(r.comparison.channels,
+                [&](const auto& c) { return !r.options.channels.wants(c.channel); });
+  for (const ResultTable* table : {&r.analytic, &r.multibody})
+    for (auto& check : compare::judge_checks(*table, zero_scales_, r.tolerance))
+      r.checks.push_back(std::move(check));
+  if (!analytic_budget_) return;
+  r.budget = compare_budgets(std::move(*analytic_budget_), std::move(*multibody_budget_),
+                             r.tolerance, zero_scales_);
+  r.checks.insert(r.checks.end(), r.budget->checks.begin(), r.budget->checks.end());
+}
+
+// Takes the difference apart where the models' assumptions differ.
+void Maker::split_assumptions() {
+  ComparisonResult& r = result_;
+  const Assumptions& from = r.first.the_case.analytic;
+  const Assumptions& to = r.second.the_case.multibody;
+  using Change = void (*)(Assumptions&, const Assumptions&);
+  const Change all_changes[] = {
+      [](Assumptions& a, const Assumptions& b) { a.piston_friction = b.piston_friction; },
+      [](Assumptions& a, const Assumptions& b) { a.inertia = b.inertia; },
+      [](Assumptions& a, const Assumptions& b) { a.gear = b.gear; }};
+  const auto from_words = in_words(from);
+  const auto to_words = in_words(to);
+  std::vector<Change> changes;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < from_words.size(); ++i) {
+    if (from_words[i].second == to_words[i].second) continue;
+    r.changes.push_back({from_words[i].first, from_words[i].second, to_words[i].second});
+    names.push_back(from_words[i].first);
+    changes.push_back(all_changes[i]);
+  }
+  // The closed form knows involutes alone: what another shape does is seen in the other model.
+  std::optional<ModelRun> involutes;
+  const unsigned shape = 1U << names.size();
+  const bool other_shape = has_teeth() && to.flanks != from.flanks;
+  if (other_shape) {
+    r.changes.push_back({"flanks of the teeth", to_string(from.flanks), to_string(to.flanks)});
+    names.emplace_back("flanks of the teeth");
+    changes.push_back([](Assumptions&, const Assumptions&) {});
+    RunOptions options = multibody_run(0);
+    options.assumptions = to;
+    options.assumptions->flanks = from.flanks;
+    options.budget = r.budget.has_value();
+    involutes = study::run(r.second, multibody_samples_, options, progress_of_);
+  }
+  if (names.empty()) return;
+  const auto run_of = [&](unsigned mask, bool budget) {
+    RunOptions options;
+    options.budget = budget;
+    options.assumptions = from;
+    for (std::size_t i = 0; i < changes.size(); ++i)
+      if ((mask & (1U << i)) != 0) changes[i](*options.assumptions, to);
+    return study::run(r.first, samples_, options);
+  };
+  const auto shaped = [&](unsigned mask, ResultTable table, const ResultTable& other,
+                          const ResultTable& involute) {
+    if (other_shape && (mask & shape) != 0)
+      for (std::size_t i = 0; i < table.values.size(); ++i)
+        table.values[i] += other.values[i] - involute.values[i];
+    return table;
+  };
+  const auto variant = [&](unsigned mask) {
+    return shaped(mask, run_of(mask, false).table, r.multibody,
+                  involutes ? involutes->table : r.multibody);
+  };
+  // A tolerance that the user names counts as it is.
+  const double tolerance = r.options.tolerance || integrated() ? r.tolerance : kDrivenRestTolerance;
+  r.split =
+      compare::split_difference(r.analytic, r.multibody, names, variant, zero_scales_, tolerance);
+  compare::mark_explained(r.comparison, *r.split);
+  if (!r.budget) return;
+  explain(*r.budget,
+          compare::split_difference(
+              r.budget->analytic, r.budget->multibody, names,
+              [&](unsigned mask) {
+                return shaped(mask, *run_of(mask, true).budget, r.budget->multibody,
+                              involutes ? *involutes->budget : r.budget->multibody);
+              },
+              zero_scales_, tolerance),
+          zero_scales_);
+}
+
+// Fig. 32 with and without the block's viscous torque.
+void Maker::run_without_viscous() {
+  ComparisonResult& r = result_;
+  if (r.first.the_case.pump.friction.block_viscous <= 0 || integrated() ||
+      r.options.scene.scene != multibody::Scene::full)
+    return;
+  const auto still = [](const ReadyCase& ready) {
+    Case the_case = ready.the_case;
+    the_case.pump.friction.block_viscous = 0;
+    PressureTrace pressure(the_case.pressure);
+    return ReadyCase{std::move(the_case), {}, std::move(pressure)};
+  };
+  r.without_viscous.push_back(study::run(still(r.first), samples_, {}).table);
+  r.without_viscous.push_back(
+      study::run(still(r.second), multibody_samples_, multibody_run(0),
+                 [&](const std::string& part) { return progress_of_(part + ", Cc = 0"); })
+          .table);
+}
+
+// Both models held to a reference: what was asked for and computed.
+void Maker::hold_to_reference() {
+  ComparisonResult& r = result_;
+  const auto computed = [](const ResultTable& table, const Channel& channel) {
+    const std::size_t column = table.find(channel.name);
+    for (std::size_t row = 0; row < table.rows(); ++row)
+      if (is_computed(table.at(row, column))) return true;
+    return false;
+  };
+  r.with = hold_results(
+      r.options.with,
+      [&](Model model) -> const Case& {
+        return model == Model::analytic ? r.first.the_case : r.second.the_case;
+      },
+      [&](Model model) {
+        const ResultTable& table = model == Model::analytic ? r.analytic : r.multibody;
+        return ReferenceRun{select_channels(table,
+                                            [&](const Channel& channel) {
+                                              return r.options.channels.wants(channel) &&
+                                                     computed(table, channel);
+                                            }),
+                            zero_scales_};
+      });
+  if (!r.with->other_case.empty())
+    r.warnings.push_back(
+        {"the curves are of another case", r.with->name + ": " + r.with->other_case});
+}
+
+void Maker::warn() {
+  ComparisonResult& r = result_;
+  if (r.first.hydraulics)
+    for (auto& warning : timing_warnings(timing_rows(r.first.the_case, *r.first.hydraulics)))
+      r.warnings.push_back(std::move(warning));
+  for (const ReadyCase* ready : {&r.first, &r.second})
+    if (ready->hydraulics && (ready == &r.first || ready->the_case.file != r.first.the_case.file))
+      if (auto warning = accuracy_warning(ready->the_case, *ready->hydraulics))
+        r.warnings.push_back(std::move(*warning));
+  for (const auto& limit : r.limits)
+    if (limit.applicable && limit.violated_share > 0)
+      r.warnings.push_back(
+          {limit.name, fmt::format("over {:.3g} % of the turn, worst {:.4g} {} at {:g} deg: {}.",
+                                   100 * limit.violated_share, limit.worst, limit.unit,
+                                   limit.theta_deg, limit.consequence)});
+  r.rounding = rounding_lines(r.first.the_case, r.first.the_case.analytic);
+  for (const auto& text : rounding_warnings(r.rounding))
+    r.warnings.push_back({"digits lost to rounding", text});
+  if (!integrated()) {
+    r.losses = multibody_losses(r.second.the_case, r.second.the_case.multibody, r.options.scene);
+    for (const auto& text :
+         multibody_warnings(r.second.the_case, r.options.scene, r.rounding, r.losses))
+      r.warnings.push_back({"digits lost in Simbody", text});
+    note_multiplier_errors();
+  }
+  if (const std::string text = small_components(r.comparison); !text.empty())
+    r.warnings.push_back({"small channels", text});
+}
+
+// Where the models differ: what the multibody model's other method, which solves for no
+// multipliers, gives at the same angles. Both are the same equations, so that their difference is
+// round-off.
+void Maker::note_multiplier_errors() {
+  ComparisonResult& r = result_;
+  if (r.agrees() || r.split || r.options.scene.scene != multibody::Scene::full ||
+      multibody::method_for(r.second.the_case.pump, r.options.scene.method) !=
+          multibody::Method::multipliers)
+    return;
+  RunOptions without = multibody_run(0);
+  without.scene.method = multibody::Method::residual;
+  without.budget = r.budget.has_value();
+  const auto keep = [&](const compare::Comparison& changes) {
+    for (const auto& c : changes.channels)
+      if (c.compared() && c.largest_over_peak() > r.tolerance)
+        r.losses.multipliers[c.channel.name] = c.largest_over_peak();
+  };
+  try {
+    const ModelRun other = study::run(r.second, multibody_samples_, without, progress_of_);
+    compare::Options options = comparison_options();
+    options.uncertainty = nullptr;
+    // Scales are those of the verdict: of the analytic model's peaks.
+    compare::Comparison changes = compare::compare_tables(r.multibody, other.table, options);
+    for (auto& c : changes.channels)
+      for (const auto& of_verdict : r.comparison.channels)
+        if (of_verdict.channel.name == c.channel.name) c.peak = of_verdict.peak;
+    keep(changes);
+    std::vector<compare::Check> checks =
+        compare::judge_checks(other.table, zero_scales_, r.tolerance);
+    if (other.budget) {
+      const BudgetComparison budgets =
+          compare_budgets(r.budget->multibody, *other.budget, r.tolerance, zero_scales_);
+      keep(budgets.comparison);
+      checks.insert(checks.end(), budgets.checks.begin(), budgets.checks.end());
+    }
+    // Of a check that holds there: all that it is off by here.
+    for (const auto& check : r.checks)
+      for (const auto& there : checks)
+        if (!check.holds() && there.holds() && check.table == r.multibody.name &&
+            there.table == check.table && there.name == check.name)
+          r.losses.multipliers[of_table(check)] = check.relative();
+  } catch (const ComputationError&) {
+    // That method refuses the case: it says nothing.
+  }
+}
+
+}  // namespace
+
+Lines in_words(const Assumptions& a) {
+  return {{"piston friction", a.piston_friction ? "on" : "off"},
+          {"piston inertia", to_string(a.inertia)},
+          {"gear", to_string(a.gear)}};
+}
+
+bool ComparisonResult::checks_hold() const {
+  return std::all_of(checks.begin(), checks.end(), [](const auto& check) { return check.holds(); });
+}
+
+bool ComparisonResult::agrees() const {
+  if (!checks_hold() || comparison.incomplete() != nullptr) return false;
+  if (budget && !budget->comparison.agrees()) return false;
+  if (teeth && !split && !teeth->comparison.agrees()) return false;
+  return split ? split->explained() : comparison.agrees();
+}
+
+bool ComparisonResult::passes() const {
+  return agrees() && (!with || with->state == Outcome::State::agrees);
+}
+
+namespace {
+
+// A result in which the models differ, or that a check says must vanish and does not.
+struct Failure {
+  std::string name;   ///< of the column or the check
+  std::string group;  ///< of the reactions whose round-off it carries
+  double off = 0;     ///< in its unit
+  double scale = 0;
+};
+
+// The reactions whose round-off a quantity carries: the film force's point is Th over Fh, torques
+// about z2 are those of forces.
+std::vector<std::string> carried_by(const std::string& group) {
+  if (group == "xh_yh") return {"Th", "Fh"};
+  if (group == "Tcs") return {"Rcs"};
+  if (group == "Tc") return {"Rc"};
+  // Parts of torques, by the forces of the pistons that make them.
+  if (group == "parts of Tcs") return {"Rcs", "Rc"};
+  if (group == "parts of Td") return {"Td", "Rs"};
+  if (group == "teeth") return {"Rcs", "Rcn", "Th"};  // by forces of pairs and where these act
+  return {group};
+}
+
+// Of a column of the budgets: the whole that it is a part of.
+std::string whole_of(const std::string& column) {
+  return column.rfind("Tcs_", 0) == 0  ? "parts of Tcs"
+         : column.rfind("Td_", 0) == 0 ? "parts of Td"
+                                       : "Fh";
+}
+
+std::vector<Failure> failures_of(const ComparisonResult& r) {
+  std::vector<Failure> failures;
+  for (const auto& c : r.comparison.channels)
+    if (c.judged && c.verdict == compare::Verdict::differs)
+      failures.push_back({c.channel.name, c.channel.group, c.largest, c.peak});
+  if (r.budget)
+    for (const auto& c : r.budget->comparison.channels)
+      if (c.judged && c.verdict == compare::Verdict::differs)
+        failures.push_back({c.channel.name, whole_of(c.channel.name), c.largest, c.peak});
+  if (r.teeth && !r.split)
+    for (const auto& c : r.teeth->comparison.channels)
+      if (c.judged && c.verdict == compare::Verdict::differs)
+        failures.push_back({c.channel.name, "teeth", c.largest, c.peak});
+  for (const auto& check : r.checks)
+    if (!check.holds())
+      failures.push_back({of_table(check), check.group, check.worst, check.scale});
+  return failures;
+}
+
+std::string where_in_words(const compare::ChannelComparison& c) {
+  return fmt::format("{} at {:g} deg: {:.1e} {}, {:.1e} of {}", c.channel.name,
+                     c.theta_of_largest_deg, c.largest, c.channel.unit, c.largest_over_peak(),
+                     compare::scale_in_words(c));
+}
+
+}  // namespace
+
+std::optional<DifferenceCause> ComparisonResult::cause() const {
+  if (agrees() || split) return std::nullopt;
+  std::map<std::string, double> known = losses.groups;
+  for (const RoundingLine& line : rounding)
+    known[line.group] = std::max(known[line.group], line.total());
+  constexpr double kEstimateFactor = 10;
+  DifferenceCause least;
+  std::string group, measured;
+  double worst = 0, largest_change = 0;
+  for (const Failure& failure : failures_of(*this)) {
+    if (!(failure.scale > 0)) return std::nullopt;
+    double estimate = 0;
+    for (const std::string& carrier : carried_by(failure.group)) estimate += known[carrier];
+    const auto change = losses.multipliers.find(failure.name);
+    const bool by_multipliers = change != losses.multipliers.end() && change->second > estimate;
+    if (by_multipliers) estimate = change->second;
+    if (by_multipliers && change->second > largest_change) {
+      largest_change = change->second;
+      measured = failure.name;
+    }
+    const double over = failure.off / failure.scale;
+    if (!(over <= kEstimateFactor * estimate)) return std::nullopt;
+    if (over / estimate <= worst) continue;
+    worst = over / estimate;
+    least.round_off = estimate;
+    least.over_scale = over;
+    group = failure.group;
+  }
+  if (group.empty()) return std::nullopt;
+  if (!measured.empty())
+    least.text = fmt::format(
+        "The cause is round-off in Simbody's constraint multipliers: without them (--reactions "
+        "residual) {} changes by {:.1e} of its scale.",
+        measured, largest_change);
+  else
+    least.text = fmt::format(
+        "The cause is round-off: rounding of inputs and intermediate results changes {} of this "
+        "case by about {:.1e} of its scale.",
+        group, least.round_off);
+  return least;
+}
+
+std::string ComparisonResult::headline() const {
+  if (const auto* gap = comparison.incomplete())
+    return fmt::format("The two models cannot be said to agree: {} of {}.", gap->gap,
+                       gap->channel.name);
+  const auto found = cause();
+  const std::string because = found ? " " + found->text : "";
+  const bool channels_agree = split ? split->explained() : comparison.agrees();
+  if (budget && channels_agree && !budget->comparison.agrees())
+    if (const auto* apart = budget->comparison.failed())
+      return fmt::format("The torque budgets of the two models differ: {} (tolerance {:g}).{}",
+                         where_in_words(*apart),
+                         split ? split->tolerance : budget->comparison.tolerance, because);
+  if (teeth && channels_agree && !split && !teeth->comparison.agrees()) {
+    if (const auto* gap = teeth->comparison.incomplete())
+      return fmt::format("The teeth of the two models cannot be said to agree: {} of {}.", gap->gap,
+                         gap->channel.name);
+    if (const auto* apart = teeth->comparison.failed())
+      return fmt::format("The teeth of the two models differ: {} (tolerance {:g}).{}",
+                         where_in_words(*apart), teeth->comparison.tolerance, because);
+  }
+  if (channels_agree)
+    if (const auto* check = compare::failed_check(checks))
+      return fmt::format(
+          "A check of the {} model fails: {} is {:.1e} {} at {:g} deg, {:.1e} of its scale "
+          "(tolerance {:g}).{}",
+          check->table, check->name, check->worst, check->unit, check->theta_deg, check->relative(),
+          check->tolerance, because);
+  const auto* worst = comparison.worst();
+  const std::string where =
+      worst == nullptr ? ""
+                       : fmt::format("{} at {:g} deg: {:.1e} of {}", worst->channel.name,
+                                     worst->theta_of_largest_deg, worst->largest_over_peak(),
+                                     compare::scale_in_words(*worst));
+  if (split)
+    return fmt::format(
+        "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak is "
+        "left (tolerance {:g}).",
+        agrees() ? "Explained." : "Not explained.", where,
+        agrees() ? "After accounting for each assumption" : "Each assumption accounted for",
+        split->largest_rest(), split->tolerance);
+  return fmt::format("{} Largest difference {} (tolerance {:g}).{}",
+                     agrees() ? "The two models agree." : "The two models differ.", where,
+                     comparison.tolerance, because);
+}
+
+void check_same_run(const Case& first, const Case& second) {
+  const auto differs = [&](const char* what) {
+    throw InputError(second.file.string() + ": must have the same " + what + " as " +
+                     first.file.string());
+  };
+  if (first.pump.geometry.pistons != second.pump.geometry.pistons) differs("number of pistons");
+  if (first.operation.samples_per_revolution != second.operation.samples_per_revolution)
+    differs("samples_per_revolution");
+  if (first.operation.revolutions != second.operation.revolutions) differs("revolutions");
+}
+
+ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibody_case,
+                                const ComparisonOptions& options, const PartProgress& progress_of) {
+  if (!options.with.empty()) reference_in(options.with);  // refused before anything is computed
+  if (multibody_case) check_same_run(analytic_case, *multibody_case);
+  require_memory(analytic_case, Kept::compared, options.way);
+  ReadyCase first = prepare(std::move(analytic_case), progress_of);
+  // The same case is solved once: both models get the very same curve.
+  ReadyCase second = multibody_case ? prepare(std::move(*multibody_case), progress_of)
+                                    : ReadyCase{first.the_case, first.hydraulics,
+                                                PressureTrace(first.the_case.pressure)};
+  return Maker(std::move(first), std::move(second), options, progress_of).make();
+}
+
+}  // namespace bentaxis::study

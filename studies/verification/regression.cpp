@@ -1,0 +1,397 @@
+#include "bentaxis/study/regression.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bentaxis/compare/published.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/results/stopwatch.h"
+
+namespace bentaxis::study {
+
+using compare::Finding;
+using compare::ReferenceChannel;
+
+namespace {
+
+std::vector<GroupLine> group_lines(const compare::Judgement& judgement) {
+  std::map<std::string, GroupLine> groups;
+  for (const auto& channel : judgement.channels) {
+    if (channel.finding == Finding::absent) continue;
+    groups[channel.comparison.channel.group].channels.push_back(channel);
+  }
+  std::vector<GroupLine> lines;
+  for (auto& [group, line] : groups) {
+    line.group = group;
+    lines.push_back(std::move(line));
+  }
+  for (auto& line : lines)
+    for (const auto& channel : line.channels) {
+      line.compared += channel.finding == Finding::agrees || channel.finding == Finding::differs;
+      line.missing += channel.finding == Finding::missing;
+      line.failed += channel.failed();
+    }
+  return lines;
+}
+
+// A reference at fewer angles than the results is judged at its own, as `regress` does: every
+// stride-th row is one of them.
+std::size_t stride_of(const compare::ReferenceDescription& description, const Case& the_case) {
+  const int all = the_case.operation.samples_per_revolution;
+  const int theirs = description.samples_per_revolution.value_or(all);
+  return all % theirs == 0 ? static_cast<std::size_t>(all / theirs) : 1;
+}
+
+ResultTable every(std::size_t stride, const ResultTable& table) {
+  ResultTable some = table;
+  some.theta_deg.clear();
+  some.values.clear();
+  for (std::size_t row = 0; row < table.rows(); row += stride) {
+    some.theta_deg.push_back(table.theta_deg[row]);
+    for (std::size_t c = 0; c < table.columns(); ++c) some.values.push_back(table.at(row, c));
+  }
+  return some;
+}
+
+// The reverse: not computed between the rows.
+ResultTable spread(std::size_t stride, const ResultTable& some,
+                   const std::vector<double>& theta_deg) {
+  if (some.rows() == 0) return some;
+  ResultTable table = some;
+  table.theta_deg = theta_deg;
+  table.values.assign(theta_deg.size() * some.columns(), not_computed());
+  for (std::size_t row = 0; row < some.rows(); ++row)
+    for (std::size_t c = 0; c < some.columns(); ++c)
+      table.values[row * stride * some.columns() + c] = some.at(row, c);
+  return table;
+}
+
+// Holds the results to the curves; nothing is run here but by `result_of`.
+void hold_to_curves(const compare::ReferenceDescription& description, const CaseOf& case_of,
+                    const ResultOf& result_of, Outcome& outcome) {
+  outcome.properties = {{"source", description.source},
+                        {"how_made", description.how_made},
+                        {"digits", std::to_string(description.digits)},
+                        {"tolerance, relative to peak", fmt::format("{:g}", description.relative)},
+                        {"tube, deg", fmt::format("{:g}", description.tube_deg)}};
+  for (const auto& curve : description.curves)
+    for (const auto& line : compare::assumptions_of(curve)) {
+      outcome.notes.push_back(line);
+      outcome.properties.emplace_back("assumption", line);
+    }
+  bool any = false;
+  for (const Model which : kModels) {
+    const std::string model = to_string(which);
+    const Stopwatch stopwatch;
+    const auto holds = [&](const auto& curve) {
+      return std::find(curve.models.begin(), curve.models.end(), model) != curve.models.end();
+    };
+    if (std::none_of(description.curves.begin(), description.curves.end(), holds)) continue;
+    const Case& the_case = case_of(which);
+    const ChannelLayout layout(the_case.pump.geometry.pistons);
+    std::vector<compare::ReferenceCurve> curves;
+    for (const auto& curve : description.curves)
+      if (holds(curve))
+        curves.push_back(compare::read_reference_curve(description, curve, layout.channels(),
+                                                       6 * the_case.operation.speed_rpm,
+                                                       frames_of(the_case)));
+    for (const auto& curve : curves)
+      for (const auto& note : curve.notes) outcome.notes.push_back(model + ": " + note);
+    const ReferenceRun run = result_of(which);
+    const std::size_t stride = stride_of(description, the_case);
+    const compare::Judgement judgement =
+        compare::judge(description, curves, every(stride, run.table), run.zero_scales);
+    if (judgement.resampled)
+      outcome.notes.push_back(fmt::format(
+          "{}: the reference has other angles than the case and was resampled, which adds an error "
+          "of up to {:.1e} of peak; around each angle that is allowed on top",
+          model, judgement.resampling_error));
+    const double seconds = stopwatch.seconds();
+    auto lines = group_lines(judgement);
+    for (auto& line : lines) {
+      line.reference = description.name;
+      line.kind = outcome.kind;
+      line.model = model;
+      line.seconds = seconds / static_cast<double>(lines.size());
+      any = any || line.compared > 0;
+      if (line.failed > 0) outcome.state = Outcome::State::differs;
+      outcome.lines.push_back(std::move(line));
+    }
+    const std::vector<double>& theta = run.table.theta_deg;
+    outcome.held[model] = {
+        run.table, spread(stride, judgement.reference, theta), spread(stride, judgement.low, theta),
+        spread(stride, judgement.high, theta), spread(stride, judgement.resampling, theta)};
+  }
+  if (!any) {
+    outcome.state = std::max(outcome.state, Outcome::State::differs);
+    outcome.error = "nothing was compared: no column of the reference stands for a result";
+  }
+}
+
+// Both models' lines of one case and group are one line of the listing.
+struct ListingLine {
+  const GroupLine* worse = nullptr;
+  std::map<std::string, const GroupLine*> by_model;
+};
+
+std::vector<ListingLine> listing(const std::vector<Outcome>& outcomes) {
+  std::vector<ListingLine> list;
+  std::map<std::pair<std::string, std::string>, std::size_t> index;
+  for (const auto* line : sorted_lines(outcomes)) {
+    const auto [it, added] = index.emplace(std::pair(line->reference, line->group), list.size());
+    if (added) list.push_back({line, {}});
+    list[it->second].by_model[line->model] = line;
+  }
+  return list;
+}
+
+std::string figure_of(const GroupLine* line) {
+  if (line == nullptr) return "-";
+  if (line->worst() == nullptr || line->worst()->finding == Finding::incomplete)
+    return "incomplete";
+  const auto& c = line->worst()->comparison;
+  return fmt::format("{:.1e} {:4.1f}", c.largest_over_peak(), c.digits);
+}
+
+}  // namespace
+
+double severity(const ReferenceChannel& channel) {
+  if (channel.finding == Finding::incomplete) return 1e300;
+  if (channel.finding != Finding::agrees && channel.finding != Finding::differs) return -1;
+  const auto& c = channel.comparison;
+  return c.allowed > 0 ? c.largest / c.allowed : c.largest > 0 ? 1e300 : 0;
+}
+
+const ReferenceChannel* GroupLine::worst() const {
+  const auto it =
+      std::max_element(channels.begin(), channels.end(),
+                       [](const auto& a, const auto& b) { return severity(a) < severity(b); });
+  return it == channels.end() || severity(*it) < 0 ? nullptr : &*it;
+}
+
+std::string GroupLine::verdict() const {
+  return failed > 0 ? to_string(worst()->finding) : is_missing() ? "missing" : "agrees";
+}
+
+std::string GroupLine::text() const {
+  const ReferenceChannel* channel = worst();
+  if (channel == nullptr) return "";
+  const auto& c = channel->comparison;
+  if (channel->finding == Finding::incomplete) return c.channel.name + ": " + channel->hint;
+  std::string words = fmt::format("{} at {:g} deg", c.channel.name, c.theta_of_largest_deg);
+  if (failed > 1) words += fmt::format(" and {} more", failed - 1);
+  if (!channel->hint.empty()) words += ": " + channel->hint;
+  return words;
+}
+
+Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
+  const Stopwatch stopwatch;
+  Outcome outcome;
+  outcome.name = place.name;
+  outcome.kind = "unknown";
+  try {
+    const auto description = compare::read_description(place.folder, place.name);
+    outcome.kind = compare::to_string(description.kind);
+    if (description.kind == compare::ReferenceKind::published) {
+      compare::check_files(description, {});
+      const auto published = compare::read_published(description.numbers);
+      outcome.notes.push_back(fmt::format(
+          "{} printed numbers and windows read; they are judged in the report of compare",
+          published.numbers.size()));
+    } else {
+      const ReferenceCases cases(description, progress_of);
+      std::vector<std::filesystem::path> used;
+      for (const Model model : kModels)
+        for (const auto& file : files_of(cases.of(model).the_case)) used.push_back(file);
+      compare::check_files(description, used);
+      hold_to_curves(
+          description, [&](Model model) -> const Case& { return cases.of(model).the_case; },
+          [&](Model model) { return run_for_reference(cases.of(model), model, progress_of); },
+          outcome);
+    }
+  } catch (const InputError& error) {
+    outcome.state = Outcome::State::unusable;
+    outcome.error = error.what();
+  } catch (const ComputationError& error) {
+    outcome.state = Outcome::State::failed;
+    outcome.error = error.what();
+  }
+  outcome.seconds = stopwatch.seconds();
+  return outcome;
+}
+
+compare::ReferenceDescription reference_in(const std::filesystem::path& folder) {
+  const auto places = references_below(folder);
+  if (places.size() != 1)
+    throw InputError(fmt::format("{}: holds {} references; name the folder of one", folder.string(),
+                                 places.size()));
+  auto description = compare::read_description(places[0].folder, places[0].name);
+  if (description.kind == compare::ReferenceKind::published)
+    throw InputError(folder.string() + ": holds printed numbers and no curves");
+  return description;
+}
+
+Outcome hold_results(const std::filesystem::path& folder, const CaseOf& case_of,
+                     const ResultOf& result_of) {
+  const Stopwatch stopwatch;
+  const auto description = reference_in(folder);
+  const Case theirs = read_case(description.case_file);
+  std::vector<std::filesystem::path> used = files_of(theirs);
+  if (description.multibody_case_file != description.case_file)
+    for (const auto& file : files_of(read_case(description.multibody_case_file)))
+      used.push_back(file);
+  compare::check_files(description, used);
+  Outcome outcome;
+  outcome.name = description.name;
+  outcome.kind = compare::to_string(description.kind);
+  hold_to_curves(description, case_of, result_of, outcome);
+  for (const InputEntry& ours : case_of(Model::analytic).entries)
+    for (const InputEntry& entry : theirs.entries)
+      if (entry.table == ours.table && entry.key == ours.key && entry.value != ours.value &&
+          !entry.table.empty() && entry.key != "file" && entry.key != "samples_per_revolution" &&
+          entry.key != "revolutions")
+        outcome.other_case +=
+            fmt::format("{}{}.{} = {} (here {})", outcome.other_case.empty() ? "" : ", ",
+                        entry.table, entry.key, entry.value, ours.value);
+  if (!outcome.other_case.empty())
+    outcome.notes.push_back("was made for another case: " + outcome.other_case);
+  outcome.seconds = stopwatch.seconds();
+  return outcome;
+}
+
+const ReferenceChannel* Outcome::find(const std::string& model, const std::string& channel) const {
+  for (const GroupLine& line : lines)
+    for (const ReferenceChannel& entry : line.channels)
+      if (line.model == model && entry.comparison.channel.name == channel && severity(entry) >= 0)
+        return &entry;
+  return nullptr;
+}
+
+const GroupLine* Outcome::worst_line(const std::string& group) const {
+  const GroupLine* worst = nullptr;
+  for (const GroupLine& line : lines)
+    if (line.group == group && line.worst() != nullptr &&
+        (worst == nullptr || severity(*line.worst()) > severity(*worst->worst())))
+      worst = &line;
+  return worst;
+}
+
+std::string line_text(const GroupLine& line) {
+  const auto& c = line.worst()->comparison;
+  if (line.worst()->finding == Finding::incomplete)
+    return fmt::format("{} {} ({}): {}", line.group, line.verdict(), line.model, line.text());
+  return fmt::format("{} {}: {:.2g} % of peak ({:.3g} {}), {:.2g} % allowed; {} ({})", line.group,
+                     line.verdict(), 100 * c.largest_over_peak(), c.largest, c.channel.unit,
+                     100 * (c.peak > 0 ? c.allowed / c.peak : 0), line.text(), line.model);
+}
+
+std::string held_text(const Outcome& outcome) {
+  if (!outcome.error.empty()) return outcome.error;
+  std::vector<std::string> groups, differing;
+  const GroupLine* worst = nullptr;
+  for (const GroupLine& line : outcome.lines) {
+    if (line.is_missing()) continue;
+    const auto note = [&](std::vector<std::string>& names) {
+      if (std::find(names.begin(), names.end(), line.group) == names.end())
+        names.push_back(line.group);
+    };
+    note(groups);
+    if (line.failed > 0) note(differing);
+    if (worst == nullptr || severity(*line.worst()) > severity(*worst->worst())) worst = &line;
+  }
+  const std::string count =
+      differing.empty()
+          ? fmt::format("{0} of {0} reactions compared agree", groups.size())
+          : fmt::format("{} of {} reactions compared differ", differing.size(), groups.size());
+  return fmt::format("{}. Worst: {}.", count, line_text(*worst));
+}
+
+std::vector<const GroupLine*> sorted_lines(const std::vector<Outcome>& outcomes) {
+  std::vector<const GroupLine*> lines;
+  for (const auto& outcome : outcomes)
+    for (const auto& line : outcome.lines)
+      if (!line.is_missing()) lines.push_back(&line);
+  std::stable_sort(lines.begin(), lines.end(), [](const auto* a, const auto* b) {
+    return severity(*a->worst()) > severity(*b->worst());
+  });
+  return lines;
+}
+
+// Groups without any curve in the reference, by reference.
+std::vector<std::string> missing_lines(const std::vector<Outcome>& outcomes) {
+  std::vector<std::string> lines;
+  for (const auto& outcome : outcomes) {
+    std::map<std::string, std::string> groups;  // groups to models
+    for (const auto& line : outcome.lines)
+      if (line.is_missing())
+        groups[line.group] += (groups[line.group].empty() ? "" : ", ") + line.model;
+    std::map<std::string, std::string> by_models;
+    for (const auto& [group, models] : groups)
+      by_models[models] += (by_models[models].empty() ? "" : ", ") + group;
+    for (const auto& [models, names] : by_models)
+      lines.push_back(
+          fmt::format("missing     {}: no curve of {} ({})", outcome.name, names, models));
+  }
+  return lines;
+}
+
+std::string regression_text(const std::vector<Outcome>& outcomes) {
+  std::string text;
+  const auto lines = listing(outcomes);
+  std::size_t width = 10;
+  for (const auto& line : lines) width = std::max(width, line.worse->reference.size());
+  if (!lines.empty())
+    text += fmt::format("{:<11} {:<{}} {:<6} {:>10} {:<2}  {:<12} {:<12} {:>8}  {}\n", "verdict",
+                        "case", width, "group", "peak", "", "analytic", "multibody", "allowed",
+                        "worst channel");
+  for (const auto& line : lines) {
+    const auto of = [&](const char* model) {
+      const auto it = line.by_model.find(model);
+      return figure_of(it == line.by_model.end() ? nullptr : it->second);
+    };
+    const GroupLine& worse = *line.worse;
+    const auto& c = worse.worst()->comparison;
+    std::string more = worse.text();
+    if (worse.missing > 0)
+      more += fmt::format(" ({} of {} channels missing)", worse.missing, worse.channels.size());
+    text += fmt::format("{:<11} {:<{}} {:<6} {:>10.4g} {:<2}  {:<12} {:<12} {:>8.1e}  {}\n",
+                        worse.verdict(), worse.reference, width, worse.group, c.peak,
+                        c.channel.unit, of("analytic"), of("multibody"),
+                        c.peak > 0 ? c.allowed / c.peak : c.allowed, more);
+  }
+  for (const auto& line : missing_lines(outcomes)) text += line + "\n";
+  for (const auto& outcome : outcomes)
+    for (const auto& note : outcome.notes)
+      text += fmt::format("note        {}: {}\n", outcome.name, note);
+  return text;
+}
+
+std::string summary(const std::vector<Outcome>& outcomes) {
+  int agree = 0, differ = 0, unusable = 0, failed = 0, published = 0;
+  std::size_t groups = 0;
+  for (const auto& outcome : outcomes) {
+    groups += static_cast<std::size_t>(
+        std::count_if(outcome.lines.begin(), outcome.lines.end(),
+                      [](const auto& line) { return !line.is_missing(); }));
+    if (outcome.state == Outcome::State::unusable)
+      ++unusable;
+    else if (outcome.state == Outcome::State::failed)
+      ++failed;
+    else if (outcome.state == Outcome::State::differs)
+      ++differ;
+    else if (outcome.kind == "published")
+      ++published;
+    else
+      ++agree;
+  }
+  std::string text = fmt::format("{} agree, {} differ", agree, differ);
+  if (unusable > 0) text += fmt::format(", {} cannot be used", unusable);
+  if (failed > 0) text += fmt::format(", {} could not be computed", failed);
+  text += fmt::format("; {} groups of channels compared", groups);
+  if (published > 0) text += "; published numbers were read and are judged by compare";
+  return text + ".";
+}
+
+}  // namespace bentaxis::study
