@@ -4,20 +4,25 @@
 #include <stdexcept>
 #include <string>
 
+#include "bentaxis/pump/characters.h"
+
 namespace bentaxis {
 
 /// The input (case file, curve, option, path) cannot be used. The text is one line that names the
-/// file, the line or key, the value and the allowed range. Exit status 2.
+/// file, the line or key, the value and the allowed range. Exit status 2. Control characters of what
+/// it quotes are escaped.
 class InputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit InputError(const std::string& text)
+      : std::runtime_error(without_control_characters(text)) {}
 };
 
 /// A computation on valid input failed. The text says which model, where in the turn, and why.
-/// Exit status 3.
+/// Exit status 3. Control characters are escaped too.
 class ComputationError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ComputationError(const std::string& text)
+      : std::runtime_error(without_control_characters(text)) {}
 };
 
 /// The user asked to stop (Ctrl-C). Nothing is left half-written.
