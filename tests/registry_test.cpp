@@ -298,8 +298,7 @@ TEST(Registry, DefaultsAreThoseOfANewCase) {
   const Case fresh;
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters)
-      if (const auto value = value_of(parameter, view_of(fresh));
-          value && parameter.fallback.value) {
+      if (const auto value = value_of(parameter, fresh); value && parameter.fallback.value) {
         EXPECT_EQ(*value, *parameter.fallback.value) << table.name << " " << parameter.key;
       }
 }
@@ -330,6 +329,26 @@ TEST(Registry, FileUnitsReadBackToTheSameBits) {
             << parameter.key;
       }
     }
+}
+
+// Tables of the hydraulic side may stand in a case without one: checked and unused.
+TEST(Registry, KeysOfDataThatACaseLacksAreUnused) {
+  for (const char* unused :
+       {"[load]\nkind = \"orifice\"\nfile = \"no_such.csv\"", "[oil]\nviscosity_100C_cSt = 6.0",
+        "[leakage]\npiston_gap_um = 10.0\npiston_gap_kind = \"engaged\"",
+        "[suction_line]\nlength_m = 1.0\ndiameter_mm = 30.0",
+        "[delivery_line]\nlength_m = 1.0\ndiameter_mm = 30.0",
+        "[accumulator]\ngas_volume_l = 1.0\nprecharge_bar = 100.0", "[loop]\nvolume_l = 0.5"}) {
+    Case the_case;
+    EXPECT_EQ(refusal([&] {
+                the_case = parse_case(rated_text() + "\n" + unused + "\n", "x.toml");
+                validate(the_case);
+              }),
+              "accepted")
+        << unused;
+    EXPECT_FALSE(the_case.hydraulics) << unused;
+    EXPECT_EQ(case_text(the_case), rated_text()) << unused;
+  }
 }
 
 // ---- --set

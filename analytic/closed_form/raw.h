@@ -55,38 +55,59 @@ struct RawPump {
   T gravity;
 };
 
+// Field by field with its name: a swap does not compile.
 inline RawGeometry<double> raw(const Geometry& g) {
-  return {g.tilt,        g.joint_circle_radius, g.bore_circle_radius,
-          g.axis_offset, g.piston_length,       g.bore_diameter};
+  return {.tilt = g.tilt,
+          .joint_circle_radius = g.joint_circle_radius,
+          .bore_circle_radius = g.bore_circle_radius,
+          .axis_offset = g.axis_offset,
+          .piston_length = g.piston_length,
+          .bore_diameter = g.bore_diameter};
+}
+
+inline RawArc<double> raw(const PortArc& arc) {
+  return {.from_deg = arc.from_deg, .to_deg = arc.to_deg};
 }
 
 inline RawPlate<double> raw(const PortPlate& p) {
-  return {p.r1,
-          p.r2,
-          p.r3,
-          p.r4,
-          {p.delivery.from_deg, p.delivery.to_deg},
-          {p.suction.from_deg, p.suction.to_deg}};
+  return {.r1 = p.r1,
+          .r2 = p.r2,
+          .r3 = p.r3,
+          .r4 = p.r4,
+          .delivery = raw(p.delivery),
+          .suction = raw(p.suction)};
 }
 
 inline RawPump<double> raw(const PumpParameters& p) {
   const PistonMass::Real real = p.piston.real.value_or(PistonMass::Real());
-  const double contact = p.piston.contact.value_or(p.geometry.piston_length);
-  const Block& b = p.block;
-  const Friction& f = p.friction;
-  return {raw(p.geometry),
-          {p.gear.pitch_diameter, p.gear.pressure_angle},
-          {p.bearings.tapered_z, p.bearings.cylindrical_z},
-          {p.piston.mass,
-           p.piston.joint_mass_fraction,
-           contact,
-           {real.centre_of_mass, real.transverse_inertia, real.axial_inertia, real.spin}},
-          {p.shaft.mass, p.shaft.centre_of_mass_z, p.shaft.axial_inertia},
-          {b.mass, b.centre_of_mass_z, b.pin_z, b.bottom_area, b.spring_force, b.axial_inertia},
-          {f.piston_coulomb, f.piston_viscous, f.regularization, f.block_viscous, f.shaft_viscous,
-           f.shaft_torque_factor},
-          raw(p.port_plate.value_or(PortPlate())),
-          p.gravity};
+  return {
+      .geometry = raw(p.geometry),
+      .gear = {.pitch_diameter = p.gear.pitch_diameter, .pressure_angle = p.gear.pressure_angle},
+      .bearings = {.tapered_z = p.bearings.tapered_z, .cylindrical_z = p.bearings.cylindrical_z},
+      .piston = {.mass = p.piston.mass,
+                 .joint_mass_fraction = p.piston.joint_mass_fraction,
+                 .contact = p.piston.contact.value_or(p.geometry.piston_length),
+                 .real = {.centre_of_mass = real.centre_of_mass,
+                          .transverse_inertia = real.transverse_inertia,
+                          .axial_inertia = real.axial_inertia,
+                          .spin = real.spin}},
+      .shaft = {.mass = p.shaft.mass,
+                .centre_of_mass_z = p.shaft.centre_of_mass_z,
+                .axial_inertia = p.shaft.axial_inertia},
+      .block = {.mass = p.block.mass,
+                .centre_of_mass_z = p.block.centre_of_mass_z,
+                .pin_z = p.block.pin_z,
+                .bottom_area = p.block.bottom_area,
+                .spring_force = p.block.spring_force,
+                .axial_inertia = p.block.axial_inertia},
+      .friction = {.piston_coulomb = p.friction.piston_coulomb,
+                   .piston_viscous = p.friction.piston_viscous,
+                   .regularization = p.friction.regularization,
+                   .block_viscous = p.friction.block_viscous,
+                   .shaft_viscous = p.friction.shaft_viscous,
+                   .shaft_torque_factor = p.friction.shaft_torque_factor},
+      .plate = raw(p.port_plate.value_or(PortPlate())),
+      .gravity = p.gravity};
 }
 
 }  // namespace bentaxis::analytic::closed_form

@@ -52,9 +52,7 @@ class CaseReader {
   }
 
  private:
-  View view() { return view_of(result_); }
-  ConstView here() const { return view_of(result_); }
-  bool holds(const When& when) const { return bentaxis::holds(when, registry_, here()); }
+  bool holds(const When& when) const { return bentaxis::holds(when, registry_, result_); }
 
   void read_table(const Table& table) {
     if (table.name.empty()) {
@@ -68,17 +66,17 @@ class CaseReader {
     if (table.part != nullptr && !present && !holds(table.part->needed)) return;
     if (table.presence == Presence::silent && !present) {
       for (const Parameter& parameter : table.parameters)
-        if (const auto value = default_of(parameter, here())) store(parameter, view(), *value);
+        if (const auto value = default_of(parameter, result_)) store(parameter, result_, *value);
       return;
     }
     TableReader in =
         table.presence == Presence::required ? parent->table(key) : parent->optional_table(key);
-    if (table.part != nullptr) table.part->create(view());
+    if (table.part != nullptr) table.part->create(result_);
     read_keys(in, table);
     in.finish();
     check_rules(in, table, "");
     if (table.part != nullptr && table.part->remove != nullptr && !holds(table.part->needed))
-      table.part->remove(view());
+      table.part->remove(result_);
   }
 
   // What the distributions mean is not known here, but what they are of.
@@ -111,9 +109,9 @@ class CaseReader {
   void read_keys(TableReader& in, const Table& table) {
     for (const Parameter& parameter : table.parameters) in.expect(parameter.key);
     for (const Parameter& parameter : table.parameters) {
-      if (parameter.part != nullptr && !parameter.part->exists(here()) &&
+      if (parameter.part != nullptr && !parameter.part->exists(result_) &&
           (holds(parameter.part->needed) || is_complete(in, table, parameter.part)))
-        parameter.part->create(view());
+        parameter.part->create(result_);
       read_key(in, table, parameter);
       check_rules(in, table, parameter.key);
     }
@@ -128,25 +126,25 @@ class CaseReader {
   void check_rules(const TableReader& in, const Table& table, const std::string& after) const {
     for (const Rule& rule : table.rules)
       if (rule.after == after)
-        if (const std::string why = rule.broken(here()); !why.empty()) in.fail(rule.key, why);
+        if (const std::string why = rule.broken(result_); !why.empty()) in.fail(rule.key, why);
   }
 
   void read_key(TableReader& in, const Table& table, const Parameter& parameter) {
-    const bool active = is_active(table, parameter, registry_, here());
+    const bool active = is_active(table, parameter, registry_, result_);
     if (!in.has(parameter.key) && !active) return;
     if (const auto* curve = std::get_if<CurveField>(&parameter.field)) {
       std::optional<std::string> fallback;
-      if (const auto value = default_of(parameter, here()))
+      if (const auto value = default_of(parameter, result_))
         fallback = std::get<std::string>(*value);
       const std::string name = in.text(parameter.key, fallback);
       if (active && name != fallback) read_curve(in, parameter, *curve, name);
       return;
     }
-    store(parameter, view(), value_in(in, parameter));
+    store(parameter, result_, value_in(in, parameter));
   }
 
   Value value_in(TableReader& in, const Parameter& p) const {
-    const auto fallback = default_of(p, here());
+    const auto fallback = default_of(p, result_);
     const auto or_default = [&](auto type) -> std::optional<decltype(type)> {
       if (!fallback) return std::nullopt;
       return std::get<decltype(type)>(*fallback);
@@ -160,11 +158,11 @@ class CaseReader {
     if (std::holds_alternative<PairField>(p.field)) {
       std::optional<std::pair<double, double>> pair;
       if (const auto both = or_default(std::array<double, 2>())) pair = {(*both)[0], (*both)[1]};
-      const auto [first, second] = in.pair(p.key, range_of(p, here()), pair);
+      const auto [first, second] = in.pair(p.key, range_of(p, result_), pair);
       return std::array{first, second};
     }
     if (std::holds_alternative<NumberField>(p.field))
-      return in.number(p.key, range_of(p, here()), or_default(0.0));
+      return in.number(p.key, range_of(p, result_), or_default(0.0));
     std::optional<std::size_t> index;
     if (const auto word = or_default(std::string()))
       index = std::find(p.words.begin(), p.words.end(), *word) - p.words.begin();
@@ -177,22 +175,22 @@ class CaseReader {
     if (!std::filesystem::exists(file)) in.fail(parameter.key, "no such file: " + file.string());
     if (std::filesystem::is_directory(file))
       in.fail(parameter.key, "is a folder: " + file.string());
-    store(parameter, view(), file.string());
+    store(parameter, result_, file.string());
     if (field.opening != nullptr) {
-      *field.opening(view()) = read_opening_table(file);
+      *field.opening(result_) = read_opening_table(file);
       return;
     }
     if (field.drive != nullptr) {
-      DriveSpec& drive = *field.drive(view());
+      DriveSpec& drive = *field.drive(result_);
       drive.curve = read_drive_curve(file, drive.kind);
       return;
     }
     if (field.share != nullptr) {
-      *field.share(view()) = read_share_curve(file);
+      *field.share(result_) = read_share_curve(file);
       return;
     }
     if (field.teeth != nullptr) {
-      read_tooth_errors(file, *field.teeth(view()));
+      read_tooth_errors(file, *field.teeth(result_));
       return;
     }
     result_.pressure.curve = read_pressure_curve(file);

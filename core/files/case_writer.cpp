@@ -23,8 +23,8 @@ std::string toml_value(const Value& value) {
 }
 
 // What a file must say: nothing where the only allowed value is the default.
-std::optional<Value> value_to_write(const Parameter& parameter, const ConstView& view) {
-  auto value = value_of(parameter, view);
+std::optional<Value> value_to_write(const Parameter& parameter, const Case& the_case) {
+  auto value = value_of(parameter, the_case);
   if (!value && !parameter.fallback.value) value = static_cast<int>(parameter.range.low);
   return value;
 }
@@ -44,14 +44,13 @@ std::string uncertainty_text(const UncertaintyData& data) {
 }  // namespace
 
 std::string case_text(const Case& the_case, const Registry& registry) {
-  const ConstView view = view_of(the_case);
   std::string text;
   for (const Table& table : registry.tables) {
-    if (table.part != nullptr && !table.part->exists(view)) continue;
+    if (table.part != nullptr && !table.part->exists(the_case)) continue;
     if (!table.name.empty()) text += "\n[" + table.name + "]\n";
     for (const Parameter& parameter : table.parameters) {
-      if (!is_active(table, parameter, registry, view)) continue;
-      if (const auto value = value_to_write(parameter, view))
+      if (!is_active(table, parameter, registry, the_case)) continue;
+      if (const auto value = value_to_write(parameter, the_case))
         text += parameter.key + " = " + toml_value(*value) + "\n";
     }
   }

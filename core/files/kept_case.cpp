@@ -33,14 +33,12 @@ std::string bytes_of(const std::filesystem::path& file) {
 KeptCase kept_case(const Case& the_case) {
   KeptCase kept;
   Case copy = the_case;
-  const View view = view_of(copy);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters) {
       const auto* curve = std::get_if<CurveField>(&parameter.field);
-      if (curve == nullptr || !is_active(table, parameter, standard_registry(), as_const(view)))
-        continue;
-      std::filesystem::path* file = curve->file.write(view);
-      if (file == nullptr || file->empty()) continue;
+      if (curve == nullptr || !is_active(table, parameter, standard_registry(), copy)) continue;
+      std::filesystem::path* file = curve->file.write(copy);
+      if (file->empty()) continue;
       kept.curves.push_back({name_for(*file, kept.curves), bytes_of(*file)});
       *file = kRoot + kept.curves.back().name;
     }

@@ -25,27 +25,22 @@ template <class... Lambdas>
 Overloaded(Lambdas...) -> Overloaded<Lambdas...>;
 
 template <class T>
-const T* read(const Access<T>& place, const ConstView& view) {
-  return place.read == nullptr ? nullptr : place.read(view);
+const T* read(const Access<T>& place, const Case& the_case) {
+  return place.read == nullptr ? nullptr : place.read(the_case);
 }
 
 template <class T>
-void write(const Access<T>& place, const View& view, const T& value) {
-  if (place.write == nullptr) return;
-  if (T* const field = place.write(view); field != nullptr) *field = value;
+void write(const Access<T>& place, Case& the_case, const T& value) {
+  if (place.write != nullptr) *place.write(the_case) = value;
 }
 
 double to_si(double value, const Unit& unit) {
   return unit.to_si == nullptr ? value : unit.to_si(value);
 }
 
-const Part* part_of(const Table& table, const Parameter& parameter) {
-  return parameter.part != nullptr ? parameter.part : table.part;
-}
-
 // The range of the SI value.
-NumberRange si_range(const Parameter& parameter, const ConstView& view) {
-  NumberRange range = range_of(parameter, view);
+NumberRange si_range(const Parameter& parameter, const Case& the_case) {
+  NumberRange range = range_of(parameter, the_case);
   if (parameter.unit.to_si == nullptr) return range;
   range.low = to_si(range.low, parameter.unit);
   range.high = to_si(range.high, parameter.unit);
@@ -59,103 +54,54 @@ std::string integer_range_text(NumberRange range) {
   return range.text();
 }
 
-[[noreturn]] void refuse(const Table& table, const Parameter& parameter, const ConstView& view,
+[[noreturn]] void refuse(const Table& table, const Parameter& parameter, const Case& the_case,
                          const std::string& why) {
-  const auto value = value_of(parameter, view);
+  const auto value = value_of(parameter, the_case);
   throw InputError((table.name.empty() ? "" : "[" + table.name + "] ") + parameter.key +
                    (value ? " = " + to_text(*value) : "") + ": " + why);
 }
 
-void check(const Table& table, const Parameter& parameter, const ConstView& view) {
+void check(const Table& table, const Parameter& parameter, const Case& the_case) {
+  if (!is_there(parameter, the_case)) return;
   const auto number = [&](const double* value) {
-    if (value == nullptr || si_range(parameter, view).contains(*value)) return;
-    const NumberRange range = range_of(parameter, view);
-    refuse(table, parameter, view,
+    if (value == nullptr || si_range(parameter, the_case).contains(*value)) return;
+    const NumberRange range = range_of(parameter, the_case);
+    refuse(table, parameter, the_case,
            "must be " + (std::isfinite(*value) ? range.text() : range.text_of("a finite number")));
   };
   if (const auto* field = std::get_if<NumberField>(&parameter.field)) {
-    number(read(field->place, view));
+    number(read(field->place, the_case));
   } else if (const auto* pair = std::get_if<PairField>(&parameter.field)) {
-    number(read(pair->first, view));
-    number(read(pair->second, view));
+    number(read(pair->first, the_case));
+    number(read(pair->second, the_case));
   } else if (const auto* integer = std::get_if<IntegerField>(&parameter.field)) {
-    const int* value = read(integer->place, view);
+    const int* value = read(integer->place, the_case);
     if (value != nullptr && !parameter.range.contains(*value))
-      refuse(table, parameter, view, "must be an integer " + integer_range_text(parameter.range));
+      refuse(table, parameter, the_case,
+             "must be an integer " + integer_range_text(parameter.range));
   } else if (const auto* choice = std::get_if<ChoiceField>(&parameter.field)) {
-    const auto index = choice->read == nullptr ? std::nullopt : choice->read(view);
-    if (index && *index >= parameter.words.size())
-      throw InputError("[" + table.name + "] " + parameter.key + " = " + std::to_string(*index) +
+    const std::size_t index = choice->read == nullptr ? 0 : choice->read(the_case);
+    if (index >= parameter.words.size())
+      throw InputError("[" + table.name + "] " + parameter.key + " = " + std::to_string(index) +
                        ": no such choice");
   }
 }
 
-void validate(const ConstView& view, const Registry& registry) {
+void check_tables(const Case& the_case, const Registry& registry) {
   for (const Table& table : registry.tables) {
-    if (table.part != nullptr && !table.part->exists(view)) {
-      if (holds(table.part->needed, registry, view))
+    if (table.part != nullptr && !table.part->exists(the_case)) {
+      if (holds(table.part->needed, registry, the_case))
         throw InputError("table [" + table.name + "] is missing");
       continue;
     }
-    for (const Parameter& parameter : table.parameters) check(table, parameter, view);
+    for (const Parameter& parameter : table.parameters) check(table, parameter, the_case);
     for (const Rule& rule : table.rules)
-      if (const std::string why = rule.broken(view); !why.empty())
-        refuse(table, parameter_of(registry, table.name, rule.key), view, why);
+      if (const std::string why = rule.broken(the_case); !why.empty())
+        refuse(table, parameter_of(registry, table.name, rule.key), the_case, why);
   }
 }
 
 }  // namespace
-
-namespace {
-
-template <class AnyView, class AnyCase>
-AnyView whole_view(AnyCase& the_case) {
-  AnyView view;
-  view.pump = &the_case.pump;
-  view.name = &the_case.name;
-  view.ratings = &the_case.ratings;
-  view.operation = &the_case.operation;
-  view.pressure = &the_case.pressure;
-  view.hydraulics = &the_case.hydraulics;
-  view.drive = &the_case.drive;
-  view.analytic = &the_case.analytic;
-  view.multibody = &the_case.multibody;
-  view.meant = &the_case.meant;
-  return view;
-}
-
-}  // namespace
-
-View view_of(PumpParameters& pump) {
-  View view;
-  view.pump = &pump;
-  return view;
-}
-
-View view_of(Case& the_case) { return whole_view<View>(the_case); }
-
-ConstView view_of(const PumpParameters& pump) {
-  ConstView view;
-  view.pump = &pump;
-  return view;
-}
-
-ConstView view_of(const Case& the_case) { return whole_view<ConstView>(the_case); }
-
-ConstView as_const(const View& v) {
-  ConstView view;
-  view.pump = v.pump;
-  view.name = v.name;
-  view.ratings = v.ratings;
-  view.operation = v.operation;
-  view.pressure = v.pressure;
-  view.hydraulics = v.hydraulics;
-  view.drive = v.drive;
-  view.analytic = v.analytic;
-  view.multibody = v.multibody;
-  view.meant = v.meant;
-  return view;
-}
 
 const Table& table_of(const Registry& registry, const std::string& name) {
   for (const Table& table : registry.tables)
@@ -193,91 +139,95 @@ double in_file_unit(double si, const Unit& unit) {
   return guess;
 }
 
-std::optional<Value> value_of(const Parameter& parameter, const ConstView& view) {
+std::optional<Value> value_of(const Parameter& parameter, const Case& the_case) {
+  if (!is_there(parameter, the_case)) return std::nullopt;
   const auto as_value = [](const auto* value) {
     return value == nullptr ? std::nullopt : std::optional<Value>(*value);
   };
   return std::visit(
       Overloaded{[&](const NumberField& field) -> std::optional<Value> {
-                   const double* si = read(field.place, view);
+                   const double* si = read(field.place, the_case);
                    if (si == nullptr) return std::nullopt;
                    return in_file_unit(*si, parameter.unit);
                  },
-                 [&](const IntegerField& field) { return as_value(read(field.place, view)); },
-                 [&](const FlagField& field) { return as_value(read(field.place, view)); },
-                 [&](const TextField& field) { return as_value(read(field.place, view)); },
+                 [&](const IntegerField& field) { return as_value(read(field.place, the_case)); },
+                 [&](const FlagField& field) { return as_value(read(field.place, the_case)); },
+                 [&](const TextField& field) { return as_value(read(field.place, the_case)); },
                  [&](const ChoiceField& field) -> std::optional<Value> {
-                   const auto index = field.read == nullptr ? std::nullopt : field.read(view);
-                   if (!index || *index >= parameter.words.size()) return std::nullopt;
-                   return parameter.words[*index];
+                   if (field.read == nullptr) return std::nullopt;
+                   const std::size_t index = field.read(the_case);
+                   if (index >= parameter.words.size()) return std::nullopt;
+                   return parameter.words[index];
                  },
                  [&](const PairField& field) -> std::optional<Value> {
-                   const double* first = read(field.first, view);
-                   const double* second = read(field.second, view);
+                   const double* first = read(field.first, the_case);
+                   const double* second = read(field.second, the_case);
                    if (first == nullptr || second == nullptr) return std::nullopt;
                    return std::array{in_file_unit(*first, parameter.unit),
                                      in_file_unit(*second, parameter.unit)};
                  },
                  [&](const CurveField& field) -> std::optional<Value> {
-                   const std::filesystem::path* file = read(field.file, view);
+                   const std::filesystem::path* file = read(field.file, the_case);
                    if (file == nullptr) return std::nullopt;
                    return file->empty() ? std::string() : std::filesystem::absolute(*file).string();
                  }},
       parameter.field);
 }
 
-void store(const Parameter& parameter, const View& view, const Value& value) {
+void store(const Parameter& parameter, Case& the_case, const Value& value) {
+  if (!is_there(parameter, the_case)) return;
   std::visit(
       Overloaded{
           [&](const NumberField& field) {
-            write(field.place, view, to_si(std::get<double>(value), parameter.unit));
+            write(field.place, the_case, to_si(std::get<double>(value), parameter.unit));
           },
-          [&](const IntegerField& field) { write(field.place, view, std::get<int>(value)); },
-          [&](const FlagField& field) { write(field.place, view, std::get<bool>(value)); },
-          [&](const TextField& field) { write(field.place, view, std::get<std::string>(value)); },
+          [&](const IntegerField& field) { write(field.place, the_case, std::get<int>(value)); },
+          [&](const FlagField& field) { write(field.place, the_case, std::get<bool>(value)); },
+          [&](const TextField& field) {
+            write(field.place, the_case, std::get<std::string>(value));
+          },
           [&](const ChoiceField& field) {
             if (field.write == nullptr) return;
             const auto& words = parameter.words;
             const auto word = std::find(words.begin(), words.end(), std::get<std::string>(value));
-            field.write(view, static_cast<std::size_t>(word - words.begin()));
+            field.write(the_case, static_cast<std::size_t>(word - words.begin()));
           },
           [&](const PairField& field) {
             const auto& pair = std::get<std::array<double, 2>>(value);
-            write(field.first, view, to_si(pair[0], parameter.unit));
-            write(field.second, view, to_si(pair[1], parameter.unit));
+            write(field.first, the_case, to_si(pair[0], parameter.unit));
+            write(field.second, the_case, to_si(pair[1], parameter.unit));
           },
           [&](const CurveField& field) {
-            write(field.file, view, std::filesystem::path(std::get<std::string>(value)));
+            write(field.file, the_case, std::filesystem::path(std::get<std::string>(value)));
           }},
       parameter.field);
 }
 
-std::optional<Value> default_of(const Parameter& parameter, const ConstView& view) {
-  if (parameter.fallback.computed != nullptr) return parameter.fallback.computed(view);
+std::optional<Value> default_of(const Parameter& parameter, const Case& the_case) {
+  if (parameter.fallback.computed != nullptr) return parameter.fallback.computed(the_case);
   return parameter.fallback.value;
 }
 
-NumberRange range_of(const Parameter& parameter, const ConstView& view) {
+NumberRange range_of(const Parameter& parameter, const Case& the_case) {
   if (parameter.range_here != nullptr)
-    if (auto range = parameter.range_here(view)) {
+    if (auto range = parameter.range_here(the_case)) {
       range->slack = parameter.unit.to_si == nullptr ? 0 : kSlack;
       return *range;
     }
   return parameter.range;
 }
 
-bool holds(const When& when, const Registry& registry, const ConstView& view) {
+bool holds(const When& when, const Registry& registry, const Case& the_case) {
   if (when.words.empty()) return false;
-  const auto value = value_of(parameter_of(registry, when.table, when.key), view);
+  const auto value = value_of(parameter_of(registry, when.table, when.key), the_case);
   return value && std::find(when.words.begin(), when.words.end(), std::get<std::string>(*value)) !=
                       when.words.end();
 }
 
-bool is_active(const Table& table, const Parameter& parameter, const Registry& registry,
-               const ConstView& view) {
-  const Part* const part = part_of(table, parameter);
-  if (part != nullptr && !part->exists(view)) return false;
-  return parameter.active.words.empty() || holds(parameter.active, registry, view);
+bool is_active(const Table& /*table*/, const Parameter& parameter, const Registry& registry,
+               const Case& the_case) {
+  if (!is_there(parameter, the_case)) return false;
+  return parameter.active.words.empty() || holds(parameter.active, registry, the_case);
 }
 
 std::string to_text(const Value& value) {
@@ -299,33 +249,35 @@ std::string to_text(const When& when) {
   return when.key + " = " + words;
 }
 
+// A pump alone is held to what holds for it in a case that says nothing else.
 const PumpParameters& validate(const PumpParameters& pump, const Registry& registry) {
-  validate(view_of(pump), registry);
+  Case the_case;
+  the_case.pump = pump;
+  check_tables(the_case, registry);
   return pump;
 }
 
 const Case& validate(const Case& the_case, const Registry& registry) {
-  validate(view_of(the_case), registry);
+  check_tables(the_case, registry);
   return the_case;
 }
 
 std::vector<PumpInput> continuous_inputs(PumpParameters& pump, const Registry& registry) {
-  const View view = view_of(pump);
+  Case the_case;
+  the_case.pump = pump;
   std::vector<PumpInput> always, in_parts;
   for (const Table& table : registry.tables)
     for (const Parameter& parameter : table.parameters) {
-      auto& list = part_of(table, parameter) == nullptr ? always : in_parts;
+      if (parameter.path.empty() || !is_there(parameter, the_case)) continue;
+      auto& list = parameter.within == nullptr ? always : in_parts;
       const auto add = [&](const Access<double>& place, const std::string& path) {
-        double* const value = place.write == nullptr ? nullptr : place.write(view);
-        if (value != nullptr) list.push_back({path, value, si_range(parameter, as_const(view))});
+        list.push_back({path, place.in_pump(pump), si_range(parameter, the_case)});
       };
       if (const auto* number = std::get_if<NumberField>(&parameter.field)) {
-        if (!parameter.path.empty()) add(number->place, parameter.path[0]);
+        add(number->place, parameter.path[0]);
       } else if (const auto* pair = std::get_if<PairField>(&parameter.field)) {
-        if (parameter.path.size() == 2) {
-          add(pair->first, parameter.path[0]);
-          add(pair->second, parameter.path[1]);
-        }
+        add(pair->first, parameter.path[0]);
+        add(pair->second, parameter.path[1]);
       }
     }
   always.insert(always.end(), in_parts.begin(), in_parts.end());

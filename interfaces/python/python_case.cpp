@@ -53,10 +53,9 @@ void PythonCase::change(const Changes& changes) {
 
 std::vector<std::string> PythonCase::keys() const {
   std::vector<std::string> keys;
-  const ConstView view = view_of(case_);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters)
-      if (is_active(table, parameter, standard_registry(), view) && value_of(parameter, view))
+      if (is_active(table, parameter, standard_registry(), case_) && value_of(parameter, case_))
         keys.push_back(key_of(table, parameter));
   return keys;
 }
@@ -64,7 +63,7 @@ std::vector<std::string> PythonCase::keys() const {
 std::optional<Value> PythonCase::value(const std::string& key) const {
   const Parameter* const parameter = parameter_called(key);
   if (parameter == nullptr) return std::nullopt;
-  return value_of(*parameter, view_of(case_));
+  return value_of(*parameter, case_);
 }
 
 std::vector<std::string> all_keys() {

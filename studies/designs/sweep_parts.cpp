@@ -206,11 +206,10 @@ SweepRecord record_of(const Sweep& sweep, const std::string& program) {
                    sweep.plan().outputs.size()};
   const Case& base = sweep.family().base();
   record.case_text = text_of(sweep.family());
-  const ConstView view = view_of(base);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& p : table.parameters) {
       if (!std::holds_alternative<CurveField>(p.field)) continue;
-      const auto value = value_of(p, view);
+      const auto value = value_of(p, base);
       const std::string path = value ? std::get<std::string>(*value) : "";
       if (path.empty()) continue;
       const auto content = content_of(path);

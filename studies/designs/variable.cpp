@@ -65,12 +65,11 @@ Variable::Variable(const std::string& name, const Case& base) : name_(name) {
   if (std::holds_alternative<FlagField>(p.field)) words_ = {"false", "true"};
   if (std::holds_alternative<ChoiceField>(p.field)) words_ = p.words;
   integer_ = std::holds_alternative<IntegerField>(p.field);
-  const ConstView view = view_of(base);
   // Nothing forbids it here, but the case leaves it out: it has no value to vary about.
-  if (p.part != nullptr && p.part->needed.words.empty() && !p.part->exists(view))
+  if (p.part != nullptr && p.part->needed.words.empty() && !p.part->exists(base))
     throw InputError(name + ": is not in this case: give it a value there or by --set, then it " +
                      "can vary");
-  if (!is_active(*table_, p, standard_registry(), view) || !bentaxis::value_of(p, view))
+  if (!is_active(*table_, p, standard_registry(), base) || !bentaxis::value_of(p, base))
     throw InputError(name + ": changes nothing in this case" +
                      (p.active.words.empty()
                           ? std::string()
@@ -86,11 +85,11 @@ std::string Variable::symbol() const {
 
 NumberRange Variable::range(const Case& the_case) const {
   if (!words_.empty()) return {0, static_cast<double>(words_.size() - 1)};
-  return range_of(*parameter_, view_of(the_case));
+  return range_of(*parameter_, the_case);
 }
 
 double Variable::value(const Case& the_case) const {
-  const auto value = bentaxis::value_of(*parameter_, view_of(the_case));
+  const auto value = bentaxis::value_of(*parameter_, the_case);
   if (!value) throw InputError(name_ + ": is not there in this case");
   if (const auto* number = std::get_if<double>(&*value)) return *number;
   if (const auto* number = std::get_if<int>(&*value)) return *number;
@@ -102,7 +101,6 @@ double Variable::value(const Case& the_case) const {
 }
 
 void Variable::put(Case& the_case, double value) const {
-  const View view = view_of(the_case);
   const Parameter& p = *parameter_;
   if (discrete() && (value != std::round(value) || std::abs(value) > 1e9))
     throw InputError(name_ + " = " + number_text(value) + ": must be a whole number");
@@ -111,16 +109,17 @@ void Variable::put(Case& the_case, double value) const {
     if (value < 0 || index >= words_.size())
       throw InputError(name_ + " = " + number_text(value) +
                        ": must be the place of a word, from 0");
-    store(p, view,
+    store(p, the_case,
           words_.size() == 2 && std::holds_alternative<FlagField>(p.field) ? Value(index == 1)
                                                                            : Value(words_[index]));
   } else if (integer_) {
-    store(p, view, static_cast<int>(value));
+    store(p, the_case, static_cast<int>(value));
   } else if (const auto* pair = std::get_if<PairField>(&p.field)) {
-    double* const place = (end_ == 0 ? pair->first : pair->second).write(view);
-    if (place != nullptr) *place = p.unit.to_si == nullptr ? value : p.unit.to_si(value);
+    if (is_there(p, the_case))
+      *(end_ == 0 ? pair->first : pair->second).write(the_case) =
+          p.unit.to_si == nullptr ? value : p.unit.to_si(value);
   } else {
-    store(p, view, value);
+    store(p, the_case, value);
   }
 }
 
@@ -178,10 +177,8 @@ void Family::make(std::span<const double> values, Case& scratch) const {
     throw InputError("a design of " + std::to_string(values.size()) + " values for " +
                      std::to_string(variables_.size()) + " variables");
   for (std::size_t i = 0; i < values.size(); ++i) variables_[i].put(scratch, values[i]);
-  const View view = view_of(scratch);
   for (const Follower& f : followers_)
-    if (const auto value = default_of(*f.parameter, as_const(view)))
-      store(*f.parameter, view, *value);
+    if (const auto value = default_of(*f.parameter, scratch)) store(*f.parameter, scratch, *value);
   validate(scratch);
 }
 

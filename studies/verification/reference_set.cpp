@@ -28,12 +28,12 @@ std::vector<ReferencePlace> references_below(const fs::path& root) {
 
 std::vector<fs::path> files_of(const Case& the_case) {
   std::vector<fs::path> files;
-  const ConstView view = view_of(the_case);
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters) {
       const auto* const curve = std::get_if<CurveField>(&parameter.field);
-      const fs::path* const file = curve == nullptr ? nullptr : curve->file.read(view);
-      if (file == nullptr || file->empty()) continue;
+      if (curve == nullptr || !is_there(parameter, the_case)) continue;
+      const fs::path* const file = curve->file.read(the_case);
+      if (file->empty()) continue;
       if (file == &the_case.pressure.file && the_case.pressure.kind != PressureKind::curve)
         continue;
       if (std::find(files.begin(), files.end(), *file) == files.end()) files.push_back(*file);

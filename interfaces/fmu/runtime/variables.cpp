@@ -95,16 +95,15 @@ class List {
   }
 
   void add_parameters(const Case& the_case, const TakesFromOutside& takes) {
-    const ConstView view = view_of(the_case);
     const Registry& registry = standard_registry();
     for (const Table& table : registry.tables)
       for (const Parameter& parameter : table.parameters) {
         const std::string name = table.name + "." + parameter.key;
-        if (!is_active(table, parameter, registry, view) ||
+        if (!is_active(table, parameter, registry, the_case) ||
             is_of_other_commands(table, parameter) || is_replaced(name, the_case, takes) ||
             is_of_other_inertia(name, the_case.analytic.inertia))
           continue;
-        const std::optional<Value> value = value_of(parameter, view);
+        const std::optional<Value> value = value_of(parameter, the_case);
         if (!value) continue;
         if (const double* number = std::get_if<double>(&*value))
           add_parameter(table, parameter, name, 0, *number);
@@ -217,16 +216,15 @@ double least_pressure(const Case& the_case) {
 
 Case case_with(Case the_case, const std::vector<Variable>& variables,
                const std::vector<double>& values) {
-  const View view = view_of(the_case);
   for (const Variable& it : variables) {
     if (it.role != Role::parameter || values[it.reference] == *it.start) continue;
     const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
-    Value whole = value_of(parameter, as_const(view)).value();
+    Value whole = value_of(parameter, the_case).value();
     if (auto* pair = std::get_if<std::array<double, 2>>(&whole))
       (*pair)[it.place] = values[it.reference];
     else
       whole = values[it.reference];
-    store(parameter, view, whole);
+    store(parameter, the_case, whole);
   }
   return validate(the_case);
 }

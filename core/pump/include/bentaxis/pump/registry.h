@@ -1,7 +1,7 @@
 // One description of each parameter: where it stands in a case file, what it means, what it may be,
 // and where it is kept. Reading, validation, writing, `--set`, the list that rounding and negative
 // controls perturb, the JSON Schema and the tables of docs/ are made from it. A new parameter is
-// one entry in standard_registry.cpp, a field, and the physics that uses it.
+// one entry in tables/, a field, and the physics that uses it.
 #pragma once
 
 #include <array>
@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -22,81 +21,15 @@
 
 namespace bentaxis {
 
-/// What parameters are kept in: a whole case, or a pump alone (then the rest is null).
-template <bool kConstant>
-struct BasicView {
-  template <class T>
-  using Pointer = std::conditional_t<kConstant, const T*, T*>;
-
-  Pointer<PumpParameters> pump = nullptr;  ///< never null
-  Pointer<std::string> name = nullptr;
-  Pointer<BearingRatings> ratings = nullptr;
-  Pointer<Operation> operation = nullptr;
-  Pointer<PressureSpec> pressure = nullptr;
-  Pointer<std::optional<HydraulicData>> hydraulics = nullptr;
-  Pointer<std::optional<DriveSpec>> drive = nullptr;
-  Pointer<Assumptions> analytic = nullptr, multibody = nullptr;
-  Pointer<std::string> meant = nullptr;
-
-  // Parts that need not be there: null where they are not.
-  Pointer<PistonMass::Real> real_piston() const { return address(pump->piston.real); }
-  Pointer<PortPlate> port_plate() const { return address(pump->port_plate); }
-  Pointer<HydraulicData> hydraulic_data() const {
-    return hydraulics == nullptr ? nullptr : address(*hydraulics);
-  }
-  Pointer<ToothCompliance> compliance() const { return address(pump->gear.compliance); }
-  Pointer<ToothData> teeth() const { return address(pump->gear.teeth); }
-  Pointer<TaperedRating> tapered_rating() const {
-    return ratings == nullptr ? nullptr : address(ratings->tapered);
-  }
-  Pointer<BearingRating> cylindrical_rating() const {
-    return ratings == nullptr ? nullptr : address(ratings->cylindrical);
-  }
-  Pointer<double> ring_contact() const { return address(pump->piston.contact); }
-  Pointer<DriveSpec> drive_spec() const { return drive == nullptr ? nullptr : address(*drive); }
-  Pointer<MotorData> motor() const {
-    return drive_spec() == nullptr ? nullptr : address(drive_spec()->motor);
-  }
-  Pointer<double> start_speed() const {
-    return drive_spec() == nullptr ? nullptr : address(drive_spec()->start_speed);
-  }
-
- private:
-  template <class Optional>
-  static auto address(Optional& part) -> decltype(&*part) {
-    return part ? &*part : nullptr;
-  }
-};
-using View = BasicView<false>;
-using ConstView = BasicView<true>;
-
-View view_of(Case& the_case);
-View view_of(PumpParameters& pump);
-ConstView view_of(const Case& the_case);
-ConstView view_of(const PumpParameters& pump);
-ConstView as_const(const View& v);
-
-/// Field of a part that may be missing: null where it is.
-template <class Part, class Field, class Owner>
-auto in(Part* part, Field Owner::*field) -> decltype(&(part->*field)) {
-  return part == nullptr ? nullptr : &(part->*field);
-}
-
-/// Where a parameter is kept: null functions for what is only checked, as the schema's number; a
-/// null result where its part is missing.
+/// Where a parameter is kept. Only to be asked for where its part is there (is_there()). Null
+/// functions for what is only checked, as the schema's number.
 template <class T>
 struct Access {
-  const T* (*read)(const ConstView&) = nullptr;
-  T* (*write)(const View&) = nullptr;
+  const T* (*read)(const Case&) = nullptr;
+  T* (*write)(Case&) = nullptr;
+  T* (*in_pump)(PumpParameters&) = nullptr;  ///< null where no pump has it
+  std::string path = {};                     ///< there: "geometry.tilt"
 };
-
-/// @param place  a lambda without captures that serves both kinds of view and returns a pointer:
-///               [](const auto& v) { return &v.pump->geometry.tilt; }
-template <class T, class Place>
-Access<T> access(Place) {
-  return {[](const ConstView& view) -> const T* { return Place{}(view); },
-          [](const View& view) -> T* { return Place{}(view); }};
-}
 
 // The types of parameters.
 struct NumberField {
@@ -113,8 +46,8 @@ struct TextField {
 };
 /// An enumeration, whose values are those of the words in their order.
 struct ChoiceField {
-  std::optional<std::size_t> (*read)(const ConstView&) = nullptr;
-  void (*write)(const View&, std::size_t) = nullptr;
+  std::size_t (*read)(const Case&) = nullptr;
+  void (*write)(Case&, std::size_t) = nullptr;
 };
 struct PairField {
   Access<double> first, second;
@@ -123,47 +56,14 @@ struct PairField {
 /// drives the shaft over time, the share of a load over time, pitch errors of teeth, or where all
 /// are null the chamber pressure. An empty name: none.
 struct CurveField {
-  Access<std::filesystem::path> file;
-  OpeningTable* (*opening)(const View&) = nullptr;
-  DriveSpec* (*drive)(const View&) = nullptr;
-  TimeCurve* (*share)(const View&) = nullptr;
-  ToothData* (*teeth)(const View&) = nullptr;
+  Access<std::filesystem::path> file = {};
+  OpeningTable* (*opening)(Case&) = nullptr;
+  DriveSpec* (*drive)(Case&) = nullptr;
+  TimeCurve* (*share)(Case&) = nullptr;
+  ToothData* (*teeth)(Case&) = nullptr;
 };
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;
-
-template <class Place>
-NumberField number_at(Place place) {
-  return {access<double>(place)};
-}
-template <class Place>
-IntegerField integer_at(Place place) {
-  return {access<int>(place)};
-}
-template <class Place>
-FlagField flag_at(Place place) {
-  return {access<bool>(place)};
-}
-template <class Place>
-TextField text_at(Place place) {
-  return {access<std::string>(place)};
-}
-template <class Place>
-ChoiceField choice_at(Place) {
-  return {[](const ConstView& view) -> std::optional<std::size_t> {
-            const auto* value = Place{}(view);
-            if (value == nullptr) return std::nullopt;
-            return static_cast<std::size_t>(*value);
-          },
-          [](const View& view, std::size_t index) {
-            if (auto* value = Place{}(view); value != nullptr)
-              *value = static_cast<std::remove_pointer_t<decltype(value)>>(index);
-          }};
-}
-template <class First, class Second>
-PairField pair_at(First first, Second second) {
-  return {access<double>(first), access<double>(second)};
-}
 
 /// A value as a case file has it, in the file's unit; a choice as its word.
 using Value = std::variant<double, int, bool, std::string, std::array<double, 2>>;
@@ -184,7 +84,7 @@ struct When {
 /// file's unit, fixed or from what has been read before it.
 struct Default {
   std::optional<Value> value = {};
-  std::optional<Value> (*computed)(const ConstView&) = nullptr;
+  std::optional<Value> (*computed)(const Case&) = nullptr;
   std::string words = {};  ///< of a computed one: "that of [piston]"
 };
 
@@ -192,21 +92,22 @@ struct Default {
 /// table, where all its keys without a default are; and it must be there where `needed`.
 struct Part {
   When needed;
-  bool (*exists)(const ConstView&) = nullptr;
-  void (*create)(const View&) = nullptr;  ///< empty, to be filled in
-  void (*remove)(const View&) = nullptr;  ///< where not needed, if not null: read, checked, unused
+  bool (*exists)(const Case&) = nullptr;
+  void (*create)(Case&) = nullptr;  ///< empty, to be filled in
+  void (*remove)(Case&) = nullptr;  ///< where not needed, if not null: read, checked, unused
 };
 
 struct Parameter {
   std::string key;  ///< in the file, with the unit: "tilt_deg"
   Field field = NumberField{};
-  /// Of a number of PumpParameters, its path there: "geometry.tilt"; of a pair both.
+  /// Of a number of PumpParameters, its path there: "geometry.tilt"; of a pair both. Filled in by
+  /// standard_registry() from the field.
   std::vector<std::string> path = {};
   std::string symbol = {};  ///< in the paper or in docs/
   Unit unit = {};
   NumberRange range = {};  ///< in the file's unit
   /// The range where it depends on other parameters, in the file's unit; nothing: `range` holds.
-  std::optional<NumberRange> (*range_here)(const ConstView&) = nullptr;
+  std::optional<NumberRange> (*range_here)(const Case&) = nullptr;
   std::string range_words = {};         ///< for people, where `range` does not say it all
   std::vector<std::string> words = {};  ///< of a choice
   Default fallback = {};
@@ -216,6 +117,8 @@ struct Parameter {
   /// is checked and unused.
   When active = {};
   const Part* part = nullptr;  ///< within a table that has other keys too
+  /// The part, or that of the table: filled in by standard_registry().
+  const Part* within = nullptr;
 };
 
 /// What several parameters must be to each other.
@@ -223,7 +126,7 @@ struct Rule {
   std::string key;    ///< whose value is refused
   std::string after;  ///< the last key it needs; "": checked at the end of the table
   /// Why a case is refused, as the end of a message; "" where it is not.
-  std::string (*broken)(const ConstView&) = nullptr;
+  std::string (*broken)(const Case&) = nullptr;
 };
 
 enum class Presence {
@@ -252,20 +155,25 @@ const Table& table_of(const Registry& registry, const std::string& name);
 const Parameter& parameter_of(const Registry& registry, const std::string& table,
                               const std::string& key);
 
+/// Whether what the parameter belongs to is in the case.
+inline bool is_there(const Parameter& parameter, const Case& the_case) {
+  return parameter.within == nullptr || parameter.within->exists(the_case);
+}
+
 /// A parameter's value as a file would have it: a number as the shortest one that reads back to the
 /// same bits. Nothing where its part is missing or it is kept nowhere.
-std::optional<Value> value_of(const Parameter& parameter, const ConstView& view);
+std::optional<Value> value_of(const Parameter& parameter, const Case& the_case);
 /// Puts a value of the file's unit in its place; does nothing where its part is missing.
-void store(const Parameter& parameter, const View& view, const Value& value);
+void store(const Parameter& parameter, Case& the_case, const Value& value);
 /// The default here; nothing where the parameter is required.
-std::optional<Value> default_of(const Parameter& parameter, const ConstView& view);
+std::optional<Value> default_of(const Parameter& parameter, const Case& the_case);
 /// The range here, in the file's unit.
-NumberRange range_of(const Parameter& parameter, const ConstView& view);
+NumberRange range_of(const Parameter& parameter, const Case& the_case);
 
-bool holds(const When& when, const Registry& registry, const ConstView& view);
+bool holds(const When& when, const Registry& registry, const Case& the_case);
 /// Whether a parameter has something to do: its condition holds, its part is there.
 bool is_active(const Table& table, const Parameter& parameter, const Registry& registry,
-               const ConstView& view);
+               const Case& the_case);
 
 /// A number of the file's unit that the unit converts to `si`, the one with the fewest digits;
 /// where there is none, one that is off by a unit in the last place.
@@ -276,5 +184,13 @@ std::string to_text(const Value& value);
 
 /// [lumped or real]: the words of a condition as people write it: inertia = "real".
 std::string to_text(const When& when);
+
+// Of 1.0, where a view stood for a case: these go with the next major version.
+using View [[deprecated("use Case&")]] = Case&;
+using ConstView [[deprecated("use const Case&")]] = const Case&;
+[[deprecated("pass the case")]] inline Case& view_of(Case& the_case) { return the_case; }
+[[deprecated("pass the case")]] inline const Case& view_of(const Case& the_case) {
+  return the_case;
+}
 
 }  // namespace bentaxis

@@ -1,0 +1,17 @@
+// [plausibility].
+#include "tables/entries.h"
+
+namespace bentaxis::tables {
+
+Table plausibility_table() {
+  return {.name = "plausibility",
+          .meaning = "reasons for values that a check holds to be doubtful (plausibility.md)",
+          .presence = Presence::silent,
+          .parameters = {{.key = "meant",
+                          .field = FIELD(c.meant),
+                          .fallback = {std::string()},
+                          .meaning = "`CODE: reason; CODE: reason`: these are meant, and do not "
+                                     "warn"}}};
+}
+
+}  // namespace bentaxis::tables
