@@ -331,6 +331,30 @@ TEST(Registry, FileUnitsReadBackToTheSameBits) {
     }
 }
 
+// A plausible range is one of a number, leaves room, and holds what stands there by default.
+TEST(Registry, PlausibleRangesHoldTheDefaults) {
+  int ranges = 0;
+  for (const Table& table : standard_registry().tables)
+    for (const Parameter& p : table.parameters) {
+      const PlausibleRange& range = p.plausible;
+      if (range.why.empty()) {
+        EXPECT_TRUE(range.slips.empty()) << p.key;
+        continue;
+      }
+      ++ranges;
+      EXPECT_LT(range.low, range.high) << p.key;
+      EXPECT_TRUE(std::holds_alternative<NumberField>(p.field) ||
+                  std::holds_alternative<IntegerField>(p.field))
+          << p.key;
+      if (!p.fallback.value || p.active.words == std::vector<std::string>{"hydraulic"}) continue;
+      const auto* const whole = std::get_if<int>(&*p.fallback.value);
+      const double value = whole != nullptr ? *whole : std::get<double>(*p.fallback.value);
+      EXPECT_GE(value, range.low) << p.key;
+      EXPECT_LE(value, range.high) << p.key;
+    }
+  EXPECT_GE(ranges, 15);
+}
+
 // Tables of the hydraulic side may stand in a case without one: checked and unused.
 TEST(Registry, KeysOfDataThatACaseLacksAreUnused) {
   for (const char* unused :

@@ -36,6 +36,8 @@ namespace {
 
 // What an entry need not say twice.
 void complete(Parameter& parameter, const Table& table) {
+  if (parameter.differentiable == nullptr) parameter.differentiable = table.differentiable;
+  if (!parameter.in_fmu) parameter.in_fmu = table.in_fmu;
   parameter.within = parameter.part != nullptr ? parameter.part : table.part;
   if (const auto* number = std::get_if<NumberField>(&parameter.field)) {
     if (number->place.in_pump != nullptr) parameter.path = {number->place.path};

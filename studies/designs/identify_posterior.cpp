@@ -37,9 +37,9 @@ enum class Coordinate { own, logarithm, logarithm_of_sine, logarithm_of_cosine }
 
 Coordinate coordinate_of(const Unknown& u) {
   const bool acute = u.low > 0 && u.high < 90;
-  if (acute && u.variable.name() == "pump.tilt_deg") return Coordinate::logarithm_of_sine;
-  if (acute && u.variable.name() == "gear.pressure_angle_deg")
-    return Coordinate::logarithm_of_cosine;
+  const Scaling scaling = u.variable.parameter().scaling;
+  if (acute && scaling == Scaling::sine) return Coordinate::logarithm_of_sine;
+  if (acute && scaling == Scaling::cosine) return Coordinate::logarithm_of_cosine;
   return u.low > 0 ? Coordinate::logarithm : Coordinate::own;
 }
 

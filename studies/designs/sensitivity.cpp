@@ -36,29 +36,16 @@ Case no_rates(const Case& base) {
   return rates;
 }
 
-// Tables whose numbers the closed form is made from.
-bool is_of_closed_form(const Variable& variable) {
-  const std::string table = variable.name().substr(0, variable.name().find('.'));
-  for (const char* known :
-       {"pump", "gear", "bearings", "piston", "shaft", "block", "friction", "port_plate"})
-    if (table == known) return true;
-  for (const char* known :
-       {"operation.speed_rpm", "operation.gravity_m_per_s2", "pressure.suction_bar",
-        "pressure.delivery_bar", "pressure.transition_deg", "pressure.delivery_start_deg"})
-    if (variable.name() == known) return true;
-  return false;
+bool is_of_closed_form(const Variable& variable, const Case& base) {
+  const auto differentiable = variable.parameter().differentiable;
+  return differentiable != nullptr && differentiable(base);
 }
 
 bool is_exact(const Variable& variable, const Case& base) {
   if (base.pump.gear.contact == ToothContact::teeth) return false;
   // A spline through points of a computed curve is another curve.
   if (base.pressure.kind == PressureKind::hydraulic) return base.pressure.points == 0;
-  if (!is_of_closed_form(variable)) return false;
-  // A step passes samples or does not.
-  const bool moves_edges = variable.name() == "pressure.transition_deg" ||
-                           variable.name() == "pressure.delivery_start_deg";
-  return !moves_edges || base.pressure.kind != PressureKind::ideal ||
-         base.pressure.transition_deg > 0;
+  return is_of_closed_form(variable, base);
 }
 
 bool is_exact(const Output& output, const ChannelLayout& layout) {
@@ -230,7 +217,7 @@ std::optional<hydraulics::Neighbours> neighbours(const Variable& variable, const
     }
   };
   const int sides = static_cast<int>(go(two.above, 1)) + static_cast<int>(go(two.below, -1));
-  if (sides == 2 || (sides == 1 && is_of_closed_form(variable))) return two;
+  if (sides == 2 || (sides == 1 && is_of_closed_form(variable, base))) return two;
   return {};
 }
 

@@ -43,9 +43,7 @@ PressureSpec shares_of(PressureSpec spec) {
 
 bool stays_in_reach(const Family& family) {
   const Case& base = family.base();
-  const auto leaves = [](const Variable& v) {
-    return v.name() == "pump.pistons" || v.name() == "gear.contact" || v.name() == "pressure.kind";
-  };
+  const auto leaves = [](const Variable& v) { return v.parameter().changes_model; };
   return base.pressure.kind != PressureKind::hydraulic &&
          base.pump.gear.contact != ToothContact::teeth &&
          std::none_of(family.variables().begin(), family.variables().end(), leaves);

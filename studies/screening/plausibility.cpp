@@ -11,6 +11,7 @@
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/samples.h"
 #include "bentaxis/study/timing.h"
@@ -175,25 +176,12 @@ Facts::Facts(const Case& of)
 
 constexpr double kFarSlip = 3;
 
-// A usual slip: the value times `factor` is what may have been meant.
-struct Slip {
-  double factor;
-  const char* words;
-};
-using Slips = std::initializer_list<Slip>;
-constexpr Slip kMetres{1000, "in metres?"}, kCentimetres{10, "in centimetres?"},
-    kInches{25.4, "in inches?"}, kMicrometres{1e-3, "in micrometres?"},
-    kRadius{2, "a radius for a diameter?"}, kDiameter{0.5, "a diameter for a radius?"},
-    kSign{-1, "with the other sign?"}, kTenth{0.1, "ten times too large?"},
-    kTenfold{10, "ten times too small?"}, kGrams{1e-3, "in grams?"}, kTons{1e3, "in tons?"},
-    kRadians{180 / kPi, "in radians?"}, kThousandth{1e-3, "a thousand times too large?"},
-    kThousandfold{1e3, "a thousand times too small?"},
-    kHundredth{1e-2, "a hundred times too large?"}, kKgM2{1e6, "in kg m2?"},
-    kGMm2{1e-3, "in g mm2?"}, kSquareCm{100, "in cm2?"}, kSquareM{1e6, "in m2?"};
+using Slips = std::vector<Slip>;
+using namespace slips;
 
 // The first slip that explains a value outside of [low, high]; a slip that would move it by far
 // more than it is outside explains nothing.
-std::string guess(double value, double low, double high, Slips slips) {
+std::string guess(double value, double low, double high, const Slips& slips) {
   const double off = value > high ? value / high : low / value;
   for (const Slip& slip : slips) {
     const double meant = value * slip.factor;
@@ -207,12 +195,26 @@ std::string guess(double value, double low, double high, Slips slips) {
 
 // "" where value is in [low, high].
 std::string outside(const std::string& key, double value, double low, double high,
-                    const std::string& unit, const std::string& why, Slips slips = {}) {
+                    const std::string& unit, const std::string& why, const Slips& slips = {}) {
   if (value >= low && value <= high) return "";
   const bool below = value < low;
   const std::string unit_text = unit.empty() ? "" : " " + unit;
   return fmt::format("{} = {:.6g} is {} {:.4g}{}: {}{}", key, value, below ? "below" : "above",
                      below ? low : high, unit_text, why, guess(value, low, high, slips));
+}
+
+// "" where a number of the case is in the range that its entry holds for plausible, or unused.
+std::string implausible(const Case& the_case, const char* table_name, const char* key) {
+  const Table& table = table_of(standard_registry(), table_name);
+  const Parameter& parameter = parameter_of(standard_registry(), table_name, key);
+  const auto value = value_of(parameter, the_case);
+  const bool unused = table.part != nullptr && !table.part->needed.words.empty() &&
+                      !holds(table.part->needed, standard_registry(), the_case);
+  if (unused || !value) return "";
+  const auto* const whole = std::get_if<int>(&*value);
+  const auto& [low, high, why, slips] = parameter.plausible;
+  return outside(key, whole != nullptr ? *whole : std::get<double>(*value), low, high,
+                 parameter.unit.name, why, slips);
 }
 
 std::string first_of(std::initializer_list<std::string> texts) {
@@ -225,18 +227,27 @@ std::string first_of(std::initializer_list<std::string> texts) {
 
 struct Check {
   const char* code;
-  const char* doubtful;               // what is, in words: docs/plausibility.md
-  std::string (*text)(const Facts&);  // "" where nothing is
+  const char* doubtful;                         // what is, in words: docs/plausibility.md
+  std::string (*text)(const Facts&) = nullptr;  // "" where nothing is; null: implausible()
+  // Of the parameter whose plausible range is asked for, if any: {0} and {1} in the words are its
+  // bounds.
+  const char* table = nullptr;
+  const char* key = nullptr;
+
+  std::string found(const Facts& facts) const {
+    return text != nullptr ? text(facts) : implausible(facts.the_case, table, key);
+  }
+  std::string words() const {
+    if (table == nullptr) return doubtful;
+    const PlausibleRange& range = parameter_of(standard_registry(), table, key).plausible;
+    return fmt::format(fmt::runtime(doubtful), range.low, range.high);
+  }
 };
 
 const Check kChecks[] = {
     // Main dimensions
-    {"pump-size", "Ra below 4 or above 250 mm: no bent-axis pump has this size",
-     [](const Facts& f) {
-       return outside("joint_circle_radius_mm", mm(f.g.joint_circle_radius), 4, 250, "mm",
-                      "no pump has this size",
-                      {kMetres, kInches, kCentimetres, kMicrometres, kTenth});
-     }},
+    {"pump-size", "Ra below {0:g} or above {1:g} mm: no bent-axis pump has this size", nullptr,
+     "pump", "joint_circle_radius_mm"},
     {"tilt-in-radians", "0 < tilt < 1 deg. 0 is a limit, and meant",
      [](const Facts& f) -> std::string {
        const double tilt = deg(f.g.tilt);
@@ -356,12 +367,12 @@ const Check kChecks[] = {
                       mm(6 * f.bores_radius), "mm", "three times what encloses the bores",
                       {kDiameter, kTenth, kMicrometres});
      }},
-    {"pressure-angle", "0 < pressure angle < 10 deg, or > 35 deg",
+    {"pressure-angle", "0 < pressure angle < {0:g} deg, or > {1:g} deg",
      [](const Facts& f) -> std::string {
        if (f.pump.gear.pressure_angle == 0) return "";
-       return outside("pressure_angle_deg", deg(f.pump.gear.pressure_angle), 10, 35, "deg",
-                      "teeth are cut at 14.5 to 30 deg", {kRadians, {2, "half of it?"}});
-     }},
+       return implausible(f.the_case, "gear", "pressure_angle_deg");
+     },
+     "gear", "pressure_angle_deg"},
     {"tooth-module", "module of the teeth, d/Z, below 1 or above 12 mm",
      [](const Facts& f) -> std::string {
        if (!f.pump.gear.teeth || f.pump.gear.contact != ToothContact::teeth) return "";
@@ -473,9 +484,7 @@ const Check kChecks[] = {
                         0.1 * b1, 0.9 * b1, "mm",
                         fmt::format("it lies between A and B, {:.4g} mm apart", b1),
                         {kCentimetres, kTenth, kMetres, kMicrometres, kSign});
-       return outside("joint_mass_fraction", f.pump.piston.joint_mass_fraction, 0.1, 0.9, "",
-                      "the centre of mass would lie next to A or B",
-                      {{10, "ten times too small?"}, {1e2, "in hundredths?"}});
+       return implausible(f.the_case, "piston", "joint_mass_fraction");
      }},
     {"piston-transverse-inertia",
      "It outside of what a steel body of that mass within bore and length b1 + Dpi can have: of a "
@@ -702,26 +711,16 @@ const Check kChecks[] = {
            "second it would be {:.6g} rpm",
            f.the_case.operation.speed_rpm, v, 60 * f.the_case.operation.speed_rpm);
      }},
-    {"gravity", "gravity that is not 0 and outside 1.5 .. 20 m/s2 (it acts along -y1)",
+    {"gravity", "gravity that is not 0 and outside {0:g} .. {1:g} m/s2 (it acts along -y1)",
      [](const Facts& f) -> std::string {
        if (f.pump.gravity == 0) return "";
-       return outside("gravity_m_per_s2", f.pump.gravity, 1.5, 20, "m/s2",
-                      "it is 9.81 on earth, 1.6 on the moon, positive along -y1",
-                      {kSign,
-                       {1e-3, "in mm/s2?"},
-                       {1e-2, "in cm/s2?"},
-                       {9.80665, "in g?"},
-                       kTenth,
-                       kTenfold,
-                       kThousandfold});
-     }},
+       return implausible(f.the_case, "operation", "gravity_m_per_s2");
+     },
+     "operation", "gravity_m_per_s2"},
     {"samples", "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions",
      [](const Facts& f) {
-       return first_of(
-           {outside("samples_per_revolution", f.the_case.operation.samples_per_revolution, 6, 1e6,
-                    "", "a turn is seen from 6 angles on; 1e6 are every second of arc"),
-            outside("revolutions", f.the_case.operation.revolutions, 0, 1e4, "",
-                    "every turn is alike")});
+       return first_of({implausible(f.the_case, "operation", "samples_per_revolution"),
+                        implausible(f.the_case, "operation", "revolutions")});
      }},
     // Pressure
     {"pressure-beyond-1000-bar", "delivery, suction or the curve above 1000 bar",
@@ -753,23 +752,22 @@ const Check kChecks[] = {
                           bar(f.ports.delivery), bar(f.ports.suction));
      }},
     {"suction-pressure",
-     "suction below -1.014 bar (absolute vacuum), above 100 bar, or 1 atmosphere (pressures are "
+     "suction below {0:g} bar (absolute vacuum), above {1:g} bar, or 1 atmosphere (pressures are "
      "gauge)",
      [](const Facts& f) -> std::string {
        const double suction = bar(f.ports.suction);
        if (std::abs(suction - 1.01325) < 1e-3)
          return fmt::format("suction_bar = {:.6g}: pressures are gauge; absolute?", suction);
-       return outside("suction_bar", suction, -1.014, 100, "bar",
-                      "absolute vacuum is at -1.013, charged circuits reach 30",
-                      {{1e-5, "in pascals?"}, {1e-2, "in kPa?"}, kTenth});
-     }},
-    {"transition", "0 < transition < 1 deg (0 is a step, and meant), or > 90 deg",
+       return implausible(f.the_case, "pressure", "suction_bar");
+     },
+     "pressure", "suction_bar"},
+    {"transition", "0 < transition < {0:g} deg (0 is a step, and meant), or > {1:g} deg",
      [](const Facts& f) -> std::string {
        const PressureSpec& p = f.the_case.pressure;
        if (p.kind != PressureKind::ideal || p.transition_deg == 0) return "";
-       return outside("transition_deg", p.transition_deg, 1, 90, "deg",
-                      "the pressure changes while a bore passes from port to port", {kRadians});
-     }},
+       return implausible(f.the_case, "pressure", "transition_deg");
+     },
+     "pressure", "transition_deg"},
     {"pressure-phase",
      "the pressure on a piston does less than 0.6 of the ideal work (delivery - suction) x A x "
      "stroke over a turn: it does not act while the chamber shrinks (180 .. 360 deg)",
@@ -942,40 +940,14 @@ const Check kChecks[] = {
            f.pump.friction.block_viscous * kRadPerSecondPerRpm);
      }},
     // Hydraulics
-    {"oil-density", "density outside 600 .. 1300 kg/m3",
-     [](const Facts& f) {
-       return f.oil == nullptr
-                  ? std::string()
-                  : outside("density_kg_per_m3", f.oil->density, 600, 1300, "kg/m3",
-                            "oils have 800 to 900, water 1000, esters 1200", {kTenth, kTenfold});
-     }},
-    {"bulk-modulus", "bulk modulus outside 400 .. 3500 MPa",
-     [](const Facts& f) {
-       return f.oil == nullptr ? std::string()
-                               : outside("bulk_modulus_MPa", f.oil->bulk_modulus / 1e6, 400, 3500,
-                                         "MPa", "oils have 1200 to 1800, water 2200",
-                                         {{0.1, "in bar?"},
-                                          {1e-6, "in pascals?"},
-                                          {1e-3, "in kPa?"},
-                                          {6.89476e-3, "in psi?"},
-                                          kTenfold});
-     }},
-    {"air-content", "air below 0.02 or above 15 per cent",
-     [](const Facts& f) {
-       return f.oil == nullptr
-                  ? std::string()
-                  : outside("air_percent", 100 * f.oil->air_share, 0.02, 15, "percent",
-                            "oil in a tank holds 0.2 to 2", {{100, "a share?"}, kTenth});
-     }},
-    {"atmosphere", "atmosphere outside 0.5 .. 1.2 bar",
-     [](const Facts& f) {
-       return f.oil == nullptr
-                  ? std::string()
-                  : outside("atmosphere_bar", bar(f.oil->atmosphere), 0.5, 1.2, "bar",
-                            "it is 1.013 at the sea and 0.54 at 5000 m; a charged tank "
-                            "is suction_bar",
-                            {{10, "in MPa?"}});
-     }},
+    {"oil-density", "density outside {0:g} .. {1:g} kg/m3", nullptr, "hydraulics",
+     "density_kg_per_m3"},
+    {"bulk-modulus", "bulk modulus outside {0:g} .. {1:g} MPa", nullptr, "hydraulics",
+     "bulk_modulus_MPa"},
+    {"air-content", "air below {0:g} or above {1:g} per cent", nullptr, "hydraulics",
+     "air_percent"},
+    {"atmosphere", "atmosphere outside {0:g} .. {1:g} bar", nullptr, "hydraulics",
+     "atmosphere_bar"},
     {"kidney",
      "kidney wider than the pitch 360/N or narrower than a fifth of the bore; higher than the bore "
      "or of less than 8 % of its area",
@@ -1013,12 +985,8 @@ const Check kChecks[] = {
        return first_of(
            {one("delivery", f.oil->delivery.notch), one("suction", f.oil->suction.notch)});
      }},
-    {"discharge-coefficient", "Cd outside 0.3 .. 1",
-     [](const Facts& f) {
-       return f.oil == nullptr ? std::string()
-                               : outside("discharge_coefficient", f.oil->discharge_coefficient, 0.3,
-                                         1, "", "edges have 0.6 to 0.7, a nozzle 1", {kTenfold});
-     }},
+    {"discharge-coefficient", "Cd outside {0:g} .. {1:g}", nullptr, "hydraulics",
+     "discharge_coefficient"},
     {"transition-pressure", "p_cr above 5 bar and a twentieth of the delivery pressure",
      [](const Facts& f) {
        return f.oil == nullptr ? std::string()
@@ -1038,13 +1006,7 @@ const Check kChecks[] = {
            "{:.4g} l/min",
            f.oil->leakage * 6e4 * kPascalPerBar, lost * 6e4, bar(f.ports.delivery), flow * 6e4);
      }},
-    {"case-pressure", "case pressure above 20 bar",
-     [](const Facts& f) {
-       return f.oil == nullptr ? std::string()
-                               : outside("case_bar", bar(f.oil->case_pressure), -1.014, 20, "bar",
-                                         "shaft seals bear a few bar",
-                                         {{1e-5, "in pascals?"}, {1e-2, "in kPa?"}, kTenth});
-     }},
+    {"case-pressure", "case pressure above {1:g} bar", nullptr, "hydraulics", "case_bar"},
     {"dead-volume", "V0 below 0.03 or above 5 times the stroke's volume",
      [](const Facts& f) -> std::string {
        if (f.oil == nullptr || f.derived.stroke == 0) return "";
@@ -1062,13 +1024,13 @@ const Check kChecks[] = {
                       "l", fmt::format("a turn displaces {:.4g} l", turn),
                       {{1e-3, "in cm3?"}, {1e3, "in m3?"}});
      }},
-    {"curve-points", "a spline of fewer than 90 points of the computed pressure in a turn",
+    {"curve-points", "a spline of fewer than {0:g} points of the computed pressure in a turn",
      [](const Facts& f) {
        return f.the_case.pressure.kind != PressureKind::hydraulic || f.the_case.pressure.points == 0
                   ? std::string()
-                  : outside("points", f.the_case.pressure.points, 90, HUGE_VAL, "",
-                            "a port opens within some degrees");
-     }},
+                  : implausible(f.the_case, "pressure", "points");
+     },
+     "pressure", "points"},
 };
 
 bool is_code(const std::string& code) {
@@ -1134,7 +1096,7 @@ Plausibility plausibility(const Case& the_case) {
       result.displacement * (facts.ports.delivery - facts.ports.suction) / (2 * kPi);
   result.mean_piston_speed = facts.piston_speed;
   for (const Check& check : kChecks) {
-    const std::string text = check.text(facts);
+    const std::string text = check.found(facts);
     if (text.empty()) continue;
     const auto reason = std::find_if(reasons.begin(), reasons.end(),
                                      [&](const Doubt& d) { return d.code == check.code; });
@@ -1155,7 +1117,7 @@ std::string stated_reason(const Case& the_case, const std::string& code) {
 std::string plausibility_markdown() {
   std::string text = "| name | doubtful |\n|---|---|\n";
   for (const Check& check : kChecks)
-    text += fmt::format("| `{}` | {} |\n", check.code, check.doubtful);
+    text += fmt::format("| `{}` | {} |\n", check.code, check.words());
   return text;
 }
 

@@ -26,14 +26,16 @@ std::vector<Parameter> rating_parameters(const std::string& bearing, const Part*
            .unit = kKilonewtons,
            .range = kPositive,
            .meaning = "basic dynamic radial load rating of the " + bearing + " bearing (ISO 281)",
-           .part = part},
+           .part = part,
+           .in_fmu = InFmu::absent},
           {.key = bearing + "_static_rating_kN",
            .field = FIELD((c.ratings.*kBearing)->static_rating),
            .symbol = "C0_" + bearing,
            .unit = kKilonewtons,
            .range = kPositive,
            .meaning = "basic static radial load rating of the " + bearing + " bearing (ISO 76)",
-           .part = part}};
+           .part = part,
+           .in_fmu = InFmu::absent}};
 }
 
 // How radial and axial load count together. Of a contact angle a, Y = 0.4 cot a, e = 1.5 tan a and
@@ -45,7 +47,8 @@ std::vector<Parameter> tapered_factors() {
            .range = kPositive,
            .meaning = "axial load factor",
            .practice = "0.7..2.1",
-           .part = &kTaperedRating},
+           .part = &kTaperedRating,
+           .in_fmu = InFmu::absent},
           {.key = "tapered_e",
            .field = FIELD(c.ratings.tapered->ratio_limit),
            .symbol = "e",
@@ -55,14 +58,16 @@ std::vector<Parameter> tapered_factors() {
                         },
                         .words = "0.6 / `tapered_Y`"},
            .meaning = "Fa / Fr up to which the axial load does not count",
-           .part = &kTaperedRating},
+           .part = &kTaperedRating,
+           .in_fmu = InFmu::absent},
           {.key = "tapered_X",
            .field = FIELD(c.ratings.tapered->radial_factor),
            .symbol = "X",
            .range = {0, 1},
            .fallback = {0.4},
            .meaning = "radial load factor beyond that",
-           .part = &kTaperedRating},
+           .part = &kTaperedRating,
+           .in_fmu = InFmu::absent},
           {.key = "tapered_Y0",
            .field = FIELD(c.ratings.tapered->static_axial_factor),
            .symbol = "Y0",
@@ -72,7 +77,8 @@ std::vector<Parameter> tapered_factors() {
                         },
                         .words = "0.55 `tapered_Y`"},
            .meaning = "static axial load factor",
-           .part = &kTaperedRating}};
+           .part = &kTaperedRating,
+           .in_fmu = InFmu::absent}};
 }
 
 }  // namespace
@@ -83,6 +89,7 @@ Table bearings_table() {
       .meaning =
           "places of the bearings on the shaft axis, and where their life is asked for their "
           "ratings",
+      .differentiable = always,
       .parameters = {{.key = "tapered_z_mm",
                       .field = FIELD(c.pump.bearings.tapered_z),
                       .symbol = "C1",

@@ -7,6 +7,7 @@ Table block_table() {
   return {
       .name = "block",
       .meaning = "cylinder block",
+      .differentiable = always,
       .parameters = {
           {.key = "mass_kg",
            .field = FIELD(c.pump.block.mass),

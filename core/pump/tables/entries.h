@@ -161,6 +161,10 @@ const T* find(const Case& c, std::optional<T> HydraulicData::*member) {
   return c.hydraulics && *c.hydraulics.*member ? &*(*c.hydraulics.*member) : nullptr;
 }
 
+// ---- Derivatives
+
+inline bool always(const Case& /*the_case*/) { return true; }
+
 // ---- Rules that several tables have
 
 /// A computed number for a message, to six digits.

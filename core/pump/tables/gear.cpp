@@ -38,6 +38,7 @@ std::optional<Value> modules_of(const Case& c, double modules) {
 Table gear_table() {
   return {.name = "gear",
           .meaning = "bevel gear pair that carries the block round",
+          .differentiable = always,
           .parameters =
               {{.key = "pitch_diameter_mm",
                 .field = FIELD(c.pump.gear.pitch_diameter),
@@ -50,7 +51,12 @@ Table gear_table() {
                 .symbol = "alpha_p (ap)",
                 .unit = kAngle,
                 .range = {0, 60},
-                .meaning = "pressure angle; the pitch cone angle is 90 deg - alpha/2"},
+                .meaning = "pressure angle; the pitch cone angle is 90 deg - alpha/2",
+                .scaling = Scaling::cosine,
+                .plausible = {.low = 10,
+                              .high = 35,
+                              .why = "teeth are cut at 14.5 to 30 deg",
+                              .slips = {slips::kRadians, {2, "half of it?"}}}},
                {.key = "contact",
                 .field = FIELD(c.pump.gear.contact),
                 .words = {"rigid", "compliant", "teeth"},
@@ -58,7 +64,8 @@ Table gear_table() {
                 .meaning =
                     "rigid: block and shaft turn alike in motion; compliant: the flanks give "
                     "way, with backlash between them (motion.md); teeth: straight bevel teeth "
-                    "that touch where they are (teeth.md)"},
+                    "that touch where they are (teeth.md)",
+                .changes_model = true},
                {.key = "flanks",
                 .field = FIELD(c.pump.gear.flanks),
                 .words = {"one", "two"},

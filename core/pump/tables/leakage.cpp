@@ -40,6 +40,7 @@ Table leakage_table() {
       .name = "leakage",
       .meaning = "gaps from each chamber to the case, beside `leakage_l_per_min_per_bar`; 0: none",
       .part = &kGaps,
+      .in_fmu = InFmu::tunable,
       .parameters =
           {{.key = "piston_gap_um",
             .field = FIELD(c.hydraulics->gaps->piston_gap),

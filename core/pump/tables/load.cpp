@@ -29,6 +29,7 @@ Table load_table() {
       .name = "load",
       .meaning = "what the pump delivers against; an orifice where there is no such table",
       .part = &kLoad,
+      .in_fmu = InFmu::tunable,
       .parameters =
           {{.key = "kind",
             .field = FIELD(c.hydraulics->load->kind),

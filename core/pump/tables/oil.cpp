@@ -19,6 +19,7 @@ Table oil_table() {
   return {.name = "oil",
           .meaning = "viscosity, for gaps and for laminar friction in lines",
           .part = &kOil,
+          .in_fmu = InFmu::tunable,
           .parameters = {{.key = "temperature_C",
                           .field = FIELD(c.hydraulics->oil->temperature),
                           .symbol = "T",

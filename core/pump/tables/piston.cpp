@@ -15,6 +15,7 @@ Table piston_table() {
   return {
       .name = "piston",
       .meaning = "mass properties of one piston",
+      .differentiable = always,
       .parameters =
           {{.key = "inertia",
             .field = FIELD(c.pump.piston.inertia),
@@ -33,7 +34,11 @@ Table piston_table() {
             .symbol = "chi",
             .range = {0, 1},
             .fallback = {0.5},
-            .meaning = "lumped: share of the mass at A; mA = chi m, mB = (1 - chi) m"},
+            .meaning = "lumped: share of the mass at A; mA = chi m, mB = (1 - chi) m",
+            .plausible = {.low = 0.1,
+                          .high = 0.9,
+                          .why = "the centre of mass would lie next to A or B",
+                          .slips = {{10, "ten times too small?"}, {1e2, "in hundredths?"}}}},
            {.key = "contact_mm",
             .field = FIELD(c.pump.piston.contact),
             .symbol = "s_C",

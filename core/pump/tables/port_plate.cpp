@@ -25,6 +25,7 @@ Table port_plate_table() {
           "lands of the fixed port plate: full port pressure between r2 and r3, falling "
           "linearly to 0 at r1 and r4",
       .part = &kPortPlate,
+      .differentiable = always,
       .parameters = {{.key = "inner_land_mm",
                       .field = pair_at(PLACE(c.pump.port_plate->r1), PLACE(c.pump.port_plate->r2)),
                       .symbol = "r1, r2",

@@ -6,6 +6,7 @@ namespace bentaxis::tables {
 Table shaft_table() {
   return {.name = "shaft",
           .meaning = "shaft",
+          .differentiable = always,
           .parameters = {{.key = "mass_kg",
                           .field = FIELD(c.pump.shaft.mass),
                           .symbol = "ms",

@@ -14,13 +14,6 @@
 namespace bentaxis::fmu {
 namespace {
 
-// Numbers of a case that no unit uses: of other commands, or of the run, which the importer rules.
-bool is_of_other_commands(const Table& table, const Parameter& parameter) {
-  const std::string name = table.name + "." + parameter.key;
-  if (table.name == "bearings") return parameter.path.empty();  // ratings, of their life
-  return name == "drive.duration_s" || name == "hydraulics.curve_error";
-}
-
 // Masses of a piston that its inertia, as this model assumes it, does not go by.
 bool is_of_other_inertia(const std::string& name, PistonInertia inertia) {
   if (name == "piston.joint_mass_fraction") return inertia != PistonInertia::lumped;
@@ -37,13 +30,6 @@ bool is_replaced(const std::string& name, const Case& the_case, const TakesFromO
   if (name == "pressure.suction_bar") return takes.suction;
   if (name == "pressure.delivery_bar") return takes.delivery;
   return false;
-}
-
-// Numbers that laws of the moment depend on and states do not: they may change while a unit runs.
-bool is_tunable(const std::string& table, const std::string& key) {
-  if (key == "regularization_m_per_s") return false;  // 0 is another law
-  return table == "friction" || table == "leakage" || table == "oil" || table == "load" ||
-         key == "gravity_m_per_s2";
 }
 
 std::string words_of(const Parameter& parameter) {
@@ -80,7 +66,7 @@ class List {
                      std::size_t place, double start) {
     Variable& it =
         add(name, parameter.unit.name, Role::parameter, Causality::parameter,
-            is_tunable(table.name, parameter.key) ? Variability::tunable : Variability::fixed);
+            parameter.in_fmu == InFmu::tunable ? Variability::tunable : Variability::fixed);
     it.description = words_of(parameter);
     it.table = table.name;
     it.key = parameter.key;
@@ -99,8 +85,8 @@ class List {
     for (const Table& table : registry.tables)
       for (const Parameter& parameter : table.parameters) {
         const std::string name = table.name + "." + parameter.key;
-        if (!is_active(table, parameter, registry, the_case) ||
-            is_of_other_commands(table, parameter) || is_replaced(name, the_case, takes) ||
+        if (!is_active(table, parameter, registry, the_case) || parameter.in_fmu == InFmu::absent ||
+            is_replaced(name, the_case, takes) ||
             is_of_other_inertia(name, the_case.analytic.inertia))
           continue;
         const std::optional<Value> value = value_of(parameter, the_case);

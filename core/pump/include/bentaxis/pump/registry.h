@@ -16,6 +16,7 @@
 #include "bentaxis/pump/hydraulic_data.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/parameters.h"
+#include "bentaxis/pump/plausible_range.h"
 #include "bentaxis/pump/pressure.h"
 #include "bentaxis/pump/standard_registry.h"
 
@@ -97,6 +98,13 @@ struct Part {
   void (*remove)(Case&) = nullptr;  ///< where not needed, if not null: read, checked, unused
 };
 
+/// How forces grow with a number: with itself, or with the sine or cosine of an angle.
+enum class Scaling { value, sine, cosine };
+
+/// Whether an FMU has a number as its parameter, and whether that may change while it runs: laws of
+/// the moment depend on it and states do not.
+enum class InFmu { absent, fixed, tunable };
+
 struct Parameter {
   std::string key;  ///< in the file, with the unit: "tilt_deg"
   Field field = NumberField{};
@@ -117,6 +125,14 @@ struct Parameter {
   /// is checked and unused.
   When active = {};
   const Part* part = nullptr;  ///< within a table that has other keys too
+  /// Whether the closed form of a turn has exact derivatives with respect to it in a case; never
+  /// where null.
+  bool (*differentiable)(const Case&) = nullptr;
+  std::optional<InFmu> in_fmu = {};  ///< fixed where nothing says more
+  Scaling scaling = Scaling::value;
+  /// Of a choice or a count: other values make another model, with other columns or laws.
+  bool changes_model = false;
+  PlausibleRange plausible = {};  ///< of a number; anything where it gives no reason
   /// The part, or that of the table: filled in by standard_registry().
   const Part* within = nullptr;
 };
@@ -141,6 +157,9 @@ struct Table {
   std::string meaning = {};
   Presence presence = Presence::required;
   const Part* part = nullptr;  ///< where the whole table is one
+  /// As of Parameter, for entries that do not say it.
+  bool (*differentiable)(const Case&) = nullptr;
+  std::optional<InFmu> in_fmu = {};
   std::vector<Parameter> parameters = {};
   std::vector<Rule> rules = {};
 };

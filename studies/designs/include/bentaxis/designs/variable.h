@@ -21,6 +21,7 @@ class Variable {
   Variable(const std::string& name, const Case& base);
 
   const std::string& name() const { return name_; }
+  const Parameter& parameter() const { return *parameter_; }
   /// Symbol in the paper or in docs/, of a pair that of its end, or "". Unique within its table.
   std::string symbol() const;
   /// Of the file: "mm"; "" where there is none.
