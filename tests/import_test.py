@@ -7,6 +7,7 @@ BENTAXIS_MAKE_EXPORTS=1 has make_exports.py write the files anew first (packages
 
 import csv
 import json
+import math
 import os
 import pathlib
 import re
@@ -184,6 +185,25 @@ class OwnRecordTest(ImportTest):
             relative = float(re.search(r"^relative = (\S+)", self.description(), re.M)[1])
             # Half a unit of the last digit is 0.5 to 5 times 10^-digits of the peak; and some room.
             self.assertTrue(0.5 <= relative * 10 ** digits <= 20, relative)
+
+    def test_vectors_in_axes_at_any_angle(self):
+        self.run_program("run", base.REPO / "cases" / "bap63_rated.toml", "--model", "analytic", "--out", "own")
+        axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        for letter, angle in zip("XYZ", (17.3, 41.9, -8.2)):
+            a, b = ("XYZ".index(letter) + 1) % 3, ("XYZ".index(letter) + 2) % 3
+            c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+            axes[a], axes[b] = ([c * p + s * q for p, q in zip(axes[a], axes[b])], [c * q - s * p for p, q in zip(axes[a], axes[b])])
+        lines = ["angle [deg]," + ",".join(f"{name} {axis} [N]" for name in ("front", "rear") for axis in "XYZ")]
+        with (self.folder / "own" / "analytic.csv").open() as file:
+            for row in csv.DictReader(file):
+                vectors = [[float(row.get(f"{name}_{axis}1_N") or 0) for axis in "xyz"] for name in ("Rb1", "Rb2")]
+                turned = [sum(p * q for p, q in zip(axis, vector)) for vector in vectors for axis in axes]
+                lines.append(",".join([row["theta_deg"], *(f"{value:.17g}" for value in turned)]))
+        file = self.folder / "record.csv"
+        file.write_text("\n".join(lines) + "\n")
+        self.assert_mentions(self.new(file, "--accept").out, "turned by 17.3, 41.9, -8.2 deg about XYZ")
+        self.assert_mentions(self.description(), "euler_deg = [17.3, 41.9, -8.2]")
+        self.regress(DONE)
 
     def test_the_number_behind_the_piston_counts(self):
         names = [(k, axis) for k in range(1, 6) for axis in "xyz"]

@@ -21,13 +21,15 @@ namespace bentaxis::study {
 namespace mapping {
 namespace {
 
-// Frames at right angles that leave more than this are held against frames at Euler angles.
+// Frames at right angles that leave more than this are compared with frames at any angle.
 constexpr double kPoorFrame = 0.02;
+// A frame nearer than this to one at right angles is that frame: the angle between them is an error
+// of the record or of the model, and must be seen.
+constexpr double kSameFrame = 5;  // deg
 
 struct ModelVector {
-  std::string ours, quantity, frame, unit;
-  int piston = 0;
-  double unit_in_si = 1, peak = 0;
+  Channel channel;  // of its components, without an axis
+  double peak = 0;
   std::array<Series, 3> parts;
   std::array<bool, 3> has_channel{};
   std::array<std::string, 3> names;
@@ -105,16 +107,9 @@ class Guesser {
           channel.quantity + (channel.piston > 0 ? "_" + std::to_string(channel.piston) : "");
       const auto [it, added] = by_name.emplace(name, vectors_.size());
       if (added) {
-        vectors_.push_back({name,
-                            channel.quantity,
-                            channel.frame,
-                            channel.unit,
-                            channel.piston,
-                            channel.unit_in_si,
-                            one.peak,
-                            {},
-                            {},
-                            {}});
+        vectors_.push_back({channel, one.peak, {}, {}, {}});
+        vectors_.back().channel.name = name;
+        vectors_.back().channel.axis.clear();
         for (auto& part : vectors_.back().parts) part.assign(n_, 0);
       }
       const auto axis = static_cast<std::size_t>(channel.axis.front() - 'x');
@@ -215,12 +210,12 @@ class Guesser {
     };
     for (const auto& channel : channels_) add(channel.values, channel.channel.unit, false);
     for (const auto& vector : vectors_) {
-      add(length_of(vector.parts), vector.unit, true);
+      add(length_of(vector.parts), vector.channel.unit, true);
       for (const char* frame : {"S1", "S2"})
-        if (vector.frame != frame)
+        if (vector.channel.frame != frame)
           for (const auto& part :
-               in_axes(vector.parts, frames_.at(vector.frame), frames_.at(frame)))
-            add(part, vector.unit, false);
+               in_axes(vector.parts, frames_.at(vector.channel.frame), frames_.at(frame)))
+            add(part, vector.channel.unit, false);
     }
 
     const auto series = [&](const Feature& feature, double sign, double phase, std::size_t count) {
@@ -290,28 +285,24 @@ class Guesser {
     return result;
   }
 
-  // How well a vector in some axes is the group: of both signs the better or the one wanted (0 =
-  // either).
-  static Match match(const Group& group, double square, const Products& p, const Axes& axes,
-                     const ModelVector& vector, int wanted) {
-    double product = 0, own = 0;
-    for (std::size_t j = 0; j < 3; ++j)
-      if (group.columns[j]) add_component(p, axes, j, product, own);
-    return match_of(square, product, own, vector.unit, vector.unit_in_si, group.unit, wanted);
-  }
-
   Axes to_own(const FrameChoice& frame, const ModelVector& vector) const {
-    if (frame.axes_of.empty() || frame.axes_of == vector.frame) return frame.axes;
-    return carried(frame.axes, frames_.at(frame.axes_of), frames_.at(vector.frame));
+    if (frame.axes_of.empty() || frame.axes_of == vector.channel.frame) return frame.axes;
+    return carried(frame.axes, frames_.at(frame.axes_of), frames_.at(vector.channel.frame));
   }
 
-  Assignment assign(double sign, double phase) const {
-    Assignment best;
-    best.cost = std::numeric_limits<double>::max();
+  // The file's vectors at one direction and phase, and their products with those of the model that
+  // they may be.
+  struct Vectors {
     std::vector<std::array<Series, 3>> theirs;
     std::vector<double> squares;
-    std::vector<std::vector<Products>> products(groups_.size());
-    std::vector<std::vector<std::size_t>> allowed(groups_.size());
+    std::vector<std::vector<std::size_t>> allowed;
+    std::vector<std::vector<Products>> products;
+  };
+
+  Vectors vectors_at(double sign, double phase) const {
+    Vectors at;
+    at.products.resize(groups_.size());
+    at.allowed.resize(groups_.size());
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       std::array<Series, 3> parts;
       double square = 0;
@@ -323,236 +314,281 @@ class Guesser {
       const auto words = words_of(groups_[g].key);
       const auto* unit = compare::find_unit(groups_[g].unit);
       for (const bool by_name : {true, false}) {
-        if (!allowed[g].empty()) break;
+        if (!at.allowed[g].empty()) break;
         for (std::size_t v = 0; v < vectors_.size(); ++v)
-          if ((unit == nullptr || unit->family == vectors_[v].unit) &&
-              (!by_name || is_quantity(words, vectors_[v].quantity)))
-            allowed[g].push_back(v);
+          if ((unit == nullptr || unit->family == vectors_[v].channel.unit) &&
+              (!by_name || is_quantity(words, vectors_[v].channel.quantity)))
+            at.allowed[g].push_back(v);
       }
-      products[g].resize(vectors_.size());
-      for (const std::size_t v : allowed[g])
+      at.products[g].resize(vectors_.size());
+      for (const std::size_t v : at.allowed[g])
         for (std::size_t i = 0; i < 3; ++i)
           for (std::size_t j = 0; j < 3; ++j) {
-            if (!parts[j].empty())
-              products[g][v].theirs_ours[j][i] = dot(parts[j], vectors_[v].parts[i]);
-            products[g][v].ours_ours[j][i] = dot(vectors_[v].parts[j], vectors_[v].parts[i]);
+            Products& p = at.products[g][v];
+            if (!parts[j].empty()) p.theirs_ours[j][i] = dot(parts[j], vectors_[v].parts[i]);
+            p.ours_ours[j][i] = dot(vectors_[v].parts[j], vectors_[v].parts[i]);
           }
-      theirs.push_back(std::move(parts));
-      squares.push_back(square);
+      at.theirs.push_back(std::move(parts));
+      at.squares.push_back(square);
     }
+    return at;
+  }
 
-    const auto try_frame = [&](const FrameChoice& frame) {
-      Assignment a;
-      a.frame = frame;
-      std::map<std::string, std::array<double, 2>> by_sign;  // quantity -> cost of +, -
-      for (std::size_t g = 0; g < groups_.size(); ++g) {
-        Match found;
-        for (const std::size_t v : allowed[g]) {
-          Match m = match(groups_[g], squares[g], products[g][v], to_own(frame, vectors_[v]),
-                          vectors_[v], 0);
-          m.index = v;
-          if (m.cost < found.cost) found = m;
-        }
-        a.groups.push_back(found);
+  // How well vector v in a frame is group g: of both signs the better or the one wanted (0 =
+  // either).
+  Match match(const Vectors& at, std::size_t g, std::size_t v, const FrameChoice& frame,
+              int wanted) const {
+    const Channel& ours = vectors_[v].channel;
+    const Axes axes = to_own(frame, vectors_[v]);
+    double product = 0, own = 0;
+    for (std::size_t j = 0; j < 3; ++j)
+      if (groups_[g].columns[j]) add_component(at.products[g][v], axes, j, product, own);
+    Match m =
+        match_of(at.squares[g], product, own, ours.unit, ours.unit_in_si, groups_[g].unit, wanted);
+    m.index = v;
+    return m;
+  }
+
+  // A turned frame and a reversal both, shown by a single vector, would also be the error of one
+  // sign.
+  bool may_reverse(const FrameChoice& frame) const { return groups_.size() > 1 || frame.plain(); }
+
+  // The best vector for each group, in one frame.
+  Assignment in_frame(const Vectors& at, const FrameChoice& frame) const {
+    Assignment a;
+    a.frame = frame;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      Match found;
+      for (const std::size_t v : at.allowed[g]) {
+        const Match m = match(at, g, v, frame, 0);
+        if (m.cost < found.cost) found = m;
       }
-      renumber(a);
-      // One sign per quantity.
-      for (const int pass : {0, 1})
-        for (std::size_t g = 0; g < groups_.size(); ++g) {
-          Match& m = a.groups[g];
-          if (!m.found()) continue;
-          const ModelVector& vector = vectors_[m.index];
-          auto& costs = by_sign[vector.quantity];
-          const auto with = [&](int wanted) {
-            Match out = match(groups_[g], squares[g], products[g][m.index], to_own(frame, vector),
-                              vector, wanted);
-            out.index = m.index;
-            return out;
-          };
-          if (pass == 0) {
-            costs[0] += std::min(with(1).cost, 2.0);
-            costs[1] += std::min(with(-1).cost, 2.0);
-          } else {
-            // A turned frame and a reversal both, shown by a single vector, would also be the error
-            // of one sign.
-            const bool reversal = groups_.size() > 1 || frame.plain();
-            m = with(reversal && costs[1] < costs[0] ? -1 : 1);
-          }
-        }
-      for (const Match& m : a.groups) a.cost += std::min(m.cost, 1.0);
-      // Of frames that fit as well the plainest, which come first.
+      a.groups.push_back(found);
+    }
+    std::vector<std::string> names;
+    for (const Group& group : groups_) names.push_back(group.key);
+    a.numbered += use_one_numbering(vectors_, names, a.groups);
+    use_one_sign(
+        vectors_, a.groups,
+        [&](std::size_t g, int wanted) { return match(at, g, a.groups[g].index, frame, wanted); },
+        [&](const Channel&, int fitting) { return may_reverse(frame) ? fitting : 1; });
+    for (const Match& m : a.groups) a.cost += std::min(m.cost, 1.0);
+    return a;
+  }
+
+  Assignment assign(double sign, double phase) const {
+    const Vectors at = vectors_at(sign, phase);
+    Assignment best = in_frame(at, {});
+    // Of frames that fit as well the plainest, which come first.
+    const auto keep = [&](Assignment a) {
       if (a.cost < best.cost * (1 - 1e-6) - 1e-9) best = std::move(a);
     };
-    if (groups_.empty()) {
-      try_frame({});
-    } else {
-      for (const char* base : {"", "S1", "S2"}) try_frame({base, compare::kNoTurn, "", {}});
-      for (const char* base : {"", "S1", "S2"})
-        for (const Axes& axes : right_angles()) try_frame({base, axes, "", {}});
-      const bool whole = std::any_of(groups_.begin(), groups_.end(),
-                                     [](const Group& g) { return g.count() == 3; });
-      if (whole && best.cost > kPoorFrame * static_cast<double>(groups_.size()))
-        turn_by_euler_angles(products, allowed, theirs, try_frame);
+    for (const char* base : {"S1", "S2"}) keep(in_frame(at, {base, compare::kNoTurn, "", {}}));
+    for (const char* base : {"", "S1", "S2"})
+      for (const Axes& axes : right_angles()) keep(in_frame(at, {base, axes, "", {}}));
+    const bool whole =
+        std::any_of(groups_.begin(), groups_.end(), [](const Group& g) { return g.count() == 3; });
+    if (whole && best.cost > kPoorFrame * static_cast<double>(groups_.size()))
+      if (auto turned = at_any_angle(at)) keep(std::move(*turned));
+    find_wrong_signs(at, best);
+    assign_columns(best, sign, phase);
+    return best;
+  }
+
+  // The products of group g with vector v in the axes of S1, over the size of that vector.
+  Axes products_in_s1(const Vectors& at, std::size_t g, std::size_t v) const {
+    const Products& p = at.products[g][v];
+    const Axes plain = to_own({"S1", compare::kNoTurn, "", {}}, vectors_[v]);
+    const double size = std::sqrt(p.ours_ours[0][0] + p.ours_ours[1][1] + p.ours_ours[2][2]);
+    Axes out{};
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < 3; ++i) out[j][k] += p.theirs_ours[j][i] * plain[k][i] / size;
+    return out;
+  }
+
+  // The best frame that is not one at right angles, by Wahba's problem for the vectors with three
+  // components.
+  std::optional<Assignment> at_any_angle(const Vectors& at) const {
+    FrameChoice frame{"S1", compare::kNoTurn, "", {}};
+    Assignment best = in_frame(at, frame);
+    const auto keep = [&](const Assignment& a) {
+      if (a.cost < best.cost) best = a;
+    };
+    // What each vector alone shows, as the one of ours that a rotation brings nearest to it.
+    for (std::size_t g = 0; g < groups_.size(); ++g)
+      for (const int sign : {1, -1}) {
+        if (groups_[g].count() < 3 || (sign < 0 && groups_.size() == 1)) continue;
+        double most = 0;
+        for (const std::size_t v : at.allowed[g]) {
+          const Axes products = products_in_s1(at, g, v);
+          const Axes axes = nearest_rotation({products}, {double(sign)});
+          const double fit = sign * trace_of(axes, products);
+          if (!(fit > most)) continue;
+          most = fit;
+          frame.axes = axes;
+        }
+        keep(in_frame(at, frame));
+      }
+    // All of them together. A vector weighs the less the more it differs: one that is wrong does
+    // not turn the frame of the others.
+    constexpr int kSteps = 10;
+    Assignment last = best;
+    for (int step = 0; step < kSteps; ++step) {
+      std::vector<Axes> products;
+      std::vector<double> weights;
+      for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const Match& m = last.groups[g];
+        if (groups_[g].count() < 3 || !m.found()) continue;
+        products.push_back(products_in_s1(at, g, m.index));
+        weights.push_back(m.sign / ((m.cost * m.cost + 1e-16) * std::sqrt(at.squares[g])));
+      }
+      frame.axes = nearest_rotation(products, weights);
+      last = in_frame(at, frame);
+      keep(last);
     }
+    for (const char* base : {"S1", "S2"})
+      if (angle_from_right_angles(carried(best.frame.axes, frames_.at("S1"), frames_.at(base))) <
+          kSameFrame)
+        return std::nullopt;
+    return with_round_angles(at, best);
+  }
+
+  // The same frame by the roundest Euler angles that fit as well.
+  Assignment with_round_angles(const Vectors& at, const Assignment& exact) const {
+    FrameChoice best;
+    double roundest_step = -1;
+    for (const char* sequence : {"ZXZ", "XYZ"}) {
+      const auto turned = [&](const std::vector<double>& angles) {
+        const std::array<double, 3> three = {angles[0], angles[1], angles[2]};
+        return FrameChoice{exact.frame.axes_of, compare::turned_axes(sequence, three), sequence,
+                           three};
+      };
+      const auto cost = [&](const std::vector<double>& angles) {
+        constexpr double kRoundOff = 1e-14;
+        double sum = 0;
+        for (const Match& m : in_frame(at, turned(angles)).groups)
+          sum += std::log(kRoundOff + std::min(1.0, m.cost * m.cost));
+        return sum / static_cast<double>(groups_.size());
+      };
+      const auto start = euler_angles(exact.frame.axes, sequence);
+      std::vector<double> angles(start.begin(), start.end());
+      const double step = roundest(cost, angles);
+      if (step <= roundest_step) continue;
+      roundest_step = step;
+      best = turned(angles);
+    }
+    return in_frame(at, best);
+  }
+
+  // Groups that no vector fits but one would with other signs of single components.
+  void find_wrong_signs(const Vectors& at, Assignment& best) const {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (best.groups[g].cost < kNoChannel) continue;
       constexpr double kSameButSigns = 0.3;
       double least = kSameButSigns;
       const int piston = best.groups[g].found() && piston_in(groups_[g].key, pistons_) > 0
-                             ? vectors_[best.groups[g].index].piston
+                             ? vectors_[best.groups[g].index].channel.piston
                              : 0;  // set by the numbering
-      for (const std::size_t v : allowed[g]) {
-        if (piston > 0 && vectors_[v].piston != piston) continue;
+      for (const std::size_t v : at.allowed[g]) {
+        const Channel& ours = vectors_[v].channel;
+        const Products& p = at.products[g][v];
+        if (piston > 0 && ours.piston != piston) continue;
         const Axes axes = to_own(best.frame, vectors_[v]);
         double own = 0;
-        for (std::size_t i = 0; i < 3; ++i) own += products[g][v].ours_ours[i][i];
+        for (std::size_t i = 0; i < 3; ++i) own += p.ours_ours[i][i];
         Match m;
         m.index = v;
-        m.unit = own > 0 ? unit_for(std::sqrt(squares[g] / own), vectors_[v].unit,
-                                    vectors_[v].unit_in_si, groups_[g].unit)
+        m.unit = own > 0 ? unit_for(std::sqrt(at.squares[g] / own), ours.unit, ours.unit_in_si,
+                                    groups_[g].unit)
                          : "";
         if (m.unit.empty()) continue;
-        const double factor = vectors_[v].unit_in_si / compare::find_unit(m.unit)->si;
-        const double cost = cost_without_signs(products[g][v], axes, factor, theirs[g]);
+        const double factor = ours.unit_in_si / compare::find_unit(m.unit)->si;
+        const double cost = cost_without_signs(p, axes, factor, at.theirs[g]);
         if (cost >= least) continue;
         least = cost;
         m.cost = 1;
         m.signs_differ = true;
         for (std::size_t other = 0; other < groups_.size(); ++other)
           if (other != g && best.groups[other].found() && !best.groups[other].signs_differ &&
-              vectors_[best.groups[other].index].quantity == vectors_[v].quantity)
+              vectors_[best.groups[other].index].channel.quantity == ours.quantity)
             m.sign = best.groups[other].sign;
         best.groups[g] = m;
-      }
-    }
-    assign_columns(best, sign, phase);
-    return best;
-  }
-
-  // Frames at whole multiples of 5 deg: the best of them for the vectors whose length says which
-  // they are.
-  template <class Try>
-  void turn_by_euler_angles(const std::vector<std::vector<Products>>& products,
-                            const std::vector<std::vector<std::size_t>>& allowed,
-                            const std::vector<std::array<Series, 3>>& theirs,
-                            const Try& try_frame) const {
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;  // group, vector
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (groups_[g].count() != 3) continue;
-      const Series length = length_of(theirs[g]);
-      double best = -2;
-      std::size_t which = 0;
-      for (const std::size_t v : allowed[g]) {
-        const Series ours = length_of(vectors_[v].parts);
-        const double r =
-            dot(length, ours) / std::sqrt(dot(length, length) * dot(ours, ours) + 1e-300);
-        if (r > best) {
-          best = r;
-          which = v;
-        }
-      }
-      if (best > 0) pairs.emplace_back(g, which);
-    }
-    for (const char* base : {"", "S1", "S2"}) {
-      // Per quantity, the sum over vectors of <theirs_j, ours_i> in the axes of the base, each over
-      // its own size: the frame whose traces with them are largest, whatever their signs, is the
-      // best.
-      std::map<std::string, Axes> sums;
-      for (const auto& [g, v] : pairs) {
-        Axes& sum = sums[vectors_[v].quantity];
-        const Axes plain = to_own({base, compare::kNoTurn, "", {}}, vectors_[v]);
-        double size = 0;
-        for (std::size_t i = 0; i < 3; ++i) size += products[g][v].ours_ours[i][i];
-        size = std::sqrt(size * dot(theirs[g][0], theirs[g][0]) +
-                         size * dot(theirs[g][1], theirs[g][1]) +
-                         size * dot(theirs[g][2], theirs[g][2]));
-        for (std::size_t j = 0; j < 3; ++j)
-          for (std::size_t k = 0; k < 3; ++k)
-            for (std::size_t i = 0; i < 3; ++i)
-              sum[j][k] += products[g][v].theirs_ours[j][i] * plain[k][i] / size;
-      }
-      for (const char* sequence : {"ZXZ", "XYZ"}) {
-        FrameChoice best;
-        double most = -1;
-        for (int a = 0; a < 360; a += kEulerStep)
-          for (int b = 0; b <= 180; b += kEulerStep)
-            for (int c = 0; c < 360; c += kEulerStep) {
-              const Axes axes = turned(sequence, a, b, c);
-              double total = 0;
-              for (const auto& [quantity, sum] : sums) {
-                double trace = 0;
-                for (std::size_t j = 0; j < 3; ++j)
-                  for (std::size_t k = 0; k < 3; ++k) trace += axes[j][k] * sum[j][k];
-                total += std::abs(trace);
-              }
-              if (total > most + 1e-12) {
-                most = total;
-                best = {base, axes, sequence, {double(a), double(b), double(c)}};
-              }
-            }
-        try_frame(best);
       }
     }
   }
 
   // One numbering of the pistons for the file: number in the name = first + direction x ours. What
   // does not follow it is set right, so that pistons which were mixed up stay so.
-  void renumber(Assignment& a) const {
-    struct Vote {
-      std::size_t group;
-      int said, found;
-    };
-    std::vector<Vote> votes;
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-      if (a.groups[g].found() && vectors_[a.groups[g].index].piston > 0)
-        if (const int said = piston_in(groups_[g].key, pistons_); said > 0)
-          votes.push_back({g, said, vectors_[a.groups[g].index].piston});
-    if (votes.empty()) return;
-    const auto numbering = best_numbering(numbers_of(votes), pistons_);
-    for (const Vote& vote : votes) {
-      const int wanted = numbering(vote.said);
-      a.numbered += wanted == vote.said;
-      if (wanted == vote.found) continue;
-      const ModelVector& now = vectors_[a.groups[vote.group].index];
-      for (std::size_t v = 0; v < vectors_.size(); ++v)
-        if (vectors_[v].quantity == now.quantity && vectors_[v].piston == wanted) {
-          a.groups[vote.group].index = v;
-          break;
-        }
+  // @returns  how many have the number that their names say
+  template <class Ours>
+  int use_one_numbering(const std::vector<Ours>& ours, const std::vector<std::string>& names,
+                        std::vector<Match>& matches) const {
+    std::vector<std::pair<int, int>> votes;  // the number in the name, the piston found
+    std::vector<Match*> voters;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      const int piston = matches[i].found() ? ours[matches[i].index].channel.piston : 0;
+      const int said = piston > 0 ? piston_in(names[i], pistons_) : 0;
+      if (said == 0) continue;
+      votes.emplace_back(said, piston);
+      voters.push_back(&matches[i]);
     }
+    if (votes.empty()) return 0;
+    const auto numbering = best_numbering(votes, pistons_);
+    int numbered = 0;
+    for (std::size_t i = 0; i < votes.size(); ++i) {
+      const int wanted = numbering(votes[i].first);
+      numbered += wanted == votes[i].first;
+      const Channel& now = ours[voters[i]->index].channel;
+      const auto other = std::find_if(ours.begin(), ours.end(), [&](const Ours& one) {
+        return one.channel.quantity == now.quantity && one.channel.axis == now.axis &&
+               one.channel.piston == wanted;
+      });
+      if (other != ours.end()) voters[i]->index = static_cast<std::size_t>(other - ours.begin());
+    }
+    return numbered;
   }
 
-  template <class Votes>
-  static std::vector<std::pair<int, int>> numbers_of(const Votes& votes) {
-    std::vector<std::pair<int, int>> numbers;
-    for (const auto& vote : votes) numbers.emplace_back(vote.said, vote.found);
-    return numbers;
+  // One sign per quantity.
+  // @param match_with  the match of a place with a sign
+  // @param choose  of a channel and the sign that fits its quantity: the sign to use
+  template <class Ours, class MatchWith, class Choose>
+  static void use_one_sign(const std::vector<Ours>& ours, std::vector<Match>& matches,
+                           const MatchWith& match_with, const Choose& choose) {
+    std::map<std::string, std::array<double, 2>> costs;  // of + and -
+    const auto quantity = [&](const Match& m) { return ours[m.index].channel.quantity; };
+    for (std::size_t i = 0; i < matches.size(); ++i)
+      if (matches[i].found())
+        for (const int s : {0, 1})
+          costs[quantity(matches[i])][s] += std::min(2.0, match_with(i, s == 0 ? 1 : -1).cost);
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      if (!matches[i].found()) continue;
+      const auto& both = costs[quantity(matches[i])];
+      matches[i] =
+          match_with(i, choose(ours[matches[i].index].channel, both[1] < both[0] ? -1 : 1));
+    }
   }
 
   // Columns that belong to no vector: each one channel.
   void assign_columns(Assignment& a, double sign, double phase) const {
     std::map<std::string, int> signs;  // of quantities that vectors have
     for (const Match& m : a.groups)
-      if (m.found()) signs[vectors_[m.index].quantity] = m.sign;
-    struct Vote {
-      std::size_t column;
-      int said, found;
-    };
-    std::vector<Vote> votes;
+      if (m.found()) signs[vectors_[m.index].channel.quantity] = m.sign;
     std::vector<Series> curves;
-    const auto match_channel = [&](const Series& theirs, std::size_t channel, std::size_t column,
-                                   int wanted) {
-      const ModelChannel& ours = channels_[channel];
-      const double product = dot(theirs, ours.values), own = dot(ours.values, ours.values);
-      const double square = dot(theirs, theirs);
-      Match m = match_of(square, product, own, ours.channel.unit, ours.channel.unit_in_si,
-                         known_unit(table_.units[column]), wanted);
-      m.index = channel;
+    std::vector<std::string> names;
+    const auto match_channel = [&](std::size_t i, std::size_t c, int wanted) {
+      const Channel& ours = channels_[c].channel;
+      const Series &theirs = curves[i], &values = channels_[c].values;
+      Match m = match_of(dot(theirs, theirs), dot(theirs, values), dot(values, values), ours.unit,
+                         ours.unit_in_si, known_unit(table_.units[singles_[i]]), wanted);
+      m.index = c;
       return m;
     };
-    for (const std::size_t column : singles_) {
+    for (std::size_t i = 0; i < singles_.size(); ++i) {
+      const std::size_t column = singles_[i];
       curves.push_back(sampled(column, sign, phase, n_));
-      const auto words = words_of(table_.header[column]);
+      names.push_back(table_.header[column]);
+      const auto words = words_of(names[i]);
       const auto* unit = compare::find_unit(known_unit(table_.units[column]));
       Match found;
       for (const bool by_name : {true, false}) {
@@ -562,50 +598,22 @@ class Guesser {
           if (unit != nullptr && unit->family != channel.unit) continue;
           if (by_name && !named(words, channel)) continue;
           // A pressure pushes; it has no other body to be seen from.
-          const Match m =
-              match_channel(curves.back(), c, column, channel.kind == ChannelKind::input ? 1 : 0);
+          const Match m = match_channel(i, c, channel.kind == ChannelKind::input ? 1 : 0);
           if (m.cost < found.cost) found = m;
         }
       }
       a.columns.push_back(found);
-      if (found.found() && channels_[found.index].channel.piston > 0)
-        if (const int said = piston_in(table_.header[column], pistons_); said > 0)
-          votes.push_back({a.columns.size() - 1, said, channels_[found.index].channel.piston});
     }
-    if (!votes.empty()) {
-      const auto numbering = best_numbering(numbers_of(votes), pistons_);
-      for (const Vote& vote : votes) {
-        const int wanted = numbering(vote.said);
-        a.numbered += wanted == vote.said;
-        if (wanted == vote.found) continue;
-        const Channel& now = channels_[a.columns[vote.column].index].channel;
-        for (std::size_t c = 0; c < channels_.size(); ++c)
-          if (channels_[c].channel.quantity == now.quantity &&
-              channels_[c].channel.axis == now.axis && channels_[c].channel.piston == wanted)
-            a.columns[vote.column].index = c;
-      }
-    }
-    // One sign per quantity.
-    std::map<std::string, std::array<double, 2>> by_sign;
-    for (const int pass : {0, 1})
-      for (std::size_t i = 0; i < singles_.size(); ++i) {
-        Match& m = a.columns[i];
-        if (!m.found()) continue;
-        const Channel& channel = channels_[m.index].channel;
-        const auto fixed = signs.find(channel.quantity);
-        if (pass == 0) {
-          for (const int s : {0, 1})
-            by_sign[channel.quantity][s] +=
-                std::min(2.0, match_channel(curves[i], m.index, singles_[i], s == 0 ? 1 : -1).cost);
-          continue;
-        }
-        const auto& costs = by_sign[channel.quantity];
-        const int wanted = channel.kind == ChannelKind::input ? 1
-                           : fixed != signs.end()             ? fixed->second
-                           : costs[1] < costs[0]              ? -1
-                                                              : 1;
-        m = match_channel(curves[i], m.index, singles_[i], wanted);
-      }
+    a.numbered += use_one_numbering(channels_, names, a.columns);
+    use_one_sign(
+        channels_, a.columns,
+        [&](std::size_t i, int wanted) { return match_channel(i, a.columns[i].index, wanted); },
+        [&](const Channel& channel, int fitting) {
+          const auto fixed = signs.find(channel.quantity);
+          return channel.kind == ChannelKind::input ? 1
+                 : fixed != signs.end()             ? fixed->second
+                                                    : fitting;
+        });
     for (const Match& m : a.columns) a.cost += std::min(m.cost, 1.0);
   }
 
@@ -632,27 +640,10 @@ struct Pairing {
   int sign = 1;
   std::vector<std::size_t> columns;
   std::vector<Series> curves;  // of the model, in their unit, sign and axes
+  // As the description says it: columns, or the vector.
+  std::vector<compare::ColumnMap> maps;
+  std::optional<compare::VectorMap> vector;
 };
-
-// Takes what is proposed for some columns out of a guess: their curves are not those of the
-// channel.
-void leave_out(MappingGuess& guess, const std::vector<std::string>& columns,
-               const std::string& ours, double correlation) {
-  const auto theirs = [&](const std::string& name) {
-    return std::find(columns.begin(), columns.end(), name) != columns.end();
-  };
-  std::erase_if(guess.curve.columns, [&](const auto& column) { return theirs(column.theirs); });
-  std::erase_if(guess.curve.vectors, [&](const auto& vector) {
-    return std::any_of(vector.theirs.begin(), vector.theirs.end(), theirs);
-  });
-  for (const std::string& column : columns) {
-    guess.ignored.emplace_back(
-        column,
-        fmt::format("not recognised: looks like {}, but the correlation is {:.2f}, less than {:g}",
-                    ours, correlation, kLeastCorrelation));
-    guess.unrecognised.push_back(column);
-  }
-}
 
 MappingGuess Guesser::finish(const Found& found) {
   // Another piston's angle is the same turn: the numbers in the names say which, else the smallest
@@ -697,36 +688,40 @@ MappingGuess Guesser::finish(const Found& found) {
     guess.rounding =
         std::max(guess.rounding, half_of_last_digit(largest, digits) * in_our_unit / peak);
   };
-  const auto ignore = [&](std::size_t column, const std::string& why) {
-    guess.ignored.emplace_back(table_.header[column], why);
+  std::set<std::string> taken;
+  // Whether columns stand for a channel or vector, each of which is taken once; if not, why.
+  const auto take = [&](const Match& m, const Channel* ours, bool by_name,
+                        const std::vector<std::size_t>& columns) {
+    const bool fits =
+        ours != nullptr && (m.cost < kNoChannel || m.signs_differ || (by_name && m.cost < 2.5));
+    if (fits && taken.insert(ours->name).second) return true;
+    for (const std::size_t column : columns)
+      guess.ignored.emplace_back(
+          table_.header[column],
+          fits ? "like another column, looks like " + ours->name : "no channel has this curve");
+    return false;
   };
 
   const bool own_plain = a.frame.axes_of.empty() && a.frame.plain();
-  std::set<std::string> taken;
-  bool uses_frame = false;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const Group& group = groups_[g];
     const Match& m = a.groups[g];
+    const Channel* found_channel = m.found() ? &vectors_[m.index].channel : nullptr;
     // Its name says the quantity, or which of the pistons it is.
     const bool by_name =
-        m.found() && (is_quantity(words_of(group.key), vectors_[m.index].quantity) ||
-                      (vectors_[m.index].piston > 0 && piston_in(group.key, pistons_) > 0));
-    const bool fits =
-        m.found() && (m.cost < kNoChannel || m.signs_differ || (by_name && m.cost < 2.5));
-    if (!fits || !taken.insert(vectors_[m.index].ours).second) {
-      for (const auto& column : group.columns)
-        if (column)
-          ignore(*column, fits ? "like another column, looks like " + vectors_[m.index].ours
-                               : "no channel has this curve");
-      continue;
-    }
+        m.found() && (is_quantity(words_of(group.key), found_channel->quantity) ||
+                      (found_channel->piston > 0 && piston_in(group.key, pistons_) > 0));
+    std::vector<std::size_t> columns;
+    for (const auto& column : group.columns)
+      if (column) columns.push_back(*column);
+    if (!take(m, found_channel, by_name, columns)) continue;
     const ModelVector& vector = vectors_[m.index];
     const double unit = compare::find_unit(m.unit)->si;
-    const double factor = m.sign * vector.unit_in_si / unit;
+    const double factor = m.sign * vector.channel.unit_in_si / unit;
     const Axes axes = to_own(a.frame, vector);
-    Pairing pairing{"", vector.ours, m.unit, m.sign, {}, {}};
+    Pairing pairing{"", vector.channel.name, m.unit, m.sign, columns, {}, {}, {}};
     compare::VectorMap map;
-    map.ours = vector.ours;
+    map.ours = vector.channel.name;
     map.unit = m.unit;
     map.unit_in_si = unit;
     map.factor = m.sign;
@@ -736,48 +731,37 @@ MappingGuess Guesser::finish(const Found& found) {
       const std::size_t column = *group.columns[j];
       map.theirs[j] = table_.header[column];
       pairing.theirs += (pairing.theirs.empty() ? "" : ", ") + table_.header[column];
-      pairing.columns.push_back(column);
       Series ours(n_, 0);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t row = 0; row < n_; ++row)
           ours[row] += factor * axes[j][i] * vector.parts[i][row];
       pairing.curves.push_back(std::move(ours));
-      rounding(column, unit / vector.unit_in_si, vector.peak);
+      rounding(column, unit / vector.channel.unit_in_si, vector.peak);
       simple = simple && vector.has_channel[j];
     }
-    pairings.push_back(std::move(pairing));
-    if (simple) {
-      for (std::size_t j = 0; j < 3; ++j)
-        if (group.columns[j])
-          curve.columns.push_back({map.theirs[j], vector.names[j], m.unit, unit, double(m.sign)});
-      for (std::size_t j = 0; j < 3; ++j)
-        if (group.columns[j]) taken.insert(vector.names[j]);
-    } else {
-      uses_frame = true;
-      for (const auto& name : vector.names) taken.insert(name);
-      curve.vectors.push_back(std::move(map));
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (simple && group.columns[j])
+        pairing.maps.push_back({map.theirs[j], vector.names[j], m.unit, unit, double(m.sign)});
+      if (!simple || group.columns[j]) taken.insert(vector.names[j]);
     }
+    if (!simple) pairing.vector = std::move(map);
+    pairings.push_back(std::move(pairing));
   }
   for (std::size_t i = 0; i < singles_.size(); ++i) {
     const Match& m = a.columns[i];
     const std::size_t column = singles_[i];
-    const bool by_name =
-        m.found() && named(words_of(table_.header[column]), channels_[m.index].channel);
-    const bool fits = m.found() && (m.cost < kNoChannel || (by_name && m.cost < 2.5));
-    if (!fits || !taken.insert(channels_[m.index].channel.name).second) {
-      ignore(column, fits ? "like another column, looks like " + channels_[m.index].channel.name
-                          : "no channel has this curve");
-      continue;
-    }
+    const Channel* found_channel = m.found() ? &channels_[m.index].channel : nullptr;
+    const bool by_name = m.found() && named(words_of(table_.header[column]), *found_channel);
+    if (!take(m, found_channel, by_name, {column})) continue;
     const ModelChannel& ours = channels_[m.index];
     const double unit = compare::find_unit(m.unit)->si;
-    Pairing pairing{table_.header[column], ours.channel.name, m.unit, m.sign, {column}, {}};
+    Pairing pairing{table_.header[column], ours.channel.name, m.unit, m.sign, {column}, {}, {}, {}};
     Series values = ours.values;
     for (double& value : values) value *= m.sign * ours.channel.unit_in_si / unit;
     pairing.curves.push_back(std::move(values));
-    pairings.push_back(std::move(pairing));
-    curve.columns.push_back(
+    pairing.maps.push_back(
         {table_.header[column], ours.channel.name, m.unit, unit, double(m.sign)});
+    pairings.push_back(std::move(pairing));
     rounding(column, unit / ours.channel.unit_in_si, ours.peak);
   }
   if (pairings.empty())
@@ -786,34 +770,32 @@ MappingGuess Guesser::finish(const Found& found) {
 
   // The phase: the best one, then the roundest that is as good. By logarithms, so that the curves
   // which fit decide and not the one that does not.
-  const auto cost = [&](double at) {
-    double sum = 0;
-    for (const Pairing& pairing : pairings) {
-      double difference = 0, square = 0;
-      for (std::size_t k = 0; k < pairing.columns.size(); ++k) {
-        const Series theirs = sampled(pairing.columns[k], found.sign, at, n_);
-        for (std::size_t row = 0; row < n_; ++row) {
-          difference += std::pow(theirs[row] - pairing.curves[k][row], 2);
-          square += theirs[row] * theirs[row];
-        }
-      }
-      constexpr double kRoundOff = 1e-24;
-      if (square > 0) sum += std::log(kRoundOff + difference / square);
+  const auto square_difference = [&](const Pairing& pairing, double at) {
+    double difference = 0, square = 0;
+    for (std::size_t k = 0; k < pairing.columns.size(); ++k) {
+      const Series theirs = sampled(pairing.columns[k], found.sign, at, n_);
+      for (std::size_t row = 0; row < n_; ++row)
+        difference += std::pow(theirs[row] - pairing.curves[k][row], 2);
+      square += dot(theirs, theirs);
     }
+    return square > 0 ? std::optional(difference / square) : std::nullopt;
+  };
+  const auto cost = [&](double at) {
+    constexpr double kRoundOff = 1e-24;
+    double sum = 0;
+    for (const Pairing& pairing : pairings)
+      if (const auto square = square_difference(pairing, at)) sum += std::log(kRoundOff + *square);
     return sum / static_cast<double>(pairings.size());
   };
-  phase = roundest(cost, least_of(cost, phase - 0.5, phase + 0.5));
+  std::vector<double> round_phase = {least_of(cost, phase - 0.5, phase + 0.5)};
+  roundest([&](const std::vector<double>& at) { return cost(at.front()); }, round_phase);
+  phase = round_phase.front();
   for (const Pairing& pairing : pairings) {
     MappingProposal proposal{pairing.theirs, pairing.ours, pairing.sign, pairing.unit, 0, 0, ""};
-    double product = 0, theirs_square = 0, ours_square = 0, difference = 0, square = 0;
-    double without_signs = 0;
+    double product = 0, theirs_square = 0, ours_square = 0, without_signs = 0;
     bool ours_constant = true;  // then nothing but its value says what it is
     for (std::size_t k = 0; k < pairing.columns.size(); ++k) {
       const Series theirs = sampled(pairing.columns[k], found.sign, phase, n_);
-      for (std::size_t row = 0; row < n_; ++row) {
-        difference += std::pow(theirs[row] - pairing.curves[k][row], 2);
-        square += theirs[row] * theirs[row];
-      }
       const Series x = centred(theirs), y = centred(pairing.curves[k]);
       product += dot(x, y);
       without_signs += std::abs(dot(x, y));
@@ -829,17 +811,24 @@ MappingGuess Guesser::finish(const Found& found) {
     proposal.correlation = scale > 0 ? product / scale : 0;
     const double followed =
         pairing.columns.size() > 1 && scale > 0 ? without_signs / scale : proposal.correlation;
-    proposal.difference = square > 0 ? std::sqrt(difference / square) : 0;
+    proposal.difference = std::sqrt(square_difference(pairing, phase).value_or(0));
     if (proposal.difference > kNoChannel)
       proposal.remark = pairing.columns.size() > 1
                             ? "differs by its signs, or only its name says so"
                             : "its name says so, its curve does not";
     if (!ours_constant && !(followed >= kLeastCorrelation)) {
-      std::vector<std::string> columns;
-      for (const std::size_t column : pairing.columns) columns.push_back(table_.header[column]);
-      leave_out(guess, columns, pairing.ours, proposal.correlation);
+      for (const std::size_t column : pairing.columns) {
+        guess.ignored.emplace_back(
+            table_.header[column],
+            fmt::format(
+                "not recognised: looks like {}, but the correlation is {:.2f}, less than {:g}",
+                pairing.ours, proposal.correlation, kLeastCorrelation));
+        guess.unrecognised.push_back(table_.header[column]);
+      }
       continue;
     }
+    curve.columns.insert(curve.columns.end(), pairing.maps.begin(), pairing.maps.end());
+    if (pairing.vector) curve.vectors.push_back(*pairing.vector);
     guess.proposals.push_back(std::move(proposal));
   }
   if (guess.proposals.empty())
@@ -870,7 +859,7 @@ MappingGuess Guesser::finish(const Found& found) {
         return std::abs(std::remainder(at, step)) <= same;
       }))
     guess.samples = static_cast<int>(turn.rows.size());
-  if (uses_frame) {
+  if (!curve.vectors.empty()) {
     curve.frame.axes_of = a.frame.axes_of;
     curve.frame.cosines = a.frame.axes;
     curve.frame.words =

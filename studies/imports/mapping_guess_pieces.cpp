@@ -1,5 +1,7 @@
 #include "mapping_guess_pieces.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -91,15 +93,24 @@ double least_of(const std::function<double(double)>& f, double low, double high)
   return (low + high) / 2;
 }
 
-double roundest(const std::function<double(double)>& cost, double best) {
+double roundest(const std::function<double(const std::vector<double>&)>& cost,
+                std::vector<double>& angles) {
   constexpr double kAsGood = 0.2;  // of the logarithm of the mean square difference
-  const double least = cost(best);
+  const double least = cost(angles);
   for (const double step : {90.0, 45.0, 30.0, 10.0, 5.0, 1.0, 0.5, 0.25, 0.1, 0.05, 0.01, 0.005,
                             1e-3, 1e-4, 1e-5, 1e-6}) {
-    const double round = std::round(best / step) * step;
-    if (std::abs(round - best) < 2 && cost(round) <= least + kAsGood) return round;
+    std::vector<double> round = angles;
+    // Divided where the step is a fraction: 17.3 is 173 / 10, and 173 x 0.1 is another number.
+    const double per_degree = std::round(1 / step);
+    for (double& angle : round)
+      angle = step < 1 ? std::round(angle / step) / per_degree : std::round(angle / step) * step;
+    const bool near = std::equal(round.begin(), round.end(), angles.begin(),
+                                 [](double a, double b) { return std::abs(a - b) < 2; });
+    if (!near || cost(round) > least + kAsGood) continue;
+    angles = round;
+    return step;
   }
-  return best;
+  return 0;
 }
 
 std::string lower(std::string text) {
@@ -443,25 +454,48 @@ const std::vector<Axes>& right_angles() {
   return all;
 }
 
-Axes turned(const char* sequence, int a, int b, int c) {
-  static const auto table = [] {
-    std::array<std::pair<double, double>, 360> t;
-    for (int i = 0; i < 360; ++i)
-      t[static_cast<std::size_t>(i)] = {std::cos(radians(i)), std::sin(radians(i))};
-    return t;
-  }();
-  Axes axes = compare::kNoTurn;
-  const int angles[] = {a, b, c};
-  for (int turn = 0; turn < 3; ++turn) {
-    const auto axis = static_cast<std::size_t>(sequence[turn] - 'X');
-    const std::size_t p = (axis + 1) % 3, q = (axis + 2) % 3;
-    const auto [cosine, sine] = table[static_cast<std::size_t>(angles[turn])];
-    const auto first = axes[p], second = axes[q];
-    for (std::size_t i = 0; i < 3; ++i) {
-      axes[p][i] = cosine * first[i] + sine * second[i];
-      axes[q][i] = cosine * second[i] - sine * first[i];
-    }
-  }
+double trace_of(const Axes& a, const Axes& b) {
+  double sum = 0;
+  for (std::size_t j = 0; j < 3; ++j)
+    sum += std::inner_product(a[j].begin(), a[j].end(), b[j].begin(), 0.0);
+  return sum;
+}
+
+double angle_from_right_angles(const Axes& axes) {
+  double cosine = -1;
+  for (const Axes& other : right_angles())
+    cosine = std::max(cosine, (trace_of(axes, other) - 1) / 2);
+  return std::acos(std::min(1.0, cosine)) / kRadPerDegree;
+}
+
+std::array<double, 3> euler_angles(const Axes& axes, const std::string& sequence) {
+  const auto& z = axes[2];
+  std::array<double, 3> angles{};
+  if (sequence == "ZXZ")
+    angles = {std::atan2(z[0], -z[1]), std::atan2(std::hypot(z[0], z[1]), z[2]), 0};
+  else
+    angles = {std::atan2(-z[1], z[2]), std::atan2(z[0], std::hypot(z[1], z[2])), 0};
+  for (double& angle : angles) angle /= kRadPerDegree;
+  // The third one from the axes that the first two leave.
+  const Axes before = compare::turned_axes(sequence, angles);
+  const auto along = [&](const std::array<double, 3>& axis) {
+    return std::inner_product(axis.begin(), axis.end(), axes[0].begin(), 0.0);
+  };
+  angles[2] = std::atan2(along(before[1]), along(before[0])) / kRadPerDegree;
+  return angles;
+}
+
+Axes nearest_rotation(const std::vector<Axes>& products, const std::vector<double>& weights) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < products.size(); ++i)
+    sum += weights[i] *
+           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(products[i][0].data());
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  // A rotation and no reflection: the sign is that of the direction which the vectors show least.
+  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+  Axes axes{};
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(axes[0].data()) =
+      svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
   return axes;
 }
 

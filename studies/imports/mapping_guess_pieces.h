@@ -28,7 +28,6 @@ inline constexpr double kNoChannel = 0.5;
 inline constexpr double kLeastCorrelation = 0.8;
 // The coarse search for the phase has this many angles in the turn.
 inline constexpr std::size_t kCoarse = 180;
-inline constexpr int kEulerStep = 5;  // deg
 
 // ---- Curves
 
@@ -45,8 +44,10 @@ Series coarse(const Series& fine);
 double shifted_product(const Series& ours, const Series& theirs, std::size_t shift);
 // By the golden section.
 double least_of(const std::function<double(double)>& f, double low, double high);
-// The roundest of the angles near `best` that cost as little.
-double roundest(const std::function<double(double)>& cost, double best);
+// Rounds angles in degrees to a common step, the roundest at which they cost as little.
+// @returns  the step; 0 where the angles stay as they are
+double roundest(const std::function<double(const std::vector<double>&)>& cost,
+                std::vector<double>& angles);
 
 // ---- Names
 
@@ -134,8 +135,16 @@ Axes carried(const Axes& axes, const Axes& from, const Axes& to);
 std::array<Series, 3> in_axes(const std::array<Series, 3>& parts, const Axes& from, const Axes& to);
 // All 24 frames that right angles turn into each other, the plain one first.
 const std::vector<Axes>& right_angles();
-// compare::turned_axes with its sines looked up.
-Axes turned(const char* sequence, int a, int b, int c);
+// Sum of the products of their elements.
+double trace_of(const Axes& a, const Axes& b);
+// The smallest angle of a turn from axes at right angles to these, in degrees.
+double angle_from_right_angles(const Axes& axes);
+// The angles in degrees of axes that were turned by compare::turned_axes, "ZXZ" or "XYZ".
+std::array<double, 3> euler_angles(const Axes& axes, const std::string& sequence);
+// The rotation whose trace with the weighted sum of matrices is the largest: Wahba's problem, by a
+// singular value decomposition (F. L. Markley, J. Astronautical Sciences 36, 1988).
+// @param products  scalar products of the components of vectors, theirs by rows and ours by columns
+Axes nearest_rotation(const std::vector<Axes>& products, const std::vector<double>& weights);
 // One numbering of the pistons for a file: which of ours a number in a name is.
 // @param votes  the number that a name says, and which of ours its curve looks like
 std::function<int(int)> best_numbering(const std::vector<std::pair<int, int>>& votes, int pistons);

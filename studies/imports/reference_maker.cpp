@@ -147,8 +147,9 @@ std::string curve_text(const MappingGuess& guess) {
         "\"S2\", turned.\n[curve.frame]\naxes_of = \"{}\"\n",
         curve.frame.axes_of.empty() ? "own" : curve.frame.axes_of);
     if (!guess.euler.empty())
-      text += fmt::format("euler = \"{}\"\neuler_deg = [{:g}, {:g}, {:g}]\n", guess.euler,
-                          guess.euler_deg[0], guess.euler_deg[1], guess.euler_deg[2]);
+      text += fmt::format("euler = \"{}\"\neuler_deg = [{}, {}, {}]\n", guess.euler,
+                          number_text(guess.euler_deg[0]), number_text(guess.euler_deg[1]),
+                          number_text(guess.euler_deg[2]));
     else
       for (std::size_t i = 0; i < 3; ++i)
         text += fmt::format("{} = [{:g}, {:g}, {:g}]{}\n", "xyz"[i], curve.frame.cosines[i][0],

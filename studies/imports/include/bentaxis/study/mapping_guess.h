@@ -41,13 +41,12 @@ struct MappingGuess {
 };
 
 /// Proposes a mapping. It can choose, and nothing else:
-/// - per file: column, unit and direction of the angle; one phase shift; one frame, out of the axes
-/// of
-///   each reaction, of S1 and of S2, their axes exchanged and turned by right angles, or turned by
-///   Euler angles that are whole multiples of 5 deg; one numbering of the pistons;
-/// - per quantity: one sign (the force on the other body); a frame turned by right angles and a
-/// sign
-///   together only where two vectors show it;
+/// - per file: column, unit and direction of the angle; one phase shift; one frame: the axes of
+///   each reaction, of S1 or of S2, these exchanged and turned by right angles, or those of S1
+///   turned by any angles, but not by less than 5 deg from axes at right angles; one numbering of
+///   the pistons;
+/// - per quantity: one sign (the force on the other body); a turned frame and a sign together only
+///   where two vectors show it;
 /// - per column or vector: channel and unit, of a list of units.
 /// The phase shift is the roundest angle that fits as well as the best one. No factor, scale or
 /// offset is fitted, and no sign of a single component: what is wrong in a model stays wrong.
