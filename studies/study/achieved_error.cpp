@@ -6,7 +6,7 @@
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/load_scale.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "bentaxis/study/comparison.h"
 
 namespace bentaxis::study {
@@ -34,7 +34,7 @@ AchievedError achieved_error(const Case& the_case, const Samples& samples,
   AchievedError error;
   const auto keep = [](double& worst, double value) {
     if (is_computed(worst))
-      keep_worst(worst, value);
+      update_max_abs(worst, value);
     else
       worst = value;
   };

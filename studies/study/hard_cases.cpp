@@ -14,8 +14,8 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/max_abs.h"
 #include "bentaxis/results/stopwatch.h"
-#include "bentaxis/results/worst.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/rounding_spread.h"
 
@@ -229,7 +229,7 @@ std::vector<double> errors_of_turns(const ResultTable& reference, const ResultTa
     const double scale = compare::scale_of(reference, channel, zero_scales);
     for (std::size_t row = 0; row < reference.rows(); ++row) {
       const double off = table.at(row, c) - reference.at(row, c);
-      if (off != 0) keep_worst(errors[row / samples_per_turn], off / scale);
+      if (off != 0) update_max_abs(errors[row / samples_per_turn], off / scale);
     }
   }
   return errors;
@@ -259,8 +259,8 @@ LongRun run_long(const std::filesystem::path& catalogue, int turns, double accur
   for (int turn = 0; turn < turns; ++turn) {
     const int half = 2 * turn < turns ? 0 : 1;
     const auto& record = run.record.turns[turn];
-    keep_worst(result.position_error[half], record.position_error);
-    keep_worst(result.reaction_error[half], errors[turn]);
+    update_max_abs(result.position_error[half], record.position_error);
+    update_max_abs(result.reaction_error[half], errors[turn]);
     if (turn + 1 != next && turn + 1 != turns) continue;
     result.shown.push_back({turn + 1, record, errors[turn]});
     const int leading = std::stoi(std::to_string(next).substr(0, 1));  // 1, 2, 5, 10, ..

@@ -13,7 +13,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/load_scale.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "coupled_pump.h"
 #include "simulation_pieces.h"
 
@@ -101,9 +101,9 @@ EventMatch match_events(const std::vector<ToothEvent>& analytic,
       continue;
     }
     ++match.matched;
-    keep_worst(match.time_s, apart);
+    update_max_abs(match.time_s, apart);
     if (match.largest_impulse[0] > 0)
-      keep_worst(match.impulse, (m.impulse - a.impulse) / match.largest_impulse[0]);
+      update_max_abs(match.impulse, (m.impulse - a.impulse) / match.largest_impulse[0]);
     ++i;
     ++j;
   }
@@ -214,7 +214,7 @@ double largest_difference(const Trajectory& a, const Trajectory& b,
                           const std::map<std::string, double>& scales, std::size_t row) {
   double largest = 0;
   for_each_difference(a, b, scales, row, [&](const Compared& what, double share) {
-    if (what.judged) keep_worst(largest, share);
+    if (what.judged) update_max_abs(largest, share);
   });
   return largest;
 }
@@ -391,7 +391,7 @@ class Study {
   double apart(const Trajectory& a, const Trajectory& b) const {
     double largest = 0;
     for (std::size_t row = 0; row < judged_rows(); ++row)
-      keep_worst(largest, largest_difference(a, b, scales_, row));
+      update_max_abs(largest, largest_difference(a, b, scales_, row));
     return largest;
   }
 
@@ -475,7 +475,7 @@ class Study {
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
       if (!r_.growth.empty() && row >= judged) break;
       const double allowed = row < r_.growth.size() ? r_.allowed(row) : r_.choice.error;
-      keep_worst(change, largest_difference(a, b, scales, row) / allowed);
+      update_max_abs(change, largest_difference(a, b, scales, row) / allowed);
     }
     return change;
   }
@@ -522,15 +522,15 @@ class Study {
           group.time_s = a.table.state(row, 0);
         }
         if (what.judged)
-          keep_worst(group.of_allowed, share / r_.allowed(row));
+          update_max_abs(group.of_allowed, share / r_.allowed(row));
         else
           group.of_allowed = not_computed();
       });
-      keep_worst(r_.speed_difference, a.table.state(row, 3) - m.table.state(row, 3));
-      keep_worst(r_.lag_difference, a.lag[row] - m.lag[row]);
+      update_max_abs(r_.speed_difference, a.table.state(row, 3) - m.table.state(row, 3));
+      update_max_abs(r_.lag_difference, a.lag[row] - m.lag[row]);
       if (!turned) continue;
       for_each_difference(*turned, m, scales_, row, [&](const Compared& what, double share) {
-        keep_worst(groups[what.group].over_angle, share);
+        update_max_abs(groups[what.group].over_angle, share);
       });
     }
     if (fastest > 0) r_.speed_difference /= fastest;

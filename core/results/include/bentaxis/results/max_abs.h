@@ -1,15 +1,15 @@
-// The worst of a series of errors.
+// The largest magnitude of a series.
 #pragma once
 
 #include <cmath>
 
 namespace bentaxis {
 
-/// Keeps the larger magnitude in `worst`. A NaN stays: std::max would drop it, and what could not
+/// Keeps the larger magnitude in `max_abs`. A NaN stays: std::max would drop it, and what could not
 /// be computed would pass for exact.
-inline void keep_worst(double& worst, double error) {
-  const double size = std::abs(error);
-  if (std::isnan(size) || size > worst) worst = size;
+inline void update_max_abs(double& max_abs, double value) {
+  const double size = std::abs(value);
+  if (std::isnan(size) || size > max_abs) max_abs = size;
 }
 
 }  // namespace bentaxis
