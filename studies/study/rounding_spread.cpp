@@ -26,11 +26,12 @@ Case moved(const Case& the_case, std::mt19937& engine) {
 
 std::map<std::string, double> largest_of_groups(const compare::Comparison& comparison) {
   std::map<std::string, double> groups;
-  for (const auto& c : comparison.channels) {
-    if (c.channel.kind != ChannelKind::reaction) continue;
-    double& largest = groups[c.channel.group];
-    if (c.compared()) update_max_abs(largest, c.largest_over_peak());
-  }
+  for (const auto& c : comparison.channels)
+    if (c.channel.kind == ChannelKind::reaction) groups[c.channel.group] = 0;
+  for (auto& [group, largest] : groups)
+    if (const auto* const found = comparison.furthest(
+            [&, name = group](const Channel& channel) { return channel.group == name; }))
+      largest = found->largest_over_peak();
   return groups;
 }
 
