@@ -42,7 +42,8 @@ double load_of(const Channel& channel, const ZeroScales& loads) {
 // A value that a table lacks.
 struct Gap {
   bool expected = true;
-  std::string text;
+  Comparable why = Comparable::nothing;
+  std::string text = {};
 };
 
 // The first gap of a channel that is not expected, else one that leaves nothing to compare: where
@@ -51,15 +52,22 @@ std::optional<Gap> find_gap(const ResultTable& first, std::size_t a, const Resul
                             std::size_t b, const Channel& channel, const Options& options) {
   std::optional<Gap> gap;
   for (std::size_t row = 0; row < first.rows(); ++row) {
-    const bool x = a < first.columns() && is_computed(first.at(row, a));
-    const bool y = b < second.columns() && is_computed(second.at(row, b));
-    if (x && y) continue;
-    if (options.may_be_missing ? options.may_be_missing(channel, row) : x == y) {
-      if (x != y) gap = Gap{};
+    const double x = a < first.columns() ? first.at(row, a) : not_computed();
+    const double y = b < second.columns() ? second.at(row, b) : not_computed();
+    const Comparable why = comparable(x, y);
+    if (why == Comparable::yes) continue;
+    const bool both = why == Comparable::both_missing;
+    if (why != Comparable::not_finite &&
+        (options.may_be_missing ? options.may_be_missing(channel, row) : both)) {
+      if (!both) gap = Gap{true, why};
       continue;
     }
-    const std::string table = x ? second.name : y ? first.name : first.name + " and " + second.name;
-    return Gap{false, "no value of " + table + " at " + number_text(first.theta_deg[row]) + " deg"};
+    const std::string table = std::isfinite(x)   ? second.name
+                              : std::isfinite(y) ? first.name
+                                                 : first.name + " and " + second.name;
+    return Gap{false, why,
+               std::string(why == Comparable::not_finite ? "no finite value" : "no value") +
+                   " of " + table + " at " + number_text(first.theta_deg[row]) + " deg"};
   }
   return gap;
 }
@@ -87,7 +95,7 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
     result.mean[1] += y;
     result.mean_difference += difference;
     const double uncertainty = options.uncertainty ? options.uncertainty->at(row, a) : 0;
-    if (both == 1 || std::abs(difference) - uncertainty > beyond) {
+    if (both == 1 || !(std::abs(difference) - uncertainty <= beyond)) {
       beyond = std::abs(difference) - uncertainty;
       uncertainty_there = uncertainty;
       result.largest = std::abs(difference);
@@ -99,10 +107,10 @@ void compare_channel(const ResultTable& first, std::size_t a, const ResultTable&
   const auto count = static_cast<double>(both);
   result.rms = std::sqrt(square / count);
   for (double* value : {&result.mean[0], &result.mean[1], &result.mean_difference}) *value /= count;
+  result.verdict = result.largest <= result.allowed ? Verdict::agrees : Verdict::differs;
   const double relative = result.largest_over_peak();
   result.digits = relative > 0 ? std::clamp(-std::log10(relative), 0.0, options.most_digits)
                                : options.most_digits;
-  result.verdict = result.largest <= result.allowed ? Verdict::agrees : Verdict::differs;
 }
 
 // Amplitude and phase of the orders that the samples resolve.
@@ -173,7 +181,7 @@ const ChannelComparison* Comparison::incomplete() const {
 const ChannelComparison* Comparison::failed() const {
   const ChannelComparison* failed = nullptr;
   const auto beyond = [](const ChannelComparison& c) {
-    return c.allowed > 0 ? c.largest / c.allowed : c.largest > 0 ? 1e300 : 0;
+    return Difference{c.largest, c.allowed, Comparable::yes}.share();
   };
   for (const auto& c : channels)
     if (c.judged && c.verdict == Verdict::differs &&
@@ -190,6 +198,15 @@ const ChannelComparison* Comparison::worst() const {
     if (worst == nullptr || c.largest_over_peak() > worst->largest_over_peak()) worst = &c;
   }
   return worst;
+}
+
+const ChannelComparison* Comparison::furthest(const std::function<bool(const Channel&)>& of) const {
+  const ChannelComparison* furthest = nullptr;
+  Difference largest;
+  for (const auto& c : channels)
+    if (c.verdict != Verdict::not_computed && of(c.channel) && largest.keep_larger(c.difference()))
+      furthest = &c;
+  return furthest;
 }
 
 int Comparison::compared() const {
@@ -237,6 +254,7 @@ Comparison compare_tables(const ResultTable& first, const ResultTable& second,
                      (absolute == options.absolute.end() ? 0 : absolute->second);
     if (const auto gap = find_gap(first, a, second, b, channel, options)) {
       result.verdict = gap->expected ? Verdict::not_computed : Verdict::incomplete;
+      result.missing = gap->why;
       result.gap = gap->text;
     } else if (a < first.columns() && b < second.columns()) {
       compare_channel(first, a, second, b, options, result);

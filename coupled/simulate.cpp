@@ -4,8 +4,8 @@
 
 #include "bentaxis/coupled/simulation.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/max_abs.h"
 #include "bentaxis/results/stopwatch.h"
-#include "bentaxis/results/worst.h"
 #include "communication.h"
 #include "course.h"
 #include "table.h"
@@ -55,7 +55,7 @@ class Rows {
     record.potential_energy_gained = mechanics_.potential_energy(s.motion) - potential_;
     record.work_residual = record.work_of_loads + record.work_of_drives -
                            record.kinetic_energy_gained - record.potential_energy_gained;
-    keep_worst(record.worst_work_residual, record.work_residual);
+    update_max_abs(record.worst_work_residual, record.work_residual);
     if (trajectory_.oil) add_oil(time, s, integrals);
   }
 
@@ -87,9 +87,9 @@ class Rows {
     history.pressure_work = integrals[static_cast<std::size_t>(system_.pressure_work())];
     if (!history.energies.empty())
       history.exchange_residual = history.pressure_work + history.energies.front().energy;
-    keep_worst(history.worst_energy_residual, history.energy_residual);
-    keep_worst(history.worst_mass_residual, history.mass_residual);
-    keep_worst(history.worst_exchange_residual, history.exchange_residual);
+    update_max_abs(history.worst_energy_residual, history.energy_residual);
+    update_max_abs(history.worst_mass_residual, history.mass_residual);
+    update_max_abs(history.worst_exchange_residual, history.exchange_residual);
   }
 
   Mechanics& mechanics_;

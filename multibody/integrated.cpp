@@ -6,8 +6,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
+#include "bentaxis/results/max_abs.h"
 #include "bentaxis/results/stopwatch.h"
-#include "bentaxis/results/worst.h"
 #include "integration/time_run.h"
 #include "reactions/solver_guard.h"
 #include "scene_facts.h"
@@ -35,7 +35,7 @@ void WorstErrors::keep(const WorstErrors& later) {
   for (const auto error :
        {&WorstErrors::position_error, &WorstErrors::velocity_error, &WorstErrors::gear_phase,
         &WorstErrors::shaft_angle, &WorstErrors::speed_error, &WorstErrors::spin_error})
-    keep_worst(this->*error, later.*error);
+    update_max_abs(this->*error, later.*error);
   work_residual = later.work_residual;
 }
 

@@ -8,7 +8,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/pump/validate.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "loads/friction.h"
 #include "placement/placement.h"
 #include "reactions/body_loads.h"
@@ -162,7 +162,7 @@ void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisM
     const double difference = force_difference(system, reactions, by_inverse_dynamics);
     require_agreement(
         difference, [&] { return estimated_force_error(system, state); }, shaft.angle);
-    keep_worst(worst_difference, difference);
+    update_max_abs(worst_difference, difference);
   } else {
     inverse_dynamics.solve(reactions);
     check_rank();

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "bentaxis/designs/duty_cycle.h"
 #include "bentaxis/designs/output.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
@@ -249,6 +250,31 @@ TEST(PumpLife, IsAnOutputOfADesign) {
   const Case bare = read_case(kCases + "bap63_rated.toml");
   EXPECT_THROW(designs::output("life.system_h", bare), InputError);
   EXPECT_THROW(hours_of("life.ball_h"), InputError);
+}
+
+TEST(LifeStudy, AMissingLoadIsNoAgreement) {
+  designs::LifeStudy s;
+  LifePoint point;
+  for (BearingLoads& loads : point.loads) loads.equivalent = {1000, 2000};
+  s.analytic.points = s.multibody.points = {point, point};
+  EXPECT_TRUE(s.agrees());
+  double& load = s.multibody.points[1].loads[0].equivalent[0];
+  load = 1000 + 1e-5;
+  EXPECT_FALSE(s.agrees());
+  EXPECT_NEAR(s.models_apart(), 5e-9, 1e-15);
+  for (const double wrong : {not_computed(), HUGE_VAL}) {
+    load = wrong;
+    EXPECT_FALSE(s.agrees());
+    std::swap(s.analytic, s.multibody);
+    EXPECT_FALSE(s.agrees());
+    std::swap(s.analytic, s.multibody);
+  }
+  load = 1000;
+  EXPECT_TRUE(s.agrees());
+  s.multibody.points[0].loads[1].equivalent.pop_back();
+  EXPECT_FALSE(s.agrees());
+  s.analytic.points.clear();
+  EXPECT_FALSE(s.agrees());  // nothing was compared
 }
 
 }  // namespace

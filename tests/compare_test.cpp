@@ -646,5 +646,76 @@ TEST(Curves, SecondTableIsTheFirstWithTheDifference) {
   EXPECT_TRUE(second(0.5001).is_string());
 }
 
+TEST(Difference, IsHeldToItsScale) {
+  EXPECT_EQ(difference(2, 5, 12).value, 3);
+  EXPECT_EQ(difference(2, 5, 12).share(), 0.25);
+  EXPECT_TRUE(difference(5, 2, 12).within(0.25));
+  EXPECT_FALSE(difference(5, 2, 12).within(0.2499));
+  EXPECT_EQ(difference(2, 2, 0).share(), 0);
+  EXPECT_EQ(difference(2, 2 + 1e-15, 0).share(), kOverNoScale);
+  EXPECT_EQ(difference(1, 3, 4).share_text(), "5.0e-01");
+}
+
+TEST(Difference, IsUnknownWithoutTwoFiniteValuesAndAScale) {
+  const double none = not_computed(), much = HUGE_VAL;
+  const auto is = [](const Difference& d, Comparable why, const std::string& text) {
+    EXPECT_EQ(d.comparable, why) << text;
+    EXPECT_FALSE(d.known());
+    EXPECT_FALSE(is_computed(d.share()));
+    EXPECT_FALSE(d.within(HUGE_VAL)) << text;
+    EXPECT_EQ(d.why_unknown(), text);
+    EXPECT_EQ(d.share_text(), "an unknown share (" + text + ")");
+  };
+  is({}, Comparable::nothing, "nothing was compared");
+  is(difference(none, 1, 1), Comparable::first_missing, "the first result has no value");
+  is(difference(1, none, 1), Comparable::second_missing, "the second result has no value");
+  is(difference(none, none, 1), Comparable::both_missing, "neither result has a value");
+  for (const auto& [x, y, scale] :
+       {std::tuple{much, 1.0, 1.0}, std::tuple{1.0, -much, 1.0}, std::tuple{much, much, 1.0},
+        std::tuple{1.0, 1.0, much}, std::tuple{1.0, 1.0, none}})
+    is(difference(x, y, scale), Comparable::not_finite, "a value or its scale is not finite");
+  EXPECT_STREQ(difference(1, 1, 1).why_unknown(), "");
+}
+
+TEST(Difference, TheLargestOfASeriesIsOneThatIsUnknown) {
+  Difference largest;
+  EXPECT_FALSE(largest.keep_larger({}));
+  EXPECT_TRUE(largest.keep_larger(difference(1, 1, 1)));  // 0, of something that was compared
+  EXPECT_TRUE(largest.known());
+  EXPECT_FALSE(largest.keep_larger(difference(2, 2, 1)));
+  EXPECT_TRUE(largest.keep_larger(difference(1, 2, 1)));
+  EXPECT_FALSE(largest.keep_larger(difference(1, 3, 4)));  // larger by itself, not by its scale
+  EXPECT_TRUE(largest.keep_larger(difference(1, not_computed(), 1)));
+  EXPECT_FALSE(largest.keep_larger(difference(not_computed(), 1, 1)));
+  EXPECT_FALSE(largest.keep_larger(difference(1, 2, 0)));
+  EXPECT_EQ(largest.comparable, Comparable::second_missing);
+  EXPECT_FALSE(largest.keep_larger({}));
+}
+
+// An infinite value in both tables makes the scale infinite too: everything would be within it.
+TEST(Compare, AnInfiniteValueIsNoAgreement) {
+  const auto table = [](double value) {
+    ResultTable t;
+    t.theta_deg = {0, 10};
+    Channel channel;
+    channel.name = "X_N";
+    channel.group = "X";
+    channel.unit = "N";
+    t.channels = {channel};
+    t.values = {1, value};
+    return t;
+  };
+  EXPECT_TRUE(compare_tables(table(2), table(2), {}).agrees());
+  for (const double wrong : {HUGE_VAL, -HUGE_VAL})
+    for (const auto& [x, y] :
+         {std::pair{wrong, 2.0}, std::pair{2.0, wrong}, std::pair{wrong, wrong}}) {
+      const Comparison c = compare_tables(table(x), table(y), {});
+      EXPECT_FALSE(c.agrees());
+      ASSERT_NE(c.incomplete(), nullptr);
+      EXPECT_THAT(c.incomplete()->gap, HasSubstr("no finite value"));
+      EXPECT_FALSE(is_computed(c.incomplete()->largest_over_peak()));
+    }
+}
+
 }  // namespace
 }  // namespace bentaxis::test

@@ -17,7 +17,7 @@
 #include "bentaxis/multibody/simulation.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/time_signal.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -215,7 +215,7 @@ TEST(MultibodyMechanics, WorkIsTheEnergyGained) {
     });
     const double scale = motion.torque() * 300;
     EXPECT_NEAR(dy[kWorkOfLoads] + dy[kWorkOfDrive], gained, scaled(1e-8) * scale) << n;
-    keep_worst(largest, gained / scale);
+    update_max_abs(largest, gained / scale);
   }
   EXPECT_GT(largest, 0.01);
 }
@@ -459,15 +459,15 @@ TEST(MultibodyMechanics, StoredTrajectoriesAreReached) {
         const auto known = std::find(names.begin(), names.end(), column);
         if (known != names.end()) {
           const double have = state[static_cast<std::size_t>(known - names.begin())];
-          keep_worst(off[column], have - reference.rows[row][c]);
-          keep_worst(peak[column], 1500.0);
+          update_max_abs(off[column], have - reference.rows[row][c]);
+          update_max_abs(peak[column], 1500.0);
           continue;
         }
         const auto channel = std::find_if(channels.begin(), channels.end(),
                                           [&](const Channel& x) { return x.name == column; });
         ASSERT_NE(channel, channels.end()) << column;
         const double have = values[static_cast<std::size_t>(channel - channels.begin())];
-        keep_worst(off[channel->group], have - reference.rows[row][c]);
+        update_max_abs(off[channel->group], have - reference.rows[row][c]);
       }
       EXPECT_NEAR(checks.power_balance, 0, scaled(1e-6));  // of 45 kW
       // Of some hundred joules.
@@ -478,7 +478,7 @@ TEST(MultibodyMechanics, StoredTrajectoriesAreReached) {
     for (const auto& row : reference.rows)
       for (std::size_t c = 1; c < reference.header.size(); ++c)
         for (const Channel& channel : mechanics->layout().channels())
-          if (channel.name == reference.header[c]) keep_worst(peak[channel.group], row[c]);
+          if (channel.name == reference.header[c]) update_max_abs(peak[channel.group], row[c]);
     EXPECT_GE(off.size(), 12U);
     for (const auto& [group, difference] : off)
       EXPECT_LE(difference / peak[group], scaled(stored.allowed)) << stored.name << " " << group;

@@ -11,7 +11,7 @@
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -45,8 +45,8 @@ struct StoredInstants {
       if (channel == channels.end()) continue;
       const auto at = static_cast<std::size_t>(channel - channels.begin());
       for (std::size_t row = 0; row < states.rows(); ++row) {
-        keep_worst(off[channel->group], table.results.at(row, at) - reactions.rows[row][c]);
-        keep_worst(peak[channel->group], reactions.rows[row][c]);
+        update_max_abs(off[channel->group], table.results.at(row, at) - reactions.rows[row][c]);
+        update_max_abs(peak[channel->group], reactions.rows[row][c]);
       }
     }
     for (auto& [group, difference] : off) difference /= peak[group];
@@ -60,7 +60,7 @@ struct StoredInstants {
 
 double largest(const std::map<std::string, double>& differences) {
   double worst = 0;
-  for (const auto& [group, difference] : differences) keep_worst(worst, difference);
+  for (const auto& [group, difference] : differences) update_max_abs(worst, difference);
   return worst;
 }
 
@@ -86,7 +86,7 @@ TEST_P(Stored, PowerBalanceCloses) {
     EXPECT_NEAR(table.results.at(row, table.results.find("power_residual_Nm")) *
                     stored.states.motion[row].shaft_speed,
                 table.results.at(row, balance), 1e-9);
-    keep_worst(largest_ring, table.results.at(row, ring));
+    update_max_abs(largest_ring, table.results.at(row, ring));
   }
   EXPECT_GT(largest_ring, 1);  // the balance would not close without it
 }

@@ -13,7 +13,7 @@
 #include "bentaxis/multibody/simulation.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/time_signal.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "support.h"
 
 namespace bentaxis::test {
@@ -58,20 +58,20 @@ std::map<std::string, double> differences(const Trajectory& run, const std::stri
     for (std::size_t row = 0; row < table.results.rows(); ++row) {
       const double have =
           speed ? table.state(row, c) : table.results.at(row, table.results.find(column));
-      keep_worst(off[group], have - stored.rows[row][c]);
+      update_max_abs(off[group], have - stored.rows[row][c]);
     }
-    for (const auto& row : stored.rows) keep_worst(peak[group], row[c]);
+    for (const auto& row : stored.rows) update_max_abs(peak[group], row[c]);
   }
   for (auto& [group, difference] : off) difference /= peak[group];
   for (std::size_t row = 0; row < run.lag.size(); ++row)
-    keep_worst(off["lag"], run.lag[row] - radians(stored.rows[row][1] - stored.rows[row][2]));
+    update_max_abs(off["lag"], run.lag[row] - radians(stored.rows[row][1] - stored.rows[row][2]));
   return off;
 }
 
 double worst_of(std::map<std::string, double> off) {
   off.erase("lag");
   double worst = 0;
-  for (const auto& [group, difference] : off) keep_worst(worst, difference);
+  for (const auto& [group, difference] : off) update_max_abs(worst, difference);
   return worst;
 }
 
@@ -315,7 +315,7 @@ TEST(SimulatedMotion, RigidTeethAreTheLimitOfStiffOnes) {
     const std::size_t rcs = run.table.results.find("Rcs_z4_N");
     double worst = 0;
     for (std::size_t row = 14; row <= 24; ++row)
-      keep_worst(worst, run.table.results.at(row, rcs) - limit.table.results.at(row, rcs));
+      update_max_abs(worst, run.table.results.at(row, rcs) - limit.table.results.at(row, rcs));
     return worst;
   };
   const double soft = off(1e8);

@@ -10,7 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "loads/friction.h"
 #include "support.h"
 
@@ -291,11 +291,11 @@ TEST(Integrated, ATorqueNeedsBodiesThatResistIt) {
 
 TEST(Worst, KeepsTheLargestMagnitudeAndEveryNaN) {
   double worst = 0;
-  keep_worst(worst, -2);
-  keep_worst(worst, 1);
+  update_max_abs(worst, -2);
+  update_max_abs(worst, 1);
   EXPECT_EQ(worst, 2);
-  keep_worst(worst, std::nan(""));
-  keep_worst(worst, 3);
+  update_max_abs(worst, std::nan(""));
+  update_max_abs(worst, 3);
   EXPECT_TRUE(std::isnan(worst));
 }
 

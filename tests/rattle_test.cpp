@@ -487,6 +487,26 @@ TEST(Rattle, PointsToCheckAreSpreadOverTheClasses) {
               testing::Not(testing::Contains(std::pair<std::size_t, std::size_t>(0, 3))));
 }
 
+TEST(Rattle, AForceThatIsMissingIsNoAgreement) {
+  RattleCheck check;
+  check.judged = 1;
+  check.allowed = 1e-3;
+  const auto agrees = [&](double analytic, double multibody) {
+    check.difference = force_difference(analytic, multibody).share();
+    return check.agrees();
+  };
+  EXPECT_TRUE(agrees(1000, 1000.5));
+  EXPECT_TRUE(agrees(0, 0));
+  EXPECT_FALSE(agrees(0, 1000));
+  EXPECT_FALSE(agrees(1002, 1000));
+  for (const double wrong : {not_computed(), HUGE_VAL}) {
+    EXPECT_FALSE(agrees(wrong, 1000));
+    EXPECT_FALSE(agrees(1000, wrong));
+    EXPECT_FALSE(agrees(wrong, wrong));
+    EXPECT_FALSE(agrees(0, wrong));
+  }
+}
+
 TEST(Rattle, SimbodyFindsTheSameOrIsSaidNotTo) {
   Case c = pump_with(1, 20);
   RattleOptions options = map_of({600, 1500}, {300});

@@ -140,6 +140,22 @@ TEST(Sensitivity, AgreesWithDifferencesOfSimbody) {
   EXPECT_TRUE(compared.agrees()) << found.outputs[compared.output].name << " by "
                                  << found.variables[compared.variable].name() << ": "
                                  << compared.worst;
+  EXPECT_EQ(compared.compared, 60U);
+  // A value that one model alone lacks is no agreement; where it refuses neighbours nothing is
+  // said.
+  for (const double lost : {not_computed(), HUGE_VAL}) {
+    Sensitivities other = compared.other;
+    other.derivatives[1][0] = {lost};
+    EXPECT_FALSE(compare_derivatives(found, other).agrees());
+    EXPECT_FALSE(compare_derivatives(other, compared.other).agrees());
+    EXPECT_EQ(compare_derivatives(found, other).lacking, 1U);
+    other.derivatives[1][0].reason = "stands on a bound of its range";
+    EXPECT_TRUE(compare_derivatives(found, other).agrees());
+    EXPECT_EQ(compare_derivatives(found, other).missing, 1U);
+    for (auto& row : other.derivatives)
+      for (Derivative& derivative : row) derivative = {lost, 0, Way::differences, "refused"};
+    EXPECT_FALSE(compare_derivatives(found, other).agrees());  // nothing was compared
+  }
   // A derivative that is off by 1e-5 of itself is noticed.
   Sensitivities wrong = found;
   wrong.derivatives[1][0].value *= 1 + 1e-5;

@@ -203,6 +203,60 @@ TEST(SimulationStudy, HeadlineOfAPeriodicMotion) {
             "disturbed");
 }
 
+// A value that is missing or not finite in either run is no agreement, whatever the others say.
+TEST(SimulationStudy, AMissingValueIsNoAgreement) {
+  const ChannelLayout layout(3);
+  DriveSpec drive;
+  Trajectory run;
+  run.table = trajectory_table("analytic", layout, drive);
+  for (const double time : {0.0, 0.5, 1.0}) {
+    std::vector<double> state(run.table.state_names.size(), 0);
+    state[0] = time;
+    append_trajectory_row(run.table, state, std::vector<double>(layout.size(), 100), {});
+    run.lag.push_back(0);
+  }
+  const std::vector<double> allowed(3, 1e-6);
+  std::map<std::string, double> scales;
+  for (const Channel& channel : layout.channels()) scales[channel.group] = 1000;
+  const auto judged = [&](const Trajectory& first, const Trajectory& second,
+                          const Trajectory* turned) {
+    SimulationResult r = result(0, 2.5);
+    r.groups = group_differences(first, second, turned, scales, allowed);
+    sort_groups(r.groups);
+    return r;
+  };
+  EXPECT_TRUE(judged(run, run, &run).agrees());
+  EXPECT_EQ(judged(run, run, &run).worst()->over_angle, 0);
+  const std::size_t columns = run.table.results.columns();
+  const std::size_t place = columns + run.table.results.find("Rcs_z4_N");
+  Trajectory off = run;
+  off.table.results.values[place] += 0.01;
+  EXPECT_FALSE(judged(run, off, nullptr).agrees());
+  EXPECT_NEAR(judged(run, off, nullptr).worst()->of_allowed, 10, 1e-6);
+  for (const double wrong : {not_computed(), HUGE_VAL, -HUGE_VAL}) {
+    Trajectory other = run;
+    other.table.results.values[place] = wrong;
+    for (const auto& [first, second] : {std::pair{&run, &other}, std::pair{&other, &run},
+                                        std::pair{&other, &other}, std::pair{&off, &other}}) {
+      const SimulationResult r = judged(*first, *second, nullptr);
+      EXPECT_FALSE(r.agrees()) << wrong;
+      EXPECT_EQ(r.worst()->group, "Rcs");
+      EXPECT_EQ(r.worst()->time_s, 0.5);
+      EXPECT_EQ(r.headline(),
+                "The models cannot be compared: at 0.5 s a value of Rcs is missing "
+                "or not finite");
+    }
+    EXPECT_FALSE(is_computed(judged(run, run, &other).worst()->over_angle));
+  }
+  // What the first run leaves at 0, and nothing else gives a scale, differs from anything else.
+  scales["Rcs"] = 0;
+  Trajectory idle = run;
+  idle.table.results.values[place] = 0;
+  const SimulationResult r = judged(idle, run, nullptr);
+  EXPECT_FALSE(r.agrees());
+  EXPECT_EQ(r.worst()->group, "Rcs");
+}
+
 // A run put together by hand: two rows, of a pump whose teeth give way.
 SimulationResult written(double speed_rpm, double fastest_rpm) {
   SimulationResult r = result(0.5, 2.5);

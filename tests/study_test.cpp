@@ -9,9 +9,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "bentaxis/compare/difference.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/block_torque.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/comparison.h"
@@ -22,8 +24,10 @@
 #include "bentaxis/study/inertia.h"
 #include "bentaxis/study/inertia_document.h"
 #include "bentaxis/study/inertia_study.h"
+#include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/memory.h"
 #include "bentaxis/study/operating_points.h"
+#include "bentaxis/study/paper_figures.h"
 #include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/reference_set.h"
 #include "bentaxis/study/regression.h"
@@ -161,8 +165,28 @@ TEST(InertiaStudy, OnePistonSceneHasTheNumbersOfTheFullPump) {
   for (const bool loaded : {false, true}) {
     const InertiaRun one = study::run_both_pistons(shipped_case(), 2350, loaded, Scene::piston);
     const InertiaRun full = study::run_both_pistons(shipped_case(), 2350, loaded, Scene::full);
+    const auto of_pistons = [](const Channel& channel) {
+      return multibody::computes(Scene::piston, channel);
+    };
     for (const auto table : {&InertiaRun::multibody_lumped, &InertiaRun::multibody_real})
-      EXPECT_LE(study::largest_over_peak(full.*table, one.*table, 0, 1), scaled(1e-11));
+      EXPECT_LE(study::largest_difference(full.*table, one.*table, of_pistons, 0, 1).share(),
+                scaled(1e-11));
+  }
+}
+
+// What the scene of one piston leaves out is named; a value that is missing beside that, or that is
+// not finite, is no agreement.
+TEST(InertiaStudy, AMissingValueIsNoAgreement) {
+  const ResultTable full =
+      study::run_both_pistons(shipped_case(), 2350, true, Scene::full).analytic_real;
+  const auto all = [](const Channel&) { return true; };
+  EXPECT_EQ(study::largest_difference(full, full, all, 0, 1).share(), 0);
+  for (const double wrong : {not_computed(), std::nan(""), HUGE_VAL}) {
+    ResultTable other = full;
+    other.values[full.columns() + full.find("Rc_1_x2_N")] = wrong;
+    EXPECT_FALSE(study::largest_difference(full, other, all, 0, 1).within(1));
+    EXPECT_FALSE(study::largest_difference(other, full, all, 0, 1).within(1));
+    EXPECT_FALSE(study::largest_difference(other, other, all, 0, 1).within(1));
   }
 }
 
@@ -428,6 +452,59 @@ TEST(LongRun, AGroupThatNothingLoadsIsHeldToTheScaleOfItsUnit) {
   EXPECT_EQ(study::errors_of_turns(reference, table, scales, 2), (std::vector<double>{0, 1e-3}));
   table.values[column] = std::nan("");
   EXPECT_TRUE(std::isnan(study::errors_of_turns(reference, table, scales, 2)[0]));
+}
+
+// What the commands "hardcases", "tradeoff" and the estimates of round-off make of two tables.
+TEST(Errors, AMissingValueIsNoAgreement) {
+  const Case the_case = shipped_case();
+  const Samples samples = sample_case(the_case, PressureTrace(the_case.pressure), 1);
+  const ResultTable right = analytic::run(the_case, the_case.analytic, samples);
+  const auto losses = [&](const ResultTable& table) {
+    return study::largest_of_groups(compare::compare_tables(right, table, {}));
+  };
+  EXPECT_EQ(losses(right).at("Rcs"), 0);
+  EXPECT_EQ(study::achieved_error(the_case, samples, right, right).worst, 0);
+  for (const double wrong : {not_computed(), HUGE_VAL}) {
+    ResultTable table = right;
+    table.values[3 * table.columns() + table.find("Rcs_z4_N")] = wrong;
+    table.values[5 * table.columns() + table.find("Rs_2_x2_N")] += 1;
+    EXPECT_FALSE(is_computed(losses(table).at("Rcs")));
+    EXPECT_GT(losses(table).at("Rs"), 1e-6);
+    const study::AchievedError error = study::achieved_error(the_case, samples, right, table);
+    EXPECT_FALSE(is_computed(error.rcs));
+    EXPECT_FALSE(is_computed(error.worst));
+    EXPECT_EQ(error.worst_channel, "Rcs_z4_N");
+    EXPECT_GT(error.rs, 1e-6);
+    // The scene of one piston leaves it out.
+    EXPECT_EQ(study::achieved_error(the_case, samples, right, table, Scene::piston).worst,
+              error.rs);
+  }
+}
+
+TEST(Errors, ALossThatCouldNotBeEstimatedIsWarnedOf) {
+  const auto warnings = [](double loss) {
+    return study::rounding_warnings({{"Rcs", loss, 0, 30, "d"}});
+  };
+  EXPECT_THAT(warnings(1e-10), testing::IsEmpty());
+  EXPECT_THAT(warnings(2e-9), testing::ElementsAre(testing::HasSubstr("Rcs is known to 2.0e-09")));
+  EXPECT_THAT(warnings(not_computed()),
+              testing::ElementsAre(testing::HasSubstr("Rcs is known to an unknown share")));
+  study::MultibodyLosses lost;
+  lost.groups["Rcs"] = not_computed();
+  EXPECT_THAT(study::multibody_warnings(shipped_case(), {}, {}, lost),
+              testing::ElementsAre(testing::HasSubstr("Rcs an unknown share")));
+}
+
+TEST(Paper, SaysWhereAModelHasNoValue) {
+  study::PaperStudy s;
+  study::DrawnPanel panel;
+  panel.curves.resize(2);
+  panel.curves[0].other_model = compare::difference(1, 1 + 0x1p-20, 1);
+  s.panels = {panel};
+  EXPECT_THAT(study::paper_text(s), testing::HasSubstr("differ by up to 9.5e-07 of peak"));
+  s.panels[0].curves[1].other_model = compare::difference(1, not_computed(), 1);
+  EXPECT_THAT(study::paper_text(s), testing::HasSubstr("differ by up to an unknown share (the "
+                                                       "second result has no value) of peak"));
 }
 
 // ---- hard cases

@@ -365,6 +365,20 @@ TEST(SweepChecks, NoticeADifference) {
   check.own_reason = "refused too";
   EXPECT_TRUE(check.agrees(1e-9));
 
+  check.own_reason = check.reason = "";
+  EXPECT_TRUE(check.agrees(1e-9));
+  for (const double wrong : {not_computed(), HUGE_VAL}) {
+    for (std::vector<double>* values : {&check.own, &check.values}) {
+      const double right = std::exchange((*values)[0], wrong);
+      EXPECT_FALSE(check.agrees(1e-9)) << wrong;
+      (*values)[0] = right;
+    }
+    check.scales[0] = wrong;
+    EXPECT_FALSE(check.agrees(1e-9)) << wrong;
+    check.scales[0] = 1000;
+  }
+  EXPECT_TRUE(check.agrees(1e-9));
+
   const Case base =
       rated({"friction.piston_coulomb_N=100", "assumptions.multibody.piston_friction=false"});
   SweepRequest request = tilts("20:40:#3");

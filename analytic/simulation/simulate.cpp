@@ -6,8 +6,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/max_abs.h"
 #include "bentaxis/results/stopwatch.h"
-#include "bentaxis/results/worst.h"
 #include "simulation/equations.h"
 #include "simulation/pieces.h"
 
@@ -433,7 +433,7 @@ class Simulation {
     record_.potential_energy_gained = equations_.potential_energy(y_) - potential_;
     record_.work_residual = record_.work_of_loads + record_.work_of_drives -
                             record_.kinetic_energy_gained - record_.potential_energy_gained;
-    keep_worst(record_.worst_work_residual, record_.work_residual);
+    update_max_abs(record_.worst_work_residual, record_.work_residual);
   }
 
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);

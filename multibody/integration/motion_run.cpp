@@ -9,7 +9,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "loads/friction.h"
 #include "reactions/channels.h"
 #include "reactions/solver_guard.h"
@@ -317,8 +317,8 @@ void MotionRun::account(TrajectoryRecord& record) {
   // What is left to dissipate: springs are accounted for by their energy.
   record.work_of_loads = total - drives + elastic;
   record.work_residual = total - record.kinetic_energy_gained;
-  keep_worst(record.worst_work_residual, record.work_residual);
-  for (int i = 0; i < state.getNQErr(); ++i) keep_worst(record.drift, state.getQErr()[i]);
+  update_max_abs(record.worst_work_residual, record.work_residual);
+  for (int i = 0; i < state.getNQErr(); ++i) update_max_abs(record.drift, state.getQErr()[i]);
 }
 
 void MotionRun::read(double time, Trajectory& trajectory) {

@@ -8,7 +8,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "integration/integrators.h"
 #include "placement/placement.h"
 #include "reactions/channels.h"
@@ -160,19 +160,22 @@ void TimeRun::enter_segment(double from) {
 // Errors of the state at a sample, and the work lost until there.
 WorstErrors TimeRun::errors_at(std::size_t row, const SimTK::State& state) const {
   WorstErrors errors;
-  for (int i = 0; i < state.getNQErr(); ++i) keep_worst(errors.position_error, state.getQErr()[i]);
-  for (int i = 0; i < state.getNUErr(); ++i) keep_worst(errors.velocity_error, state.getUErr()[i]);
-  keep_worst(errors.gear_phase, system_.gear_phase(state));
+  for (int i = 0; i < state.getNQErr(); ++i)
+    update_max_abs(errors.position_error, state.getQErr()[i]);
+  for (int i = 0; i < state.getNUErr(); ++i)
+    update_max_abs(errors.velocity_error, state.getUErr()[i]);
+  update_max_abs(errors.gear_phase, system_.gear_phase(state));
   const SimTK::MobilizedBody& shaft = system_.bodies().shaft;
   const double angle = turn_angle(shaft.getBodyRotation(state), SimTK::Rotation());
-  keep_worst(errors.shaft_angle,
-             std::remainder(angle - radians(std::fmod(samples_.theta_deg[row], 360.0)), 2 * kPi));
-  keep_worst(errors.speed_error, shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
+  update_max_abs(
+      errors.shaft_angle,
+      std::remainder(angle - radians(std::fmod(samples_.theta_deg[row], 360.0)), 2 * kPi));
+  update_max_abs(errors.speed_error, shaft.getBodyAngularVelocity(state)[2] / samples_.omega - 1);
   if (system_.pistons_free_to_spin())
     for (const auto& piston : system_.bodies().pistons)
-      keep_worst(errors.spin_error, SimTK::dot(piston.getBodyAngularVelocity(state),
-                                               SimTK::Vec3(piston.getBodyRotation(state).z())) -
-                                        system_.pump().piston.real->spin);
+      update_max_abs(errors.spin_error, SimTK::dot(piston.getBodyAngularVelocity(state),
+                                                   SimTK::Vec3(piston.getBodyRotation(state).z())) -
+                                            system_.pump().piston.real->spin);
   errors.work_residual = system_.work().of_loads(state) + system_.work().of_drives(state) -
                          (system_.system().calcKineticEnergy(state) - energy_at_start_);
   return errors;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 
 namespace bentaxis::multibody {
 
@@ -90,7 +90,7 @@ double PistonSolver::solve_positions(State& state) {
     const Vector& error = state.getQErr();
     worst = 0;
     for (const Piston& piston : pistons_)
-      for (int i = 0; i < 2; ++i) keep_worst(worst, error[piston.row + i]);
+      for (int i = 0; i < 2; ++i) update_max_abs(worst, error[piston.row + i]);
     const bool stalled = worst < 1e3 * round_off_ && !(worst < before / 2);
     if (worst <= round_off_ || stalled || !std::isfinite(worst)) break;
     before = worst;
@@ -100,7 +100,7 @@ double PistonSolver::solve_positions(State& state) {
     changes_.clear();
     for (const Piston& piston : pistons_) {
       const Vec3 change = piston.inverse * Vec3(-error[piston.row], -error[piston.row + 1], 0);
-      keep_worst(largest, change.norm());
+      update_max_abs(largest, change.norm());
       // The turn of the piston in its joint that these changes of its speeds stand for.
       Vec3 turn(0);
       for (int j = 0; j < piston.nu; ++j) turn += change[j] * piston.turn[j];
@@ -150,7 +150,7 @@ double PistonSolver::solve_speeds(State& state) {
   const Vector& error = state.getUErr();
   double worst = 0;
   for (const Piston& piston : pistons_)
-    for (int i = 0; i < 2; ++i) keep_worst(worst, error[piston.row + i]);
+    for (int i = 0; i < 2; ++i) update_max_abs(worst, error[piston.row + i]);
   return worst;
 }
 

@@ -8,7 +8,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 
 namespace bentaxis::multibody {
 
@@ -24,7 +24,7 @@ constexpr double kPivot = 1e-15;
 double largest_force(const Vector& multipliers, double last_factor) {
   double largest = 0;
   for (int i = 0; i < multipliers.size(); ++i)
-    keep_worst(largest, multipliers[i] * (i + 1 == multipliers.size() ? last_factor : 1));
+    update_max_abs(largest, multipliers[i] * (i + 1 == multipliers.size() ? last_factor : 1));
   return largest;
 }
 
@@ -95,8 +95,8 @@ double force_difference(const PumpSystem& pump, const Reactions& reactions,
   double off = 0;
   double largest = 0;
   const auto look = [&](const SimTK::Vec3& a, const SimTK::Vec3& b) {
-    keep_worst(off, (a - b).norm());
-    keep_worst(largest, b.norm());
+    update_max_abs(off, (a - b).norm());
+    update_max_abs(largest, b.norm());
   };
   for (std::size_t k = 0; k < others.pistons.size(); ++k) {
     look(reactions.pistons[k].joint, others.pistons[k].joint);

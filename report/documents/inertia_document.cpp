@@ -361,7 +361,7 @@ std::string headline(const InertiaStudy& s) {
                         of_peak(*largest));
   text += fmt::format(". The limit is {:g} %.", 100 * kTwoMassesDo);
   if (!s.agrees())
-    return (s.models_apart > kInertiaModelsAgree
+    return (!(s.models_apart <= kInertiaModelsAgree)
                 ? fmt::format("The models differ by {:.1e} of peak (tolerance {:g}). ",
                               s.models_apart, kInertiaModelsAgree)
                 : fmt::format("The multibody model of one piston differs from that of the full "

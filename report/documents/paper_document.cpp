@@ -71,10 +71,9 @@ std::string cases_of(const PaperFigures& list, const DrawnPanel& p) {
   return text;
 }
 
-std::optional<double> other_model(const DrawnPanel& p) {
-  std::optional<double> worst;
-  for (const DrawnCurve& curve : p.curves)
-    if (curve.other_model) worst = std::max(worst.value_or(0), *curve.other_model);
+compare::Difference other_model(const DrawnPanel& p) {
+  compare::Difference worst;
+  for (const DrawnCurve& curve : p.curves) worst.keep_larger(curve.other_model);
   return worst;
 }
 
@@ -93,15 +92,16 @@ PanelCount count(const PaperStudy& s) {
 std::string headline(const PaperStudy& s) {
   const PanelCount c = count(s);
   std::string outside;
-  double worst = 0;
+  compare::Difference worst;
   for (const DrawnPanel& p : s.panels) {
     if (p.known() && !p.inside()) outside += (outside.empty() ? "" : "; ") + p.figure.name(p.panel);
-    worst = std::max(worst, other_model(p).value_or(0));
+    worst.keep_larger(other_model(p));
   }
   return fmt::format(
       "{} of {} panels with a known axis hold our curves{}; {} axes are unknown; drawings have "
-      "none. At the same assumptions the models differ by up to {:.1e} of peak.",
-      c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown, worst);
+      "none. At the same assumptions the models differ by up to {} of peak.",
+      c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown,
+      worst.share_text());
 }
 
 // ---- Tables
@@ -116,10 +116,10 @@ report::Section figures_section(const PaperStudy& s) {
       std::string remarks = leaving(p);
       if (!remarks.empty() && !p.panel.outside.empty()) remarks += ": " + p.panel.outside;
       if (!p.panel.y.why.empty()) remarks += (remarks.empty() ? "" : "; ") + p.panel.y.why;
-      const auto differs = other_model(p);
+      const compare::Difference differs = other_model(p);
       table.rows.push_back({figure.name(p.panel), figure.shows, names_of_conditions(p),
                             p.panel.y.short_text(), range_text(p), verdict(p),
-                            differs ? Cell(*differs) : Cell(), remarks});
+                            differs.known() ? Cell(differs.share()) : Cell(), remarks});
     }
     for (const report::Figure& drawing : s.drawings)
       if (drawing.id == figure.id())

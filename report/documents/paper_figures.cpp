@@ -96,16 +96,16 @@ double fact_of(const compare::PublishedRun& run, const std::string& name,
   return it->second;
 }
 
-// Largest difference over the largest magnitude; nothing where either was not computed.
-std::optional<double> over_peak(const std::vector<double>& values,
-                                const std::vector<double>& from) {
-  double difference = 0, peak = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!is_computed(values[i]) || !is_computed(from[i])) return std::nullopt;
-    difference = std::max(difference, std::abs(values[i] - from[i]));
-    peak = std::max(peak, std::abs(values[i]));
-  }
-  return peak > 0 ? std::optional(difference / peak) : std::nullopt;
+// Largest difference of two curves, held to the largest magnitude of the first.
+compare::Difference curves_apart(const std::vector<double>& values,
+                                 const std::vector<double>& from) {
+  double peak = 0;
+  for (const double value : values) peak = std::max(peak, std::abs(value));
+  compare::Difference apart;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    apart.keep_larger(
+        compare::difference(values[i], i < from.size() ? from[i] : not_computed(), peak));
+  return apart;
 }
 
 class PaperRun {
@@ -137,7 +137,7 @@ class PaperRun {
             return DrawnCurve{
                 curve.label,  torque.bar,
                 own,          true,
-                curve.dashed, over_peak(own, analytic ? torque.multibody : torque.analytic)};
+                curve.dashed, curves_apart(own, analytic ? torque.multibody : torque.analytic)};
           });
         break;
       }
@@ -244,7 +244,7 @@ class PaperRun {
     } else {
       theta = at(curve.condition).run(curve.model, curve.variant).table->theta_deg;
       one = values(curve, curve.model);
-      drawn.other_model = over_peak(one, values(curve, the_other(curve.model)));
+      drawn.other_model = curves_apart(one, values(curve, the_other(curve.model)));
     }
     for (int i = 0; i < panel.turns; ++i) {
       for (const double angle : theta) drawn.x.push_back(angle + 360 * i);

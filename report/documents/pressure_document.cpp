@@ -113,7 +113,7 @@ void add_overlay(report::Document& document, const OperatingPoint& first,
   const auto add = [&](const std::string& id, const std::string& title, const std::string& paper,
                        const std::vector<std::string>& channels) {
     report::Figure figure = angle_figure(id, title, paper, "N", theta);
-    double worst = 0;
+    compare::Difference worst;
     for (const OperatingPoint* point : {&first, &second}) {
       const auto comparison = compare::compare_tables(point->analytic, point->multibody, {});
       for (const std::string& channel : channels) {
@@ -122,13 +122,13 @@ void add_overlay(report::Document& document, const OperatingPoint& first,
         for (int i = 0; i < kOverlayTurns; ++i)
           values.insert(values.end(), turn.begin(), turn.end());
         add_series(figure, fmt::format("{} at {:.4g} bar", channel, bar(*point)), values);
-        worst = std::max(worst, comparison.find(channel)->largest_over_peak());
+        worst.keep_larger(comparison.find(channel)->difference());
       }
     }
     figure.note = fmt::format(
-        "Analytic model, three times the same turn; the multibody model differs by up to {:.1e} of "
+        "Analytic model, three times the same turn; the multibody model differs by up to {} of "
         "peak.",
-        worst);
+        worst.share_text());
     document.figures->push_back(std::move(figure));
   };
   add("overlay_rc_x2", "Bore force Rc on piston 1, x2: both loads", "Fig. 19", {"Rc_1_x2_N"});

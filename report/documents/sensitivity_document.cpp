@@ -145,6 +145,9 @@ std::string headline(const Sensitivities& s, const std::optional<SensitivityChec
                                 ? fmt::format(" ({} by {})", s.outputs[check->output].name,
                                               s.variables[check->variable].name())
                                 : "";
+  if (check->compared == 0 || check->lacking > 0)
+    return fmt::format("{} of {} derivatives could be compared; of {} one model alone has a value",
+                       check->compared, s.outputs.size() * s.variables.size(), check->lacking);
   return fmt::format(
       "derivatives {} differences of {}: largest difference {:.2g} of the output's scale per "
       "relative change{}, allowed {:g}",

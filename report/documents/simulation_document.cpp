@@ -637,10 +637,10 @@ std::string simulation_text(const SimulationResult& r) {
                         r.choice.steady ? "of peak" : "of peak, time",
                         r.choice.steady ? "" : "of peak, angle", "of allowed");
     for (const GroupDifference& g : r.groups)
-      text += fmt::format(
-          "{:<13} {:>11.5g} {:<5} {:>13.1e} {:>16} {:>12}\n", g.group, g.peak, g.unit, g.in_time,
-          is_computed(g.over_angle) ? fmt::format("{:.1e}", g.over_angle) : "",
-          is_computed(g.of_allowed) ? fmt::format("{:.2g}", g.of_allowed) : "not judged");
+      text += fmt::format("{:<13} {:>11.5g} {:<5} {:>13.1e} {:>16} {:>12}\n", g.group, g.peak,
+                          g.unit, g.in_time,
+                          is_computed(g.over_angle) ? fmt::format("{:.1e}", g.over_angle) : "",
+                          g.judged ? fmt::format("{:.2g}", g.of_allowed) : "not judged");
     text += "\n";
   }
   for (const auto& [name, run] : runs_of(r)) {

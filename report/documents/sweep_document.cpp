@@ -222,17 +222,14 @@ Section checks_section(const SweepResult& result) {
       {{"output", "designs compared", "largest difference over its scale", "of design"}, {}}};
   for (std::size_t k = 0; k < result.plan.outputs.size(); ++k) {
     long compared = 0;
-    double largest = not_computed();
+    compare::Difference largest;
     std::size_t where = 0;
     for (const SweepCheck& check : result.checks) {
-      if (k >= check.scales.size() || !(check.scales[k] > 0)) continue;
+      if (k >= check.scales.size() || check.scales[k] == 0) continue;
       ++compared;
-      const double error = check.error(k);
-      if (is_computed(largest) && !(error > largest)) continue;
-      largest = error;
-      where = check.design;
+      if (largest.keep_larger(check.difference(k))) where = check.design;
     }
-    section.table.rows.push_back({result.plan.outputs[k].name, compared, largest,
+    section.table.rows.push_back({result.plan.outputs[k].name, compared, largest.share(),
                                   compared > 0 ? Cell(static_cast<long>(where)) : Cell()});
   }
   return section;

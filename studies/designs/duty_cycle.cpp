@@ -82,29 +82,30 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
 }
 
 double LifeStudy::models_apart() const {
-  double apart = 0;
-  // A bearing that carries next to nothing has the round-off of what the other one carries.
-  const auto largest_at = [&](std::size_t row) {
+  compare::Difference apart;
+  const auto largest_of = [](const std::vector<double>& loads) {
     double largest = 0;
-    for (const study::Bearing bearing : study::kBearings)
-      for (const double load :
-           analytic.points[row].loads[static_cast<std::size_t>(bearing)].equivalent)
-        largest = std::max(largest, load);
+    for (const double load : loads) largest = std::max(largest, load);
     return largest;
   };
-  for (const study::Bearing bearing : study::kBearings) {
-    // Row by row: what one of them lacks must not hide in the sum.
-    const auto i = static_cast<std::size_t>(bearing);
-    for (std::size_t row = 0; row < analytic.points.size(); ++row) {
+  for (std::size_t row = 0; row < analytic.points.size(); ++row) {
+    // A bearing that carries next to nothing has the round-off of what the other one carries.
+    double largest = 0;
+    for (const auto& loads : analytic.points[row].loads)
+      largest = std::max(largest, largest_of(loads.equivalent));
+    for (const study::Bearing bearing : study::kBearings) {
+      const auto i = static_cast<std::size_t>(bearing);
+      // Row by row: what one of them lacks must not hide in the sum.
       const auto& first = analytic.points[row].loads[i].equivalent;
       const auto& second = multibody.points[row].loads[i].equivalent;
-      const double scale =
-          compare::scale_of(*std::max_element(first.begin(), first.end()), largest_at(row));
-      for (std::size_t k = 0; k < first.size(); ++k)
-        if (scale > 0) apart = std::max(apart, std::abs(first[k] - second[k]) / scale);
+      const double scale = compare::scale_of(largest_of(first), largest);
+      for (std::size_t k = 0; k < std::max(first.size(), second.size()); ++k)
+        apart.keep_larger(compare::difference(k < first.size() ? first[k] : not_computed(),
+                                              k < second.size() ? second[k] : not_computed(),
+                                              scale));
     }
   }
-  return apart;
+  return apart.share();
 }
 
 LifeStudy life_study(const Case& the_case, const DutyCycle& duty,

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bentaxis/analytic/derivatives.h"
+#include "bentaxis/compare/difference.h"
 #include "bentaxis/designs/evaluator.h"
 #include "bentaxis/hydraulics/sensitivity.h"
 #include "bentaxis/pump/error.h"
@@ -344,6 +346,9 @@ constexpr int kMostShorter = 8;       // times a first step that leads nowhere i
 // Halvings: where an evaluation is quick, and where it is a search or takes Simbody.
 constexpr int kLevels = 8, kSlowLevels = 5;
 
+// Where an evaluation gives no value of an output, or not twice.
+constexpr const char* kNoDifferences = "no differences could be formed";
+
 // The first step from which all of both sides is inside of the range; 0 where there is none.
 double first_step(const Variable& variable, const Case& base, double at) {
   const NumberRange range = variable.range(base);
@@ -423,8 +428,7 @@ void find_by_differences(Sensitivities& s, const Evaluator& evaluator, std::size
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const double noise = kRoundOff * s.scales[outputs[i]] / first;
     Derivative found = {tables[i].value(), tables[i].error() + noise, Way::differences};
-    if (!std::isfinite(found.error))
-      found = {not_computed(), 0, Way::differences, "no differences could be formed"};
+    if (!std::isfinite(found.error)) found = {not_computed(), 0, Way::differences, kNoDifferences};
     s.derivatives[outputs[i]][v] = found;
   }
 }
@@ -542,35 +546,48 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
   return s;
 }
 
+SensitivityCheck compare_derivatives(const Sensitivities& found, Sensitivities other) {
+  SensitivityCheck result{std::move(other), {}};
+  result.differences.assign(found.outputs.size(), std::vector<double>(found.variables.size()));
+  for (std::size_t v = 0; v < found.variables.size(); ++v)
+    for (std::size_t o = 0; o < found.outputs.size(); ++o) {
+      const double size = found.at[v] == 0 ? 1 : std::abs(found.at[v]);
+      const double over_scale = size / (found.scales[o] > 0 ? found.scales[o] : 1);
+      const Derivative &one = found.derivatives[o][v], &two = result.other.derivatives[o][v];
+      const compare::Difference apart = compare::difference(one.value, two.value, 1);
+      const double difference = result.differences[o][v] = apart.share() * over_scale;
+      const Derivative& missing = is_computed(one.value) ? two : one;
+      const bool refused = !missing.reason.empty() && missing.reason != kNoDifferences;
+      if (apart.known() ? (one.error + two.error) * over_scale > SensitivityCheck::kTolerance
+                        : apart.comparable == compare::Comparable::both_missing || refused) {
+        ++result.missing;
+      } else if (!apart.known()) {
+        ++result.lacking;
+      } else {
+        ++result.compared;
+        if (difference > result.worst) {
+          result.worst = difference;
+          result.output = o;
+          result.variable = v;
+        }
+      }
+    }
+  return result;
+}
+
 SensitivityCheck check(const Sensitivities& found, const study::PartProgress& progress_of) {
   const study::Model model =
       found.model == study::Model::analytic ? study::Model::multibody : study::Model::analytic;
-  SensitivityCheck result{begin(found.base, found.variables, found.outputs, model), {}};
+  Sensitivities other = begin(found.base, found.variables, found.outputs, model);
   const Progress progress = progress_of("derivatives of " + study::to_string(model));
   const auto all = numbers(found.outputs.size(), [](std::size_t) { return true; });
   const Evaluator evaluator(Family(found.base, found.variables), found.outputs, model);
-  result.differences.assign(all.size(), std::vector<double>(found.variables.size()));
   for (std::size_t v = 0; v < found.variables.size(); ++v) {
-    find_by_differences(result.other, evaluator, v, all);
-    const double size = found.at[v] == 0 ? 1 : std::abs(found.at[v]);
-    for (const std::size_t o : all) {
-      double& difference = result.differences[o][v];
-      const double over_scale = size / (found.scales[o] > 0 ? found.scales[o] : 1);
-      const Derivative &one = found.derivatives[o][v], &other = result.other.derivatives[o][v];
-      difference = std::abs(other.value - one.value) * over_scale;
-      if (!is_computed(difference) ||
-          (one.error + other.error) * over_scale > SensitivityCheck::kTolerance) {
-        ++result.missing;
-      } else if (difference > result.worst) {
-        result.worst = difference;
-        result.output = o;
-        result.variable = v;
-      }
-    }
+    find_by_differences(other, evaluator, v, all);
     if (progress)
       progress(static_cast<double>(v + 1) / static_cast<double>(found.variables.size()));
   }
-  return result;
+  return compare_derivatives(found, std::move(other));
 }
 
 }  // namespace bentaxis::designs

@@ -106,9 +106,14 @@ Scale scale_of(const Output& o, const Case& base) {
 
 }  // namespace
 
+compare::Difference SweepCheck::difference(std::size_t output) const {
+  if (scales[output] == 0) return {};
+  return compare::difference(own[output], values[output], scales[output]);
+}
+
 double SweepCheck::error(std::size_t output) const {
-  if (!(scales[output] > 0) || !is_computed(own[output]) || !is_computed(values[output])) return 0;
-  return std::abs(own[output] - values[output]) / scales[output];
+  const compare::Difference found = difference(output);
+  return found.comparable == compare::Comparable::nothing ? 0 : found.share();
 }
 
 bool SweepCheck::agrees(double tolerance) const {
@@ -184,8 +189,9 @@ struct Sweep::Implementation {
     std::vector<double> result;
     auto next = found.begin();
     for (std::size_t i = 0; i < scales.size(); ++i) {
-      double scale = 0;
-      if (scales[i].kind == ScaleKind::own)
+      const compare::Comparable both = compare::comparable(c.own[i], c.values[i]);
+      double scale = not_computed();
+      if (scales[i].kind == ScaleKind::own && both == compare::Comparable::yes)
         scale = std::max(std::abs(c.own[i]), std::abs(c.values[i]));
       if (scales[i].kind == ScaleKind::percentage) scale = 100;
       if (scales[i].kind == ScaleKind::vector) {
@@ -194,9 +200,11 @@ struct Sweep::Implementation {
       }
       // A small value is what is left of loads that cancel, and carries their round-off.
       const auto load = floors.find(plan.outputs[i].unit);
-      if (scales[i].kind != ScaleKind::none && is_computed(scale) && load != floors.end())
+      if (is_computed(scale) && load != floors.end())
         scale = compare::scale_of(scale, load->second);
-      result.push_back(is_computed(scale) ? scale : 0);
+      const bool compared =
+          scales[i].kind != ScaleKind::none && both != compare::Comparable::both_missing;
+      result.push_back(compared ? scale : 0);
     }
     return result;
   }

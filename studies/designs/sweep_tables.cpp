@@ -51,7 +51,7 @@ std::string checks_csv(const std::vector<SweepCheck>& checks, const SweepPlan& p
   for (const SweepCheck& c : checks)
     for (std::size_t k = 0; k < plan.outputs.size(); ++k) {
       text += std::to_string(c.design) + "," + csv_text(plan.outputs[k].name);
-      const bool compared = c.scales[k] > 0;
+      const bool compared = c.scales[k] != 0;
       for (const double value : {c.own[k], c.values[k], compared ? c.scales[k] : not_computed(),
                                  compared ? c.error(k) : not_computed()}) {
         text += ',';
@@ -194,10 +194,12 @@ std::string disagreements_text(const SweepResult& result) {
       add(fmt::format("design {}: refused by one model alone: {}", c.design,
                       c.own_reason + c.reason));
     for (std::size_t k = 0; k < c.values.size(); ++k)
-      if (!(c.error(k) <= result.tolerance))
-        add(fmt::format("design {}, {}: {} against {}, {} of the peak", c.design,
-                        result.plan.outputs[k].name, number_text(c.own[k]),
-                        number_text(c.values[k]), rounded_text(c.error(k))));
+      if (const compare::Difference found = c.difference(k); !(c.error(k) <= result.tolerance))
+        add(fmt::format("design {}, {}: {}", c.design, result.plan.outputs[k].name,
+                        found.known()
+                            ? fmt::format("{} against {}, {} of the peak", number_text(c.own[k]),
+                                          number_text(c.values[k]), rounded_text(found.share()))
+                            : found.why_unknown()));
   }
   if (lines > kMost) text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMost);
   return text;

@@ -6,6 +6,7 @@
 #include "bentaxis/coupled/prescribed_oil.h"
 #include "bentaxis/multibody/mechanics.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/results/max_abs.h"
 #include "rattle_pieces.h"
 
 namespace bentaxis::study {
@@ -46,13 +47,18 @@ struct Runner {
 // Of two motions, of what their states are measured by.
 double states_apart(const Runner& a, const Runner& b) {
   const MotionVector scales = a.mechanics->scales();
-  double most = 0;
+  compare::Difference most;
   for (const std::size_t i : {kLag, kLagRate})
-    most = std::max(most, std::abs(a.watch.motion()[i] - b.watch.motion()[i]) / scales[i]);
-  return most;
+    most.keep_larger(compare::difference(a.watch.motion()[i], b.watch.motion()[i], scales[i]));
+  return most.share();
 }
 
 }  // namespace
+
+// Of the larger: a model without force differs from one that has some.
+compare::Difference force_difference(double analytic, double multibody) {
+  return compare::difference(analytic, multibody, std::max(analytic, multibody));
+}
 
 std::vector<std::pair<std::size_t, std::size_t>> points_to_check(const RattleMap& map) {
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> of_class(
@@ -105,7 +111,7 @@ RattleCheck check_point(const RattleMap& map, std::size_t row, std::size_t speed
     turn();
     if (!judging) continue;
     disturbed.watch.run_to(n * part);
-    growth = std::max(growth, states_apart(analytic, disturbed) / kCheckDisturbance);
+    update_max_abs(growth, states_apart(analytic, disturbed) / kCheckDisturbance);
     const double allowed = kOfTops + kOfSteps * growth;
     judging = allowed <= kTooMuchToJudge;
     if (!judging) continue;
@@ -124,10 +130,7 @@ RattleCheck check_point(const RattleMap& map, std::size_t row, std::size_t speed
   check.multibody_whole = class_of(multibody.whole);
   check.largest_analytic = analytic.whole.largest;
   check.largest_multibody = multibody.whole.largest;
-  // Of the larger: a model without force differs from one that has some.
-  const double largest = std::max(analytic.judged.largest, multibody.judged.largest);
-  if (largest > 0)
-    check.difference = std::abs(multibody.judged.largest - analytic.judged.largest) / largest;
+  check.difference = force_difference(analytic.judged.largest, multibody.judged.largest).share();
   return check;
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/compare/difference.h"
 #include "bentaxis/coupled/tooth_watch.h"
 #include "bentaxis/study/rattle.h"
 #include "bentaxis/study/run.h"
@@ -26,6 +27,8 @@ std::pair<double, double> rigid_extremes(const ReadyCase& ready);
 RattlePoint settle(const ReadyCase& ready, const RattleOptions& options, double& lag,
                    double& lag_rate, const std::function<void()>& turn);
 
+/// What the models differ by in the largest force, of the larger.
+compare::Difference force_difference(double analytic, double multibody);
 /// Points of the upward sweep to check, spread over the classes.
 std::vector<std::pair<std::size_t, std::size_t>> points_to_check(const RattleMap& map);
 RattleCheck check_point(const RattleMap& map, std::size_t row, std::size_t speed,

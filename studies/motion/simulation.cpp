@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "bentaxis/analytic/simulation.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
@@ -13,7 +14,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/load_scale.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 #include "coupled_pump.h"
 #include "simulation_pieces.h"
 
@@ -101,9 +102,9 @@ EventMatch match_events(const std::vector<ToothEvent>& analytic,
       continue;
     }
     ++match.matched;
-    keep_worst(match.time_s, apart);
+    update_max_abs(match.time_s, apart);
     if (match.largest_impulse[0] > 0)
-      keep_worst(match.impulse, (m.impulse - a.impulse) / match.largest_impulse[0]);
+      update_max_abs(match.impulse, (m.impulse - a.impulse) / match.largest_impulse[0]);
     ++i;
     ++j;
   }
@@ -182,10 +183,16 @@ std::map<std::string, double> scales_of(const Trajectory& run, const LoadScale& 
   std::map<std::string, double> scales = peaks_of(run);
   if (run.lag.empty()) return scales;
   const double bar = scales.count("p") > 0 ? scales.at("p") : 0;
+  double flow = 0;
+  for_each_value(run, 0, [&](const Compared& what, double) {
+    if (what.unit == "l/min") flow = std::max(flow, scales.at(what.group));
+  });
   for_each_value(run, 0, [&](const Compared& what, double) {
     double& scale = scales.at(what.group);
     if (what.unit == "rad")
       scale = std::max(scale, compare::kNoSignal / error);
+    else if (what.unit == "l/min")
+      scale = scale > 0 ? scale : flow;
     else
       scale = compare::scale_of(scale, what.unit == "N"     ? loads.force
                                        : what.unit == "Nm"  ? loads.moment
@@ -195,7 +202,7 @@ std::map<std::string, double> scales_of(const Trajectory& run, const LoadScale& 
   return scales;
 }
 
-// Difference of a value over its scale.
+// use(what it is, difference) of everything compared in a row.
 template <class Use>
 void for_each_difference(const Trajectory& a, const Trajectory& b,
                          const std::map<std::string, double>& scales, std::size_t row,
@@ -204,20 +211,75 @@ void for_each_difference(const Trajectory& a, const Trajectory& b,
   for_each_value(b, row, [&](const Compared&, double value) { others.push_back(value); });
   std::size_t next = 0;
   for_each_value(a, row, [&](const Compared& what, double value) {
-    const double other = others[next++];
-    const double scale = scales.at(what.group);
-    if (scale > 0) use(what, std::abs(value - other) / scale);
+    const double other = next < others.size() ? others[next] : not_computed();
+    ++next;
+    use(what, compare::difference(value, other, scales.at(what.group)));
   });
 }
 
+// Over its scale; NaN where a value is missing.
 double largest_difference(const Trajectory& a, const Trajectory& b,
                           const std::map<std::string, double>& scales, std::size_t row) {
-  double largest = 0;
-  for_each_difference(a, b, scales, row, [&](const Compared& what, double share) {
-    if (what.judged) keep_worst(largest, share);
-  });
-  return largest;
+  compare::Difference largest;
+  for_each_difference(a, b, scales, row,
+                      [&](const Compared& what, const compare::Difference& difference) {
+                        if (what.judged) largest.keep_larger(difference);
+                      });
+  return largest.share();
 }
+
+}  // namespace
+
+std::vector<GroupDifference> group_differences(const Trajectory& first, const Trajectory& second,
+                                               const Trajectory* turned,
+                                               const std::map<std::string, double>& scales,
+                                               const std::vector<double>& allowed) {
+  const std::map<std::string, double> peaks = peaks_of(first);
+  struct Largest {
+    GroupDifference group;
+    compare::Difference in_time, over_angle;
+  };
+  std::map<std::string, Largest> groups;
+  for (std::size_t row = 0; row < allowed.size(); ++row) {
+    for_each_difference(first, second, scales, row,
+                        [&](const Compared& what, const compare::Difference& difference) {
+                          auto& [group, in_time, over_angle] = groups[what.group];
+                          group.group = what.group;
+                          group.unit = what.unit;
+                          group.peak = peaks.at(what.group);
+                          group.scale = scales.at(what.group);
+                          group.judged = what.judged;
+                          if (in_time.keep_larger(difference))
+                            group.time_s = first.table.state(row, 0);
+                          if (what.judged)
+                            update_max_abs(group.of_allowed, difference.share() / allowed[row]);
+                        });
+    if (turned == nullptr) continue;
+    for_each_difference(*turned, second, scales, row,
+                        [&](const Compared& what, const compare::Difference& difference) {
+                          groups[what.group].over_angle.keep_larger(difference);
+                        });
+  }
+  std::vector<GroupDifference> result;
+  for (auto& [name, largest] : groups) {
+    GroupDifference& group = result.emplace_back(std::move(largest.group));
+    group.in_time = largest.in_time.share();
+    group.over_angle = largest.over_angle.share();
+    if (!group.judged) group.of_allowed = not_computed();
+  }
+  return result;
+}
+
+void sort_groups(std::vector<GroupDifference>& groups) {
+  const auto key = [](const GroupDifference& g) {
+    const double size = g.judged ? g.of_allowed : g.in_time;
+    return std::tuple(g.judged, !is_computed(size), is_computed(size) ? size : 0);
+  };
+  std::sort(groups.begin(), groups.end(),
+            [&](const auto& x, const auto& y) { return key(x) > key(y); });
+}
+
+namespace {
 
 class Study {
  public:
@@ -312,21 +374,12 @@ class Study {
   void note_coupling(Model model, const Trajectory& run) {
     const coupled::Options options = options_for(tolerance_, 2);
     const Trajectory half = follow(model, options, "half the communication step");
-    std::map<std::string, CouplingChange> groups;
-    for (std::size_t row = 0; row < judged_rows(); ++row)
-      for_each_difference(run, half, scales_, row, [&](const Compared& what, double share) {
-        CouplingChange& group = groups[what.group];
-        group.group = what.group;
-        group.unit = what.unit;
-        group.peak = peaks_.at(what.group);
-        if (std::isnan(share) || share > group.change) {
-          group.change = share;
-          group.time_s = run.table.state(row, 0);
-        }
-      });
-    for (const auto& [name, group] : groups) r_.coupling.push_back(group);
-    std::sort(r_.coupling.begin(), r_.coupling.end(),
-              [](const auto& x, const auto& y) { return x.change > y.change; });
+    for (const GroupDifference& g : group_differences(
+             run, half, nullptr, scales_, std::vector<double>(judged_rows(), r_.choice.error)))
+      r_.coupling.push_back({g.group, g.unit, g.peak, g.in_time, g.time_s});
+    std::sort(r_.coupling.begin(), r_.coupling.end(), [](const auto& x, const auto& y) {
+      return !is_computed(x.change) ? is_computed(y.change) : x.change > y.change;
+    });
   }
 
   void run_steady() {
@@ -369,14 +422,13 @@ class Study {
   }
 
   void keep_scales(const Trajectory& run) {
-    peaks_ = peaks_of(run);
     scales_ = scales_of(run, loads_of(r_.ready.the_case, run), r_.choice.error);
   }
 
   void note_growth(const Trajectory& run, const Trajectory& disturbed) {
     double growth = 1;
     for (std::size_t row = 0; row < run.lag.size(); ++row) {
-      growth = std::max(growth, largest_difference(run, disturbed, scales_, row) / r_.disturbance);
+      update_max_abs(growth, largest_difference(run, disturbed, scales_, row) / r_.disturbance);
       r_.growth.push_back(growth);
     }
     const std::size_t judged = judged_rows();
@@ -391,7 +443,7 @@ class Study {
   double apart(const Trajectory& a, const Trajectory& b) const {
     double largest = 0;
     for (std::size_t row = 0; row < judged_rows(); ++row)
-      keep_worst(largest, largest_difference(a, b, scales_, row));
+      update_max_abs(largest, largest_difference(a, b, scales_, row));
     return largest;
   }
 
@@ -475,7 +527,7 @@ class Study {
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
       if (!r_.growth.empty() && row >= judged) break;
       const double allowed = row < r_.growth.size() ? r_.allowed(row) : r_.choice.error;
-      keep_worst(change, largest_difference(a, b, scales, row) / allowed);
+      update_max_abs(change, largest_difference(a, b, scales, row) / allowed);
     }
     return change;
   }
@@ -503,44 +555,19 @@ class Study {
     // Rows of a periodic motion are at equal shares of its period.
     const std::optional<Trajectory> turned =
         r_.choice.steady ? std::nullopt : std::optional(at_angles_of(m));
-    std::map<std::string, GroupDifference> groups;
-    const std::size_t judged = judged_rows();
+    std::vector<double> allowed;
+    for (std::size_t row = 0; row < judged_rows(); ++row) allowed.push_back(r_.allowed(row));
+    r_.groups = group_differences(a, m, turned ? &*turned : nullptr, scales_, allowed);
+    sort_groups(r_.groups);
     double fastest = 0;
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
       r_.difference.push_back(largest_difference(a, m, scales_, row));
       fastest = std::max(fastest, std::abs(a.table.state(row, 3)));
-      if (row >= judged) continue;
-      for_each_difference(a, m, scales_, row, [&](const Compared& what, double share) {
-        GroupDifference& group = groups[what.group];
-        group.group = what.group;
-        group.unit = what.unit;
-        group.peak = peaks_.at(what.group);
-        group.scale = scales_.at(what.group);
-        if (!turned) group.over_angle = not_computed();
-        if (std::isnan(share) || share > group.in_time) {
-          group.in_time = share;
-          group.time_s = a.table.state(row, 0);
-        }
-        if (what.judged)
-          keep_worst(group.of_allowed, share / r_.allowed(row));
-        else
-          group.of_allowed = not_computed();
-      });
-      keep_worst(r_.speed_difference, a.table.state(row, 3) - m.table.state(row, 3));
-      keep_worst(r_.lag_difference, a.lag[row] - m.lag[row]);
-      if (!turned) continue;
-      for_each_difference(*turned, m, scales_, row, [&](const Compared& what, double share) {
-        keep_worst(groups[what.group].over_angle, share);
-      });
+      if (row >= allowed.size()) continue;
+      update_max_abs(r_.speed_difference, a.table.state(row, 3) - m.table.state(row, 3));
+      update_max_abs(r_.lag_difference, a.lag[row] - m.lag[row]);
     }
     if (fastest > 0) r_.speed_difference /= fastest;
-    for (const auto& [name, group] : groups) r_.groups.push_back(group);
-    // Judged ones first, then the others.
-    const auto key = [](const GroupDifference& g) {
-      return is_computed(g.of_allowed) ? std::pair{1, g.of_allowed} : std::pair{0, g.in_time};
-    };
-    std::sort(r_.groups.begin(), r_.groups.end(),
-              [&](const auto& x, const auto& y) { return key(x) > key(y); });
     r_.events = match_events(a.record.events, m.record.events, r_.judged_until_s);
   }
 
@@ -632,9 +659,9 @@ class Study {
 
   SimulationResult& r_;
   const PartProgress& progress_of_;
-  std::map<std::string, double> peaks_, scales_;  // by group, of the run that is the measure
-  std::optional<CoupledPump> pump_;               // with oil, or for a periodic motion
-  mutable double tolerance_ = 0;                  // of its last run
+  std::map<std::string, double> scales_;  // by group, of the run that is the measure
+  std::optional<CoupledPump> pump_;       // with oil, or for a periodic motion
+  mutable double tolerance_ = 0;          // of its last run
 };
 
 // What changes in time leaves no motion that repeats itself.
@@ -716,6 +743,11 @@ bool SimulationResult::agrees() const {
 }
 
 std::string SimulationResult::headline() const {
+  if (!choice.only && worst() != nullptr && !is_computed(worst()->in_time))
+    return fmt::format(
+        "The models cannot be compared: at {:.4g} s a value of {} is missing or not "
+        "finite",
+        worst()->time_s, worst()->group);
   if (choice.steady && (choice.only || worst() != nullptr)) return periodic_headline(*this);
   if (choice.only)
     return fmt::format("{} s simulated by the {} model; work and power {}",

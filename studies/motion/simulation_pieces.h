@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,16 @@ Compared compared_column(const std::string& name);
 // Rows before the first in which a disturbance of the wanted error, or the one that growth was
 // found by, has grown too large for anything to be judged.
 std::size_t judged_rows(const std::vector<double>& growth, double error, double disturbance);
+
+// How far apart two runs are in each group, by name, in as many rows as `allowed` has.
+// `turned`: the first one where its shaft is where the second one's is; nullptr where that is the
+// same. `scales`: by group, what differences are held to. `allowed`: per row, of the scale.
+std::vector<GroupDifference> group_differences(const Trajectory& first, const Trajectory& second,
+                                               const Trajectory* turned,
+                                               const std::map<std::string, double>& scales,
+                                               const std::vector<double>& allowed);
+// Judged ones first, of these one that lacks a value, then by what is allowed.
+void sort_groups(std::vector<GroupDifference>& groups);
 
 // Touches of both models that belong together, until a time.
 EventMatch match_events(const std::vector<ToothEvent>& analytic,

@@ -6,7 +6,6 @@
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/load_scale.h"
-#include "bentaxis/results/worst.h"
 
 namespace bentaxis::study {
 
@@ -26,32 +25,30 @@ compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples) {
 }
 
 AchievedError achieved_error(const Case& the_case, const Samples& samples,
-                             const ResultTable& reference, const ResultTable& table) {
+                             const ResultTable& reference, const ResultTable& table,
+                             multibody::Scene scene) {
   compare::Options options;
   options.zero_scales = zero_scales(the_case, samples);
   const compare::Comparison comparison = compare::compare_tables(reference, table, options);
-  AchievedError error;
-  const auto keep = [](double& worst, double value) {
-    if (is_computed(worst))
-      keep_worst(worst, value);
-    else
-      worst = value;
+  const auto furthest = [&](std::initializer_list<std::string> quantities) {
+    return comparison.furthest([&](const Channel& channel) {
+      return channel.kind == ChannelKind::reaction && multibody::computes(scene, channel) &&
+             (quantities.size() == 0 || std::find(quantities.begin(), quantities.end(),
+                                                  channel.quantity) != quantities.end());
+    });
   };
-  for (const compare::ChannelComparison& c : comparison.channels) {
-    if (c.channel.kind != ChannelKind::reaction || !c.compared()) continue;
-    const double value = c.largest_over_peak();
-    const std::string& quantity = c.channel.quantity;
-    if (quantity == "Rs") keep(error.rs, value);
-    if (quantity == "Rc") keep(error.rc, value);
-    if (quantity == "Rb1" || quantity == "Rb2") keep(error.bearings, value);
-    if (quantity == "Rcs") keep(error.rcs, value);
-    if (quantity == "Td") keep(error.td, value);
-    if (error.worst_channel.empty() || value > error.worst || std::isnan(value)) {
-      error.worst = value;
-      error.worst_channel = c.channel.name;
-    }
-  }
-  return error;
+  const auto error_of = [&](std::initializer_list<std::string> quantities) {
+    const compare::ChannelComparison* const found = furthest(quantities);
+    return found == nullptr ? not_computed() : found->largest_over_peak();
+  };
+  const compare::ChannelComparison* const worst = furthest({});
+  return {error_of({"Rs"}),
+          error_of({"Rc"}),
+          error_of({"Rb1", "Rb2"}),
+          error_of({"Rcs"}),
+          error_of({"Td"}),
+          error_of({}),
+          worst == nullptr ? "" : worst->channel.name};
 }
 
 }  // namespace bentaxis::study

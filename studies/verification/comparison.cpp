@@ -20,11 +20,12 @@ namespace {
 
 std::string of_table(const compare::Check& check) { return check.table + ": " + check.name; }
 
-double worst_of_group(const compare::Comparison& comparison, const std::string& group) {
-  double worst = 0;
-  for (const auto& c : comparison.channels)
-    if (c.channel.group == group && c.compared()) worst = std::max(worst, c.largest_over_peak());
-  return worst;
+double largest_of(const compare::Comparison& comparison,
+                  std::initializer_list<std::string> groups) {
+  const auto* const found = comparison.furthest([&](const Channel& channel) {
+    return std::find(groups.begin(), groups.end(), channel.group) != groups.end();
+  });
+  return found == nullptr ? 0 : found->largest_over_peak();
 }
 
 // Components whose vector, or the loads, are so much larger that a difference of much of themselves
@@ -178,10 +179,12 @@ void Maker::integrate_all() {
     ModelRun run = study::run(r.second, multibody_samples_, options, progress_of_);
     r.multibody = std::move(run.table);
     const auto comparison = compare::compare_tables(r.analytic, r.multibody, comparison_options());
-    const auto worst = [&](const std::string& group) { return worst_of_group(comparison, group); };
-    r.integrations.push_back(
-        {accuracy, worst("Rs"), worst("Rc"), std::max(worst("Rb1"), worst("Rb2")), worst("Rcs"),
-         worst("Td"), std::move(*run.record), torque_driven_speed_error(options.integration)});
+    const auto worst = [&](std::initializer_list<std::string> groups) {
+      return largest_of(comparison, groups);
+    };
+    r.integrations.push_back({accuracy, worst({"Rs"}), worst({"Rc"}), worst({"Rb1", "Rb2"}),
+                              worst({"Rcs"}), worst({"Td"}), std::move(*run.record),
+                              torque_driven_speed_error(options.integration)});
   }
 }
 

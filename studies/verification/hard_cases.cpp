@@ -14,8 +14,8 @@
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/results/max_abs.h"
 #include "bentaxis/results/stopwatch.h"
-#include "bentaxis/results/worst.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/rounding_spread.h"
 
@@ -58,8 +58,10 @@ void judge(HardOutcome& outcome) {
     if (g.measured <= std::max(kRoundOffLoss, kPredictionFactor * g.predicted)) continue;
     outcome.verdict = HardVerdict::wrong;
     if (!outcome.message.empty()) outcome.message += "; ";
-    outcome.message += g.group + " is off by " + number_text(g.measured) +
-                       " of its peak, predicted were " + number_text(g.predicted);
+    outcome.message += is_computed(g.measured)
+                           ? g.group + " is off by " + number_text(g.measured) +
+                                 " of its peak, predicted were " + number_text(g.predicted)
+                           : g.group + " has no value at some angle";
   }
 }
 
@@ -222,16 +224,18 @@ bool LongRun::bounded() const {
 
 std::vector<double> errors_of_turns(const ResultTable& reference, const ResultTable& table,
                                     const compare::ZeroScales& zero_scales, int samples_per_turn) {
-  std::vector<double> errors((reference.rows() + samples_per_turn - 1) / samples_per_turn);
+  std::vector<compare::Difference> turns((reference.rows() + samples_per_turn - 1) /
+                                         samples_per_turn);
   for (std::size_t c = 0; c < reference.columns(); ++c) {
     const Channel& channel = reference.channels[c];
     if (channel.kind != ChannelKind::reaction) continue;
     const double scale = compare::scale_of(reference, channel, zero_scales);
-    for (std::size_t row = 0; row < reference.rows(); ++row) {
-      const double off = table.at(row, c) - reference.at(row, c);
-      if (off != 0) keep_worst(errors[row / samples_per_turn], off / scale);
-    }
+    for (std::size_t row = 0; row < reference.rows(); ++row)
+      turns[row / samples_per_turn].keep_larger(
+          compare::difference(reference.at(row, c), table.at(row, c), scale));
   }
+  std::vector<double> errors;
+  for (const compare::Difference& turn : turns) errors.push_back(turn.share());
   return errors;
 }
 
@@ -259,8 +263,8 @@ LongRun run_long(const std::filesystem::path& catalogue, int turns, double accur
   for (int turn = 0; turn < turns; ++turn) {
     const int half = 2 * turn < turns ? 0 : 1;
     const auto& record = run.record.turns[turn];
-    keep_worst(result.position_error[half], record.position_error);
-    keep_worst(result.reaction_error[half], errors[turn]);
+    update_max_abs(result.position_error[half], record.position_error);
+    update_max_abs(result.reaction_error[half], errors[turn]);
     if (turn + 1 != next && turn + 1 != turns) continue;
     result.shown.push_back({turn + 1, record, errors[turn]});
     const int leading = std::stoi(std::to_string(next).substr(0, 1));  // 1, 2, 5, 10, ..

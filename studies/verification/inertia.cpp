@@ -143,21 +143,19 @@ ResultTable difference(const ResultTable& first, const ResultTable& second,
   return result;
 }
 
-double largest_over_peak(const ResultTable& first, const ResultTable& second, double force,
-                         double radius) {
-  double worst = 0;
+compare::Difference largest_difference(const ResultTable& first, const ResultTable& second,
+                                       const std::function<bool(const Channel&)>& computed,
+                                       double force, double radius) {
+  compare::Difference largest;
   for (std::size_t c = 0; c < first.columns(); ++c) {
-    if (first.channels[c].kind != ChannelKind::reaction) continue;
-    const double least = first.channels[c].unit == "Nm" ? force * radius : force;
-    const double peak = std::max(first.peak(first.channels[c].group), least);
-    for (std::size_t row = 0; row < first.rows(); ++row) {
-      const double a = first.at(row, c);
-      const double b = second.at(row, c);
-      if (is_computed(a) && is_computed(b) && peak > 0)
-        worst = std::max(worst, std::abs(a - b) / peak);
-    }
+    const Channel& channel = first.channels[c];
+    if (channel.kind != ChannelKind::reaction || !computed(channel)) continue;
+    const double least = channel.unit == "Nm" ? force * radius : force;
+    const double peak = std::max(first.peak(channel.group), least);
+    for (std::size_t row = 0; row < first.rows(); ++row)
+      largest.keep_larger(compare::difference(first.at(row, c), second.at(row, c), peak));
   }
-  return worst;
+  return largest;
 }
 
 std::vector<LumpingError> lumping_errors(const InertiaRun& run, const InertiaRun& loaded) {

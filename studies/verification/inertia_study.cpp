@@ -28,23 +28,34 @@ std::vector<double> ratios(const std::pair<double, double>& range, int count) {
 
 void compare_models_and_scenes(InertiaStudy& s) {
   const double radius = s.the_case.pump.geometry.joint_circle_radius;
+  compare::Difference models, scenes;
   for (std::size_t i = 0; i < s.full.size(); ++i) {
     // Runs come in pairs: without load, loaded. The inertia forces alone are the smallest scale.
     // Under load what is left of loads that cancel carries their round-off, 1e-12 of them.
     const double least = std::max(
         s.one_piston[i - i % 2].analytic_real.peak("Rs"),
         compare::kNoSignal / kInertiaModelsAgree * s.one_piston[i].analytic_real.peak("Rs"));
-    const auto differ = [&](const ResultTable& first, const ResultTable& second) {
-      return largest_over_peak(first, second, least, radius);
+    const auto differ = [&](const ResultTable& first, const ResultTable& second,
+                            multibody::Scene scene) {
+      RunOptions options;
+      options.model = Model::multibody;
+      options.scene.scene = scene;
+      const auto computed = [&](const Channel& channel) {
+        return computes(options, s.the_case.analytic, channel);
+      };
+      return largest_difference(first, second, computed, least, radius);
     };
-    for (const InertiaRun* run : {&s.full[i], &s.one_piston[i]})
-      s.models_apart =
-          std::max({s.models_apart, differ(run->analytic_lumped, run->multibody_lumped),
-                    differ(run->analytic_real, run->multibody_real)});
-    s.scenes_apart =
-        std::max({s.scenes_apart, differ(s.full[i].multibody_real, s.one_piston[i].multibody_real),
-                  differ(s.full[i].multibody_lumped, s.one_piston[i].multibody_lumped)});
+    for (const auto& [run, scene] : {std::pair{&s.full[i], multibody::Scene::full},
+                                     std::pair{&s.one_piston[i], multibody::Scene::piston}}) {
+      models.keep_larger(differ(run->analytic_lumped, run->multibody_lumped, scene));
+      models.keep_larger(differ(run->analytic_real, run->multibody_real, scene));
+    }
+    for (const auto table : {&InertiaRun::multibody_real, &InertiaRun::multibody_lumped})
+      scenes.keep_larger(
+          differ(s.full[i].*table, s.one_piston[i].*table, multibody::Scene::piston));
   }
+  s.models_apart = models.share();
+  s.scenes_apart = scenes.share();
 }
 
 }  // namespace

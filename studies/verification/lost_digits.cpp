@@ -21,6 +21,12 @@ constexpr int kAngles = 24;
 constexpr double kWorthAWarning = 1e-9;   // of peak: the tolerance of a comparison
 constexpr double kMoreThanEstimated = 3;  // an estimate of the first order is no closer than that
 
+// A loss that could not be estimated, NaN, is one too.
+bool is_worth_a_warning(double loss) { return !(loss <= kWorthAWarning); }
+std::string loss_text(double loss) {
+  return std::isfinite(loss) ? fmt::format("{:.1e}", loss) : "an unknown share";
+}
+
 // The gear's forces come of a torque by the arm of its pitch point, a difference of places: it has
 // the round-off of the way between the axes, which a small gear's arm does not dwarf.
 void add_gear_arm(const PumpParameters& pump, const Assumptions& assumptions,
@@ -54,7 +60,7 @@ std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions
     const auto channel = std::find_if(table.channels.begin(), table.channels.end(),
                                       [&](const Channel& c) { return c.group == g.group; });
     const double peak = compare::scale_of(table, *channel, scales);
-    if (!(peak > 0)) continue;
+    if (peak == 0) continue;
     lines.push_back({g.group, g.inputs / peak, g.arithmetic / peak, g.theta_deg, g.input});
   }
   return lines;
@@ -63,10 +69,10 @@ std::vector<RoundingLine> rounding_lines(const Case& the_case, const Assumptions
 std::vector<std::string> rounding_warnings(const std::vector<RoundingLine>& lines) {
   std::vector<std::string> warnings;
   for (const RoundingLine& line : lines)
-    if (line.total() > kWorthAWarning)
+    if (is_worth_a_warning(line.total()))
       warnings.push_back(fmt::format(
-          "{} is known to {:.1e} of its peak only: rounding of {} to double, at {:g} deg",
-          line.group, line.total(),
+          "{} is known to {} of its peak only: rounding of {} to double, at {:g} deg", line.group,
+          loss_text(line.total()),
           line.arithmetic > line.inputs || line.input.empty() ? "intermediate results" : line.input,
           line.theta_deg));
   return warnings;
@@ -105,8 +111,8 @@ std::vector<std::string> multibody_warnings(const Case& the_case,
     if (lost[line.group] < kMoreThanEstimated * line.total()) lost.erase(line.group);
   std::string groups;
   for (const auto& [group, loss] : lost)
-    if (loss > kWorthAWarning)
-      groups += fmt::format("{}{} {:.1e}", groups.empty() ? "" : ", ", group, loss);
+    if (is_worth_a_warning(loss))
+      groups += fmt::format("{}{} {}", groups.empty() ? "" : ", ", group, loss_text(loss));
   if (groups.empty()) return {};
   return {fmt::format(
       "the multibody model's reactions are known to these shares of their peaks only: {} (what "

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "bentaxis/pump/inputs.h"
-#include "bentaxis/results/worst.h"
+#include "bentaxis/results/max_abs.h"
 
 namespace bentaxis::study {
 namespace {
@@ -26,11 +26,12 @@ Case moved(const Case& the_case, std::mt19937& engine) {
 
 std::map<std::string, double> largest_of_groups(const compare::Comparison& comparison) {
   std::map<std::string, double> groups;
-  for (const auto& c : comparison.channels) {
-    if (c.channel.kind != ChannelKind::reaction) continue;
-    double& largest = groups[c.channel.group];
-    if (c.compared()) keep_worst(largest, c.largest_over_peak());
-  }
+  for (const auto& c : comparison.channels)
+    if (c.channel.kind == ChannelKind::reaction) groups[c.channel.group] = 0;
+  for (auto& [group, largest] : groups)
+    if (const auto* const found = comparison.furthest(
+            [&, name = group](const Channel& channel) { return channel.group == name; }))
+      largest = found->largest_over_peak();
   return groups;
 }
 
@@ -44,7 +45,7 @@ std::map<std::string, double> rounding_spread(const Case& the_case, const Result
     try {
       const auto comparison = compare::compare_tables(table, run(moved(the_case, engine)), options);
       for (const auto& [group, change] : largest_of_groups(comparison))
-        keep_worst(spread[group], change);
+        update_max_abs(spread[group], change);
     } catch (const ComputationError& error) {
       refusal = error.what();
     } catch (const InputError& error) {

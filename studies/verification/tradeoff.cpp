@@ -87,8 +87,9 @@ class Measurement {
     if (progress_) progress_((done_ + fraction) / static_cast<double>(jobs_) * 0.999);
   }
 
-  void judge(TradeoffRun& run, const ResultTable& table) const {
-    run.error = achieved_error(case_, samples_, reference_, table);
+  void judge(TradeoffRun& run, const ResultTable& table,
+             multibody::Scene scene = multibody::Scene::full) const {
+    run.error = achieved_error(case_, samples_, reference_, table, scene);
   }
 
   void scalar() {
@@ -149,7 +150,7 @@ class Measurement {
         const ResultTable table =
             multibody::run_driven(case_, assumptions_, samples_, watch, scene, method);
         run.seconds_per_turn = std::min(run.seconds_per_turn, table.provenance.seconds);
-        if (repeat == 0) judge(run, table);
+        if (repeat == 0) judge(run, table, scene);
       }
     } catch (const ComputationError& error) {
       run.failure = error.what();

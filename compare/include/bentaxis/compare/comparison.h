@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/compare/difference.h"
 #include "bentaxis/results/result_table.h"
 
 namespace bentaxis::compare {
@@ -46,6 +47,8 @@ struct ChannelComparison {
   double tolerance = 0;  ///< over peak
   double allowed = 0;    ///< absolute + tolerance x peak + uncertainty there, channel's unit
   std::string gap;       ///< of an incomplete channel: which table lacks it, and where
+  /// Of a channel that is not compared: what keeps it from that.
+  Comparable missing = Comparable::nothing;
 
   /// Both tables have it, and the numbers above say how far apart they are.
   bool compared() const {
@@ -54,8 +57,16 @@ struct ChannelComparison {
   /// It is so small beside its scale that a difference of much of itself passes: below
   /// kSmallComponent of it, and no round-off of 0.
   bool is_small_component() const;
-  double largest_over_peak() const { return peak > 0 ? largest / peak : (largest > 0 ? 1e300 : 0); }
-  double rms_over_peak() const { return peak > 0 ? rms / peak : (rms > 0 ? 1e300 : 0); }
+  /// The largest difference, held to `peak`; not known where the channel is not compared.
+  Difference difference() const { return held_to_peak(largest); }
+  double largest_over_peak() const { return difference().share(); }
+  double rms_over_peak() const { return held_to_peak(rms).share(); }
+
+ private:
+  Difference held_to_peak(double value) const {
+    return compared() ? Difference{value, peak, Comparable::yes}
+                      : Difference{not_computed(), peak, missing};
+  }
 };
 
 /// Largest load of the case per unit ("N", "Nm", ...), from which the scales of groups have a
@@ -112,6 +123,9 @@ struct Comparison {
   /// failed(), or where none differs the judged channel with the largest difference over its peak;
   /// nullptr if none was compared.
   const ChannelComparison* worst() const;
+  /// The channel with the largest difference, of those that `of` picks and that are compared or
+  /// should be: one that lacks a value comes first. nullptr where there is none.
+  const ChannelComparison* furthest(const std::function<bool(const Channel&)>& of) const;
   int compared() const;
   const ChannelComparison* find(const std::string& channel_name) const;
 };

@@ -1,15 +1,12 @@
-// The worst of a series of errors.
+// Former name of max_abs.h.
 #pragma once
 
-#include <cmath>
+#include "bentaxis/results/max_abs.h"
 
 namespace bentaxis {
 
-/// Keeps the larger magnitude in `worst`. A NaN stays: std::max would drop it, and what could not
-/// be computed would pass for exact.
-inline void keep_worst(double& worst, double error) {
-  const double size = std::abs(error);
-  if (std::isnan(size) || size > worst) worst = size;
+[[deprecated("use update_max_abs")]] inline void keep_worst(double& worst, double error) {
+  update_max_abs(worst, error);
 }
 
 }  // namespace bentaxis

@@ -97,7 +97,7 @@ struct DrawnCurve {
   std::string label;
   std::vector<double> x, y;
   bool judged = true, dashed = false;
-  std::optional<double> other_model;  ///< largest difference of the other model, over peak
+  compare::Difference other_model;  ///< from the other model: the largest one, held to the peak
 };
 
 struct DrawnPanel {

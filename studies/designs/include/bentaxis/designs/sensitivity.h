@@ -70,10 +70,15 @@ struct SensitivityCheck {
   std::vector<std::vector<double>> differences;  ///< over that scale; by output, then variable
   double worst = 0;
   std::size_t output = 0, variable = 0;  ///< of the worst
-  /// Not compared: one of the models has none, or differences that are not as sharp.
+  /// Not compared: neither model has one, one of them refuses the neighbours, or differences are
+  /// not as sharp.
   std::size_t missing = 0;
-  bool agrees() const { return worst <= kTolerance; }
+  std::size_t lacking = 0;   ///< one model alone gives no value, or none that is finite
+  std::size_t compared = 0;  ///< the others
+  bool agrees() const { return compared > 0 && lacking == 0 && worst <= kTolerance; }
 };
+/// Sets derivatives against those of the other model at the same place.
+SensitivityCheck compare_derivatives(const Sensitivities& found, Sensitivities other);
 /// The same derivatives by differences of the other model.
 SensitivityCheck check(const Sensitivities& found,
                        const study::PartProgress& progress_of = study::silent());

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/compare/difference.h"
 #include "bentaxis/designs/distribution.h"
 #include "bentaxis/designs/evaluator.h"
 #include "bentaxis/designs/points.h"
@@ -76,11 +77,16 @@ struct SweepCheck {
   std::vector<double> values;  ///< one per output; not_computed() where it gives none
   std::string own_reason;      ///< why the plan's model has none
   std::string reason;          ///< why the other model has none
-  std::vector<double> scales;  ///< of each output: what differences are over; 0: not compared
+  /// Of each output: what differences are over; 0: not compared, as both models share it or neither
+  /// has a value.
+  std::vector<double> scales;
 
-  /// Difference of an output over its scale; 0 where it is not compared.
+  /// What the models differ by in an output; Comparable::nothing where it is not compared.
+  compare::Difference difference(std::size_t output) const;
+  /// The same over its scale: 0 where it is not compared, NaN where one model has no value.
   double error(std::size_t output) const;
-  /// Both refuse the design, or all outputs are within the tolerance.
+  /// Both refuse the design, or all outputs are within the tolerance. A value that one model alone
+  /// lacks is no agreement.
   bool agrees(double tolerance) const;
 };
 /// Of an output's scale: the peak of the reaction over the turn. Both models have been seen to

@@ -39,8 +39,9 @@ struct GroupDifference {
   double peak = 0;
   double in_time = 0, time_s = 0;  ///< at equal times, largest, and when
   double over_angle = 0;           ///< at equal shaft angles
-  /// Largest difference in time over what is allowed then: 1 is the limit; not_computed() of flows,
-  /// which are not judged.
+  bool judged = true;              ///< flows are not
+  /// Largest difference in time over what is allowed then: 1 is the limit; not_computed() of what
+  /// is not judged, and where a value is missing or not finite: then the models do not agree.
   double of_allowed = 0;
   /// What differences are over: the peak, at least compare::kLeastScale of the loads of the run.
   double scale = 0;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bentaxis/compare/comparison.h"
+#include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
 
@@ -12,8 +13,9 @@ namespace bentaxis::study {
 /// What counts as agreement where the user names no tolerance: largest difference over the peak.
 inline constexpr double kDrivenTolerance = 1e-9;  ///< both models are exact to round-off
 
-/// Largest differences over the peak of each group of reactions; not_computed() where either table
-/// has no value.
+/// Largest differences over the peak of each group of reactions; not_computed() where neither table
+/// has a value, where one of them lacks a value that it should have, and of what the scene leaves
+/// out.
 struct AchievedError {
   double rs = not_computed();
   double rc = not_computed();
@@ -28,7 +30,9 @@ struct AchievedError {
 compare::ZeroScales zero_scales(const Case& the_case, const Samples& samples);
 
 /// @param reference  the right curves at the same angles
+/// @param scene      that computed `table`
 AchievedError achieved_error(const Case& the_case, const Samples& samples,
-                             const ResultTable& reference, const ResultTable& table);
+                             const ResultTable& reference, const ResultTable& table,
+                             multibody::Scene scene = multibody::Scene::full);
 
 }  // namespace bentaxis::study

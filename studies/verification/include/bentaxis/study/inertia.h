@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/compare/difference.h"
 #include "bentaxis/multibody/scene.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
@@ -52,11 +53,20 @@ std::vector<LumpingError> lumping_errors(const InertiaRun& run, const InertiaRun
 /// first - second, channel by channel; not computed where either is not.
 ResultTable difference(const ResultTable& first, const ResultTable& second,
                        const std::string& name);
-/// Largest difference of any reaction over its group's peak, where both tables computed it. Without
-/// load the pistons' inertia forces cancel in many sums: no peak counts as smaller than `force` (N)
-/// or that force at `radius` (Nm).
-double largest_over_peak(const ResultTable& first, const ResultTable& second, double force,
-                         double radius);
+/// Largest difference of any reaction, held to its group's peak. Without load the pistons' inertia
+/// forces cancel in many sums: no peak counts as smaller than `force` (N) or that force at `radius`
+/// (Nm).
+/// @param computed  which reactions must have a value in both tables; the others are left out
+compare::Difference largest_difference(const ResultTable& first, const ResultTable& second,
+                                       const std::function<bool(const Channel&)>& computed,
+                                       double force, double radius);
+[[deprecated("use largest_difference")]] inline double largest_over_peak(const ResultTable& first,
+                                                                         const ResultTable& second,
+                                                                         double force,
+                                                                         double radius) {
+  const auto all = [](const Channel&) { return true; };
+  return largest_difference(first, second, all, force, radius).share();
+}
 
 /// The lumping error of piston 1 without load, switched on one cause at a time. From a lumped
 /// piston to the real one the centre of mass, the transverse inertia and the spin change; reactions

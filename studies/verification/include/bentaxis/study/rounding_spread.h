@@ -19,7 +19,8 @@ class NoEstimate : public ComputationError {
   using ComputationError::ComputationError;
 };
 
-/// Largest difference of each scale group of reactions over its peak; 0 where nobody computed it.
+/// Largest difference of each scale group of reactions over its peak; 0 where nobody computed it,
+/// NaN where one table lacks a value of it.
 std::map<std::string, double> largest_of_groups(const compare::Comparison& comparison);
 
 /// Largest change of each group over its peak in `table` over four copies of the case with every
