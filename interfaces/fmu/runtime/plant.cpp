@@ -42,6 +42,8 @@ double nominal_of(Input input, const Case& the_case) {
   return 1;
 }
 
+}  // namespace
+
 double& input_of(Inputs& inputs, Input which) {
   switch (which) {
     case Input::speed:
@@ -60,8 +62,6 @@ double& input_of(Inputs& inputs, Input which) {
   }
   return inputs.load_share;
 }
-
-}  // namespace
 
 bool operator==(const Inputs& a, const Inputs& b) {
   return a.speed == b.speed && a.acceleration == b.acceleration && a.torque == b.torque &&
