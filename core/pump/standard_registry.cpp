@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <sstream>
 
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/units.h"
@@ -149,12 +148,8 @@ constexpr auto kLoop = &HydraulicData::loop;
 // ---- What a rule says
 // ----------------------------------------------------------------------------
 
-// A computed number for a message, to six digits.
-std::string short_text(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
+// A computed number for a message.
+std::string short_text(double value) { return rounded_text(value, 6); }
 
 std::string not_assembled(const ConstView& v) {
   const Geometry& g = v.pump->geometry;
