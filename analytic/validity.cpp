@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include "bentaxis/analytic/teeth.h"
@@ -11,11 +10,7 @@
 namespace bentaxis::analytic {
 namespace {
 
-std::string newtons(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g N", value);
-  return text;
-}
+std::string newtons(double value) { return rounded_text(value, 4) + " N"; }
 
 // Scans a quantity that must not be negative: its smallest value is the worst.
 void scan(ValidityLimit& limit, const ResultTable& table,
@@ -87,13 +82,11 @@ ValidityLimit ring_limit(const Model& model, const Case& the_case, const Samples
   double mean = 0;
   for (std::size_t row = 0; row < table.rows(); ++row)
     mean += power(row) / static_cast<double>(table.rows());
-  char text[256];
-  std::snprintf(
-      text, sizeof text,
-      "Rc acts at C, %.6g mm from A, and the ring keeps B, at %.6g mm, on the axis of the "
-      "bore: mean power of Rc on the play %.4g W, its torque is a line of the budget",
-      *the_case.pump.piston.contact * 1e3, the_case.pump.geometry.piston_length * 1e3, mean);
-  ring.consequence = text;
+  ring.consequence = "Rc acts at C, " + rounded_text(*the_case.pump.piston.contact * 1e3, 6) +
+                     " mm from A, and the ring keeps B, at " +
+                     rounded_text(the_case.pump.geometry.piston_length * 1e3, 6) +
+                     " mm, on the axis of the bore: mean power of Rc on the play " +
+                     rounded_text(mean, 4) + " W, its torque is a line of the budget";
   return ring;
 }
 

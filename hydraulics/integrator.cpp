@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <new>
 #include <string>
 #include <utility>
@@ -44,25 +45,39 @@ struct Problem {
   std::vector<double> by_state, by_load, above, below;  // of the sensitivity equations
   double mass_scale = 1;  // kg/degree: of the integrals, for their error control
   double work_scale = 1;
-  bool energies = false;  // the integrals wanted are those of power by place
+  bool energies = false;                // the integrals wanted are those of power by place
+  std::exception_ptr thrown = nullptr;  // by a callback: no exception may pass through C
 };
 
+// Negative: CVODES ends the step, and whoever called it throws on.
+template <class Function>
+int guarded(void* user, const Function& function) {
+  auto& problem = *static_cast<Problem*>(user);
+  try {
+    return function(problem);
+  } catch (...) {
+    problem.thrown = std::current_exception();
+    return -1;
+  }
+}
+
 int rates(realtype x, N_Vector y, N_Vector dy, void* user) {
-  const auto& problem = *static_cast<Problem*>(user);
-  return problem.network.rates(x, data(y), problem.load_size, data(dy)) ? 0 : 1;
+  return guarded(user, [&](const Problem& problem) {
+    return problem.network.rates(x, data(y), problem.load_size, data(dy)) ? 0 : 1;
+  });
 }
 
 int jacobian(realtype x, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
              N_Vector) {
-  auto& problem = *static_cast<Problem*>(user);
-  problem.network.jacobian(x, data(y), problem.load_size, SUNDenseMatrix_Data(matrix),
-                           problem.by_load.data());
-  return 0;
+  return guarded(user, [&](Problem& problem) {
+    problem.network.jacobian(x, data(y), problem.load_size, SUNDenseMatrix_Data(matrix),
+                             problem.by_load.data());
+    return 0;
+  });
 }
 
-int sensitivity_rates(int count, realtype x, N_Vector y, N_Vector, N_Vector* s, N_Vector* ds,
-                      void* user, N_Vector, N_Vector) {
-  auto& problem = *static_cast<Problem*>(user);
+int sensitivity_rates(Problem& problem, int count, double x, N_Vector y, N_Vector* s,
+                      N_Vector* ds) {
   const Network& network = problem.network;
   network.jacobian(x, data(y), problem.load_size, problem.by_state.data(), problem.by_load.data());
   const int size = network.size();
@@ -90,8 +105,13 @@ int sensitivity_rates(int count, realtype x, N_Vector y, N_Vector, N_Vector* s, 
   return 0;
 }
 
-int integral_rates(realtype x, N_Vector y, N_Vector dq, void* user) {
-  auto& problem = *static_cast<Problem*>(user);
+int sensitivity_rates(int count, realtype x, N_Vector y, N_Vector, N_Vector* s, N_Vector* ds,
+                      void* user, N_Vector, N_Vector) {
+  return guarded(user,
+                 [&](Problem& problem) { return sensitivity_rates(problem, count, x, y, s, ds); });
+}
+
+int integral_rates(Problem& problem, double x, N_Vector y, N_Vector dq) {
   const Network& network = problem.network;
   network.flows(x, data(y), problem.load_size, problem.flows);
   double* to = data(dq);
@@ -111,6 +131,10 @@ int integral_rates(realtype x, N_Vector y, N_Vector dq, void* user) {
   to[3] = problem.flows.load * mass;
   to[4] = problem.flows.power * network.seconds_per_degree() / problem.work_scale;
   return 0;
+}
+
+int integral_rates(realtype x, N_Vector y, N_Vector dq, void* user) {
+  return guarded(user, [&](Problem& problem) { return integral_rates(problem, x, y, dq); });
 }
 
 Integrals in_units(const Problem& problem, const double* q) {
@@ -186,6 +210,7 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
   };
   const auto check = [&](int flag) {
     if (flag >= 0) return;
+    if (problem.thrown) std::rethrow_exception(problem.thrown);
     if (flag == CV_TOO_MUCH_ACC)
       fail("[hydraulics] tolerance asks for more than double precision gives there");
     fail("the pressures change faster there than steps above round-off can follow");

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "base64.h"
@@ -43,11 +42,10 @@ Json value_or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-// The nearest number of so many decimal digits: a plot needs no more, and a page is a third
-// shorter.
+// A plot needs no more digits, and a page is a third shorter.
 Json rounded(double value, int digits) {
   if (!is_computed(value)) return nullptr;
-  return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+  return bentaxis::rounded(value, digits);
 }
 
 Json rounded(const Values& values, int digits = kPlotDigits) {

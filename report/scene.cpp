@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -74,7 +73,7 @@ Json per_model(const std::vector<Item>& items) {
 }
 
 // Shapes are drawn in floats.
-Json drawn(double x) { return std::strtod(fmt::format("{:.7g}", x).c_str(), nullptr); }
+Json drawn(double x) { return rounded(x, 7); }
 template <std::size_t size>
 Json drawn(const std::array<double, size>& numbers) {
   Json list = Json::array();

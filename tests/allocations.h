@@ -6,6 +6,7 @@
 namespace bentaxis::test {
 
 inline std::atomic<long> allocations{0};
+inline std::atomic<bool> allocations_fail{false};  ///< operator new throws
 
 /// Allocations made since it was built, by any thread.
 class AllocationCounter {

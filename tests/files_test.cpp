@@ -19,11 +19,14 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "bentaxis/files/case_file.h"
 #include "bentaxis/files/foreign_table.h"
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
+#include "bentaxis/files/kept_case.h"
 #include "bentaxis/files/new_folder.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/files/run_lock.h"
@@ -445,6 +448,62 @@ TEST_F(OutputFolderTest, FilesReadAreLoggedWhileALogIsKept) {
     EXPECT_EQ(InputLog::files()[2].sha256, sha256_of("abc = 3"));
   }
   EXPECT_TRUE(InputLog::files().empty());
+}
+
+TEST_F(OutputFolderTest, ALogWithinALogTakesNothingFromIt) {
+  for (const char* name : {"a.toml", "b.toml", "c.toml"}) file(name, "abc = 1");
+  const InputLog outer;
+  TomlFile::read(folder_ / "a.toml", "file");
+  {
+    const InputLog inner;
+    TomlFile::read(folder_ / "b.toml", "file");
+    ASSERT_EQ(InputLog::files().size(), 1);
+    EXPECT_EQ(InputLog::files()[0].file, folder_ / "b.toml");
+  }
+  TomlFile::read(folder_ / "c.toml", "file");
+  ASSERT_EQ(InputLog::files().size(), 3);
+  for (const std::size_t i : {0, 1, 2})
+    EXPECT_EQ(InputLog::files()[i].file, folder_ / (std::string(1, "abc"[i]) + ".toml"));
+}
+
+TEST_F(OutputFolderTest, LogsOfSeveralThreadsKeepTheirOwn) {
+  for (const char* name : {"a.toml", "b.toml"}) file(name, "abc = 1");
+  const InputLog all;
+  const InputLog own(InputLog::Threads::own);
+  TomlFile::read(folder_ / "a.toml", "file");
+  std::vector<InputFile> others;
+  std::thread([&] {
+    const InputLog log(InputLog::Threads::own);
+    TomlFile::read(folder_ / "b.toml", "file");
+    others = InputLog::files();
+  }).join();
+  ASSERT_EQ(own.noted().size(), 1);
+  EXPECT_EQ(own.noted()[0].file, folder_ / "a.toml");
+  ASSERT_EQ(others.size(), 1);
+  EXPECT_EQ(others[0].file, folder_ / "b.toml");
+  EXPECT_EQ(all.noted().size(), 2);
+}
+
+TEST_F(OutputFolderTest, ACaseNamesWhatItWasReadFrom) {
+  const fs::path shipped = fs::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_rated.toml";
+  const std::string curve = "theta_deg,pressure_bar\n0,5\n90,5\n180,200\n270,200\n";
+  file("curve.csv", curve);
+  fs::copy_file(shipped, folder_ / "case.toml");
+  const std::string text = bytes_of(folder_ / "case.toml");
+  const Case the_case =
+      read_case(folder_ / "case.toml", {"pressure.kind=curve", "pressure.file=curve.csv"});
+  file("curve.csv", "theta_deg,pressure_bar\n0,5\n90,5\n180,300\n270,300\n");
+  file("case.toml", "schema = 1");
+  ASSERT_EQ(the_case.inputs.size(), 2);
+  EXPECT_EQ(the_case.inputs[0].file, folder_ / "case.toml");
+  EXPECT_EQ(the_case.inputs[0].sha256, sha256_of(text));
+  EXPECT_EQ(the_case.inputs[1].file, folder_ / "curve.csv");
+  EXPECT_EQ(the_case.inputs[1].sha256, sha256_of(curve));
+  // What is kept would be another case.
+  EXPECT_THAT([&] { kept_case(the_case); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("curve.csv: has changed")));
+  file("curve.csv", curve);
+  EXPECT_EQ(kept_case(the_case).curves.at(0).bytes, curve);
 }
 
 // ---- Input files

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/files/input_log.h"
+#include "bentaxis/files/kept_case.h"
 #include "bentaxis/fmu/slave.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
@@ -106,6 +108,16 @@ TEST_F(FmuImportTest, RefusesWhatIsNoUnitByName) {
   EXPECT_THAT(of(Entries{{"modelDescription.xml", "<fmi"}}), HasSubstr("is no XML"));
   EXPECT_THAT(of(Entries{{"modelDescription.xml", "<other/>"}}),
               HasSubstr("must be <fmiModelDescription>"));
+}
+
+// The bytes that were unpacked are those that are noted, whatever the file is later.
+TEST_F(FmuImportTest, NotesWhatItHasRead) {
+  const fs::path any = unit("motor", 2);
+  const InputLog log;
+  const Unpacked unpacked(any);
+  ASSERT_EQ(log.noted().size(), 1);
+  EXPECT_EQ(log.noted()[0].file, any);
+  EXPECT_EQ(log.noted()[0].sha256, sha256_of(bytes_of(any)));
 }
 
 TEST_F(FmuImportTest, RefusesPathsThatLeaveTheFolder) {

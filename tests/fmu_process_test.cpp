@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "bentaxis/fmu/slave.h"
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "channel.h"
-#include "plain_text.h"
 
 namespace bentaxis::fmu {
 namespace {

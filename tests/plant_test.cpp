@@ -266,6 +266,22 @@ TEST(Plant, StateOfAnotherPumpIsRefused) {
   EXPECT_THAT(refusal([&] { plant.set_state(state); }), testing::HasSubstr("another pump"));
 }
 
+// Bytes of a state may hold a vector of any length.
+TEST(Plant, StateOfAnotherLengthIsRefused) {
+  Plant plant(rated(), driven_by(Drive::speed), kSteps);
+  plant.start(plant.first_inputs());
+  const fmu::PlantState right = plant.state();
+  using Part = std::vector<double> fmu::PlantState::*;
+  for (const Part part :
+       {&fmu::PlantState::motion, &fmu::PlantState::oil, &fmu::PlantState::started})
+    for (const int more : {-1, 1, 1000}) {
+      fmu::PlantState state = right;
+      (state.*part).resize((state.*part).size() + more);
+      EXPECT_THAT(refusal([&] { plant.set_state(state); }), testing::HasSubstr("another pump"));
+    }
+  plant.set_state(right);
+}
+
 TEST(Plant, InterleavedPlantsAreAsAlone) {
   const Case cases[] = {rated(), with_torque()};
   const Drive drives[] = {Drive::speed, Drive::torque};
@@ -546,6 +562,26 @@ fmu::Variable variable(fmu::Role role, std::size_t place) {
   v.role = role;
   v.place = place;
   return v;
+}
+
+// Where the states have no finite rates there is no derivative, and the plant stays where it was.
+TEST(Plant, NoDirectionalDerivativeWithoutRates) {
+  Plant plant(rated(), driven_by(Drive::speed), kOpen);
+  plant.start(plant.first_inputs(), 0.01);
+  std::vector<double> states = plant.states();
+  states.back() = 1e4;  // the logarithm of a pressure
+  plant.set_states(states);
+  const fmu::Variable unknown = variable(fmu::Role::derivative, states.size() - 1);
+  const fmu::Variable known = variable(fmu::Role::state, 0);
+  EXPECT_THROW(plant.directional_derivative({&unknown}, {&known}, {1}), ComputationError);
+  EXPECT_EQ(plant.states(), states);
+
+  Plant driven(with_torque(), driven_by(Drive::torque), kOpen);
+  Inputs inputs = driven.first_inputs();
+  driven.start(inputs, 0.01);
+  inputs.torque = std::nan("");
+  driven.set_inputs(inputs);
+  EXPECT_THROW(driven.directional_derivative({&unknown}, {&known}, {1}), ComputationError);
 }
 
 // Against rates and outputs at places so near that differences of fourth order are exact.

@@ -922,6 +922,62 @@ TEST(Memory, WhatDoesNotFitIsRefusedWithWhatIsNeededAndAvailable) {
       "samples = 9: about 4.1 GB of memory are needed, and 4 GB are available; lower samples");
 }
 
+class SystemFolders : public testing::Test {
+ protected:
+  void SetUp() override { write("proc/meminfo", "MemTotal: 99 kB\nMemAvailable: 8000000 kB\n"); }
+  void TearDown() override { std::filesystem::remove_all(root_); }
+  void write(const std::string& file, const std::string& text) const {
+    std::filesystem::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+  }
+  void group(const std::string& folder, const std::string& limit, const std::string& used) const {
+    write("sys/fs/cgroup/" + folder + "/memory.max", limit + "\n");
+    write("sys/fs/cgroup/" + folder + "/memory.current", used + "\n");
+  }
+  double available() const { return study::available_memory(root_); }
+
+  const std::filesystem::path root_ =
+      std::filesystem::temp_directory_path() / ("system_" + std::to_string(getpid()));
+};
+
+TEST_F(SystemFolders, TheMachinesMemoryIsAvailable) { EXPECT_EQ(available(), 8192e6); }
+
+TEST_F(SystemFolders, EveryControlGroupAboveLimits) {
+  write("proc/self/cgroup", "0::/slurm/job_1/step_0\n");
+  group("slurm/job_1/step_0", "max", "3000");
+  EXPECT_EQ(available(), 8192e6);
+  group("slurm/job_1", "1000000000", "250000000");
+  EXPECT_EQ(available(), 750e6);
+  // Of files that the group holds it can give up those that nobody uses.
+  write("sys/fs/cgroup/slurm/job_1/memory.stat", "anon 7\ninactive_file 50000000\n");
+  EXPECT_EQ(available(), 800e6);
+  group("slurm/job_1/step_0", "500000000", "600000000");
+  EXPECT_EQ(available(), 0);
+}
+
+// In a container the path is that of the host, and the group's files lie at the top.
+TEST_F(SystemFolders, AContainersControlGroupLimits) {
+  write("proc/self/cgroup", "0::/docker/0123\n");
+  group("", "1000000000", "250000000");
+  EXPECT_EQ(available(), 750e6);
+  write("proc/self/cgroup", "0::/\n");
+  EXPECT_EQ(available(), 750e6);
+}
+
+TEST_F(SystemFolders, ControlGroupsOfTheFirstVersionLimit) {
+  write("proc/self/cgroup", "5:cpuset:/\n4:memory,hugetlb:/batch/job\n0::/\n");
+  const std::string job = "sys/fs/cgroup/memory/batch/job/";
+  write(job + "memory.limit_in_bytes", "2000000000\n");
+  write(job + "memory.usage_in_bytes", "500000000\n");
+  write(job + "memory.stat", "inactive_file 7\ntotal_inactive_file 100000000\n");
+  EXPECT_EQ(available(), 1600e6);
+  write("sys/fs/cgroup/memory/batch/memory.limit_in_bytes", "1000000000\n");
+  write("sys/fs/cgroup/memory/batch/memory.usage_in_bytes", "900000000\n");
+  EXPECT_EQ(available(), 100e6);
+  write("proc/self/cgroup", "5:cpuset:/batch/job\n");  // memory is not among what it limits
+  EXPECT_EQ(available(), 8192e6);
+}
+
 // The limit of the address space counts, less what the process has of it already.
 TEST(Memory, IsThatOfTheProcess) {
   const double before = study::available_memory();

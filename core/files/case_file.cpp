@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "bentaxis/files/csv.h"
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/pump/error.h"
@@ -234,20 +235,26 @@ void apply_change(TomlFile& file, const std::string& change, const Registry& reg
   file.change(table, key, trimmed(change.substr(equals + 1)));
 }
 
+Case case_of(TomlFile toml, const std::vector<std::string>& changes, const Registry& registry,
+             const InputLog& inputs) {
+  for (const std::string& change : changes) apply_change(toml, change, registry);
+  Case the_case = CaseReader(toml, registry).read();
+  the_case.inputs = inputs.noted();
+  return the_case;
+}
+
 }  // namespace
 
 Case parse_case(const std::string& text, const std::filesystem::path& file,
                 const std::vector<std::string>& changes, const Registry& registry) {
-  TomlFile toml(text, file);
-  for (const std::string& change : changes) apply_change(toml, change, registry);
-  return CaseReader(toml, registry).read();
+  const InputLog inputs(InputLog::Threads::own);
+  return case_of({text, file}, changes, registry, inputs);
 }
 
 Case read_case(const std::filesystem::path& file, const std::vector<std::string>& changes,
                const Registry& registry) {
-  TomlFile toml = TomlFile::read(file, "case file");
-  for (const std::string& change : changes) apply_change(toml, change, registry);
-  return CaseReader(toml, registry).read();
+  const InputLog inputs(InputLog::Threads::own);
+  return case_of(TomlFile::read(file, "case file"), changes, registry, inputs);
 }
 
 }  // namespace bentaxis

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 
 namespace bentaxis {
 namespace {
@@ -36,9 +36,7 @@ class Handle {
 };
 
 std::string size_text(std::uint64_t bytes) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g MiB", static_cast<double>(bytes) / kMebibyte);
-  return text;
+  return rounded_text(static_cast<double>(bytes) / kMebibyte, 4) + " MiB";
 }
 
 std::string content_of(int handle, const std::filesystem::path& file, const InputKind& kind) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
-#include <optional>
 
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/pump/error.h"
@@ -13,53 +12,70 @@
 namespace bentaxis {
 namespace {
 
-struct Log {
+struct OpenLogs {
   std::mutex mutex;
-  std::optional<std::vector<InputFile>> files;  // while it is kept
+  std::vector<InputLog*> logs;  // in the order in which they were made
 };
 
-Log& the_log() {
-  static Log log;
-  return log;
+OpenLogs& open_logs() {
+  static OpenLogs open;
+  return open;
 }
 
 }  // namespace
 
-InputLog::InputLog() {
-  const std::lock_guard lock(the_log().mutex);
-  the_log().files.emplace();
+InputLog::InputLog(Threads threads) : threads_(threads) {
+  const std::lock_guard lock(open_logs().mutex);
+  open_logs().logs.push_back(this);
 }
 
 InputLog::~InputLog() {
-  const std::lock_guard lock(the_log().mutex);
-  the_log().files.reset();
+  const std::lock_guard lock(open_logs().mutex);
+  std::erase(open_logs().logs, this);
+}
+
+bool InputLog::listens() const {
+  return threads_ == Threads::all || owner_ == std::this_thread::get_id();
+}
+
+std::vector<InputFile> InputLog::noted() const {
+  const std::lock_guard lock(open_logs().mutex);
+  return files_;
 }
 
 std::vector<InputFile> InputLog::files() {
-  const std::lock_guard lock(the_log().mutex);
-  return the_log().files.value_or(std::vector<InputFile>());
+  const std::lock_guard lock(open_logs().mutex);
+  const auto& logs = open_logs().logs;
+  const auto last =
+      std::find_if(logs.rbegin(), logs.rend(), [](const InputLog* log) { return log->listens(); });
+  return last == logs.rend() ? std::vector<InputFile>() : (*last)->files_;
+}
+
+void InputLog::note(const std::filesystem::path& file, const std::string& content) {
+  {
+    const std::lock_guard lock(open_logs().mutex);
+    if (open_logs().logs.empty()) return;  // hashing takes time
+  }
+  note(InputFile{file, sha256_of(content)});
+}
+
+void InputLog::note(const InputFile& read) {
+  const std::lock_guard lock(open_logs().mutex);
+  for (InputLog* const log : open_logs().logs) {
+    if (!log->listens()) continue;
+    auto& files = log->files_;
+    const bool known = std::any_of(files.begin(), files.end(), [&](const InputFile& other) {
+      return other.file == read.file && other.sha256 == read.sha256;
+    });
+    if (!known) files.push_back(read);
+  }
 }
 
 void InputLog::note(const std::filesystem::path& file) {
-  {
-    const std::lock_guard lock(the_log().mutex);
-    if (!the_log().files) return;
-  }
   try {
     note(file, read_input_file(file, {"an input file", kLargestReport}));
   } catch (const InputError&) {  // it has gone since it was read
   }
-}
-
-void InputLog::note(const std::filesystem::path& file, const std::string& content) {
-  const std::lock_guard lock(the_log().mutex);
-  auto& files = the_log().files;
-  if (!files) return;
-  const InputFile read{file, sha256_of(content)};
-  const bool known = std::any_of(files->begin(), files->end(), [&](const InputFile& other) {
-    return other.file == read.file && other.sha256 == read.sha256;
-  });
-  if (!known) files->push_back(read);
 }
 
 std::string sha256_of(const std::string& bytes) {

@@ -4,6 +4,8 @@
 
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/input_file.h"
+#include "bentaxis/files/input_log.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
 
 namespace bentaxis {
@@ -24,6 +26,18 @@ std::string name_for(const std::filesystem::path& file,
   return name;
 }
 
+// A curve's bytes, which must be those that the case was read from.
+std::string curve_of(const Case& the_case, const std::filesystem::path& file) {
+  std::string bytes = bytes_of(file);
+  const std::string sha256 = sha256_of(bytes);
+  const auto is_other = [&](const InputFile& read) {
+    return read.file == file && read.sha256 != sha256;
+  };
+  if (std::any_of(the_case.inputs.begin(), the_case.inputs.end(), is_other))
+    throw InputError(file.string() + ": has changed since the case was read: read the case again");
+  return bytes;
+}
+
 }  // namespace
 
 std::string bytes_of(const std::filesystem::path& file) {
@@ -38,8 +52,8 @@ KeptCase kept_case(const Case& the_case) {
       const auto* curve = std::get_if<CurveField>(&parameter.field);
       if (curve == nullptr || !is_active(table, parameter, standard_registry(), copy)) continue;
       std::filesystem::path* file = curve->file.write(copy);
-      if (file->empty()) continue;
-      kept.curves.push_back({name_for(*file, kept.curves), bytes_of(*file)});
+      if (file == nullptr || file->empty()) continue;
+      kept.curves.push_back({name_for(*file, kept.curves), curve_of(the_case, *file)});
       *file = kRoot + kept.curves.back().name;
     }
   kept.text = case_text(copy);

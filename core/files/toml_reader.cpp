@@ -3,8 +3,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 
@@ -149,8 +149,15 @@ std::string literal(const std::string& text, std::size_t at, double value) {
   std::string word = at < text.size() ? text.substr(at, ends - at) : "";
   std::string digits = word;
   std::erase(digits, '_');
-  char* end = nullptr;
-  const bool same = !digits.empty() && std::strtod(digits.c_str(), &end) == value && *end == 0;
+  std::string_view rest = digits;
+  if (rest.starts_with('+')) rest.remove_prefix(1);
+  const bool hexadecimal = rest.starts_with("0x");
+  if (hexadecimal) rest.remove_prefix(2);
+  double number = 0;
+  const auto [stop, error] =
+      std::from_chars(rest.data(), rest.data() + rest.size(), number,
+                      hexadecimal ? std::chars_format::hex : std::chars_format::general);
+  const bool same = error == std::errc() && stop == rest.data() + rest.size() && number == value;
   return same ? word : "";
 }
 

@@ -82,6 +82,27 @@ std::string without_control_characters(const std::string& text, bool spaces) {
   return out;
 }
 
+std::string plain_text(std::string_view text, std::size_t most) {
+  std::string plain;
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    const std::size_t length = std::max<std::size_t>(c.length, 1);
+    if (plain.size() + length > most) {
+      plain += "..";
+      break;
+    }
+    if (c.length == 0)
+      plain += '?';
+    else if (is_control(c.code))
+      plain += ' ';
+    else
+      plain += text.substr(at, length);
+    at += length;
+  }
+  while (!plain.empty() && plain.back() == ' ') plain.pop_back();
+  return plain;
+}
+
 bool is_utf8(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const Character c = character_at(text, at);

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 
 namespace bentaxis {
@@ -42,21 +41,27 @@ void append_number(std::string& text, double value) {
   text.append(buffer.data(), result.ptr);
 }
 
-std::string rounded_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
+double rounded(double value, int digits) {
+  const std::string text = rounded_text(value, digits);
+  double result = value;
+  std::from_chars(text.data(), text.data() + text.size(), result);
+  return result;
+}
+
+std::string rounded_text(double value, int digits) {
+  std::array<char, 32> text;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), value,
+                                    std::chars_format::general, digits);
+  return {text.data(), result.ptr};
 }
 
 namespace {
 
 // One unit of the third digit further where rounding went the wrong way.
 std::string rounded_to(double value, double direction) {
-  std::string text = rounded_text(value);
-  double rounded = 0;
-  std::from_chars(text.data(), text.data() + text.size(), rounded);
-  if (!((rounded - value) * direction < 0)) return text;
-  return rounded_text(rounded +
+  const double nearest = rounded(value, 3);
+  if (!((nearest - value) * direction < 0)) return rounded_text(nearest);
+  return rounded_text(nearest +
                       direction * std::pow(10, std::floor(std::log10(std::abs(value))) - 2));
 }
 

@@ -8,6 +8,7 @@
 
 #include "bentaxis/pump/error.h"
 #include "commands.h"
+#include "launched_ranks.h"
 
 #ifdef BENTAXIS_HAS_MPI
 #include <mpi.h>
@@ -16,12 +17,8 @@
 namespace bentaxis::cli {
 namespace {
 
-// Starting MPI takes a while, so that a process on its own does without. What Open MPI, MPICH and
-// Slurm leave for those they start:
-bool is_one_of_several() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"})
-    if (std::getenv(name) != nullptr) return true;
-  return false;
+LaunchedRanks launched() {
+  return launched_ranks([](const char* name) { return std::getenv(name); });
 }
 
 }  // namespace
@@ -58,7 +55,7 @@ void Ranks::must_be_same(const std::string& text, const std::string& what) const
 
 int in_ranks(const std::function<int(const Ranks&)>& job) {
   Ranks ranks;
-  if (!is_one_of_several()) return job(ranks);
+  if (!launched().by_mpi) return job(ranks);  // starting MPI takes a while
   int provided = 0;  // the thread that starts MPI is the only one to call it
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank_);
@@ -90,7 +87,7 @@ void Ranks::wait() const {}
 void Ranks::must_be_same(const std::string&, const std::string&) const {}
 
 int in_ranks(const std::function<int(const Ranks&)>& job) {
-  if (is_one_of_several())
+  if (launched().several)
     throw InputError(
         "started as one of several ranks, but this program was built without MPI; install "
         "libopenmpi-dev (scripts/setup full) and build again, or take --part I/N");

@@ -51,25 +51,6 @@ struct Point {
   Inputs inputs;
 };
 
-double& number_of(Inputs& inputs, Input which) {
-  switch (which) {
-    case Input::speed:
-      return inputs.speed;
-    case Input::acceleration:
-      return inputs.acceleration;
-    case Input::torque:
-      return inputs.torque;
-    case Input::suction:
-      return inputs.suction;
-    case Input::delivery:
-      return inputs.delivery;
-    case Input::load_share:
-    case Input::load_share_replaces_curve:
-      break;
-  }
-  return inputs.load_share;
-}
-
 // A size at which oil flows through the load, of those whose size is found at the start.
 double load_size_of(const Case& the_case) {
   if (!the_case.hydraulics) return 0;
@@ -259,7 +240,7 @@ class Finder {
       value = !value;
       return 1;
     }
-    double& value = number_of(point.inputs, known.input);
+    double& value = input_of(point.inputs, known.input);
     const double kept = value;
     value = kept * random_.between(0.8, 0.95) + (kept == 0 ? 1 : 0);
     return value - kept;

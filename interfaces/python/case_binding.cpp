@@ -141,11 +141,12 @@ void add_class(py::module_& module) {
           "Path of its file, absolute.")
       .def(py::pickle(
           [](const PythonCase& self) {
-            return py::make_tuple(self.text(), self.file().string(), self.changes());
+            return py::make_tuple(self.text(), self.file().string(), self.changes(), self.sha256());
           },
           [](const py::tuple& state) {
             return PythonCase(state[0].cast<std::string>(), state[1].cast<std::string>(),
-                              state[2].cast<PythonCase::Changes>());
+                              state[2].cast<PythonCase::Changes>(),
+                              state.size() > 3 ? state[3].cast<std::string>() : std::string());
           }))
       .attr("__hash__") = py::none();
 }

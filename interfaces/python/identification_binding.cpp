@@ -4,6 +4,7 @@
 #include <map>
 
 #include "bentaxis/designs/identify_document.h"
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/number.h"
 #include "binding.h"
 #include "call.h"
@@ -78,13 +79,15 @@ Identification identify(const PythonCase& the_case, const Paths& data, const Bou
     throw InputError(
         "identify: this module was built without Ceres; install libceres-dev (scripts/setup full) "
         "and build again");
-  const Case copy = the_case.copy();
+  Case copy = the_case.copy();
   warn_of_plausibility(plausibility_texts(copy));
   return {unlocked([&](const study::PartProgress& progress_of) {
+            const InputLog inputs(InputLog::Threads::own);
             designs::IdentificationData all;
             for (const std::string& file : files) designs::read_identification(file, copy, all);
             for (const std::string& text : bounds)
               all.unknowns.push_back(designs::unknown_of("unknowns", text, copy));
+            for (const InputFile& read : inputs.noted()) copy.inputs.push_back(read);
             designs::DataModel model(copy, std::move(all));
             designs::Identification result = designs::identify(model, options, progress_of);
             return std::make_shared<const Found>(Found{std::move(model), std::move(result)});

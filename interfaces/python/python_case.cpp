@@ -4,6 +4,7 @@
 
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/input_file.h"
+#include "bentaxis/files/input_log.h"
 
 namespace bentaxis::python {
 namespace {
@@ -35,19 +36,24 @@ Case parsed(const std::string& text, const std::filesystem::path& file,
 
 PythonCase PythonCase::read(const std::filesystem::path& file, const Changes& changes) {
   const std::filesystem::path place = std::filesystem::absolute(file).lexically_normal();
-  return {read_input_file(place, {"a case file", kLargestSettings}), place, changes};
+  const std::string text = read_input_file(place, {"a case file", kLargestSettings});
+  return {text, place, changes, sha256_of(text)};
 }
 
-PythonCase::PythonCase(std::string text, const std::filesystem::path& file, const Changes& changes)
-    : text_(std::move(text)), file_(std::filesystem::absolute(file).lexically_normal()) {
-  add(changes_, changes);
-  case_ = parsed(text_, file_, changes_);
+PythonCase::PythonCase(std::string text, const std::filesystem::path& file, const Changes& changes,
+                       std::string sha256)
+    : text_(std::move(text)),
+      file_(std::filesystem::absolute(file).lexically_normal()),
+      sha256_(std::move(sha256)) {
+  change(changes);
 }
 
 void PythonCase::change(const Changes& changes) {
   Changes all = changes_;
   add(all, changes);
-  case_ = parsed(text_, file_, all);
+  Case changed = parsed(text_, file_, all);
+  if (!sha256_.empty()) changed.inputs.insert(changed.inputs.begin(), {file_, sha256_});
+  case_ = std::move(changed);
   changes_ = std::move(all);
 }
 

@@ -22,8 +22,10 @@ class PythonCase {
 
   /// @throws InputError
   static PythonCase read(const std::filesystem::path& file, const Changes& changes);
-  /// @param file  in messages, and where files that the case names are
-  PythonCase(std::string text, const std::filesystem::path& file, const Changes& changes);
+  /// @param file    in messages, and where files that the case names are
+  /// @param sha256  of the file's bytes; empty where the text was not read from it
+  PythonCase(std::string text, const std::filesystem::path& file, const Changes& changes,
+             std::string sha256 = {});
 
   /// All together or, where they are refused, none. @throws InputError
   void change(const Changes& changes);
@@ -34,6 +36,7 @@ class PythonCase {
   const std::string& text() const { return text_; }
   const std::filesystem::path& file() const { return file_; }
   const Changes& changes() const { return changes_; }
+  const std::string& sha256() const { return sha256_; }
 
   /// Keys that have a value in this case, in the order of the file.
   std::vector<std::string> keys() const;
@@ -43,7 +46,8 @@ class PythonCase {
  private:
   std::string text_;
   std::filesystem::path file_;  // absolute
-  Changes changes_;             // one per key
+  std::string sha256_;
+  Changes changes_;  // one per key
   Case case_;
 };
 

@@ -8,7 +8,6 @@
 
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/study/reference_set.h"
 #include "data_folder.h"
 #include "provenance.h"
 #include "versions.h"
@@ -43,11 +42,9 @@ std::vector<fs::path> write_report(const fs::path& folder, const std::string& ca
   const std::lock_guard lock(one_at_a_time);
   cli::ReportFolders folders({folder.string(), ""});
   cli::remember_command(call + ", Python");
-  const InputLog inputs;
-  for (const Case* const the_case : cases) {
-    if (fs::exists(the_case->file)) InputLog::note(the_case->file);
-    for (const fs::path& file : study::files_of(*the_case)) InputLog::note(file);
-  }
+  const InputLog inputs(InputLog::Threads::own);
+  for (const Case* const the_case : cases)
+    for (const InputFile& read : the_case->inputs) InputLog::note(read);
   return folders.write("report", document, curves, further);
 }
 

@@ -1,8 +1,9 @@
 #include "reactions/solver_guard.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "bentaxis/pump/error.h"
@@ -61,9 +62,10 @@ constexpr const char* kCauses =
 }  // namespace
 
 std::string short_text(double error) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", error);
-  return text;
+  std::array<char, 32> text;
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), error,
+                                    std::chars_format::scientific, 1);
+  return {text.data(), result.ptr};
 }
 
 double estimated_force_error(const PumpSystem& pump, const SimTK::State& state) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/time_signal.h"
@@ -163,7 +162,6 @@ UnitCoupling::UnitCoupling(const UnitChoice& choice, const Case& the_case, bool 
     : driven_(the_case), instances_(std::make_shared<Instances>()) {
   drive_of(the_case);
   unit_ = std::make_shared<fmu::ImportedUnit>(choice.file, choice.limits);
-  InputLog::note(choice.file);
   connections_ = connect(unit_->description(), pump_side(the_case, oil_follows), choice.connect,
                          choice.file.string());
   find_parameters(choice.parameters);

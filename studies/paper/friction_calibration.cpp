@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <tuple>
 
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/study/operating_points.h"
 
 namespace bentaxis::study {
@@ -14,10 +14,6 @@ namespace {
 
 constexpr int kSteps = 4;
 constexpr double kFound = 1e-5;  // of the wanted torques: both parameters are found to six digits
-
-double six_digits(double value) {
-  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
-}
 
 }  // namespace
 
@@ -61,8 +57,8 @@ std::vector<FrictionStep> calibrate_friction(Case the_case, const MeanTorques& w
           "the "
           "mean torque; its viscous part (piston_viscous_N_s_per_m) alone adds {:.4g} Nm",
           file, coulomb, wanted.with_friction - wanted.without_friction, viscous / factor));
-    friction.piston_coulomb = six_digits(coulomb);
-    friction.shaft_torque_factor = six_digits(factor);
+    friction.piston_coulomb = rounded(coulomb, 6);
+    friction.shaft_torque_factor = rounded(factor, 6);
   }
   const MeanTorques& last = steps.back().torques;
   for (const auto& [name, found, asked] :

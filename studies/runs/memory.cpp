@@ -45,45 +45,56 @@ double left_in(const fs::path& limit, const fs::path& used, const fs::path& fact
   return std::max(0.0, *most - *now + number_behind(facts, files).value_or(0));
 }
 
-double left_in_control_group() {
-  double left = kUnknown;
-  std::ifstream in("/proc/self/cgroup");
-  for (std::string line; std::getline(in, line);) {
-    // "0::/path" of the second version, "N:memory:/path" of the first. In a container the path is
-    // that of the host, and its own files lie at the top.
-    const std::size_t second = line.find(':', line.find(':') + 1);
-    if (second == std::string::npos) continue;
-    const std::string kinds = line.substr(0, second), path = line.substr(second + 1);
-    for (const std::string& place : {path, std::string()}) {
-      if (kinds == "0:") {
-        const fs::path group = "/sys/fs/cgroup" + place;
-        left = std::min(left, left_in(group / "memory.max", group / "memory.current",
-                                      group / "memory.stat", "inactive_file "));
-      } else if (kinds.ends_with(":memory")) {
-        const fs::path group = "/sys/fs/cgroup/memory" + place;
-        left =
-            std::min(left, left_in(group / "memory.limit_in_bytes", group / "memory.usage_in_bytes",
-                                   group / "memory.stat", "total_inactive_file "));
-      }
-    }
+// A process is limited by its group and by every group above that one. In a container the path may
+// be that of the host, while the container's own files lie at the top.
+double left_in_groups(const fs::path& top, const fs::path& group, const char* limit,
+                      const char* used, const std::string& files) {
+  fs::path place = top;
+  const auto left_here = [&] {
+    return left_in(place / limit, place / used, place / "memory.stat", files);
+  };
+  double left = left_here();
+  for (const fs::path& part : group.relative_path()) {
+    place /= part;
+    left = std::min(left, left_here());
   }
   return left;
 }
 
-double left_of_address_space() {
+double left_in_control_group(const fs::path& root) {
+  const fs::path top = root / "sys/fs/cgroup";
+  double left = kUnknown;
+  std::ifstream in(root / "proc/self/cgroup");
+  for (std::string line; std::getline(in, line);) {
+    // "0::/path" of the second version, "N:cpu,memory:/path" of the first.
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) continue;
+    const std::string kinds = "," + line.substr(first + 1, second - first - 1) + ",";
+    const fs::path group = line.substr(second + 1);
+    if (kinds == ",,")
+      left = std::min(left,
+                      left_in_groups(top, group, "memory.max", "memory.current", "inactive_file "));
+    else if (kinds.find(",memory,") != std::string::npos)
+      left = std::min(left, left_in_groups(top / "memory", group, "memory.limit_in_bytes",
+                                           "memory.usage_in_bytes", "total_inactive_file "));
+  }
+  return left;
+}
+
+double left_of_address_space(const fs::path& root) {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknown;
-  const double taken = number_behind("/proc/self/statm", "").value_or(0) *
+  const double taken = number_behind(root / "proc/self/statm", "").value_or(0) *
                        static_cast<double>(sysconf(_SC_PAGE_SIZE));
   return std::max(0.0, static_cast<double>(limit.rlim_cur) - taken);
 }
 
 }  // namespace
 
-double available_memory() {
-  const auto kilobytes = number_behind("/proc/meminfo", "MemAvailable:");
-  return std::min(
-      {kilobytes ? *kilobytes * 1024 : kUnknown, left_in_control_group(), left_of_address_space()});
+double available_memory(const fs::path& root) {
+  const auto kilobytes = number_behind(root / "proc/meminfo", "MemAvailable:");
+  return std::min({kilobytes ? *kilobytes * 1024 : kUnknown, left_in_control_group(root),
+                   left_of_address_space(root)});
 }
 
 void require_memory(double needed, const std::string& what, const std::string& advice,

@@ -1,6 +1,11 @@
 """Comparisons in Python, and both models held to stored curves."""
 
+import hashlib
 import json
+import locale
+import os
+import pickle
+import struct
 import xml.etree.ElementTree
 
 import numpy
@@ -10,6 +15,49 @@ from support import CASES, REPO, ModuleTest, main
 
 
 class ComparisonTest(ModuleTest):
+    def inputs_of(self, case, name):
+        bentaxis.compare(case).report(self.folder / name)
+        report = json.loads((self.folder / name / "report.json").read_text())
+        return {entry["file"].split("/")[-1]: entry["sha256"] for entry in report["provenance"]["inputs"]}
+
+    def test_a_report_names_the_bytes_that_were_read(self):
+        file, curve = self.folder / "case.toml", self.folder / "curve.csv"
+        file.write_text((CASES / "bap63_rated.toml").read_text())
+        curve.write_text("theta_deg,pressure_bar\n0,5\n90,5\n180,200\n270,200\n")
+        read = {one.name: hashlib.sha256(one.read_bytes()).hexdigest() for one in (file, curve)}
+        case = bentaxis.read_case(file, {"operation.samples_per_revolution": 36, "pressure.kind": "curve",
+                                         "pressure.file": "curve.csv"})
+        self.assertEqual(self.inputs_of(pickle.loads(pickle.dumps(case)), "pickled"), read)
+        file.write_text("schema = 1")
+        curve.write_text("theta_deg,pressure_bar\n0,5\n90,5\n180,300\n270,300\n")
+        self.assertEqual(self.inputs_of(case, "edited"), read)
+        file.unlink()
+        curve.unlink()
+        self.assertEqual(self.inputs_of(case, "gone"), read)
+
+    def test_a_decimal_comma_changes_nothing(self):
+        # LC_NUMERIC of the C library, with a comma; desktop programs set such a locale for the whole process.
+        entries = b",\0\0\0" + b",\0\0\0" + b"\0" * 4 + b"UTF-8\0"
+        (self.folder / "comma").mkdir()
+        (self.folder / "comma/LC_NUMERIC").write_bytes(
+            struct.pack("=8I", 0x20031114, 6, 32, 34, 35, 36, 40, 44) + entries)
+        os.environ["LOCPATH"] = str(self.folder)
+        self.addCleanup(os.environ.pop, "LOCPATH")
+        self.addCleanup(locale.setlocale, locale.LC_NUMERIC, "C")
+
+        def written(name):
+            bentaxis.compare(self.case(operation__samples_per_revolution=36)).report(self.folder / name)
+            report = json.loads((self.folder / name / "report.json").read_text())
+            report.pop("provenance")
+            for model in report["models"]:
+                model.pop("seconds", None)
+            return report, *((self.folder / name / file).read_text() for file in ("analytic.csv", "multibody.csv"))
+
+        usual = written("usual")
+        locale.setlocale(locale.LC_NUMERIC, "comma")
+        self.assertEqual(locale.localeconv()["decimal_point"], ",")
+        self.assertEqual(written("with_a_comma"), usual)
+
     def test_the_first_comparison(self):
         comparison = bentaxis.compare(self.case())
         self.assertTrue(comparison.agrees)

@@ -183,6 +183,8 @@ class IdentificationTest(ModuleTest):
         low, high = found.intervals["pump.tilt_deg"]
         self.assertLess(low, high)
         found.report(self.folder / "out")
+        inputs = json.loads((self.folder / "out/report.json").read_text())["provenance"]["inputs"]
+        self.assertEqual([entry["file"].split("/")[-1] for entry in inputs], ["bap63_rated.toml", "data.toml"])
         known = columns_of(self.folder / "out/bands.csv")
         for column, values in known.items():
             self.assert_same(found.bands[column], values)

@@ -9,9 +9,9 @@
 #include <cstring>
 #include <system_error>
 
+#include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "plain_text.h"
 
 namespace bentaxis::fmu {
 namespace {

@@ -9,7 +9,6 @@
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "plain_text.h"
 
 namespace bentaxis::fmu {
 namespace {

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "bentaxis/files/input_file.h"
+#include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "process/remove_tree.h"
@@ -88,8 +90,12 @@ void Unpacked::remove() noexcept {
 }
 
 void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
-  int error = 0;
-  const std::unique_ptr<zip_t, Close> archive(zip_open(file.c_str(), ZIP_RDONLY, &error));
+  const std::string content = read_input_file(file, {"an FMU", most});
+  InputLog::note(file, content);
+  zip_source_t* const source = zip_source_buffer_create(content.data(), content.size(), 0, nullptr);
+  const std::unique_ptr<zip_t, Close> archive(
+      source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY, nullptr));
+  if (!archive) zip_source_free(source);
   if (!archive) fail(file, "is no zip archive, or a damaged one: must be a .fmu");
   const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
   if (entries > kMostEntries)

@@ -42,6 +42,8 @@ double nominal_of(Input input, const Case& the_case) {
   return 1;
 }
 
+}  // namespace
+
 double& input_of(Inputs& inputs, Input which) {
   switch (which) {
     case Input::speed:
@@ -60,8 +62,6 @@ double& input_of(Inputs& inputs, Input which) {
   }
   return inputs.load_share;
 }
-
-}  // namespace
 
 bool operator==(const Inputs& a, const Inputs& b) {
   return a.speed == b.speed && a.acceleration == b.acceleration && a.torque == b.torque &&
@@ -170,6 +170,11 @@ class Plant::Implementation {
   }
 
   coupled::OpenSystem& open() { return *open_; }
+  void rates(std::vector<double>& rates) {
+    if (!open_->rates(rates))
+      throw ComputationError("the rates of the states are not finite at " + rounded_text(time_) +
+                             " s");
+  }
   const std::vector<double>& nominals() const { return nominals_; }
   void set_time(double time) {
     time_ = time;
@@ -206,7 +211,8 @@ class Plant::Implementation {
 
   void set_state(const PlantState& state) {
     if (state.motion.size() != kMotionStates ||
-        static_cast<int>(state.oil.size()) != machine_->oil->states())
+        static_cast<int>(state.oil.size()) != machine_->oil->states() ||
+        !(state.started.empty() || state.started.size() == scales_of(case_).size()))
       throw InputError("the state is of another pump");
     go_on_from(state, state.load_size != load_size_ || state.started != started_);
   }
@@ -232,9 +238,16 @@ class Plant::Implementation {
       }
       return look(shaft, inputs, moved, unknowns);
     };
-    const std::vector<double> above = beside(1), below = beside(-1);
-    const std::vector<double> far_above = beside(2), far_below = beside(-2);
-    stand(outside_, values);  // as it was
+    std::vector<double> above, below, far_above, far_below;
+    const auto stand_as_before = [&] { stand(outside_, values); };
+    try {
+      above = beside(1), below = beside(-1);
+      far_above = beside(2), far_below = beside(-2);
+    } catch (...) {
+      stand_as_before();
+      throw;
+    }
+    stand_as_before();
     // Of fourth order: flows through orifices bend sharply where pressures are nearly equal.
     for (std::size_t i = 0; i < slope.size(); ++i)
       slope[i] = (8 * (above[i] - below[i]) - (far_above[i] - far_below[i])) / (12 * step);
@@ -283,7 +296,7 @@ class Plant::Implementation {
     inputs_ = kept;
     stand(there, values);
     std::vector<double> found, rates;
-    if (open_) open_->rates(rates);
+    if (open_) this->rates(rates);
     for (const Variable* unknown : unknowns)
       found.push_back(unknown->role == Role::derivative ? rates.at(unknown->place)
                       : unknown->role == Role::state    ? values.at(unknown->place)
@@ -297,7 +310,7 @@ class Plant::Implementation {
   }
   Case as_started() const {
     Case c = case_;
-    if (started_.size() != scales_of(c).size()) return c;
+    if (started_.empty()) return c;
     c.operation.speed_rpm = started_[0];
     c.pressure.ports = {started_[1], started_[2]};
     return c;
@@ -473,11 +486,7 @@ std::vector<double> Plant::states() const { return it_->open().values(); }
 const std::vector<double>& Plant::nominals() const { return it_->nominals(); }
 void Plant::set_time(double time) { it_->set_time(time); }
 void Plant::set_states(const std::vector<double>& states) { it_->set_states(states); }
-void Plant::rates(std::vector<double>& rates) {
-  if (!it_->open().rates(rates))
-    throw ComputationError("the rates of the states are not finite at " +
-                           rounded_text(it_->time()) + " s");
-}
+void Plant::rates(std::vector<double>& rates) { it_->rates(rates); }
 std::size_t Plant::indicator_count() const { return it_->open().indicators().size(); }
 void Plant::indicators(std::vector<double>& values) { it_->open().indicator_values(values); }
 Plant::Event Plant::pass_event() {

@@ -24,6 +24,8 @@ struct Inputs {
   bool acceleration_given = false;  ///< by whoever sets inputs: else reactions lack inertia by it
 };
 bool operator==(const Inputs& a, const Inputs& b);
+/// The number that an input is; of load_share_replaces_curve that of load_share.
+double& input_of(Inputs& inputs, Input which);
 
 /// A state of a unit that a run can go on from: everything but parameters.
 struct PlantState {

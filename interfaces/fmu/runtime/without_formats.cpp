@@ -7,6 +7,9 @@
 
 namespace bentaxis {
 
+InputLog::InputLog(Threads threads) : threads_(threads) {}
+InputLog::~InputLog() = default;
+std::vector<InputFile> InputLog::noted() const { return files_; }
 void InputLog::note(const std::filesystem::path& /*file*/, const std::string& /*content*/) {}
 
 namespace foreign {

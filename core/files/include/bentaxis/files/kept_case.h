@@ -18,7 +18,7 @@ struct KeptCase {
 };
 
 /// The case as case_text() has it, its curves under names of their own beside it.
-/// @throws InputError where a curve cannot be read
+/// @throws InputError where a curve cannot be read, or is another than the case was read from
 KeptCase kept_case(const Case& the_case);
 
 /// All of a file. @throws InputError where it cannot be read

@@ -43,6 +43,12 @@ struct UncertaintyData {
   std::vector<Correlation> correlations;
 };
 
+/// A file that was read, and what was in it.
+struct InputFile {
+  std::filesystem::path file;  ///< as it was named
+  std::string sha256;          ///< of its bytes: 64 hexadecimal digits
+};
+
 struct Case {
   std::filesystem::path file;
   std::string name;
@@ -57,6 +63,7 @@ struct Case {
   UncertaintyData uncertainty;              ///< empty where nothing is said
   std::string meant;                ///< reasons for doubtful values: "CODE: reason; CODE: reason"
   std::vector<InputEntry> entries;  ///< as read from a file; empty for a case made in memory
+  std::vector<InputFile> inputs;    ///< that the case was read from, each with what was read
 };
 
 }  // namespace bentaxis

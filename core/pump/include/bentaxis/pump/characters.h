@@ -1,7 +1,9 @@
 // Characters of texts that come from outside.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace bentaxis {
 
@@ -14,6 +16,10 @@ bool has_control_characters(const std::string& text, bool spaces);
 /// escaped where a terminal could take it for a control character.
 /// @param spaces  tab and line feed are escaped too
 std::string without_control_characters(const std::string& text, bool spaces = true);
+
+/// One line of UTF-8: control characters become spaces, bytes that are no UTF-8 question marks.
+/// @param most  bytes; longer text is cut between characters and ends in ".."
+std::string plain_text(std::string_view text, std::size_t most);
 
 /// Whether a text is valid UTF-8.
 bool is_utf8(const std::string& text);

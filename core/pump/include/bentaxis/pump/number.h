@@ -24,8 +24,11 @@ void append_number(std::string& text, double value);
 /// The same as a string of its own.
 std::string number_text(double value);
 
-/// To three digits, for people.
-std::string rounded_text(double value);
+/// The nearest number of so many significant decimal digits.
+double rounded(double value, int digits);
+
+/// To so many significant digits, for people. No locale of the process changes it.
+std::string rounded_text(double value, int digits = 3);
 /// The same on the allowed side of a limit: not above `value`, not below it.
 std::string rounded_down_text(double value);
 std::string rounded_up_text(double value);

@@ -1,6 +1,7 @@
 // Whether what is to be computed fits into the memory that there is.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace bentaxis::study {
@@ -8,7 +9,8 @@ namespace bentaxis::study {
 /// Memory that this process can still get, bytes: the least of what the machine has available, what
 /// its control group (a container, a batch job) leaves it, and what the limit of its address space
 /// (ulimit -v) leaves. Infinite where nothing of this is known.
-double available_memory();
+/// @param root  where the system's folders proc and sys are
+double available_memory(const std::filesystem::path& root = "/");
 
 /// @param needed     bytes, estimated
 /// @param what       what takes them, and by which key or option: begins the message
