@@ -63,6 +63,8 @@ study::GroupLine line_of(const std::string& model, const std::string& group,
     channel.comparison.peak = 1000;
     channel.comparison.allowed = 10;
     channel.comparison.largest = 10 * severities[i];
+    channel.comparison.verdict =
+        severities[i] > 1 ? compare::Verdict::differs : compare::Verdict::agrees;
     channel.finding = severities[i] > 1 ? compare::Finding::differs : compare::Finding::agrees;
     line.failed += channel.failed() ? 1 : 0;
     ++line.compared;

@@ -1,16 +1,11 @@
 // The parameters of this program, put together; each table stands in a file of tables/.
-#include <sstream>
-
+#include "bentaxis/pump/number.h"
 #include "tables/entries.h"
 
 namespace bentaxis {
 namespace tables {
 
-std::string short_text(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
+std::string short_text(double value) { return rounded_text(value, 6); }
 
 std::string arc_refusal(const PortArc& arc) {
   if (arc.from_deg < arc.to_deg && arc.to_deg <= arc.from_deg + 360) return "";

@@ -80,7 +80,7 @@ report::Section coupling_section(const SimulationResult& r) {
 }
 
 std::vector<report::Warning> coupling_warnings(const SimulationResult& r) {
-  if (r.coupling.empty() || !(r.coupling.front().error() > kMuch)) return {};
+  if (r.coupling.empty() || r.coupling.front().error() <= kMuch) return {};
   const CouplingChange& worst = r.coupling.front();
   return {{"coarse coupling",
            fmt::format("exchanging values every {:.3g} s alone makes an estimated error of {:.1e} "

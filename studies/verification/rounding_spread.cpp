@@ -29,8 +29,9 @@ std::map<std::string, double> largest_of_groups(const compare::Comparison& compa
   for (const auto& c : comparison.channels)
     if (c.channel.kind == ChannelKind::reaction) groups[c.channel.group] = 0;
   for (auto& [group, largest] : groups)
-    if (const auto* const found = comparison.furthest(
-            [&, name = group](const Channel& channel) { return channel.group == name; }))
+    if (const auto* const found = comparison.furthest([&, name = group](const Channel& channel) {
+          return channel.kind == ChannelKind::reaction && channel.group == name;
+        }))
       largest = found->largest_over_peak();
   return groups;
 }
