@@ -355,6 +355,15 @@ TEST(Registry, PlausibleRangesHoldTheDefaults) {
   EXPECT_GE(ranges, 15);
 }
 
+// Keys of a bearing's rating that is not given whole have defaults from keys that are not there.
+TEST(Registry, KeysOfARatingThatIsNotWholeAreCheckedAndUnused) {
+  for (const std::string key : {"tapered_e", "tapered_Y0"}) {
+    EXPECT_FALSE(parse_case(rated_text(), "x.toml", {"bearings." + key + "=0.4"}).ratings.tapered);
+    EXPECT_EQ(refusal([&] { parse_case(rated_text(), "x.toml", {"bearings." + key + "=-1"}); }),
+              "--set bearings." + key + "=-1: must be " + (key == "tapered_e" ? "> 0" : ">= 0"));
+  }
+}
+
 // Tables of the hydraulic side may stand in a case without one: checked and unused.
 TEST(Registry, KeysOfDataThatACaseLacksAreUnused) {
   for (const char* unused :

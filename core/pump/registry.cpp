@@ -204,12 +204,13 @@ void store(const Parameter& parameter, Case& the_case, const Value& value) {
 }
 
 std::optional<Value> default_of(const Parameter& parameter, const Case& the_case) {
-  if (parameter.fallback.computed != nullptr) return parameter.fallback.computed(the_case);
+  if (parameter.fallback.computed != nullptr)
+    return is_there(parameter, the_case) ? parameter.fallback.computed(the_case) : std::nullopt;
   return parameter.fallback.value;
 }
 
 NumberRange range_of(const Parameter& parameter, const Case& the_case) {
-  if (parameter.range_here != nullptr)
+  if (parameter.range_here != nullptr && is_there(parameter, the_case))
     if (auto range = parameter.range_here(the_case)) {
       range->slack = parameter.unit.to_si == nullptr ? 0 : kSlack;
       return *range;
