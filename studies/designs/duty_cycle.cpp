@@ -6,10 +6,11 @@
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::designs {
@@ -119,7 +120,7 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
   result.multibody.points.resize(rows);
   std::vector<std::string> reasons(rows);
   study::Reporting reporting(rows, progress_of("duty cycle"));
-  study::in_threads(0, rows, [&](std::size_t row) {
+  numerics::parallel_for(0, rows, [&](std::size_t row) {
     try {
       Case scratch = the_case;
       family.make(duty.rows[row].values, scratch);

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <utility>
 
+#include "bentaxis/numerics/object_pool.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/memory.h"
 #include "bentaxis/study/run.h"
-#include "idle.h"
 #include "turn_statistics.h"
 
 namespace bentaxis::designs {
@@ -28,7 +28,7 @@ struct Evaluator::Implementation {
     Case the_case;
     std::optional<TurnStatistics> turn;
   };
-  mutable Idle<Scratch> idle;
+  mutable numerics::ObjectPool<Scratch> scratches;
 
   Scratch fresh() const {
     Scratch scratch{family.base(), {}};
@@ -82,17 +82,17 @@ Evaluation Evaluator::evaluate(std::span<const double> values) const {
 
 std::vector<double> Evaluator::outputs_at(std::span<const double> values) const {
   std::vector<double> results(outputs().size());
-  auto scratch = implementation_->idle.take([&] { return implementation_->fresh(); });
+  auto scratch = implementation_->scratches.take([&] { return implementation_->fresh(); });
   family().make(values, scratch->the_case);
   implementation_->find(*scratch, results);
-  implementation_->idle.give_back(std::move(scratch));
+  implementation_->scratches.give_back(std::move(scratch));
   return results;
 }
 
 void Evaluator::evaluate(std::size_t count, std::span<const double> values,
                          std::span<double> results, std::span<std::string> reasons) const {
   const std::size_t n = family().variables().size(), m = outputs().size();
-  auto scratch = implementation_->idle.take([&] { return implementation_->fresh(); });
+  auto scratch = implementation_->scratches.take([&] { return implementation_->fresh(); });
   for (std::size_t i = 0; i < count; ++i) {
     const auto to = results.subspan(i * m, m);
     reasons[i].clear();
@@ -106,7 +106,7 @@ void Evaluator::evaluate(std::size_t count, std::span<const double> values,
     }
     if (!reasons[i].empty()) std::fill(to.begin(), to.end(), not_computed());
   }
-  implementation_->idle.give_back(std::move(scratch));
+  implementation_->scratches.give_back(std::move(scratch));
 }
 
 }  // namespace bentaxis::designs

@@ -6,12 +6,12 @@
 #include <set>
 
 #include "bentaxis/designs/points.h"
+#include "bentaxis/numerics/object_pool.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/run.h"
-#include "idle.h"
 #include "turn_statistics.h"
 
 namespace bentaxis::designs {
@@ -78,7 +78,7 @@ struct DataModel::Implementation {
     std::optional<analytic::BatchColumns> columns;
     ResultTable table;  // of the wanted columns
   };
-  mutable Idle<Scratch> idle;
+  mutable numerics::ObjectPool<Scratch> scratches;
 
   Scratch fresh() const {
     Scratch scratch;
@@ -326,7 +326,7 @@ std::vector<double> DataModel::start() const {
 bool DataModel::predict(std::span<const double> x, std::span<double> numbers) const {
   const Implementation& self = *implementation_;
   std::fill(numbers.begin(), numbers.end(), not_computed());
-  auto scratch = self.idle.take([&] { return self.fresh(); });
+  auto scratch = self.scratches.take([&] { return self.fresh(); });
   bool found = true;
   try {
     for (const Implementation::State& state : self.states) {
@@ -341,7 +341,7 @@ bool DataModel::predict(std::span<const double> x, std::span<double> numbers) co
   } catch (const ComputationError&) {
     found = false;
   }
-  self.idle.give_back(std::move(scratch));
+  self.scratches.give_back(std::move(scratch));
   return found;
 }
 

@@ -7,9 +7,10 @@
 
 #include "bentaxis/designs/identify.h"
 #include "bentaxis/designs/sensitivity.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/plausibility.h"
+#include "bentaxis/study/reporting.h"
 #include "row_major.h"
 
 namespace bentaxis::designs {
@@ -185,7 +186,7 @@ template <class Found, class Job>
 std::vector<Found> found_by(int threads, std::size_t count, const Job& job,
                             study::Reporting& reporting) {
   std::vector<std::optional<Found>> all(count);
-  study::in_threads(threads, count, [&](std::size_t i) {
+  numerics::parallel_for(threads, count, [&](std::size_t i) {
     try {
       all[i] = job(i);
     } catch (const InputError&) {

@@ -4,10 +4,11 @@
 #include <random>
 
 #include "bentaxis/designs/identify.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -312,7 +313,7 @@ Posterior posterior_of(const DataModel& model, const LeastSquaresFit& fit,
   std::vector<Chain> parts(kEnsembles);
   std::vector<double> accepted(kEnsembles);
   study::Reporting reporting(kEnsembles * steps, progress);
-  study::in_threads(options.threads, kEnsembles, [&](std::size_t e) {
+  numerics::parallel_for(options.threads, kEnsembles, [&](std::size_t e) {
     Ensemble ensemble(model, fit, options.seed, e);
     for (std::size_t s = 0; s < steps; ++s) {
       ensemble.step();
@@ -341,7 +342,7 @@ Posterior posterior_of(const DataModel& model, const LeastSquaresFit& fit,
   // Evenly over the steps, and over all walkers: those of one are not independent of each other.
   std::size_t stride = walkers * 5 / 8;
   while (std::gcd(stride, walkers) != 1) ++stride;
-  study::in_threads(options.threads, posterior.count, [&](std::size_t d) {
+  numerics::parallel_for(options.threads, posterior.count, [&](std::size_t d) {
     const std::size_t step = (2 * d + 1) * kept / (2 * posterior.count);
     const Vector& x = chain[step][d * stride % walkers];
     std::copy(x.begin(), x.end(),
@@ -356,7 +357,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
   const Posterior& posterior = result.posterior;
   std::vector<ResultTable> turns(posterior.count);
   study::Reporting reporting(posterior.count, progress);
-  study::in_threads(options.threads, posterior.count, [&](std::size_t d) {
+  numerics::parallel_for(options.threads, posterior.count, [&](std::size_t d) {
     turns[d] = model.turn(std::span(posterior.unknowns).subspan(d * model.size(), model.size()));
     reporting.done();
   });
@@ -397,7 +398,7 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
     for (const char* statistic : {"mean:", "min:", "max:"})
       outputs.push_back(output(statistic + layout.channels()[band.column].name, model.base()));
   result.candidates.resize(outputs.size());
-  study::in_threads(options.threads, outputs.size(), [&](std::size_t c) {
+  numerics::parallel_for(options.threads, outputs.size(), [&](std::size_t c) {
     const Output& o = outputs[c];
     Vector measured;
     for (const ResultTable& turn : turns) {

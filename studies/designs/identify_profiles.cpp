@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "bentaxis/designs/identify.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 #include "row_major.h"
 
 namespace bentaxis::designs {
@@ -125,7 +126,7 @@ std::vector<Profile> profiles_of(const DataModel& model, const LeastSquaresFit& 
   const Information information = information_of(model, fit.x, fit.jacobian);
   std::vector<Profile> profiles(model.size());
   study::Reporting reporting(model.size(), progress);
-  study::in_threads(threads, model.size(), [&](std::size_t i) {
+  numerics::parallel_for(threads, model.size(), [&](std::size_t i) {
     Profile& profile = profiles[i];
     Held held(problem, i);
     const double step = 1.96 * information.deviation[i];
@@ -152,7 +153,7 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
     if (data[i].use == Use::fitted && !data[i].curve) rows.push_back(i);
   std::vector<LeftOut> results(rows.size());
   study::Reporting reporting(rows.size(), progress);
-  study::in_threads(threads, rows.size(), [&](std::size_t r) {
+  numerics::parallel_for(threads, rows.size(), [&](std::size_t r) {
     const Datum& datum = data[rows[r]];
     LeftOut& out = results[r];
     out.datum = rows[r];

@@ -6,8 +6,9 @@
 #include <limits>
 #include <optional>
 
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 #include "row_major.h"
 
 #ifdef BENTAXIS_HAS_CERES
@@ -286,7 +287,7 @@ std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
                                            const Progress& progress) {
   std::vector<std::optional<LeastSquaresFit>> found(starts.size());
   study::Reporting reporting(starts.size(), progress);
-  study::in_threads(threads, starts.size(), [&](std::size_t i) {
+  numerics::parallel_for(threads, starts.size(), [&](std::size_t i) {
     try {
       found[i] = least_squares(problem, starts[i], options);
     } catch (const ComputationError&) {

@@ -7,10 +7,11 @@
 #include <cmath>
 
 #include "bentaxis/designs/points.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/memory.h"
+#include "bentaxis/study/reporting.h"
 #include "plain_double.h"
 
 namespace bentaxis::designs {
@@ -98,7 +99,7 @@ Evaluated evaluate(const Response& response, std::size_t outputs, std::size_t di
   Evaluated all{std::vector<double>(count * outputs), std::vector<std::string>(count)};
   const std::size_t blocks = (count + kPoints - 1) / kPoints;
   study::Reporting reporting(blocks, progress);
-  study::in_threads(threads, blocks, [&](std::size_t block) {
+  numerics::parallel_for(threads, blocks, [&](std::size_t block) {
     const std::size_t from = block * kPoints, here = std::min(kPoints, count - from);
     std::vector<double> values(here * dimension);
     for (std::size_t i = 0; i < here; ++i)

@@ -9,9 +9,10 @@
 
 #include "bentaxis/designs/points.h"
 #include "bentaxis/designs/propagation.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 #include "sobol_module.h"
 
 namespace bentaxis::designs {
@@ -158,7 +159,7 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
   std::vector<double> inputs(base * rows * n), results(base * rows * outputs);
   std::vector<std::string> reasons(base * rows);
   study::Reporting reporting(base, progress);
-  study::in_threads(threads, base, [&](std::size_t i) {
+  numerics::parallel_for(threads, base, [&](std::size_t i) {
     const auto values = std::span(inputs).subspan(i * rows * n, rows * n);
     design.points(i, values);
     response(rows, values, std::span(results).subspan(i * rows * outputs, rows * outputs),

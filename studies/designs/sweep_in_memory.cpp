@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "bentaxis/designs/sweep.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/results/stopwatch.h"
-#include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/memory.h"
+#include "bentaxis/study/reporting.h"
 
 namespace bentaxis::designs {
 
@@ -28,7 +29,7 @@ SweepResult compute_in_memory(const Sweep& sweep, int threads, const Progress& p
   result.results.resize(result.designs * m);
   std::vector<SweepBlock> blocks(sweep.blocks());  // reasons and checks of each, in its place
   study::Reporting reporting(std::max<std::size_t>(blocks.size(), 1), progress);
-  study::in_threads(threads, blocks.size(), [&](std::size_t i) {
+  numerics::parallel_for(threads, blocks.size(), [&](std::size_t i) {
     SweepBlock block = sweep.compute(i, [&] { reporting.tick(); });
     const auto place = [&](std::size_t width) {
       return static_cast<std::ptrdiff_t>(block.first * width);

@@ -16,9 +16,10 @@
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/files/whole_file.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/registry.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 
 namespace bentaxis::designs {
 namespace fs = std::filesystem;
@@ -343,7 +344,7 @@ ResumedBlocks compute_blocks(const Sweep& sweep, const SweepParts& parts, const 
   }
   if (share.resume) resumed.misplaced = parts.misplaced(missing);
   study::Reporting reporting(missing.size(), progress);
-  study::in_threads(share.threads, missing.size(), [&](std::size_t i) {
+  numerics::parallel_for(share.threads, missing.size(), [&](std::size_t i) {
     parts.keep(missing[i], sweep.compute(missing[i], [&] { reporting.tick(); }));
     reporting.done();
   });

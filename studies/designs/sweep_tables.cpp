@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "bentaxis/files/csv.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/in_threads.h"
 #include "sweep_hdf5.h"
 
 namespace bentaxis::designs {
@@ -142,7 +142,7 @@ SweepResult write_sweep(const Sweep& sweep, const SweepParts& parts, const Sweep
   std::vector<ReadBlock> before, now;
   for (std::size_t first = 0; first < sweep.blocks(); first += kAtATime) {
     now.assign(std::min(kAtATime, sweep.blocks() - first), {});
-    study::in_threads(threads, 1 + now.size(), [&](std::size_t job) {
+    numerics::parallel_for(threads, 1 + now.size(), [&](std::size_t job) {
       if (job == 0) return write(before);
       ReadBlock& one = now[job - 1];
       one.block = parts.read(first + job - 1);

@@ -412,9 +412,6 @@ class Guesser {
   std::optional<Assignment> at_any_angle(const Vectors& at) const {
     FrameChoice frame{"S1", compare::kNoTurn, "", {}};
     Assignment best = in_frame(at, frame);
-    const auto keep = [&](const Assignment& a) {
-      if (a.cost < best.cost) best = a;
-    };
     // What each vector alone shows, as the one of ours that a rotation brings nearest to it.
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (const int sign : {1, -1}) {
@@ -428,7 +425,9 @@ class Guesser {
           most = fit;
           frame.axes = axes;
         }
-        keep(in_frame(at, frame));
+        // Of two that fit as well the one without a reversal, which comes first.
+        Assignment a = in_frame(at, frame);
+        if (a.cost < best.cost * (1 - 1e-6) - 1e-9) best = std::move(a);
       }
     // All of them together. A vector weighs the less the more it differs: one that is wrong does
     // not turn the frame of the others.
@@ -445,7 +444,7 @@ class Guesser {
       }
       frame.axes = nearest_rotation(products, weights);
       last = in_frame(at, frame);
-      keep(last);
+      if (last.cost < best.cost) best = last;
     }
     for (const char* base : {"S1", "S2"})
       if (angle_from_right_angles(carried(best.frame.axes, frames_.at("S1"), frames_.at(base))) <

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/operating_points.h"
+#include "bentaxis/study/reporting.h"
 #include "rattle_pieces.h"
 
 namespace bentaxis::study {
@@ -117,7 +118,7 @@ RattleMap rattle_map(const Case& the_case, const RattleOptions& options,
   }
   Reporting points(2 * missing.size() * options.speed_rpm.size(), progress_of("rattle"));
   std::vector<std::string> reasons(map.rows.size());
-  in_threads(options.threads, missing.size(), [&](std::size_t i) {
+  numerics::parallel_for(options.threads, missing.size(), [&](std::size_t i) {
     RattleRow& row = map.rows[missing[i]];
     try {
       row = compute_row(
@@ -145,7 +146,7 @@ RattleMap rattle_map(const Case& the_case, const RattleOptions& options,
   const auto chosen = points_to_check(map);
   map.checks.resize(chosen.size());
   Reporting checks(chosen.size(), progress_of("Simbody"));
-  in_threads(options.threads, chosen.size(), [&](std::size_t i) {
+  numerics::parallel_for(options.threads, chosen.size(), [&](std::size_t i) {
     map.checks[i] = check_point(map, chosen[i].first, chosen[i].second, [&] { checks.tick(); });
     checks.done();
   });

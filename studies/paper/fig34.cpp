@@ -5,9 +5,10 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/simulation.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -169,7 +170,7 @@ class Study {
                                    const Progress& progress) const {
     std::vector<Fig34Curve> curves(points.size());
     Reporting reporting(points.size(), progress);
-    in_threads(0, points.size(), [&](std::size_t i) {
+    numerics::parallel_for(0, points.size(), [&](std::size_t i) {
       curves[i] = simulate(points[i], windows, false);
       reporting.done();
     });

@@ -8,11 +8,12 @@
 #include <initializer_list>
 
 #include "bentaxis/files/csv.h"
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/efficiency.h"
-#include "bentaxis/study/in_threads.h"
+#include "bentaxis/study/reporting.h"
 
 namespace bentaxis::study {
 namespace {
@@ -66,7 +67,7 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
   std::vector<std::string> reasons(count);
   Reporting reporting(count, progress);
   const PartProgress within = [&](const std::string&) { return [&](double) { reporting.tick(); }; };
-  in_threads(kMostThreads, count, [&](std::size_t i) {
+  numerics::parallel_for(kMostThreads, count, [&](std::size_t i) {
     reporting.tick();
     Case at = the_case;
     at.pressure.ports.delivery = pascals(delivery_bar[i]);

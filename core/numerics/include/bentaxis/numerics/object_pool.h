@@ -1,4 +1,4 @@
-// What one thread at a time works in, kept for the next one.
+// Objects that one thread at a time works with, kept for the next one.
 #pragma once
 
 #include <memory>
@@ -6,19 +6,19 @@
 #include <utility>
 #include <vector>
 
-namespace bentaxis::designs {
+namespace bentaxis::numerics {
 
 template <class T>
-class Idle {
+class ObjectPool {
  public:
-  /// One that is idle, or a new one, which make() returns.
+  /// An unused object, or a new one, which make() returns.
   template <class Make>
   std::unique_ptr<T> take(const Make& make) {
     {
       const std::lock_guard lock(mutex_);
-      if (!idle_.empty()) {
-        auto one = std::move(idle_.back());
-        idle_.pop_back();
+      if (!unused_.empty()) {
+        auto one = std::move(unused_.back());
+        unused_.pop_back();
         return one;
       }
     }
@@ -26,12 +26,12 @@ class Idle {
   }
   void give_back(std::unique_ptr<T> one) {
     const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(one));
+    unused_.push_back(std::move(one));
   }
 
  private:
   std::mutex mutex_;
-  std::vector<std::unique_ptr<T>> idle_;
+  std::vector<std::unique_ptr<T>> unused_;
 };
 
-}  // namespace bentaxis::designs
+}  // namespace bentaxis::numerics
