@@ -126,7 +126,7 @@ std::optional<Model::Settled> Model::find(const Instant& instant,
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), prepared_->numbers, instant, values.data());
   if (!has_teeth()) return {};
-  return let_teeth_act(instant, values);
+  return resolve_tooth_contact(instant, values);
 }
 
 void Model::act(const Instant& instant, const ToothLag& lag, TeethAction& teeth) const {
@@ -144,7 +144,7 @@ void Model::reactions(const Instant& instant, std::vector<long double>& values) 
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (prepared_->imposed) values[layout_.Rcs()] = not_computed();
   all_reactions(prepared_->common(), extended(prepared_->numbers), instant, values.data());
-  if (has_teeth()) let_teeth_act(instant, values);
+  if (has_teeth()) resolve_tooth_contact(instant, values);
 }
 
 namespace {
@@ -160,7 +160,8 @@ double on_block(const Instant& instant, double rcs) {
 // force. Reactions were found with all of that at O4: what the teeth's own force and moment differ
 // by comes on top.
 template <class Real>
-Model::Settled Model::let_teeth_act(const Instant& instant, std::vector<Real>& values) const {
+Model::Settled Model::resolve_tooth_contact(const Instant& instant,
+                                            std::vector<Real>& values) const {
   using closed_form::Vec3;
   const closed_form::Pump<double>& p = prepared_->numbers;
   const BevelTeeth& teeth = *prepared_->teeth;

@@ -409,15 +409,15 @@ ToothLag BevelTeeth::rest(double theta, double torque) const {
   double near = touch(side);
   double near_excess = excess(near);
   if (side * near_excess >= 0) return {near, 0};
-  constexpr double kMost = 0.1;  // rad
-  double step = std::clamp(std::abs(near_excess) / stiffness, 1e-9, kMost);
+  constexpr double kMax = 0.1;  // rad
+  double step = std::clamp(std::abs(near_excess) / stiffness, 1e-9, kMax);
   double far = near + side * step;
   double far_excess = excess(far);
   while (side * far_excess < 0) {
     near = far;
     near_excess = far_excess;
     step *= 2;
-    if (step > kMost)
+    if (step > kMax)
       throw ComputationError("analytic model: no lag of the teeth carries a torque of " +
                              rounded_text(torque) +
                              " Nm at theta = " + rounded_text(theta / kRadPerDegree) + " deg");

@@ -27,7 +27,7 @@ using namespace bentaxis::analytic::simulation;
 
 // Rounding of a state's size: no tolerance below it can be met.
 constexpr double kRounding = 1e-15;
-constexpr long kMostSteps = 1000000;
+constexpr long kMaxSteps = 1000000;
 
 // States over their scales.
 struct Problem {
@@ -129,7 +129,7 @@ void multistep(int kind, Problem& problem, double* y, double tolerance) {
   check(CVodeInit(memory, rates_for_sundials, 0, state));
   check(CVodeSStolerances(memory, kRounding, tolerance));
   check(CVodeSetUserData(memory, &problem));
-  check(CVodeSetMaxNumSteps(memory, kMostSteps));
+  check(CVodeSetMaxNumSteps(memory, kMaxSteps));
   SUNMatrix matrix = nullptr;
   SUNLinearSolver linear = nullptr;
   SUNNonlinearSolver fixed_point = nullptr;
@@ -163,7 +163,7 @@ void runge_kutta(ARKODE_ERKTableID table, Problem& problem, double* y, double to
   void* const memory = ERKStepCreate(rates_for_sundials, 0, state, context);
   check(ERKStepSStolerances(memory, kRounding, tolerance));
   check(ERKStepSetUserData(memory, &problem));
-  check(ERKStepSetMaxNumSteps(memory, kMostSteps));
+  check(ERKStepSetMaxNumSteps(memory, kMaxSteps));
   check(ERKStepSetTableNum(memory, table));
   problem.over_pieces(y, [&](double from, double to) {
     check(ERKStepReInit(memory, rates_for_sundials, from, state));

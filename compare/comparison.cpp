@@ -221,7 +221,7 @@ const ChannelComparison* Comparison::find(const std::string& channel_name) const
 }
 
 double scale_of(double peak, double load) {
-  return peak <= kNoSignal * load ? load : std::max(peak, kLeastScale * load);
+  return peak <= kNoSignal * load ? load : std::max(peak, kMinScale * load);
 }
 
 double scale_of(const ResultTable& table, const Channel& channel, const ZeroScales& zero_scales) {

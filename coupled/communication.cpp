@@ -67,7 +67,7 @@ void Communication::read(double time, const SystemState& state) {
 
 // What acts has changed. A speed that jumps takes the bodies along: what they gain is work of what
 // turns the shaft.
-void Communication::surround(const Surroundings& outside, Course& course,
+void Communication::surround(const Surroundings& outside, HybridIntegrator& course,
                              const SystemState& state) {
   const double time = course.time();
   const double before = mechanics_.kinetic_energy(time, state.motion);
@@ -79,7 +79,7 @@ void Communication::surround(const Surroundings& outside, Course& course,
   course.jump(after);
 }
 
-void Communication::pass(Course& course) {
+void Communication::pass(HybridIntegrator& course) {
   const double time = next();
   SystemState state;
   course.state_at(time, state);

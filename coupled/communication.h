@@ -25,11 +25,11 @@ class Communication {
   double next() const;
   /// Passes it: a course that has got there goes on from it under what the partner gives.
   /// @throws InputError where the case does not take that, what the partner throws
-  void pass(Course& course);
+  void pass(HybridIntegrator& course);
 
  private:
   void read(double time, const SystemState& state);
-  void surround(const Surroundings& outside, Course& course, const SystemState& state);
+  void surround(const Surroundings& outside, HybridIntegrator& course, const SystemState& state);
 
   Mechanics& mechanics_;
   Oil& oil_;

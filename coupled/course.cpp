@@ -12,22 +12,22 @@
 namespace bentaxis::coupled {
 namespace {
 
-constexpr long kMostSteps = 20000000;  // some minutes of the closed form
+constexpr long kMaxSteps = 20000000;  // some minutes of the closed form
 // What a simulation would take is foreseen after so many steps; it is given up early where that is
 // so many times too much.
 constexpr long kStepsToForesee = 200000;
 constexpr double kHopeless = 3;
-constexpr std::size_t kMostEvents = 1000000;
+constexpr std::size_t kMaxEvents = 1000000;
 // A step that is expected to reach an edge goes beyond it by this part of itself.
 constexpr double kBeyond = 1e-6;
 constexpr double kOnTouch = 1e-15;  // m: as good as touching
-constexpr int kMostShortSteps = 1000;
+constexpr int kMaxShortSteps = 1000;
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double tolerance,
-               bool balances)
+HybridIntegrator::HybridIntegrator(std::string name, Mechanics& mechanics, const Oil& oil,
+                                   double tolerance, bool balances)
     : name_(std::move(name)),
       system_(mechanics, oil, balances),
       integrator_(system_, tolerance),
@@ -40,14 +40,14 @@ Course::Course(std::string name, Mechanics& mechanics, const Oil& oil, double to
   integrals_.assign(static_cast<std::size_t>(system_.integrals()), 0.0);
 }
 
-void Course::fail(const std::string& why) const {
+void HybridIntegrator::fail(const std::string& why) const {
   const double speed = shaft(time_, state_).speed / kRadPerSecondPerRpm;
   throw ComputationError(name_ + (has_oil_ ? " model with oil" : " model") +
                          ": the simulation stops at " + rounded_text(time_) + " s, the shaft at " +
                          rounded_text(speed) + " rpm: " + why);
 }
 
-void Course::start(double time, const SystemState& state) {
+void HybridIntegrator::start(double time, const SystemState& state) {
   time_ = step_start_ = time;
   state_ = state;
   std::fill(integrals_.begin(), integrals_.end(), 0.0);
@@ -58,7 +58,7 @@ void Course::start(double time, const SystemState& state) {
   restart_ = true;
 }
 
-void Course::go_back(double time) {
+void HybridIntegrator::go_back(double time) {
   if (time < time_) {
     SystemState there;
     state_at(time, there);
@@ -77,12 +77,12 @@ void Course::go_back(double time) {
   restart_ = true;
 }
 
-void Course::set_interval() {
+void HybridIntegrator::set_interval() {
   system_.from = edges_.from();
   system_.to = edges_.to();
 }
 
-void Course::start_teeth() {
+void HybridIntegrator::start_teeth() {
   touching_ = {};
   Mechanics& mechanics = system_.mechanics();
   if (!mechanics.compliant()) return;
@@ -105,7 +105,7 @@ void Course::start_teeth() {
   }
 }
 
-void Course::contact_changes(int flank, bool touch) {
+void HybridIntegrator::contact_changes(int flank, bool touch) {
   Touching& of = touching_[flank > 0 ? 0 : 1];
   if (touch == of.now) return;
   // Teeth of unequal pitch may press on both flanks; with one line of action each a flank that
@@ -113,8 +113,8 @@ void Course::contact_changes(int flank, bool touch) {
   if (touch && touching(-flank) &&
       system_.mechanics().approach(time_, state_.motion, -flank) <= kOnTouch)
     contact_changes(-flank, false);
-  if (events_.size() >= kMostEvents)
-    fail("after " + std::to_string(kMostEvents) + " touches of the teeth");
+  if (events_.size() >= kMaxEvents)
+    fail("after " + std::to_string(kMaxEvents) + " touches of the teeth");
   close_contact(of);
   of.now = touch;
   ToothEvent event;
@@ -131,22 +131,22 @@ void Course::contact_changes(int flank, bool touch) {
   events_.push_back(event);
 }
 
-void Course::close_contact(Touching& of) {
+void HybridIntegrator::close_contact(Touching& of) {
   if (of.event < events_.size()) events_[of.event].impulse = state_.motion[kImpulse] - of.impulse;
   of.event = kNone;
 }
 
-void Course::close_contacts() {
+void HybridIntegrator::close_contacts() {
   for (Touching& of : touching_) close_contact(of);
 }
 
-void Course::forget_events() {
+void HybridIntegrator::forget_events() {
   for (Touching& of : touching_) of.event = kNone;
   events_.clear();
   forgotten_steps_ = integrator_.steps();
 }
 
-void Course::state_at(double time, SystemState& state) const {
+void HybridIntegrator::state_at(double time, SystemState& state) const {
   if (time == time_ || step_start_ == time_) {
     state = state_;
     return;
@@ -157,14 +157,14 @@ void Course::state_at(double time, SystemState& state) const {
   system_.unscaled(sampled_y_.data(), state);
 }
 
-void Course::integrals_at(double time, std::vector<double>& integrals) const {
+void HybridIntegrator::integrals_at(double time, std::vector<double>& integrals) const {
   integrals = integrals_;
   if (step_start_ != time_ && !integrals.empty()) integrator_.integrals_at(time, integrals.data());
   for (std::size_t i = 0; i < integrals.size(); ++i)
     integrals[i] *= system_.integral_scale(static_cast<int>(i));
 }
 
-double Course::time_at(double block_angle) const {
+double HybridIntegrator::time_at(double block_angle) const {
   double low = step_start_, high = time_;
   state_at(low, sampled_);
   const double sign = block(high, state_).angle >= block(low, sampled_).angle ? 1 : -1;
@@ -185,7 +185,7 @@ double Course::time_at(double block_angle) const {
 
 // A flank that touched and left within the step: it is then taken back to the touch, until which
 // nothing acted between them.
-bool Course::hidden_touch() {
+bool HybridIntegrator::hidden_touch() {
   const Mechanics& mechanics = system_.mechanics();
   if (!mechanics.compliant() || touching()) return false;
   SystemState at;
@@ -224,7 +224,7 @@ bool Course::hidden_touch() {
 
 // Where the step should end: a step over an edge would be refused, so it is cut where the edge is
 // expected.
-double Course::horizon(double end) const {
+double HybridIntegrator::horizon(double end) const {
   double stop = end;
   const auto knot = std::upper_bound(knots_.begin(), knots_.end(), time_);
   if (knot != knots_.end()) stop = std::min(stop, *knot);
@@ -237,28 +237,28 @@ double Course::horizon(double end) const {
   return std::min(stop, time_ + std::max(ahead, least));
 }
 
-void Course::keep_going() {
+void HybridIntegrator::keep_going() {
   if (integrator_.steps() > kStepsToForesee && time_ > 0) {
     const double expected = static_cast<double>(integrator_.steps()) * duration_ / time_;
-    if (expected > kHopeless * static_cast<double>(kMostSteps))
+    if (expected > kHopeless * static_cast<double>(kMaxSteps))
       fail("at this rate it would take " + rounded_text(expected) + " steps, more than " +
-           std::to_string(kMostSteps) + ": simulate less of it (duration_s)");
+           std::to_string(kMaxSteps) + ": simulate less of it (duration_s)");
   }
-  if (integrator_.steps() - forgotten_steps_ > kMostSteps)
-    fail("after " + std::to_string(kMostSteps) +
+  if (integrator_.steps() - forgotten_steps_ > kMaxSteps)
+    fail("after " + std::to_string(kMaxSteps) +
          " steps: motion or pressures are too fast for the time that is asked for; simulate less "
          "of it (duration_s), or with a larger error");
   if (time_ - step_start_ > 1e2 * kRounding * time_) {
     short_steps_ = 0;
     integrator_.forget_complaint();
-  } else if (++short_steps_ > kMostShortSteps) {
+  } else if (++short_steps_ > kMaxShortSteps) {
     fail(integrator_.complaint().empty()
              ? "motion or pressures change faster there than steps above round-off can follow"
              : integrator_.complaint());
   }
 }
 
-void Course::advance(double end) {
+void HybridIntegrator::advance(double end) {
   if (restart_) {
     system_.scaled(state_, y_);
     integrator_.start(time_, y_, integrals_);

@@ -14,11 +14,12 @@
 
 namespace bentaxis::coupled {
 
-class Course {
+class HybridIntegrator {
  public:
   /// @param name      of the model, for messages
   /// @param balances  as for System
-  Course(std::string name, Mechanics& mechanics, const Oil& oil, double tolerance, bool balances);
+  HybridIntegrator(std::string name, Mechanics& mechanics, const Oil& oil, double tolerance,
+                   bool balances);
 
   void start(double time, const SystemState& state);
   /// One step, to `end` at most. What happens at its end is taken account of by the next one, so

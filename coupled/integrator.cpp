@@ -20,10 +20,11 @@ void be_silent(int, const char*, const char*, char*, void*) {}
 void check(int flag) {
   if (flag >= 0) return;
   if (flag == CV_TOO_MUCH_ACC)
-    throw StepsEnd("the tolerance asks for more than double precision gives there");
+    throw IntegrationFailure("the tolerance asks for more than double precision gives there");
   if (flag == CV_FIRST_RHSFUNC_ERR || flag == CV_REPTD_RHSFUNC_ERR || flag == CV_UNREC_RHSFUNC_ERR)
-    throw StepsEnd("motion or pressures have no finite rate of change from there on");
-  throw StepsEnd("motion or pressures change faster there than steps above round-off can follow");
+    throw IntegrationFailure("motion or pressures have no finite rate of change from there on");
+  throw IntegrationFailure(
+      "motion or pressures change faster there than steps above round-off can follow");
 }
 
 }  // namespace
@@ -125,7 +126,7 @@ Integrator::Integrator(Equations& equations, double tolerance)
     check(CVodeQuadSStolerances(cv.memory, 0, tolerance));
     check(CVodeSetQuadErrCon(cv.memory, SUNTRUE));
   }
-  std::vector<int> directions = equations.guards();
+  std::vector<int> directions = equations.event_functions();
   passed_.resize(directions.size());
   if (!directions.empty()) {
     check(CVodeRootInit(cv.memory, static_cast<int>(directions.size()),

@@ -17,7 +17,7 @@ class Equations {
   virtual int states() const = 0;
   virtual int integrals() const = 0;
   /// Which way each guard passes zero where it ends a step: +1 rising, -1 falling, 0 both.
-  virtual std::vector<int> guards() const = 0;
+  virtual std::vector<int> event_functions() const = 0;
 
   /// @return false where a value is not finite
   virtual bool rates(double time, const double* y, double* dy) = 0;
@@ -31,7 +31,7 @@ class Equations {
 };
 
 /// The integration does not get on.
-class StepsEnd : public ComputationError {
+class IntegrationFailure : public ComputationError {
  public:
   using ComputationError::ComputationError;
 };
@@ -49,7 +49,7 @@ class Integrator {
   void start(double time, const std::vector<double>& y, const std::vector<double>& integrals);
   enum class Reached { step, stop, guard };
   /// One step, which ends at `stop` or where a guard passes zero.
-  /// @throws StepsEnd, or what the equations threw
+  /// @throws IntegrationFailure, or what the equations threw
   Reached step(double stop);
 
   double time() const { return time_; }

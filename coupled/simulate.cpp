@@ -117,7 +117,7 @@ Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, con
   const Stopwatch watch;
   Trajectory trajectory;
   trajectory.table = trajectory_table(name, mechanics.layout(), drive);
-  Course course(name, mechanics, oil, tolerance, true);
+  HybridIntegrator course(name, mechanics, oil, tolerance, true);
   course.start(0, start);
   course.foresee(times.back());
   Rows rows(mechanics, oil, course.system(), start, trajectory, options.body_loads);

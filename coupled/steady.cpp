@@ -19,8 +19,8 @@ namespace {
 constexpr int kTurnsAhead = 20;
 constexpr double kSettled = 1e-2;
 constexpr int kAttempts = 3;
-constexpr int kMostIterations = 40;
-constexpr double kLeastDamping = 1.0 / 64;
+constexpr int kMaxIterations = 40;
+constexpr double kMinDamping = 1.0 / 64;
 // Central differences: their step, of the scales, and the tolerance of the integration beneath,
 // whose noise they divide by the step.
 constexpr double kStep = 1e-3;
@@ -107,7 +107,7 @@ class PeriodMap {
     if (progress_) progress_(static_cast<double>(passes_) / (passes_ + kUsualPasses));
     ++passes_;
     if (unknowns() == 0) return {from, period_, std::abs(step_angle() / period_)};
-    Course course(name_, mechanics_, oil_, tolerance, false);
+    HybridIntegrator course(name_, mechanics_, oil_, tolerance, false);
     course.start(0, from);
     Passage passage;
     passage.state = from;
@@ -226,7 +226,7 @@ class Newton {
   bool run(Point& p) {
     if (p.u.size() == 0) return true;
     bool fresh = false, tight = false;
-    for (; iterations_ < kMostIterations; ++iterations_) {
+    for (; iterations_ < kMaxIterations; ++iterations_) {
       if (by_state_.size() == 0) {
         find_slopes(p.u, tight);
         fresh = tight = true;
@@ -244,7 +244,7 @@ class Newton {
         if (p.step <= kEnd * tolerance_) return true;
       }
       std::optional<Point> next;
-      for (double damping = 1; damping >= kLeastDamping; damping /= 2) {
+      for (double damping = 1; damping >= kMinDamping; damping /= 2) {
         next = try_at(p.u + damping * step);
         if (next && next->size() < (1 - damping / 4) * p.size()) break;
         next.reset();

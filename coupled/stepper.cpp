@@ -92,7 +92,7 @@ class Stepper::Implementation {
 
   Mechanics& mechanics_;
   Oil& oil_;
-  Course course_;
+  HybridIntegrator course_;
   std::vector<PassedEvent> events_;  // since the last step_to(), and beyond time_
   Surroundings outside_;
   double time_ = 0, end_ = 0, span_ = 0;

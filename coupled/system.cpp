@@ -84,7 +84,7 @@ void System::unscaled(const double* y, SystemState& state) const {
   }
 }
 
-std::vector<int> System::guards() const {
+std::vector<int> System::event_functions() const {
   std::vector<int> directions = {1, -1};
   if (mechanics_.compliant()) directions.insert(directions.end(), {0, 0});
   return directions;

@@ -27,10 +27,10 @@ class System : public Equations {
   void scaled(const SystemState& state, std::vector<double>& y) const;
   void unscaled(const double* y, SystemState& state) const;
 
-  /// Interval of the block's angle, rad, whose ends are guards.
+  /// Interval of the block's angle, rad, whose ends are event_functions.
   double from = -1e300, to = 1e300;
-  /// The flanks' touches are guards too, where the teeth have them.
-  enum Guard : std::size_t { kTo, kFrom, kFlankPlus, kFlankMinus };
+  /// The flanks' touches are event_functions too, where the teeth have them.
+  enum EventFunction : std::size_t { kTo, kFrom, kFlankPlus, kFlankMinus };
 
   // Integrals, in units of integral_scale().
   int places() const { return places_; }  ///< energies, the first of them
@@ -43,7 +43,7 @@ class System : public Equations {
 
   int states() const override { return static_cast<int>(scale_.size()); }
   int integrals() const override { return balances_ && oil_.states() > 0 ? places_ + 3 : 0; }
-  std::vector<int> guards() const override;
+  std::vector<int> event_functions() const override;
   bool rates(double time, const double* y, double* dy) override;
   void jacobian(double time, const double* y, const double* dy, bool again,
                 double* by_state) override;

@@ -125,7 +125,7 @@ class ToothWatch::Watcher {
   Mechanics& mechanics_;
   const Oil& oil_;
   double impact_speed_;
-  Course course_;
+  HybridIntegrator course_;
   SystemState state_;
   OilLoads loads_;
   std::size_t seen_ = 0;                // events

@@ -24,12 +24,12 @@ namespace {
 // Effort is counted in steps x states, with sensitivities x states again: about a microsecond each.
 // A usual operating point takes 1e5, the wildest of our tests that ends 3e6. A delivery line has
 // more states, of which each step costs less and more are taken.
-constexpr double kMostEffort = 1.5e7;
+constexpr double kMaxEffort = 1.5e7;
 // Error per step of sensitivities with a delivery line.
 constexpr double kForWaves = 1e-4;
 constexpr int kUsualStates = 8;
 double most_effort(const Network& network) {
-  return kMostEffort * std::max(1.0, static_cast<double>(network.states()) / kUsualStates);
+  return kMaxEffort * std::max(1.0, static_cast<double>(network.states()) / kUsualStates);
 }
 constexpr double kEffortBetweenSigns = 1e4;  // of life
 constexpr int kIntegrals = 5;
@@ -205,8 +205,8 @@ std::vector<double> Integrator::over_period(const std::vector<double>& states, d
 
   double reached = 0;
   const auto fail = [&](const std::string& why) {
-    throw StepsEnd("hydraulics: the time integration stops at a shaft angle of " +
-                   number_text(reached) + " deg: " + why);
+    throw IntegrationFailure("hydraulics: the time integration stops at a shaft angle of " +
+                             number_text(reached) + " deg: " + why);
   };
   const auto check = [&](int flag) {
     if (flag >= 0) return;

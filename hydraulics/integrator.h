@@ -17,7 +17,7 @@ struct Integrals {
 };
 
 /// The integration does not get through the period from here; from elsewhere it may.
-class StepsEnd : public ComputationError {
+class IntegrationFailure : public ComputationError {
  public:
   using ComputationError::ComputationError;
 };
@@ -65,7 +65,7 @@ class Integrator {
   /// @param watch        called after every step
   /// @param energy       if not null: receives the energy that has gone by each place, J, in place
   ///                     of `integrals`, with the same control of error
-  /// @throws StepsEnd naming the angle where the integration fails
+  /// @throws IntegrationFailure naming the angle where the integration fails
   /// @throws ComputationError where all integrations so far have taken more steps than any pump
   ///         needs
   std::vector<double> over_period(const std::vector<double>& states, double load_size,

@@ -17,7 +17,7 @@ constexpr double kNoStroke = 1e-9;
 // Edges closer than this are one, degrees.
 constexpr double kSameEdge = 1e-9;
 // Of a delivery line: beyond, a search takes minutes.
-constexpr int kMostModes = 48;
+constexpr int kMaxModes = 48;
 
 // Largest delivery pressure of a case, Pa.
 constexpr double kHighestPressure = 1e9;
@@ -137,11 +137,11 @@ Network::Network(const Case& the_case, Use use)
     using End = TransmissionLine::End;
     pipe_.emplace(*data.delivery_line, fixed_end_ ? End::given_pressure : End::given_flow,
                   fixed_state_, kinematic_viscosity(data));
-    if (pipe_->size() > kMostModes)
+    if (pipe_->size() > kMaxModes)
       throw InputError(the_case.file.string() + ": [delivery_line] bandwidth_Hz = " +
                        number_text(data.delivery_line->bandwidth) + ": takes " +
                        std::to_string(pipe_->size()) + " modes, more than " +
-                       std::to_string(kMostModes) + ": lower it, or length_m");
+                       std::to_string(kMaxModes) + ": lower it, or length_m");
     pipe_at_ = states_;
     states_ += pipe_->size();
   }

@@ -13,8 +13,8 @@ namespace {
 
 // Largest change of ln P and of ln(load area) in one Newton step.
 constexpr double kLongestStep = 2;
-constexpr int kMostIterations = 40;
-constexpr int kMostHalvings = 12;
+constexpr int kMaxIterations = 40;
+constexpr int kMaxHalvings = 12;
 
 }  // namespace
 
@@ -70,7 +70,7 @@ void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::M
   double best = size_of(f);
   for (; best > map.noise() * tolerance; ++iterations) {
     if (alive) alive();
-    if (iterations >= kMostIterations)
+    if (iterations >= kMaxIterations)
       throw ComputationError("hydraulics: no periodic state found after " +
                              std::to_string(iterations) +
                              " Newton steps; pressures still change by a factor of up to exp(" +
@@ -81,7 +81,7 @@ void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::M
           "hydraulics: no periodic state found: no load holds this mean delivery pressure");
     step *= std::min(1.0, kLongestStep / size_of(step));
     bool accepted = false;
-    for (int halving = 0; halving < kMostHalvings && !accepted; ++halving, step /= 2) {
+    for (int halving = 0; halving < kMaxHalvings && !accepted; ++halving, step /= 2) {
       try {
         const PeriodMap::Vector trial = z + step;
         PeriodMap::Matrix trial_jacobian;
@@ -94,7 +94,7 @@ void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::M
           best = size_of(f);
           accepted = true;
         }
-      } catch (const StepsEnd&) {
+      } catch (const IntegrationFailure&) {
         // Too far: the integration does not get through the period from there.
       }
     }

@@ -49,7 +49,7 @@ constexpr double kInterpolation = 0.1;
 // What no longer falls is noise of the integration up to as many times the usual.
 constexpr double kStalled = 3;
 // Rows of a table: as many as the samples, or a multiple of them, within these.
-constexpr int kFewestRows = 720, kMostRows = 7200;
+constexpr int kFewestRows = 720, kMaxRows = 7200;
 
 // Chambers as they come to stand at theta = 0 when half of them fill and half deliver.
 // `share` is what of the ideal flow a load may take at first.
@@ -270,7 +270,7 @@ std::string failure_text(const Case& the_case, const Network& network, const std
 int rows_of(const Case& the_case) {
   const int samples = the_case.operation.samples_per_revolution;
   if (the_case.pressure.points > 0) return the_case.pressure.points;
-  if (samples > kMostRows) return kMostRows;
+  if (samples > kMaxRows) return kMaxRows;
   return samples * ((kFewestRows + samples - 1) / samples);
 }
 

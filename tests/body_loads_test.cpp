@@ -146,7 +146,7 @@ TEST(AnalyticLoads, BalanceOnRandomPumps) {
 TEST(AnalyticLoads, BalanceInEveryRowOfTheStoredCases) {
   for (const auto& file : stored_cases()) {
     SCOPED_TRACE(file);
-    const study::ReadyCase ready = study::prepare(read_case(file));
+    const study::PreparedCase ready = study::prepare(read_case(file));
     const Samples samples = ready.samples(study::Way::driven);
     const BodyLoadTable table =
         analytic::run_body_loads(ready.the_case, ready.the_case.analytic, samples);
@@ -313,7 +313,7 @@ TEST(MultibodyLoads, BalanceByEitherMethod) {
 TEST(MultibodyLoads, BalanceAndAgreeInEveryRowOfTheStoredCases) {
   for (const auto& file : stored_cases()) {
     SCOPED_TRACE(file);
-    study::ReadyCase ready = study::prepare(read_case(file));
+    study::PreparedCase ready = study::prepare(read_case(file));
     const Case& the_case = ready.the_case;
     const Samples samples = ready.samples(study::Way::driven);
     BodyLoadTable loads;
@@ -350,7 +350,7 @@ TEST(MultibodyLoads, AnImposedBlockHasItsTorqueInsteadOfTheToothForce) {
 TEST(MultibodyLoads, BalanceAndAgreeAtGivenStates) {
   const auto folder =
       std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" / "motion" / "free_block";
-  const study::ReadyCase ready = study::prepare(read_case(folder / "case.toml"));
+  const study::PreparedCase ready = study::prepare(read_case(folder / "case.toml"));
   const States states = read_states(folder / "states.csv", ready.the_case, ready.pressure);
   study::RunOptions options;
   options.assumptions = ready.the_case.analytic;
@@ -371,7 +371,7 @@ TEST(MultibodyLoads, AreThoseOfTheDrivenFullPumpWhateverIsRun) {
   Case the_case = reference_case("bap63_rated");
   the_case.operation.samples_per_revolution = 20;
   the_case.operation.revolutions = 1;
-  const study::ReadyCase ready = study::prepare(the_case);
+  const study::PreparedCase ready = study::prepare(the_case);
   study::RunOptions options;
   options.model = study::Model::multibody;
   EXPECT_EQ(study::run(ready, options).loads.rows(), 0);

@@ -44,7 +44,7 @@ struct BothBudgets {
   Samples samples;
 };
 
-BothBudgets budgets_of(const study::ReadyCase& ready,
+BothBudgets budgets_of(const study::PreparedCase& ready,
                        multibody::Method method = multibody::Method::multipliers) {
   BothBudgets both;
   both.samples = ready.samples(study::Way::driven);
@@ -76,7 +76,7 @@ TEST(Budget, ClosesOnAllStoredCasesInBothModels) {
   ASSERT_EQ(files.size(), 25);
   for (const auto& file : files) {
     SCOPED_TRACE(file);
-    const study::ReadyCase ready = study::prepare(read_case(file));
+    const study::PreparedCase ready = study::prepare(read_case(file));
     const BothBudgets both = budgets_of(ready);
     const double force = load_scale(ready.the_case, both.samples).force;
     for (const ResultTable* table : {&both.analytic, &both.multibody}) {
@@ -89,12 +89,12 @@ TEST(Budget, ClosesOnAllStoredCasesInBothModels) {
   }
 }
 
-// Each line against its own peak, and not against that of the torque: a wrong small line shows. That
-// of the teeth is a difference of torques, held to theirs.
+// Each line against its own peak, and not against that of the torque: a wrong small line shows.
+// That of the teeth is a difference of torques, held to theirs.
 TEST(Budget, TheModelsAgreeLineByLine) {
   for (const auto& file : stored_cases()) {
     SCOPED_TRACE(file);
-    study::ReadyCase ready = study::prepare(read_case(file));
+    study::PreparedCase ready = study::prepare(read_case(file));
     ready.the_case.multibody = ready.the_case.analytic;
     const BothBudgets both = budgets_of(ready);
     const LoadScale scale = load_scale(ready.the_case, both.samples);
@@ -255,7 +255,7 @@ TEST(Budget, OfAnyMotionBothModelsFindTheSameCauses) {
 // Cc = 0.0054 Nm/rpm at 1500 rpm: 8.1 Nm (paper, section 7), all of it through the gear. With the
 // block's speed imposed that motion supplies it and the drive does not.
 TEST(Budget, BlockFrictionGoesThroughTheGear) {
-  study::ReadyCase ready = study::prepare(
+  study::PreparedCase ready = study::prepare(
       read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / "bap63_rated.toml"));
   const BothBudgets meshed = budgets_of(ready);
   ready.the_case.analytic.gear = ready.the_case.multibody.gear = BlockDrive::imposed;
@@ -295,8 +295,8 @@ TEST(Budget, OnlyWhatPassesTheGearCarriesTheBlock) {
     for (std::size_t c = 0; c < kCauses; ++c) {
       const auto cause = static_cast<Cause>(c);
       const bool there = (cause != Cause::ring || ring) && (cause != Cause::teeth || teeth);
-      const bool shaft_alone = cause == Cause::shaft_friction || cause == Cause::torque_factor ||
-                               cause == Cause::teeth;
+      const bool shaft_alone =
+          cause == Cause::shaft_friction || cause == Cause::torque_factor || cause == Cause::teeth;
       EXPECT_EQ(table.find(drive_column(cause)) < table.columns(), there) << to_string(cause);
       EXPECT_EQ(table.find(carrying_column(cause)) < table.columns(), there && !shaft_alone)
           << to_string(cause);
@@ -325,7 +325,7 @@ Case rated() {
 // a part that is missing leaves the sum open.
 TEST(BudgetComparison, AWrongLineDiffers) {
   // One piston: weight and inertia do not cancel as those of several do.
-  const study::ReadyCase ready = study::prepare(reference_case("step_single"));
+  const study::PreparedCase ready = study::prepare(reference_case("step_single"));
   const BothBudgets both = budgets_of(ready);
   const LoadScale scale = load_scale(ready.the_case, both.samples);
   const compare::ZeroScales scales = {{"N", scale.force}, {"Nm", scale.moment}};

@@ -30,7 +30,7 @@ std::vector<std::string> hydraulic_cases() {
 }
 
 // A shipped case, short; one without a drive is driven by the motor of another.
-study::ReadyCase short_case(const std::string& name, double duration, int samples) {
+study::PreparedCase short_case(const std::string& name, double duration, int samples) {
   Case the_case = read_case(kSourceFolder / "cases" / (name + ".toml"));
   if (!the_case.drive) {
     the_case.drive = read_case(kSourceFolder / "cases" / "bap63_motor_start.toml").drive;
@@ -79,7 +79,7 @@ class ShippedCase : public testing::TestWithParam<std::string> {};
 // them, at least a half). Changed after: the mass of a closed loop is measured by what circulates,
 // not by what leaks.
 TEST_P(ShippedCase, BalancesCloseAndErrorsFallWithTheTolerance) {
-  const study::ReadyCase ready = short_case(GetParam(), 0.02, 50);
+  const study::PreparedCase ready = short_case(GetParam(), 0.02, 50);
   const study::CoupledPump pump(ready, true);
   const Trajectory coarse = pump.simulate(Model::analytic, within(1e-5));
   const Trajectory fine = pump.simulate(Model::analytic, within(1e-7));
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, ShippedCase, testing::ValuesIn(hydraulic_cases()
 
 // A shipped case as it stands, through all that happens in it.
 Trajectory whole_case(const std::string& name, double tolerance) {
-  const study::ReadyCase ready =
+  const study::PreparedCase ready =
       study::prepare_simulation(read_case(kSourceFolder / "cases" / (name + ".toml")), {});
   return study::CoupledPump(ready, true).simulate(Model::analytic, within(tolerance));
 }
@@ -204,7 +204,7 @@ TEST(WithOil, ErrorOfTheIntegrationIsHeld) {
   study::SimulationChoice choice;
   choice.only = Model::analytic;
   choice.error = 1e-5;
-  const study::ReadyCase ready = study::prepare_simulation(the_case, choice);
+  const study::PreparedCase ready = study::prepare_simulation(the_case, choice);
   const study::SimulationResult result =
       study::simulate(study::prepare_simulation(the_case, choice), choice);
   ASSERT_TRUE(result.agrees()) << result.headline();
@@ -232,7 +232,7 @@ std::string group_of(const std::string& column) {
 TEST(ReferenceWithOil, BothModelsMeetIt) {
   const fs::path folder = kSourceFolder / "reference_data" / "motion" / "start_with_oil";
   const NumericTable reference = read_numeric_csv(folder / "reference.csv");
-  const study::ReadyCase ready = study::prepare_simulation(read_case(folder / "case.toml"), {});
+  const study::PreparedCase ready = study::prepare_simulation(read_case(folder / "case.toml"), {});
   const study::CoupledPump pump(ready, true);
   std::map<std::string, double> peaks;
   for (const auto& row : reference.rows)

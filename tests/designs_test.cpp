@@ -78,7 +78,7 @@ TEST(Evaluator, GivesNumbersOfTheTurn) {
   const double values[] = {40};
   const Evaluation found = evaluator.evaluate(values);
   ASSERT_TRUE(found.feasible()) << found.reason;
-  const study::ReadyCase ready = study::prepare(base);
+  const study::PreparedCase ready = study::prepare(base);
   const ResultTable table = study::run_turn(ready, study::Model::analytic);
   const ChannelLayout at(5);
   double torque = 0, peak = 0;

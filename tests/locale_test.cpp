@@ -95,7 +95,7 @@ TEST(Locale, LeavesCalibratedFriction) {
   Case c = rated();
   c.analytic.piston_friction = true;
   c.multibody.piston_friction = false;
-  const study::ReadyCase ready = study::prepare(c);
+  const study::PreparedCase ready = study::prepare(c);
   const auto torque = [&](study::Model model) {
     return study::mean(study::run_turn(ready, model, study::silent()), "Td_z1_Nm");
   };

@@ -1071,10 +1071,10 @@ TEST(MappingRecords, ACorrelationBelowTheLeastIsNotRecognised) {
                                    other * size * std::cos(radians(61 * t));
                           }}}));
   };
-  const MappingGuess good = with(kLeastCorrelation + 0.02);
+  const MappingGuess good = with(kMinCorrelation + 0.02);
   EXPECT_THAT(good.unrecognised, IsEmpty());
   EXPECT_EQ(good.recognised(), 6U);
-  for (const double correlation : {kLeastCorrelation - 0.02, 0.54}) {
+  for (const double correlation : {kMinCorrelation - 0.02, 0.54}) {
     const MappingGuess found = with(correlation);
     EXPECT_THAT(found.unrecognised, ElementsAre("Td_z1")) << correlation;
     EXPECT_EQ(found.recognised(), 5U);

@@ -124,7 +124,7 @@ class PlantAsSimulated : public testing::TestWithParam<AsSimulated> {};
 TEST_P(PlantAsSimulated, EveryOutput) {
   const Case c = GetParam().the_case();
   const UnitChoice choice = driven_by(GetParam().drive);
-  const study::ReadyCase ready = study::prepare_simulation(c, {});
+  const study::PreparedCase ready = study::prepare_simulation(c, {});
   const study::CoupledPump pump(ready, c.pressure.kind == PressureKind::hydraulic);
   coupled::Options options;
   options.tolerance = choice.tolerance;

@@ -151,7 +151,7 @@ TEST(PumpPowerTest, PlacesHaveKeysOfTheirOwn) {
 }
 
 struct Operation {
-  study::ReadyCase ready;
+  study::PreparedCase ready;
   PumpPower power;
   Efficiencies all;
 };
@@ -273,7 +273,7 @@ TEST(Efficiency, AllCommandsStateTheSame) {
     EXPECT_NEAR(compared.at("flow to the load") / compared.at("drive"),
                 compared.at("total efficiency") / 100, scaled(1e-12));
 
-    const study::ReadyCase ready = study::prepare(the_case);
+    const study::PreparedCase ready = study::prepare(the_case);
     std::vector<designs::Output> outputs;
     for (const study::EfficiencyLine& line : study::efficiency_lines())
       outputs.push_back(designs::output(std::string("efficiency.") + line.key, the_case));

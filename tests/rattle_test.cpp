@@ -134,7 +134,7 @@ TEST(Rattle, WedgedTeethTouchOnBothFlanks) {
   for (int tooth = 1; tooth <= teeth.count; ++tooth)
     teeth.shaft.pitch.push_back(tooth % 2 == 0 ? -15e-6 : 15e-6);
   teeth.block.pitch.assign(teeth.count, 0.0);
-  const ReadyCase ready = prepare(c);
+  const PreparedCase ready = prepare(c);
   const auto mechanics = analytic::mechanics(c, ready.assumptions(Model::analytic));
   const auto oil =
       coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
@@ -297,7 +297,7 @@ TEST(Rattle, TopsBetweenStepsAreFound) {
 // middle of the backlash on.
 TEST(Rattle, APointIsTheMeanOfItsTurns) {
   constexpr double kRpm = 1500, kBar = 275;
-  const ReadyCase ready = prepare(rattle_case(pump_with(0, 20), kRpm, kBar));
+  const PreparedCase ready = prepare(rattle_case(pump_with(0, 20), kRpm, kBar));
   RattleOptions options = map_of({kRpm}, {kBar});
   options.discard = 0;
   options.turns = 3;

@@ -1,4 +1,4 @@
-// One description of each parameter: what is made from it, and the border that it guards.
+// One description of each parameter: what is made from it, and the border that it event_functions.
 #include "bentaxis/pump/registry.h"
 
 #include <gmock/gmock.h>
@@ -593,7 +593,7 @@ std::map<std::string, std::function<void(const Case&)>> borders() {
        [](const Case& c) {
          PumpParameters good = reference_case("bap63_rated").pump;
          good.geometry.pistons = c.pump.geometry.pistons;
-         if (good.geometry.pistons > kMostPistons) throw InputError("the first is refused");
+         if (good.geometry.pistons > kMaxPistons) throw InputError("the first is refused");
          analytic::PumpBatch({good, c.pump}, c.analytic);
        }},
       {"rounding", [](const Case& c) { analytic::RoundingEstimate(c.pump, c.analytic); }},

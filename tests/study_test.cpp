@@ -589,7 +589,7 @@ Case case_named(const std::string& name, int samples) {
 }
 
 TEST(Run, OneCallSolvesTheHydraulicsAndGivesATable) {
-  const study::ReadyCase ready = study::prepare(case_named("bap63_rated_hydraulic.toml", 36));
+  const study::PreparedCase ready = study::prepare(case_named("bap63_rated_hydraulic.toml", 36));
   ASSERT_TRUE(ready.hydraulics);
   for (const study::Model model : study::kModels) {
     const ResultTable table = study::run_turn(ready, model);
@@ -602,7 +602,7 @@ TEST(Run, OneCallSolvesTheHydraulicsAndGivesATable) {
 }
 
 TEST(Run, RefusesOptionsThatContradictEachOther) {
-  const study::ReadyCase ready = study::prepare(case_named("bap63_rated.toml", 12));
+  const study::PreparedCase ready = study::prepare(case_named("bap63_rated.toml", 12));
   study::RunOptions options;
   options.way = study::Way::integrated;
   EXPECT_THROW(study::run(ready, options), InputError);  // the analytic model

@@ -49,10 +49,10 @@ double stroke_volume(const Case& the_case) {
   return hydraulics::Network(the_case).chamber().swept();
 }
 
-const report::TimingRow& row_of(const std::vector<report::TimingRow>& rows,
+const TimingRow& row_of(const std::vector<TimingRow>& rows,
                                 const std::string& code) {
   return *std::find_if(rows.begin(), rows.end(),
-                       [&](const report::TimingRow& r) { return r.code == code; });
+                       [&](const TimingRow& r) { return r.code == code; });
 }
 
 double extent(const std::vector<Stretch>& all) {
@@ -266,7 +266,7 @@ TEST(SuctionSpeed, EndsAtItsBoundsAndWhenAsked) {
   const SuctionSpeed never = suction_speed(the_case, pascals(1.5));
   EXPECT_FALSE(never.rpm.has_value());
   EXPECT_NEAR(never.searched_from, 0.05 * 1500, 1e-9);
-  const report::TimingRow row = suction_speed_row(the_case, never);
+  const TimingRow row = suction_speed_row(the_case, never);
   EXPECT_TRUE(row.flagged);
   EXPECT_THAT(timing_warnings({row})[0].text, testing::HasSubstr("below a pressure: < 75 rpm"));
   the_case.hydraulics->kidney_height = 1;  // m
@@ -311,7 +311,7 @@ TEST(Filling, SaysNoWhereChambersAreNotFilledAndYesWhereTheyAre) {
     the_case.operation.speed_rpm = rpm;
     const SteadyState state = hydraulics::steady_state(the_case);
     const auto rows = timing_rows(the_case, state);
-    const report::TimingRow& row = row_of(rows, "filling");
+    const TimingRow& row = row_of(rows, "filling");
     EXPECT_EQ(row.flagged, !filled) << rpm;
     EXPECT_EQ(*row.limit, 1);
     EXPECT_EQ(row.text.substr(0, 6), filled ? "filled" : "not fi");
@@ -320,7 +320,7 @@ TEST(Filling, SaysNoWhereChambersAreNotFilledAndYesWhereTheyAre) {
     EXPECT_LT(state.summary.volumetric_efficiency, 0.55);
     EXPECT_GT(row.value, 35);
     EXPECT_THAT(timing_warnings(rows),
-                testing::Contains(testing::Field(&report::Warning::name, testing::Eq("filling"))));
+                testing::Contains(testing::Field(&Warning::name, testing::Eq("filling"))));
     the_case.meant = "filling: it is to starve";
     EXPECT_EQ(row_of(timing_rows(the_case, state), "filling").meant, "it is to starve");
   }
@@ -341,7 +341,7 @@ TEST(FillingSpeed, LosesOnePercentAndPressureLimitsNameTheirLoss) {
   Case the_case = rated();
   const SuctionSpeed found = filling_speed(the_case);
   ASSERT_TRUE(found.rpm.has_value());
-  const report::TimingRow row = suction_speed_row(the_case, found);
+  const TimingRow row = suction_speed_row(the_case, found);
   EXPECT_EQ(row.code, "filling-speed");
   EXPECT_FALSE(row.flagged);
   for (const auto& [factor, filled] : {std::pair{0.995, true}, {1.005, false}}) {

@@ -442,7 +442,7 @@ TEST(Uncertainty, HasBandsThatHoldOtherSamples) {
   options.seed = 2;
   options.curves = false;
   options.further = {
-      2, [&](const study::ReadyCase&, const ResultTable& table, std::span<double> values) {
+      2, [&](const study::PreparedCase&, const ResultTable& table, std::span<double> values) {
         double inside = 0;
         for (std::size_t row = 0; row < table.rows(); ++row)
           if (table.at(row, column) >= band.low[row] && table.at(row, column) <= band.high[row])

@@ -94,7 +94,7 @@ struct LoopOrder {
 BatchJob::Column column(const Varying& v) { return {v.each, v.all}; }
 
 // What the kernel is given; points to `pressures`, which is filled in, and to what it is made of.
-using Pressures = std::array<BatchJob::Column, kMostPistons>;
+using Pressures = std::array<BatchJob::Column, kMaxPistons>;
 BatchJob job_of(const PreparedPump& pump, const double* pumps, const ChannelLayout& layout,
                 const BatchInstants& instants, Pressures& pressures) {
   if (instants.chamber_pressure.size() != static_cast<std::size_t>(layout.pistons()))
@@ -176,7 +176,7 @@ struct TallyRoom {
     alignas(kCacheLine) double values[kBlock];
   };
   struct Lanes {
-    alignas(kCacheLine) double values[kTallied * kMostLanes];
+    alignas(kCacheLine) double values[kTallied * kMaxLanes];
   };
   std::vector<Lines> block;
   std::vector<Lanes> lanes;
@@ -184,7 +184,7 @@ struct TallyRoom {
 
   BatchTally tally(const ChannelLayout& layout, std::span<const Measured> measured) {
     static_assert(sizeof(Lines) == kBlock * sizeof(double));
-    static_assert(sizeof(Lanes) == kTallied * kMostLanes * sizeof(double));
+    static_assert(sizeof(Lanes) == kTallied * kMaxLanes * sizeof(double));
     if (block.size() < layout.reactions()) block.resize(layout.reactions());
     if (lanes.size() < measured.size()) lanes.resize(measured.size());
     if (sums.size() < measured.size()) sums.resize(measured.size());

@@ -34,7 +34,7 @@ BatchKernel run_batch_scalar, run_batch_sse2, run_batch_avx2, run_batch_avx512;
 /// Instants whose results lie in the first-level cache until they are added up.
 inline constexpr std::size_t kBlock = 64;
 /// Lanes of the widest register.
-inline constexpr std::size_t kMostLanes = 8;
+inline constexpr std::size_t kMaxLanes = 8;
 /// Numbers that are kept per lane of what is measured: sum, sum of squares, least, largest.
 inline constexpr std::size_t kTallied = 4;
 
@@ -42,7 +42,7 @@ inline constexpr std::size_t kTallied = 4;
 struct BatchTally {
   std::span<const Measured> measured;
   double (*block)[kBlock];  // one row per reaction
-  double* lanes;            // kTallied x kMostLanes per entry of `measured`
+  double* lanes;            // kTallied x kMaxLanes per entry of `measured`
 };
 
 /// Adds up instants [begin, end) of the one pump of a job: the sum in `mean`, that of squares in

@@ -16,7 +16,7 @@
 namespace bentaxis::analytic {
 
 constexpr std::size_t kDoublesPerLine = 64 / sizeof(double);
-constexpr std::size_t kMostReactions = 5 * kMostPistons + 12;
+constexpr std::size_t kMaxReactions = 5 * kMaxPistons + 12;
 template <template <class> class Turning>
 inline constexpr bool kFree = std::is_same_v<Turning<double>, closed_form::FreeState<double>>;
 
@@ -154,7 +154,7 @@ BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, st
     const int reactions = kReactionsEnd.per_piston * job.common.pistons + kReactionsEnd.single;
     const int absent =
         job.common.imposed ? closed_form::column<Quantity::Rcs>(job.common.pistons, 0, 0) : -1;
-    alignas(64) double lines[kMostReactions][kDoublesPerLine];
+    alignas(64) double lines[kMaxReactions][kDoublesPerLine];
     for (; at + kDoublesPerLine <= end; at += kDoublesPerLine) {
       for (std::size_t part = 0; part < kDoublesPerLine; part += kLanes) {
         const Collect<Real, kDoublesPerLine> collect = {lines, part};
@@ -240,7 +240,7 @@ template <class Real>
 BENTAXIS_INLINE void tally_block(const BatchTally& tally, std::size_t used) {
   constexpr std::size_t kLanes = Register<Real>::kLanes;
   for (std::size_t i = 0; i < tally.measured.size(); ++i) {
-    double* const lanes = tally.lanes + i * kTallied * kMostLanes;
+    double* const lanes = tally.lanes + i * kTallied * kMaxLanes;
     const Measured m = tally.measured[i];
     auto all = Tally<Real>::load(lanes);
     std::size_t part = 0;
@@ -261,7 +261,7 @@ template <class Real, template <class> class Turning>
 [[gnu::noinline]] void tally_turning(const BatchJob& job, const BatchTally& tally,
                                      std::size_t begin, std::size_t end) {
   constexpr std::size_t kLanes = Register<Real>::kLanes;
-  static_assert(kBlock % kLanes == 0 && kLanes <= kMostLanes);
+  static_assert(kBlock % kLanes == 0 && kLanes <= kMaxLanes);
   const closed_form::Pump<double> pump = *job.pump;  // a copy: results cannot overlap it
   for (std::size_t at = begin; at < end; at += kBlock) {
     const std::size_t used = end - at < kBlock ? end - at : kBlock;
@@ -283,13 +283,13 @@ void tally_batch(const BatchJob& job, const BatchTally& tally, std::size_t begin
   constexpr double kNothing = __builtin_huge_val();
   const Tally<Real> none = {Real(0.0), Real(0.0), Real(kNothing), Real(-kNothing)};
   for (std::size_t i = 0; i < tally.measured.size(); ++i)
-    none.store(tally.lanes + i * kTallied * kMostLanes);
+    none.store(tally.lanes + i * kTallied * kMaxLanes);
   if (job.free)
     tally_turning<Real, closed_form::FreeState>(job, tally, begin, end);
   else
     tally_turning<Real, closed_form::State>(job, tally, begin, end);
   for (std::size_t i = 0; i < tally.measured.size(); ++i) {
-    const double* const lanes = tally.lanes + i * kTallied * kMostLanes;
+    const double* const lanes = tally.lanes + i * kTallied * kMaxLanes;
     double sum = 0, squares = 0, low = kNothing, high = -kNothing;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       sum += lanes[lane];

@@ -86,12 +86,12 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   shaft_inertia_ = std::abs(respond(model, 1e5, 1e5).drive_torque - still.drive_torque) / 1e5;
   block_inertia_ = std::abs(respond(model, 0, 1e5).tooth_force - still.tooth_force) * arm_ / 1e5;
   // Rounding leaves this much of nothing.
-  constexpr double kLeastInertia = 1e-14;
-  if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kLeastInertia))
+  constexpr double kMinInertia = 1e-14;
+  if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kMinInertia))
     throw InputError("[shaft] axial_inertia_kg_mm2: must be > 0 where a torque moves the shaft");
-  if (compliant() && !(block_inertia_ > kLeastInertia))
+  if (compliant() && !(block_inertia_ > kMinInertia))
     throw InputError("[block] axial_inertia_kg_mm2: must be > 0 where the teeth are compliant");
-  probe_ = torque_scale_ / std::max(shaft_inertia_, kLeastInertia);
+  probe_ = torque_scale_ / std::max(shaft_inertia_, kMinInertia);
 }
 
 Equations::Response Equations::respond(const Model& model, double shaft_acceleration,

@@ -21,12 +21,12 @@ constexpr double kStepShare = 1e-3;
 // Rounding of a step, of a state's size: no tolerance below it can be met.
 constexpr double kRounding = 1e-15;
 constexpr double kTightest = 1e-14;
-constexpr double kSmallestStep = 1e-14;       // of the duration, or of a second if that is less
-constexpr double kFirstStep = 1e-3;           // of the duration, at most
-constexpr long kMostEvaluations = 100000000;  // of the closed form: some minutes
-constexpr int kMostEventsAtOnce = 64;         // without a step between them
-constexpr double kOnTouch = 1e-15;            // m: as good as touching
-constexpr double kOnEdge = 1e-15;             // of the angle and a turn
+constexpr double kSmallestStep = 1e-14;      // of the duration, or of a second if that is less
+constexpr double kFirstStep = 1e-3;          // of the duration, at most
+constexpr long kMaxEvaluations = 100000000;  // of the closed form: some minutes
+constexpr int kMaxEventsAtOnce = 64;         // without a step between them
+constexpr double kOnTouch = 1e-15;           // m: as good as touching
+constexpr double kOnEdge = 1e-15;            // of the angle and a turn
 
 // One extrapolated step of scaled states; `h` becomes what the method would take next.
 class Stepper {
@@ -66,12 +66,12 @@ class Stepper {
 };
 
 // A value that ends the piece of motion where it rises above 0, with its rate.
-struct Guard {
+struct EventFunction {
   double value, rate;
 };
 
 // First time in (0, h] at which the cubic through both ends is above 0; h or more: not within.
-double first_above(const Guard& from, const Guard& to, double h) {
+double first_above(const EventFunction& from, const EventFunction& to, double h) {
   const double a = from.value, b = from.rate * h;
   const double c = 3 * (to.value - from.value) - h * (2 * from.rate + to.rate);
   const double d = 2 * (from.value - to.value) + h * (from.rate + to.rate);
@@ -222,15 +222,15 @@ class Simulation {
     }
   }
 
-  struct Guards {
-    std::array<Guard, 4> all;
+  struct EventFunctions {
+    std::array<EventFunction, 4> all;
     std::size_t count = 0;
     void add(double value, double rate) { all[count++] = {value, rate}; }
   };
 
   // In an order that handle() knows: the interval's two ends, then the teeth.
-  Guards guards(double time, const State& y, const State& dy) const {
-    Guards g;
+  EventFunctions event_functions(double time, const State& y, const State& dy) const {
+    EventFunctions g;
     const double psi = equations_.block_angle(time, y);
     const Equations& e = equations_;
     const double psi_rate = block_speed(time, y);
@@ -265,13 +265,13 @@ class Simulation {
   // One step, to an event or to `stop` at most.
   void advance(double stop) {
     if (progress_) progress_(std::min(1.0, time_ / equations_.drive().duration));
-    if (equations_.evaluations() > kMostEvaluations)
-      fail("after " + std::to_string(kMostEvaluations) +
+    if (equations_.evaluations() > kMaxEvaluations)
+      fail("after " + std::to_string(kMaxEvaluations) +
            " evaluations: the motion is too fast for the time that is asked for; simulate less of "
            "it (duration_s), or a larger error");
     State dy, out, out_dy;
     equations_.rates(time_, y_, dy);
-    const Guards before = guards(time_, y_, dy);
+    const EventFunctions before = event_functions(time_, y_, dy);
     for (std::size_t i = 0; i < before.count; ++i)
       if (before.all[i].rate > 0 && before.all[i].value > -nearness(i, time_)) {
         handle(i);
@@ -295,7 +295,7 @@ class Simulation {
     ++record_.steps;
     const double free_proposal = proposal;
     equations_.rates(time_ + taken, out, out_dy);
-    Guards after = guards(time_ + taken, out, out_dy);
+    EventFunctions after = event_functions(time_ + taken, out, out_dy);
     std::size_t event = after.count;
     double when = taken;
     for (std::size_t i = 0; i < after.count; ++i) {
@@ -310,8 +310,8 @@ class Simulation {
       double low = 0, high = taken;
       bool landed = std::abs(after.all[event].value) <= nearness(event, time_) && when == taken;
       for (int tries = 0; !landed; ++tries) {
-        constexpr int kMostTries = 60;
-        if (tries == kMostTries) fail("an event cannot be located");
+        constexpr int kMaxTries = 60;
+        if (tries == kMaxTries) fail("an event cannot be located");
         proposal = taken = when;
         if (!stepper_.attempt(time_, y_, dy, proposal, out)) {
           shrink(taken, proposal);
@@ -319,8 +319,8 @@ class Simulation {
         }
         ++record_.steps;
         equations_.rates(time_ + taken, out, out_dy);
-        after = guards(time_ + taken, out, out_dy);
-        const Guard& g = after.all[event];
+        after = event_functions(time_ + taken, out, out_dy);
+        const EventFunction& g = after.all[event];
         if (std::abs(g.value) <= nearness(event, time_)) break;
         (g.value > 0 ? high : low) = taken;
         if (high - low <= 2e-16 * (time_ + high)) break;
@@ -362,7 +362,7 @@ class Simulation {
   }
 
   void count_at_once() {
-    if (++at_once_ > kMostEventsAtOnce)
+    if (++at_once_ > kMaxEventsAtOnce)
       fail("teeth and edges of the pressure are passed again and again without any motion");
   }
 
@@ -393,9 +393,9 @@ class Simulation {
   }
 
   void contact_changes(int from, int to) {
-    constexpr std::size_t kMostEvents = 1000000;
-    if (record_.events.size() >= kMostEvents)
-      fail("after " + std::to_string(kMostEvents) + " touches of the teeth");
+    constexpr std::size_t kMaxEvents = 1000000;
+    if (record_.events.size() >= kMaxEvents)
+      fail("after " + std::to_string(kMaxEvents) + " touches of the teeth");
     if (from != 0) close_contact();
     ToothEvent event;
     event.time_s = time_;

@@ -74,7 +74,7 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& c
 void check_matlab_structure(const std::filesystem::path& file, const std::string& content);
 
 /// A table has at most this many columns, and a sheet or text this many cells.
-inline constexpr std::size_t kMostColumns = 20000;
-inline constexpr std::size_t kMostCells = 20'000'000;
+inline constexpr std::size_t kMaxColumns = 20000;
+inline constexpr std::size_t kMaxCells = 20'000'000;
 
 }  // namespace bentaxis::foreign

@@ -172,9 +172,9 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& c
     if (length >= 3 && list.size() >= 2 && (columns == nullptr || list.size() >= columns->size()))
       columns = &list;
   if (columns == nullptr) fail("has no two vectors of the same length; its variables: " + names);
-  if (columns->size() > kMostColumns)
+  if (columns->size() > kMaxColumns)
     fail("has " + std::to_string(columns->size()) + " vectors of the same length: at most " +
-         std::to_string(kMostColumns) + " are read");
+         std::to_string(kMaxColumns) + " are read");
   ForeignTable table;
   table.file = file;
   table.sheet = wanted;

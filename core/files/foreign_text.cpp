@@ -284,10 +284,9 @@ ForeignTable read_text(const std::filesystem::path& file, std::string content) {
     split(line.text, best->separator, fields);
     Row row{line.number, {}};
     cells += fields.size();
-    if (fields.size() > kMostColumns || cells > kMostCells)
-      throw InputError(grid.place(row, 0) + ": a table has at most " +
-                       std::to_string(kMostColumns) + " columns and " + std::to_string(kMostCells) +
-                       " fields");
+    if (fields.size() > kMaxColumns || cells > kMaxCells)
+      throw InputError(grid.place(row, 0) + ": a table has at most " + std::to_string(kMaxColumns) +
+                       " columns and " + std::to_string(kMaxCells) + " fields");
     for (const auto field : fields) {
       Cell cell{field};
       cell.number = parse_number(field, best->decimal, cell.value, cell.digits);

@@ -100,7 +100,7 @@ std::pair<std::size_t, unsigned> cell_place(std::string_view reference) {
   for (const char c : reference) {
     if (c >= 'A' && c <= 'Z') column = column * 26 + static_cast<std::size_t>(c - 'A' + 1);
     if (c >= '0' && c <= '9') row = row * 10 + static_cast<unsigned>(c - '0');
-    if (column > kMostColumns) break;
+    if (column > kMaxColumns) break;
   }
   return {column == 0 ? 0 : column - 1, row};
 }
@@ -156,8 +156,8 @@ Grid grid_of(const Archive& archive, const std::filesystem::path& file, const Sh
       const std::string_view reference = cell.attribute("r").value();
       const std::size_t column = reference.empty() ? next : cell_place(reference).first;
       next = column + 1;
-      if (column >= kMostColumns)
-        archive.fail("sheet " + sheet.name + ": more than " + std::to_string(kMostColumns) +
+      if (column >= kMaxColumns)
+        archive.fail("sheet " + sheet.name + ": more than " + std::to_string(kMaxColumns) +
                      " columns");
       const std::string_view type = cell.attribute("t").value();
       std::string text =
@@ -182,8 +182,8 @@ Grid grid_of(const Archive& archive, const std::filesystem::path& file, const Sh
       }
       if (out.cells.size() <= column) {
         cells += column + 1 - out.cells.size();
-        if (cells > kMostCells)
-          archive.fail("sheet " + sheet.name + ": more than " + std::to_string(kMostCells) +
+        if (cells > kMaxCells)
+          archive.fail("sheet " + sheet.name + ": more than " + std::to_string(kMaxCells) +
                        " cells");
         out.cells.resize(column + 1);
       }

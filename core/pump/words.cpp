@@ -44,11 +44,11 @@ std::optional<std::string> meant(const std::string& word, const std::set<std::st
 std::string suggestion(const std::string& word, const std::set<std::string>& known) {
   if (known.empty()) return "";
   if (const auto nearest = meant(word, known)) return "; did you mean \"" + *nearest + "\"?";
-  constexpr std::size_t kMostShown = 40;  // more are no line that anybody reads
+  constexpr std::size_t kMaxShown = 40;  // more are no line that anybody reads
   std::string allowed;
   std::size_t shown = 0;
   for (const auto& name : known) {
-    if (known.size() > kMostShown && shown == kMostShown / 4) break;
+    if (known.size() > kMaxShown && shown == kMaxShown / 4) break;
     allowed += (allowed.empty() ? "" : ", ") + name;
     ++shown;
   }

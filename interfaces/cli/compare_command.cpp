@@ -61,7 +61,7 @@ int compare(const Options& options) {
   const study::ComparisonResult result =
       study::compare_models(std::move(first), std::move(second), how, progress_of);
 
-  const auto refuse = [&](const study::ReadyCase& ready) {
+  const auto refuse = [&](const study::PreparedCase& ready) {
     if (ready.hydraulics)
       options.the_case.refuse_timing(
           study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics)));

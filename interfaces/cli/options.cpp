@@ -29,7 +29,7 @@ Case CaseOption::read() const {
   const study::Plausibility looked = study::plausibility(the_case);
   std::fprintf(stderr, "pump: %s\n", looked.summary().c_str());
   const char* kind = strict ? "error" : "warning";
-  for (const study::Doubt& doubt : looked.warnings)
+  for (const study::PlausibilityWarning& doubt : looked.warnings)
     std::fprintf(stderr, "bentaxis: %s: %s: %s\n", kind, doubt.code.c_str(), doubt.text.c_str());
   if (strict && !looked.warnings.empty())
     throw InputError(file +

@@ -18,7 +18,7 @@
 namespace bentaxis::cli {
 namespace {
 
-constexpr int kMostPoints = 1000;  // of a torque curve
+constexpr int kMaxPoints = 1000;  // of a torque curve
 
 struct Options {
   CaseOption the_case;
@@ -53,7 +53,7 @@ int pressure(const Options& options) {
   if (!options.published.empty()) published = compare::read_published(options.published);
   std::vector<double> pressures;
   if (!options.delivery.empty())
-    pressures = designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
+    pressures = designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMaxPoints);
   std::optional<double> limit;
   if (!options.suction_speed.empty() && options.suction_speed != kFilling)
     limit = suction_limit(options.suction_speed, *read.hydraulics);

@@ -20,7 +20,7 @@
 namespace bentaxis::cli {
 namespace {
 
-constexpr int kMostPoints = 1000;  // of either axis
+constexpr int kMaxPoints = 1000;  // of either axis
 
 struct Options {
   CaseOption the_case;
@@ -41,11 +41,11 @@ std::string origin_of(const Case& the_case, const study::RattleOptions& options)
 
 int rattle(const Options& options) {
   study::RattleOptions rattle = options.rattle;
-  constexpr double kLeastSpeed = 1;  // rpm
+  constexpr double kMinSpeed = 1;  // rpm
   rattle.speed_rpm =
-      designs::spaced_values("--speeds", options.speeds, "rpm", kLeastSpeed, kMostPoints);
+      designs::spaced_values("--speeds", options.speeds, "rpm", kMinSpeed, kMaxPoints);
   rattle.delivery_bar =
-      designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMostPoints);
+      designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMaxPoints);
   const Case the_case = options.the_case.read();
   if (rattle.check > 0 && the_case.pump.gear.contact == ToothContact::rigid)
     throw InputError(

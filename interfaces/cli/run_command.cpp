@@ -35,7 +35,7 @@ int finish(OutputFolder& folder) {
 }
 
 // Reactions at given states.
-int run_states(const Options& options, const study::ReadyCase& ready,
+int run_states(const Options& options, const study::PreparedCase& ready,
                const study::RunOptions& run_options, const study::ChannelChoice& channels,
                OutputFolder& folder) {
   std::vector<Channel> there = ChannelLayout(ready.the_case.pump.geometry.pistons).channels();
@@ -63,7 +63,7 @@ int run(const Options& options) {
   options.choice.refuse_without_effect(!analytic, states);
   Case read = options.the_case.read();
   OutputFolder folder(options.out);
-  const study::ReadyCase ready = study::prepare(std::move(read), progress_of);
+  const study::PreparedCase ready = study::prepare(std::move(read), progress_of);
   Assumptions assumptions = ready.assumptions(options.model);
   if (!options.gear.empty())
     assumptions.gear = options.gear == "imposed" ? BlockDrive::imposed : BlockDrive::mesh;

@@ -14,7 +14,7 @@
 namespace bentaxis::cli {
 namespace {
 
-constexpr int kMostSamples = 10'000'000;
+constexpr int kMaxSamples = 10'000'000;
 
 struct Options {
   CaseOption the_case;
@@ -86,7 +86,7 @@ Command add_uncertainty_command(CommandParser program) {
       .text("NAME=DISTRIBUTION");
   designs::UncertaintyOptions& how = options->uncertainty;
   command.option("--samples", options->samples, "samples of the Monte Carlo")
-      .integer_in(10, kMostSamples)
+      .integer_in(10, kMaxSamples)
       .text("NUMBER [1000]");
   command.option("--seed", options->seed, "of its random numbers")
       .integer_in(0, 2'000'000'000)
@@ -98,7 +98,7 @@ Command add_uncertainty_command(CommandParser program) {
       .option("--sobol", options->sobol,
               "base points of Sobol indices, each of which takes parameters + 2 evaluations; 0: "
               "none")
-      .integer_in(0, kMostSamples)
+      .integer_in(0, kMaxSamples)
       .text("NUMBER [0]");
   command.flag("--no-curves", options->no_curves, "numbers only, no bands on reactions");
   command.choice("--model", how.model, {"analytic", "multibody"}, "the model that computes them");

@@ -18,7 +18,7 @@ namespace {
 
 namespace py = pybind11;
 namespace fs = std::filesystem;
-using study::Doubt;
+using study::PlausibilityWarning;
 
 PythonCase::Changes changes_of(const py::handle& values) {
   PythonCase::Changes changes;
@@ -154,13 +154,18 @@ void add_class(py::module_& module) {
 }  // namespace
 
 void add_case(py::module_& module) {
-  py::class_<Doubt>(module, "Doubt", "A value, or values together, that are hardly meant.")
-      .def_readonly("code", &Doubt::code, "Stable short name: \"tilt-in-radians\".")
-      .def_readonly("text", &Doubt::text, "The key with its value, the limit and its reason.")
-      .def_readonly("reason", &Doubt::reason, "Why it is meant all the same, where the case says.")
+  py::class_<PlausibilityWarning>(module, "PlausibilityWarning",
+                                  "A value, or values together, that are hardly meant.")
+      .def_readonly("code", &PlausibilityWarning::code, "Stable short name: \"tilt-in-radians\".")
+      .def_readonly("text", &PlausibilityWarning::text,
+                    "The key with its value, the limit and its reason.")
+      .def_readonly("reason", &PlausibilityWarning::reason,
+                    "Why it is meant all the same, where the case says.")
       .def(
           "__repr__",
-          [](const Doubt& self) { return "<bentaxis.Doubt " + self.code + ": " + self.text + ">"; },
+          [](const PlausibilityWarning& self) {
+            return "<bentaxis.PlausibilityWarning " + self.code + ": " + self.text + ">";
+          },
           "Name and text.");
   py::class_<Parameter>(module, "Parameter", "A parameter of a case file.")
       .def_property_readonly(

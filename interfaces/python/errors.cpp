@@ -33,7 +33,7 @@ void warn(const std::string& text) {
 
 std::vector<std::string> plausibility_texts(const Case& the_case) {
   std::vector<std::string> texts;
-  for (const study::Doubt& doubt : study::plausibility(the_case).warnings)
+  for (const study::PlausibilityWarning& doubt : study::plausibility(the_case).warnings)
     texts.push_back(in_python(doubt.code + ": " + doubt.text));
   return texts;
 }

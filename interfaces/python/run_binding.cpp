@@ -41,7 +41,7 @@ Table shown(Warned<T>&& found) {
 }
 
 // What the program says on standard error of the ports' timing.
-void add_timing(const study::ReadyCase& ready, Warnings& warnings) {
+void add_timing(const study::PreparedCase& ready, Warnings& warnings) {
   if (!ready.hydraulics) return;
   for (const auto& warning :
        study::timing_warnings(study::timing_rows(ready.the_case, *ready.hydraulics)))
@@ -62,7 +62,7 @@ Warned<ResultTable> turn(const Case& the_case, study::Model model,
     options.scene.scene = channels.scene_for(layout, std::nullopt);
   else
     channels.of(layout);  // refuses unknown names
-  const study::ReadyCase ready = study::prepare(the_case, progress_of);
+  const study::PreparedCase ready = study::prepare(the_case, progress_of);
   const auto lines = study::rounding_lines(ready.the_case, ready.assumptions(model));
   found.warnings = study::rounding_warnings(lines);
   if (model == study::Model::multibody)
@@ -135,7 +135,7 @@ Table run_states(const PythonCase& the_case, const Motion& states, const std::st
     std::vector<Channel> there = ChannelLayout(copy.pump.geometry.pistons).channels();
     for (const Channel& channel : motion_channels()) there.push_back(channel);
     wanted.of(there);  // refuses unknown names
-    const study::ReadyCase ready = study::prepare(copy, progress_of);
+    const study::PreparedCase ready = study::prepare(copy, progress_of);
     const States read = arrays ? states_of(given, file, file, ready.the_case, ready.pressure)
                                : read_states(file, ready.the_case, ready.pressure);
     add_timing(ready, found.warnings);

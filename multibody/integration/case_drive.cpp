@@ -19,7 +19,7 @@ void require_simulable(const Case& the_case, const Assumptions& assumptions) {
     throw InputError(
         "multibody model: a block whose motion is imposed has none to simulate: use the gear in "
         "mesh");
-  const bool compliant = the_case.pump.gear.gives_way();
+  const bool compliant = the_case.pump.gear.is_compliant();
   const bool speed_changes = drive.kind != DriveKind::speed || !drive.curve.time.empty();
   const std::string file = the_case.file.empty() ? "" : the_case.file.string() + ": ";
   const auto need = [&](double inertia, const char* key) {

@@ -19,7 +19,7 @@ namespace {
 // Of the time reached: two times closer than that are one.
 constexpr double kSameTime = 4e-16;
 // Trials after which a landing is taken as it is.
-constexpr int kMostTrials = 60;
+constexpr int kMaxTrials = 60;
 // That find the root of a cubic on 0..1 to round-off.
 constexpr int kHalvings = 54;
 // Steps after which what is left is foreseen: this share of those allowed, and not fewer than that.
@@ -163,7 +163,7 @@ int EventStepper::land(int risen, Point from, const std::vector<Witness>& witnes
   go_back(from, high.time - from.time);
   system_.realize(state(), Stage::Velocity);
   Look low = look();
-  for (int trial = 0; trial < kMostTrials; ++trial) {
+  for (int trial = 0; trial < kMaxTrials; ++trial) {
     if (high.time - low.time <= kSameTime * high.time) break;
     // A guess that keeps falling to one side is helped by halving.
     double target = trial % 4 == 3 ? (low.time + high.time) / 2 : root_between(low, high);

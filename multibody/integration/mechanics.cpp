@@ -327,17 +327,17 @@ double MultibodyMechanics::kinetic_energy_in(const Posture& now) {
 // Sizes of what acts and of what it moves, the largest of a turn.
 MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
   constexpr int kAngles = 12;
-  constexpr double kAngle = 0.1;          // rad, over which pressures change
-  constexpr double kLeastPressure = 1e5;  // Pa
-  constexpr double kLeastTorque = 1e-6;   // Nm
-  constexpr double kOneTouch = 1e-3;      // s
+  constexpr double kAngle = 0.1;        // rad, over which pressures change
+  constexpr double kMinPressure = 1e5;  // Pa
+  constexpr double kMinTorque = 1e-6;   // Nm
+  constexpr double kOneTouch = 1e-3;    // s
   constexpr double kTouchShare = 0.1;
   const PortPressures& ports = the_case.pressure.ports;
-  const double most = std::max({std::abs(ports.delivery), std::abs(ports.suction), kLeastPressure});
+  const double most = std::max({std::abs(ports.delivery), std::abs(ports.suction), kMinPressure});
   const auto pistons = static_cast<std::size_t>(layout_.pistons());
   const double start = drive_.start_speed();
 
-  double torque = kLeastTorque;
+  double torque = kMinTorque;
   double tooth = 0;  // N, that keeps the block with the shaft
   system_.teeth_setting().apart = true;
   double both = 0;               // kg m2

@@ -34,7 +34,7 @@ constexpr double kNoForce = 1e-9;
 // m/s: of a piston that is about to turn.
 constexpr double kNoSpeed = 1e-12;
 // Events at one time after which nothing will come of it.
-constexpr int kMostEvents = 200;
+constexpr int kMaxEvents = 200;
 double rpm(double speed) { return speed / kRadPerSecondPerRpm; }
 
 // Of the duration: times nearer than that are one.
@@ -239,8 +239,8 @@ void MotionRun::guard_against_chatter(double time) {
   const bool same = time - last_event_ <= kOneTime * spec_.duration;
   last_event_ = time;
   events_there_ = same ? events_there_ + 1 : 0;
-  if (events_there_ > kMostEvents)
-    throw ComputationError("flanks, pressures or friction change " + std::to_string(kMostEvents) +
+  if (events_there_ > kMaxEvents)
+    throw ComputationError("flanks, pressures or friction change " + std::to_string(kMaxEvents) +
                            " times at one time: nothing comes of it");
 }
 

@@ -23,7 +23,7 @@ constexpr double kSameMatrix = 2e-14;
 // Turn of a piston, rad, after which the matrix of its equations is found afresh: a matrix that is
 // off by this much still gains five digits a step.
 constexpr double kStale = 1e-5;
-constexpr int kMostSteps = 30;
+constexpr int kMaxSteps = 30;
 
 }  // namespace
 
@@ -85,7 +85,7 @@ double PistonSolver::solve_positions(State& state) {
   double before = SimTK::Infinity;
   double worst = 0;
   turned_ = SimTK::Infinity;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     system_.realize(state, Stage::Position);
     const Vector& error = state.getQErr();
     worst = 0;

@@ -130,8 +130,8 @@ void read_motion_row(const PumpSystem& pump, const State& state, const AxisMotio
     read_piston_channels(pump, reactions, k, k, pressure[k], layout, values);
   const double speed = motion.shaft.speed;
   read_pump_channels(pump, state, reactions, {state, speed}, motion, pressure, layout, values);
-  const bool gives_way = pump.teeth() != nullptr || pump.bevel() != nullptr;
-  checks = {gives_way ? reactions.tooth : not_computed(), ring_power(pump, reactions, state),
+  const bool is_compliant = pump.teeth() != nullptr || pump.bevel() != nullptr;
+  checks = {is_compliant ? reactions.tooth : not_computed(), ring_power(pump, reactions, state),
             power_balance(pump, state, reactions, state.getUDot())};
   values[layout.power_residual()] = speed == 0 ? not_computed() : checks.power_balance / speed;
 }

@@ -18,7 +18,7 @@ using SimTK::Vec3;
 
 namespace {
 
-constexpr int kMostIterations = 60;
+constexpr int kMaxIterations = 60;
 constexpr double kLongestStep = 0.3;  // rad of roll, of Newton's method
 constexpr double kRollRoundOff = 4e-16;
 // What a search may leave over where rounding ends it.
@@ -133,7 +133,7 @@ BevelTeeth::Placed BevelTeeth::on_block(double block_ahead, double roll) const {
 // unless the flanks are bent alike, however near to each other they are.
 bool BevelTeeth::regular(double shaft_ahead, double block_ahead, Touch& touch) const {
   double last = std::numeric_limits<double>::infinity();
-  while (touch.iterations < kMostIterations) {
+  while (touch.iterations < kMaxIterations) {
     ++touch.iterations;
     const Placed a = on_shaft(shaft_ahead, touch.shaft_roll);
     const Placed b = on_block(block_ahead, touch.block_roll);
@@ -171,7 +171,7 @@ template <class Flank>
 bool BevelTeeth::foot_from(double start, const Vec3& tip, const Flank& flank, double& roll) const {
   double last = std::numeric_limits<double>::infinity();
   double at_roll = start;
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     const Placed at = flank(at_roll);
     const double slope = dot(at.tangent_rate, tip);
     const double step = -dot(at.tangent, tip) / slope;

@@ -62,7 +62,7 @@ Statistics statistics(const ResultTable& table, const std::string& column) {
 
 // One model's turn.
 struct Turn {
-  const ReadyCase& ready;
+  const PreparedCase& ready;
   const ResultTable& budget;
   const ResultTable& table;
   const std::optional<hydraulics::PumpPower>& oil;  // its balance; of the hydraulic model
@@ -226,8 +226,8 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
 
 }  // namespace
 
-report::Budget budget_section(const BudgetComparison& budgets, const ReadyCase& first,
-                              const ReadyCase& second, const ResultTable& analytic,
+report::Budget budget_section(const BudgetComparison& budgets, const PreparedCase& first,
+                              const PreparedCase& second, const ResultTable& analytic,
                               const ResultTable& multibody) {
   const std::optional<hydraulics::PumpPower> oil = pump_power(first);
   // Both models get the same oil, unless they are given different cases.

@@ -8,7 +8,7 @@ namespace bentaxis::study {
 namespace {
 
 constexpr double kMuch = 1e-2;  // of peak
-constexpr std::size_t kMostLines = 20;
+constexpr std::size_t kMaxLines = 20;
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
@@ -68,7 +68,7 @@ report::Section coupling_section(const SimulationResult& r) {
   if (const auto loose = coupling.loose_outputs(); !loose.empty())
     section.facts.emplace_back("outputs of the unit that are not used", listed(loose));
   const std::vector<std::string> said = coupling.log();
-  for (std::size_t i = 0; i < said.size() && i < kMostLines; ++i)
+  for (std::size_t i = 0; i < said.size() && i < kMaxLines; ++i)
     section.facts.emplace_back("the unit says", said[i]);
   section.table.columns = {"group", "unit",
                            "peak",  "change at half the step, of peak",

@@ -142,12 +142,12 @@ std::string said_of(const std::vector<Family>& families, const Polygon& polygon)
 
 report::Figure force_polygon(const DiagramRun& run, const std::string& body,
                              const std::vector<std::pair<int, int>>& planes, double shown_deg) {
-  constexpr std::size_t kMostFrames = 18;
+  constexpr std::size_t kMaxFrames = 18;
   const std::vector<Family> families = families_of(*run.loads, body);
   DrawingFigure drawing;
   for (std::size_t f = 0; f < families.size(); ++f)
     drawing.looks.push_back({families[f].label, static_cast<int>(f), false});
-  const std::vector<std::size_t> rows = frame_rows(run.table.rows(), kMostFrames);
+  const std::vector<std::size_t> rows = frame_rows(run.table.rows(), kMaxFrames);
   std::vector<Polygon> polygons;
   for (const std::size_t row : rows) polygons.push_back(polygon_at(run, families, body, row));
   for (const auto& plane : planes) drawing.panels.push_back(panel_of(plane, polygons));

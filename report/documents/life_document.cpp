@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bentaxis/study/failed_points.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/failed_points.h"
 #include "bentaxis/study/plausibility_section.h"
 
 namespace bentaxis::designs {
@@ -187,7 +187,7 @@ report::Figure turn_figure(const LifeStudy& s, Bearing bearing, std::size_t row)
 
 // Share of the revolutions above a load.
 report::Figure spectrum_figure(const LifeStudy& s) {
-  constexpr std::size_t kMostPoints = 400;  // of a curve
+  constexpr std::size_t kMaxPoints = 400;  // of a curve
   const study::DutyShares shares = study::duty_shares(s.analytic.points);
   report::XyFigure plot{
       {"share of the revolutions above it", "%"}, {"equivalent load", "N", false, 0}, {}};
@@ -204,7 +204,7 @@ report::Figure spectrum_figure(const LifeStudy& s) {
     double above = 0, shown = 0;
     for (std::size_t k = 0; k < spectrum.size(); ++k) {
       above += 100 * spectrum[k].second;
-      if (above - shown < 100.0 / kMostPoints && k + 1 < spectrum.size()) continue;
+      if (above - shown < 100.0 / kMaxPoints && k + 1 < spectrum.size()) continue;
       shown = above;
       series.x.push_back(above);
       series.y.push_back(spectrum[k].first);

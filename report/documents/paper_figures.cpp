@@ -84,7 +84,7 @@ class AtCondition {
   };
   const PaperFigures& list_;
   Case as_read_;
-  ReadyCase ready_;
+  PreparedCase ready_;
   Side sides_[2];
 };
 
@@ -195,7 +195,7 @@ class PaperRun {
     Case the_case = at(figure.condition).the_case();
     the_case.pump.piston.mass = 0;
     PressureTrace pressure(the_case.pressure);
-    const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
+    const PreparedCase ready{std::move(the_case), {}, std::move(pressure)};
     RunOptions options;
     options.assumptions = ready.the_case.analytic;
     options.assumptions->piston_friction = false;

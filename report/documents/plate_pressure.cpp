@@ -67,7 +67,7 @@ void add_port(DrawingFigure& drawing, const PortPlate& plate, const PortArc& arc
 }  // namespace
 
 report::Figure plate_pressure(const DiagramRun& run) {
-  constexpr std::size_t kMostFrames = 18;
+  constexpr std::size_t kMaxFrames = 18;
   const PumpParameters& pump = run.the_case.pump;
   const Geometry& g = pump.geometry;
   const ChannelLayout at(g.pistons);
@@ -115,7 +115,7 @@ report::Figure plate_pressure(const DiagramRun& run) {
 
   // As wide as the ports, so that these are seen.
   const double disc = ports ? (pump.port_plate->r3 - pump.port_plate->r2) / 2 : g.bore_diameter / 4;
-  const std::vector<std::size_t> rows = frame_rows(table.rows(), kMostFrames);
+  const std::vector<std::size_t> rows = frame_rows(table.rows(), kMaxFrames);
   for (const std::size_t row : rows) {
     DrawingFigure::Frame frame;
     frame.theta_deg = along(run, row);

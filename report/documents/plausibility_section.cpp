@@ -13,9 +13,10 @@ void describe_case(report::Document& document, const Case& the_case,
                    std::optional<report::Scene> scene) {
   document.the_case = case_section(the_case);
   const Plausibility looked = plausibility(the_case);
-  const auto rows = [](const std::vector<Doubt>& doubts) {
+  const auto rows = [](const std::vector<PlausibilityWarning>& doubts) {
     std::vector<report::DoubtRow> list;
-    for (const Doubt& doubt : doubts) list.push_back({doubt.code, doubt.text, doubt.reason});
+    for (const PlausibilityWarning& doubt : doubts)
+      list.push_back({doubt.code, doubt.text, doubt.reason});
     return list;
   };
   document.plausibility = {looked.summary(), rows(looked.warnings), rows(looked.meant)};

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "bentaxis/study/failed_points.h"
 #include "bentaxis/study/case_sections.h"
+#include "bentaxis/study/failed_points.h"
 #include "bentaxis/study/plausibility_section.h"
 
 namespace bentaxis::study {
@@ -24,7 +24,7 @@ std::array<long, 4> counts_of(const RattleMap& map, Sweep sweep) {
   return counts;
 }
 
-bool rigid(const RattleMap& map) { return !map.the_case.pump.gear.gives_way(); }
+bool rigid(const RattleMap& map) { return !map.the_case.pump.gear.is_compliant(); }
 
 std::size_t two_states_of(const RattleMap& map) {
   std::size_t count = 0;
@@ -177,14 +177,14 @@ report::Section states_section(const RattleMap& map) {
                           {{"delivery pressure, bar", "speed, rpm", "up", "down", "largest up, N",
                             "largest down, N", "period up, turns", "period down, turns"},
                            {}}};
-  constexpr std::size_t kMostRows = 100;  // the rest is in the CSV file
+  constexpr std::size_t kMaxRows = 100;  // the rest is in the CSV file
   const auto period = [](const RattlePoint& p) {
     return p.period > 0 ? report::Cell(static_cast<long>(p.period)) : report::Cell("none");
   };
   for (const RattleRow& row : map.rows)
     for (std::size_t j = 0; j < row.up.size(); ++j) {
       const RattlePoint &u = row.up[j], &d = row.down[j];
-      if (!two_states(u, d) || section.table.rows.size() >= kMostRows) continue;
+      if (!two_states(u, d) || section.table.rows.size() >= kMaxRows) continue;
       section.table.rows.push_back({row.delivery_bar, map.options.speed_rpm[j], to_string(u.kind),
                                     to_string(d.kind), u.largest, d.largest, period(u), period(d)});
     }

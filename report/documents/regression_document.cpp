@@ -1,10 +1,11 @@
 #include "bentaxis/study/regression_document.h"
-#include "bentaxis/study/reference_curves.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "bentaxis/study/reference_curves.h"
 
 namespace bentaxis::study {
 
@@ -14,8 +15,8 @@ using compare::ReferenceChannel;
 namespace {
 
 // A page with more figures than this is not read.
-constexpr std::size_t kMostFigures = 40;
-constexpr std::size_t kMostCurves = 6;  // in one figure
+constexpr std::size_t kMaxFigures = 40;
+constexpr std::size_t kMaxCurves = 6;  // in one figure
 
 const std::string& property(const Outcome& outcome, const std::string& name) {
   static const std::string none = "not said";
@@ -38,7 +39,7 @@ std::vector<std::string> shown_channels(const GroupLine& line) {
                      [](const auto* a, const auto* b) { return severity(*a) > severity(*b); });
   std::vector<std::string> names;
   for (const auto* channel : chosen)
-    if (names.size() < kMostCurves) names.push_back(channel->comparison.channel.name);
+    if (names.size() < kMaxCurves) names.push_back(channel->comparison.channel.name);
   return names;
 }
 
@@ -73,7 +74,7 @@ std::vector<report::Figure> held_figures(const std::vector<Outcome>& outcomes) {
       return o.name == line->reference;
     });
     const bool wanted = line->failed > 0 || line->kind == "external";
-    if (!wanted || line != outcome.worst_line(line->group) || figures.size() >= kMostFigures)
+    if (!wanted || line != outcome.worst_line(line->group) || figures.size() >= kMaxFigures)
       continue;
     const std::vector<std::string> channels = shown_channels(*line);
     if (channels.empty()) continue;

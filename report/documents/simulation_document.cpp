@@ -27,8 +27,8 @@ using report::Cell;
 using report::Figure;
 using report::Values;
 
-constexpr std::size_t kMostTouches = 200;  // in the table
-constexpr std::size_t kMostMarks = 2000;   // in a figure
+constexpr std::size_t kMaxTouches = 200;  // in the table
+constexpr std::size_t kMaxMarks = 2000;   // in a figure
 constexpr double kMilliseconds = 1e3;
 
 // The runs there are, with their names.
@@ -39,7 +39,7 @@ std::vector<std::pair<std::string, const Trajectory*>> runs_of(const SimulationR
   return runs;
 }
 
-bool compliant(const SimulationResult& r) { return r.ready.the_case.pump.gear.gives_way(); }
+bool compliant(const SimulationResult& r) { return r.ready.the_case.pump.gear.is_compliant(); }
 
 Values times_of(const Trajectory& run) {
   Values times;
@@ -371,14 +371,14 @@ report::Section teeth_section(const SimulationResult& r) {
       "Touches of the {} model with the speeds before them and the impulse until the flanks "
       "leave{}.",
       name,
-      run->record.events.size() > 2 * kMostTouches
-          ? fmt::format("; the first {} of them", kMostTouches)
+      run->record.events.size() > 2 * kMaxTouches
+          ? fmt::format("; the first {} of them", kMaxTouches)
           : "");
   section.table.columns = {"time, s",      "flank",         "shaft, rad/s",
                            "block, rad/s", "approach, m/s", "impulse, Ns"};
   for (const ToothEvent& event : run->record.events) {
     if (!event.touch) continue;
-    if (section.table.rows.size() == kMostTouches) break;
+    if (section.table.rows.size() == kMaxTouches) break;
     section.table.rows.push_back({event.time_s, std::string(event.flank > 0 ? "driving" : "other"),
                                   event.shaft_speed, event.block_speed, event.approach_speed,
                                   event.impulse});
@@ -625,7 +625,7 @@ report::Curves simulation_curves(const SimulationResult& r) {
       curves.difference.emplace_back(name, std::move(difference));
     }
   for (const ToothEvent& event : runs.front().second->record.events)
-    if (event.touch && curves.marks.size() < kMostMarks)
+    if (event.touch && curves.marks.size() < kMaxMarks)
       curves.marks.push_back({event.time_s * kMilliseconds, event.flank > 0});
   return curves;
 }

@@ -19,7 +19,7 @@ using report::Section;
 
 constexpr std::size_t kAllRows = 60;  // designs of a sweep that is printed whole
 constexpr std::size_t kBestRows = 20;
-constexpr std::size_t kMostReasons = 30, kMostDiffering = 40;
+constexpr std::size_t kMaxReasons = 30, kMaxDiffering = 40;
 
 std::string percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? "0 %"
@@ -139,10 +139,10 @@ Section infeasible_section(const SweepResult& result, const SweepView& view) {
       {{"infeasible", fmt::format("{} of {} designs, {}", result.all_infeasible, result.plan.size(),
                                   percent(result.all_infeasible, result.plan.size()))}},
       {{"reason", "designs", "first design"}, {}}};
-  if (sorted.size() > kMostReasons) {
+  if (sorted.size() > kMaxReasons) {
     section.text +=
-        fmt::format(" The {} most frequent of {} are shown.", kMostReasons, sorted.size());
-    sorted.resize(kMostReasons);
+        fmt::format(" The {} most frequent of {} are shown.", kMaxReasons, sorted.size());
+    sorted.resize(kMaxReasons);
   }
   for (const Group& group : sorted)
     section.table.rows.push_back(
@@ -244,7 +244,7 @@ Section differing_section(const SweepResult& result) {
                    {}}};
   std::size_t all = 0;
   const auto add = [&](std::vector<Cell> row) {
-    if (++all <= kMostDiffering) section.table.rows.push_back(std::move(row));
+    if (++all <= kMaxDiffering) section.table.rows.push_back(std::move(row));
   };
   for (const SweepCheck& check : result.checks) {
     if (check.agrees(result.tolerance)) continue;
@@ -258,7 +258,7 @@ Section differing_section(const SweepResult& result) {
       if (!(check.error(k) <= result.tolerance))
         add({design, result.plan.outputs[k].name, check.own[k], check.values[k], check.error(k)});
   }
-  if (all > kMostDiffering) section.text = fmt::format("The first {} of {}.", kMostDiffering, all);
+  if (all > kMaxDiffering) section.text = fmt::format("The first {} of {}.", kMaxDiffering, all);
   return section;
 }
 

@@ -13,11 +13,11 @@ namespace {
 using report::Values;
 
 // What a page can hold and a reader can look through.
-constexpr std::size_t kMostMaps = 12, kMostSlices = 12, kMostPairs = 6, kMostLines = 6;
-constexpr std::size_t kMostDrawnLevels = 60;  // of either axis of a map
-constexpr std::size_t kMostPoints = 300;      // of a figure of designs
-constexpr std::size_t kMostMarked = 60;       // designs of the front drawn among them
-constexpr std::size_t kMostColumns = 10;      // parallel axes
+constexpr std::size_t kMaxMaps = 12, kMaxSlices = 12, kMaxPairs = 6, kMaxLines = 6;
+constexpr std::size_t kMaxDrawnLevels = 60;  // of either axis of a map
+constexpr std::size_t kMaxPoints = 300;      // of a figure of designs
+constexpr std::size_t kMaxMarked = 60;       // designs of the front drawn among them
+constexpr std::size_t kMaxColumns = 10;      // parallel axes
 
 bool is_number(const Variable& variable) { return variable.words().empty(); }
 
@@ -103,13 +103,13 @@ class Figures {
     std::size_t made = 0;
     const std::size_t wanted = pairs.size() * view_.outputs();
     for (const auto& [a, b] : pairs)
-      for (std::size_t k = 0; k < view_.outputs() && made < kMostMaps; ++k, ++made)
-        map(a, b, k, made == 0 ? limit_text(std::min(wanted, kMostMaps), wanted, "maps") : "");
+      for (std::size_t k = 0; k < view_.outputs() && made < kMaxMaps; ++k, ++made)
+        map(a, b, k, made == 0 ? limit_text(std::min(wanted, kMaxMaps), wanted, "maps") : "");
   }
 
   void map(std::size_t a, std::size_t b, std::size_t k, std::string note) {
-    const auto columns = spread(view_.levels(a).size(), kMostDrawnLevels, view_.home()[a]);
-    const auto rows = spread(view_.levels(b).size(), kMostDrawnLevels, view_.home()[b]);
+    const auto columns = spread(view_.levels(a).size(), kMaxDrawnLevels, view_.home()[a]);
+    const auto rows = spread(view_.levels(b).size(), kMaxDrawnLevels, view_.home()[b]);
     report::MapFigure m{view_.axis(a), view_.axis(b), {}, {}, {}, {}, {}, {}};
     for (const std::size_t j : columns) m.x_values.push_back(view_.levels(a)[j]);
     for (const std::size_t i : rows) m.y_values.push_back(view_.levels(b)[i]);
@@ -183,9 +183,9 @@ class Figures {
         for (std::size_t k = 0; k < view_.outputs(); ++k) wanted.emplace_back(v, k);
     std::size_t made = 0;
     for (const auto& [v, k] : wanted) {
-      if (made == kMostSlices) break;
+      if (made == kMaxSlices) break;
       slice(v, k,
-            made == 0 ? limit_text(std::min(wanted.size(), kMostSlices), wanted.size(), "slices")
+            made == 0 ? limit_text(std::min(wanted.size(), kMaxSlices), wanted.size(), "slices")
                       : "");
       ++made;
     }
@@ -215,7 +215,7 @@ class Figures {
       line(view_.output(k).name);
     } else {
       const std::size_t count = view_.levels(family).size();
-      for (const std::size_t i : spread(count, kMostLines, view_.home()[family])) {
+      for (const std::size_t i : spread(count, kMaxLines, view_.home()[family])) {
         level[family] = i;
         const Variable& variable = view_.variable(family);
         line(variable.name() + " " + value_text(variable, view_.levels(family)[i]));
@@ -227,12 +227,10 @@ class Figures {
   }
 
   // Designs drawn in figures of many of them, and those of the front among these.
-  std::vector<std::size_t> chosen() const {
-    return thinned(view_.designs(), kMostPoints, marked());
-  }
+  std::vector<std::size_t> chosen() const { return thinned(view_.designs(), kMaxPoints, marked()); }
   std::vector<std::size_t> marked() const {
     std::vector<std::size_t> list;
-    for (const std::size_t i : thinned(view_.front().size(), kMostMarked))
+    for (const std::size_t i : thinned(view_.front().size(), kMaxMarked))
       list.push_back(view_.front()[i]);
     return list;
   }
@@ -264,7 +262,7 @@ class Figures {
   void clouds() {
     std::size_t made = 0;
     for (const std::size_t v : varied_)
-      for (std::size_t k = 0; k < view_.outputs() && made < kMostSlices; ++k) {
+      for (std::size_t k = 0; k < view_.outputs() && made < kMaxSlices; ++k) {
         if (!is_number(view_.variable(v))) continue;
         ++made;
         add(fmt::format("cloud_{}_{}", v + 1, k + 1),
@@ -284,7 +282,7 @@ class Figures {
       if (view_.direction(k) != 0 || view_.sought() == 0) outputs.push_back(k);
     std::size_t made = 0;
     for (std::size_t a = 0; a < outputs.size(); ++a)
-      for (std::size_t b = a + 1; b < outputs.size() && made < kMostPairs; ++b, ++made)
+      for (std::size_t b = a + 1; b < outputs.size() && made < kMaxPairs; ++b, ++made)
         add(fmt::format("pair_{}_{}", outputs[a] + 1, outputs[b] + 1),
             fmt::format("{} against {}", view_.output(outputs[b]).name,
                         view_.output(outputs[a]).name),
@@ -313,9 +311,9 @@ class Figures {
       figure.columns.push_back({axis.label, axis.unit, view_.results(k, designs), axis.log, {}});
     }
     std::string note = chosen_text();
-    if (figure.columns.size() > kMostColumns) {
-      note += limit_text(kMostColumns, all, "parameters and outputs");
-      figure.columns.resize(kMostColumns);
+    if (figure.columns.size() > kMaxColumns) {
+      note += limit_text(kMaxColumns, all, "parameters and outputs");
+      figure.columns.resize(kMaxColumns);
     }
     figure.colour_by = std::min(by, figure.columns.size() - 1);
     for (const std::size_t design : marked())

@@ -253,11 +253,11 @@ void add_left_out(report::Document& document, const UncertaintyResult& result) {
        {"share, %",
         fmt::format("{:.3g}", 100 * without / static_cast<double>(result.options.samples))}},
       {{"reason", "samples"}, {}}};
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMax = 20;
   for (const auto& [reason, count] : counts)
-    if (reasons.table.rows.size() < kMost) reasons.table.rows.push_back({reason, count});
-  if (counts.size() > kMost)
-    reasons.facts.emplace_back("reasons not listed", std::to_string(counts.size() - kMost));
+    if (reasons.table.rows.size() < kMax) reasons.table.rows.push_back({reason, count});
+  if (counts.size() > kMax)
+    reasons.facts.emplace_back("reasons not listed", std::to_string(counts.size() - kMax));
   document.runs->push_back(std::move(reasons));
 
   Section kept{

@@ -73,7 +73,7 @@ Picture picture_of(const PistonBars& figure, const Curves& page) {
 }
 
 Picture picture_of(const BarsFigure& figure, const Curves&) {
-  constexpr std::size_t kMostLetters = 42;
+  constexpr std::size_t kMaxLetters = 42;
   constexpr double kRow = 24, kBar = 15;  // px
   Picture picture;
   const double n = static_cast<double>(figure.bars.size());
@@ -85,7 +85,7 @@ Picture picture_of(const BarsFigure& figure, const Curves&) {
   std::size_t letters = 4;
   for (std::size_t i = 0; i < figure.bars.size(); ++i) {
     const BarsFigure::Bar& bar = figure.bars[i];
-    const std::string label = cut(bar.label, kMostLetters);
+    const std::string label = cut(bar.label, kMaxLetters);
     letters = std::max(letters, label.size());
     panel.y_ticks.push_back({n - 0.5 - static_cast<double>(i), label});
     for (const double end : {bar.low, bar.high}) panel.xs.include(end);

@@ -108,7 +108,7 @@ Panel::Right right_of(const OwnFigure& figure, std::size_t first_colour, Keys& k
 
 // Both axes so that a unit is as long across as up, within the space there is.
 void make_equal(Panel& panel) {
-  constexpr double kMostHeight = 430, kLeastHeight = 120, kMargin = 0.06;  // px; of a span
+  constexpr double kMaxHeight = 430, kMinHeight = 120, kMargin = 0.06;  // px; of a span
   const auto widened = [&](Range range, const Axis& axis) {
     const double more = kMargin * (range.high - range.low);
     return Range{axis.from.value_or(range.low - more), axis.to.value_or(range.high + more)};
@@ -116,9 +116,9 @@ void make_equal(Panel& panel) {
   if (panel.xs.empty() || panel.ys.empty()) return;
   Range xs = widened(panel.xs, panel.x), ys = widened(panel.ys, panel.y);
   const double width = kRight - panel.left;
-  const double unit = std::max((xs.high - xs.low) / width, (ys.high - ys.low) / kMostHeight);
+  const double unit = std::max((xs.high - xs.low) / width, (ys.high - ys.low) / kMaxHeight);
   if (!(unit > 0)) return;
-  panel.height = std::max(kLeastHeight, (ys.high - ys.low) / unit);
+  panel.height = std::max(kMinHeight, (ys.high - ys.low) / unit);
   const auto stretch = [](Range& range, double span, Axis& axis) {
     const double middle = (range.low + range.high) / 2;
     range = {middle - span / 2, middle + span / 2};

@@ -8,8 +8,8 @@
 namespace bentaxis::report::picture {
 
 namespace {
-constexpr double kShortArrow = 18;        // px
-constexpr std::size_t kMostLetters = 96;  // of a line
+constexpr double kShortArrow = 18;       // px
+constexpr std::size_t kMaxLetters = 96;  // of a line
 
 // What stands over a frame: where it is and its text, in pieces where that is long.
 std::vector<std::string> said_of(const DrawingFigure& figure, const DrawingFigure::Frame& frame) {
@@ -17,7 +17,7 @@ std::vector<std::string> said_of(const DrawingFigure& figure, const DrawingFigur
                                          ? fmt::format("At {:g} deg", frame.theta_deg)
                                          : fmt::format("{} {:.6g}", figure.axis, frame.theta_deg)};
   if (frame.text.empty()) return pieces;
-  if (pieces[0].size() + frame.text.size() < kMostLetters) return {pieces[0] + ": " + frame.text};
+  if (pieces[0].size() + frame.text.size() < kMaxLetters) return {pieces[0] + ": " + frame.text};
   for (std::size_t from = 0; from < frame.text.size();) {
     const std::size_t end = std::min(frame.text.find(", ", from), frame.text.size());
     pieces.push_back(frame.text.substr(from, end - from));

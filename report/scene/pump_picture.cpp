@@ -17,12 +17,12 @@ namespace {
 
 // ---- Look
 
-constexpr double kWidth = 1100;      // px
-constexpr double kMostHeight = 430;  // px, of the views
-constexpr double kNarrowest = 262;   // px, of a view with its words
-constexpr double kGap = 16;          // px, between views
-constexpr double kHead = 44;         // px, above the views
-constexpr double kFoot = 88;         // px, below them
+constexpr double kWidth = 1100;     // px
+constexpr double kMaxHeight = 430;  // px, of the views
+constexpr double kNarrowest = 262;  // px, of a view with its words
+constexpr double kGap = 16;         // px, between views
+constexpr double kHead = 44;        // px, above the views
+constexpr double kFoot = 88;        // px, below them
 constexpr double kFar = PumpOutline::kFar;
 
 constexpr const char* kStyle = R"(
@@ -175,7 +175,7 @@ class Picture {
     const auto wide = [&](double scale) {
       return column(side_, scale) + column(joints_, scale) + column(block_, scale);
     };
-    double scale = kMostHeight / high;
+    double scale = kMaxHeight / high;
     while (wide(scale) > kWidth - 4 * kGap) scale *= 0.98;
     const double gap = (kWidth - wide(scale)) / 4;
     double left = gap;

@@ -530,7 +530,7 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
     if (run.table.rows() != rows || run.loads.rows() != rows)
       throw ComputationError("the pump in space: runs of different rows");
   std::vector<report::SceneSum> sums = sums_of(runs);
-  const std::size_t step = (rows + kMostSceneRows - 1) / kMostSceneRows;
+  const std::size_t step = (rows + kMaxSceneRows - 1) / kMaxSceneRows;
   if (step <= 1) {
     report::Scene scene = SceneMaker(the_case, runs).scene(motion);
     scene.sums = std::move(sums);
@@ -556,7 +556,7 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
 }
 
 std::optional<report::Scene> analytic_scene(const Case& the_case) {
-  constexpr int kMostSamples = 120;
+  constexpr int kMaxSamples = 120;
   try {
     // Of a study of other cases the pressure of this one may not have been computed.
     const PressureSpec& given = the_case.pressure;
@@ -564,7 +564,7 @@ std::optional<report::Scene> analytic_scene(const Case& the_case) {
         given.kind == PressureKind::hydraulic && !given.computed && given.curve.theta_deg.empty();
     Case turn = missing ? prepare(the_case).the_case : the_case;
     turn.operation.samples_per_revolution =
-        std::min(turn.operation.samples_per_revolution, kMostSamples);
+        std::min(turn.operation.samples_per_revolution, kMaxSamples);
     const Samples samples = sample_case(turn, PressureTrace(turn.pressure));
     const ResultTable table = analytic::run(turn, turn.analytic, samples);
     const BodyLoadTable loads = analytic::run_body_loads(turn, turn.analytic, samples);

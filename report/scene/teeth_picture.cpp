@@ -18,7 +18,7 @@ using report::DrawingFigure;
 
 enum Stroke { kShaft, kBlock, kPlus, kMinus };
 
-constexpr std::size_t kMostFrames = 180;
+constexpr std::size_t kMaxFrames = 180;
 constexpr double kReach = 1.8;         // pitches to either side of O4 that are drawn
 constexpr int kPoints = 9;             // of a flank
 constexpr double kLongestArrow = 0.5;  // pitches
@@ -133,7 +133,7 @@ report::Figure teeth_picture(const PumpParameters& pump, const ResultTable& tabl
         largest = std::max(largest, table.at(row, c));
   const std::size_t lag = table.find("lag_urad");
   // Frames that do not fall on the same place of the pitch again and again.
-  const std::size_t every = std::max<std::size_t>(1, table.rows() / kMostFrames);
+  const std::size_t every = std::max<std::size_t>(1, table.rows() / kMaxFrames);
   double shown = 0;
   for (std::size_t row = 0; row < table.rows(); row += every) {
     DrawingFigure::Frame frame;

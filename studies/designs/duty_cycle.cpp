@@ -124,7 +124,7 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
     try {
       Case scratch = the_case;
       family.make(duty.rows[row].values, scratch);
-      const study::ReadyCase ready = study::prepare(std::move(scratch));
+      const study::PreparedCase ready = study::prepare(std::move(scratch));
       const double share = duty.rows[row].share;
       for (const study::Model model : study::kModels) {
         auto& of = model == study::Model::analytic ? result.analytic : result.multibody;

@@ -240,7 +240,7 @@ struct DataModel::Implementation {
   }
 
   void read_off(const State& state, const Case& the_case, std::span<double> results) const {
-    study::ReadyCase ready = study::prepare(the_case);
+    study::PreparedCase ready = study::prepare(the_case);
     if (!state.outputs.empty()) {
       const std::vector<double> values = outputs_of(state.outputs, ready, kModel);
       std::size_t next = 0;

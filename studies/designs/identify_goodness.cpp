@@ -156,7 +156,8 @@ std::optional<Promise> promise_of(const DataModel& model, const LeastSquaresFit&
 // Names of the plausibility warnings of a pump.
 std::set<std::string> warnings_of(const Case& pump) {
   std::set<std::string> names;
-  for (const study::Doubt& doubt : study::plausibility(pump).warnings) names.insert(doubt.code);
+  for (const study::PlausibilityWarning& doubt : study::plausibility(pump).warnings)
+    names.insert(doubt.code);
   return names;
 }
 

@@ -15,7 +15,7 @@ using Vector = std::vector<double>;
 
 constexpr double kRise95 = 3.841458820694124;  // of chi-squared with one degree of freedom
 constexpr double kNearEnough = 0.02;           // of that
-constexpr int kMostRefits = 8;                 // on either side
+constexpr int kMaxRefits = 8;                  // on either side
 
 // The other unknowns fitted anew with one of them held.
 class Held {
@@ -79,7 +79,7 @@ double limit_of(Held& held, const LeastSquaresFit& fit, std::size_t unknown, dou
   double inside = 0, root_inside = 0, outside = -1, root_outside = 0;
   double step = std::min(first_step, room);
   Vector x = fit.x, x_inside = fit.x;
-  for (int refit = 0; refit < kMostRefits; ++refit) {
+  for (int refit = 0; refit < kMaxRefits; ++refit) {
     x = x_inside;
     double rise = HUGE_VAL;
     try {

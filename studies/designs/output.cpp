@@ -322,7 +322,7 @@ double statistic_in(Output o, const ResultTable& table) {
 // What several outputs of one design are read off, each found once.
 class Turn {
  public:
-  Turn(const study::ReadyCase& ready, study::Model model, bool budget)
+  Turn(const study::PreparedCase& ready, study::Model model, bool budget)
       : ready_(ready), model_(model) {
     study::RunOptions options;
     options.model = model;
@@ -380,7 +380,7 @@ class Turn {
     return not_computed();
   }
 
-  const study::ReadyCase& ready_;
+  const study::PreparedCase& ready_;
   study::Model model_;
   study::ModelRun run_;
   std::vector<analytic::ValidityLimit> limits_;
@@ -396,7 +396,7 @@ double derived_value(const Output& output, const Geometry& geometry) {
   return not_computed();
 }
 
-std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::ReadyCase& ready,
+std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::PreparedCase& ready,
                                study::Model model) {
   std::optional<Turn> turn;
   std::vector<double> values;

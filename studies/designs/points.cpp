@@ -109,11 +109,11 @@ class Sobol final : public Cube {
         bits_(static_cast<std::size_t>(std::bit_width(count - 1))),
         directions_(bits_ * dimension),
         shift_(dimension) {
-    constexpr std::size_t kMostDimensions = boost::random::default_sobol_table::max_dimension;
-    if (dimension > kMostDimensions || bits_ > kBits)
+    constexpr std::size_t kMaxDimensions = boost::random::default_sobol_table::max_dimension;
+    if (dimension > kMaxDimensions || bits_ > kBits)
       throw InputError("a Sobol sequence of " + std::to_string(dimension) + " coordinates and " +
                        std::to_string(count) + " points: at most " +
-                       std::to_string(kMostDimensions) + " and 2^" + std::to_string(kBits));
+                       std::to_string(kMaxDimensions) + " and 2^" + std::to_string(kBits));
     // The engine walks in the order of Gray's code: vector 2^(j + 1) - 1, of which it has left out
     // number 0, is direction j alone.
     boost::random::sobol_engine<std::uint64_t, kBits> engine(dimension);

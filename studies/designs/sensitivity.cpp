@@ -233,7 +233,7 @@ struct Turn {
 // Takes from `variables` those that the hydraulic pressure has no derivatives by.
 Turn turn_of(const Sensitivities& s, std::vector<std::size_t>& variables,
              const study::PartProgress& progress_of) {
-  study::ReadyCase ready = study::prepare(s.base, progress_of);
+  study::PreparedCase ready = study::prepare(s.base, progress_of);
   Turn turn{ready.the_case, ready.samples(study::Way::driven), {}, {}};
   if (!ready.hydraulics) return turn;
   std::vector<hydraulics::Neighbours> parameters;
@@ -342,7 +342,7 @@ std::vector<std::size_t> find_exact(Sensitivities& s, const std::vector<std::siz
 // pressure is found by a search that ends at 1e-9 or so.
 constexpr double kFirstStep = 1e-4, kFirstStepOfSearch = 0.02;
 constexpr double kStepOfZero = 0.01;  // in the file's unit
-constexpr int kMostShorter = 8;       // times a first step that leads nowhere is halved
+constexpr int kMaxShorter = 8;        // times a first step that leads nowhere is halved
 // Halvings: where an evaluation is quick, and where it is a search or takes Simbody.
 constexpr int kLevels = 8, kSlowLevels = 5;
 
@@ -404,7 +404,7 @@ void find_by_differences(Sensitivities& s, const Evaluator& evaluator, std::size
     reason.clear();
     values(s.at[v] + step);
     if (reason.empty()) values(s.at[v] - step);
-    if (reason.empty() || i == kMostShorter) break;
+    if (reason.empty() || i == kMaxShorter) break;
   }
   if (!reason.empty()) {
     for (const std::size_t o : outputs)

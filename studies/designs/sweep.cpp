@@ -166,7 +166,7 @@ struct Sweep::Implementation {
     try {
       Case made = base;
       evaluator.family().make(values, made);
-      const study::ReadyCase ready = study::prepare(made);
+      const study::PreparedCase ready = study::prepare(made);
       const bool analytic = plan.model == study::Model::analytic;
       c.values = outputs_of(plan.outputs, ready,
                             analytic ? study::Model::multibody : study::Model::analytic);
@@ -179,7 +179,7 @@ struct Sweep::Implementation {
     return c;
   }
 
-  std::vector<double> scales_in(const study::ReadyCase& ready, const SweepCheck& c) const {
+  std::vector<double> scales_in(const study::PreparedCase& ready, const SweepCheck& c) const {
     std::vector<Output> peaks;
     for (const Scale& scale : scales)
       if (scale.peak) peaks.push_back(*scale.peak);

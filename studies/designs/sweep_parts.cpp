@@ -352,11 +352,11 @@ ResumedBlocks compute_blocks(const Sweep& sweep, const SweepParts& parts, const 
 }
 
 std::string list_of(const std::vector<std::size_t>& numbers) {
-  constexpr std::size_t kMostRuns = 20;
+  constexpr std::size_t kMaxRuns = 20;
   std::string text;
   std::size_t runs = 0;
   for (std::size_t i = 0; i < numbers.size(); ++runs) {
-    if (runs == kMostRuns) return text + ", ..";
+    if (runs == kMaxRuns) return text + ", ..";
     std::size_t last = i;
     while (last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1) ++last;
     text += (text.empty() ? "" : ", ") + std::to_string(numbers[i]);

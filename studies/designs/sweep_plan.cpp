@@ -14,8 +14,8 @@
 namespace bentaxis::designs {
 namespace {
 
-constexpr int kMostValues = 1000000;
-constexpr std::size_t kMostDesigns = 1000000000;
+constexpr int kMaxValues = 1000000;
+constexpr std::size_t kMaxDesigns = 1000000000;
 
 // Parts between commas that stand in no brackets.
 std::vector<std::string> parts_of(const std::string& text) {
@@ -40,7 +40,7 @@ std::optional<std::string> in_log(const std::string& text) {
 
 // FROM:TO:#N in equal ratios.
 std::vector<double> log_levels(const std::string& what, const std::string& text) {
-  std::vector<double> levels = spaced_values(what, text, "", kMostValues);
+  std::vector<double> levels = spaced_values(what, text, "", kMaxValues);
   if (levels.size() < 2 || text.find('#') == std::string::npos || !(levels.front() > 0))
     throw InputError(what + " log(" + text +
                      "): must be log(FROM:TO:#N) with 0 < FROM < TO, N > 1");
@@ -111,9 +111,9 @@ std::size_t SweepPlan::size() const {
   if (sampling != Sampling::grid) return samples;
   double count = 1;
   for (const Varied& v : varied) count *= static_cast<double>(v.levels.size());
-  if (count > static_cast<double>(kMostDesigns))
+  if (count > static_cast<double>(kMaxDesigns))
     throw InputError("a grid of " + rounded_text(count) + " designs: at most " +
-                     std::to_string(kMostDesigns));
+                     std::to_string(kMaxDesigns));
   return static_cast<std::size_t>(count);
 }
 
@@ -124,7 +124,7 @@ std::vector<double> levels_of(const std::string& text, const Variable& variable)
     if (const auto inner = in_log(part))
       some = log_levels(variable.name(), *inner);
     else if (part.find(':') != std::string::npos && variable.words().empty())
-      some = spaced_values(variable.name(), part, variable.unit(), kMostValues);
+      some = spaced_values(variable.name(), part, variable.unit(), kMaxValues);
     else
       some = {variable.value_of(part)};
     levels.insert(levels.end(), some.begin(), some.end());
@@ -140,9 +140,9 @@ SweepRequest read_sweep_request(const std::filesystem::path& file) {
   TableReader top = toml.root();
   SweepRequest request;
   request.sampling = static_cast<Sampling>(top.choice("sampling", sampling_words(), 0));
-  constexpr int kMost = std::numeric_limits<int>::max();
-  request.samples = static_cast<std::size_t>(top.integer("samples", 0, kMost, 0));
-  request.seed = static_cast<std::uint64_t>(top.integer("seed", 0, kMost, 1));
+  constexpr int kMax = std::numeric_limits<int>::max();
+  request.samples = static_cast<std::size_t>(top.integer("samples", 0, kMax, 0));
+  request.seed = static_cast<std::uint64_t>(top.integer("seed", 0, kMax, 1));
   request.model = static_cast<study::Model>(top.choice("model", {"analytic", "multibody"}, 0));
   request.check_share = top.number("check", {0, 1}, 0.0);
   request.outputs = top.texts("output");
@@ -177,10 +177,9 @@ SweepPlan sweep_plan(const SweepRequest& request, const Case& base) {
   if (plan.sampling != Sampling::grid && plan.samples == 0)
     throw InputError("--samples: --sampling " + to_string(plan.sampling) +
                      " needs a number of points");
-  if (plan.sampling != Sampling::grid && plan.samples > kMostDesigns)
+  if (plan.sampling != Sampling::grid && plan.samples > kMaxDesigns)
     throw InputError("--samples " + std::to_string(plan.samples) + ": must be in [1, " +
-                     std::to_string(kMostDesigns) + "] with --sampling " +
-                     to_string(plan.sampling));
+                     std::to_string(kMaxDesigns) + "] with --sampling " + to_string(plan.sampling));
   const auto add = [&](const std::string& name, int direction) {
     const Output wanted = output(name, base);
     auto found = std::find(plan.outputs.begin(), plan.outputs.end(), wanted);

@@ -184,10 +184,10 @@ std::string sweep_csv(const SweepResult& result) {
 
 std::string disagreements_text(const SweepResult& result) {
   std::string text;
-  constexpr int kMost = 20;
+  constexpr int kMax = 20;
   int lines = 0;
   const auto add = [&](const std::string& line) {
-    if (lines++ < kMost) text += line + "\n";
+    if (lines++ < kMax) text += line + "\n";
   };
   for (const SweepCheck& c : result.checks) {
     if (c.own_reason.empty() != c.reason.empty())
@@ -201,7 +201,7 @@ std::string disagreements_text(const SweepResult& result) {
                                           number_text(c.values[k]), rounded_text(found.share()))
                             : found.why_unknown()));
   }
-  if (lines > kMost) text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMost);
+  if (lines > kMax) text += fmt::format("and {} more, in sweep_checks.csv\n", lines - kMax);
   return text;
 }
 

@@ -32,7 +32,7 @@ class Designs {
   std::size_t before_curves() const { return options_.outputs.size() + options_.further.count; }
 
   std::vector<double> of(const Case& the_case) const {
-    const study::ReadyCase ready = study::prepare(the_case);
+    const study::PreparedCase ready = study::prepare(the_case);
     std::vector<double> all = outputs_of(options_.outputs, ready, options_.model);
     for (std::size_t o = 0; o < all.size(); ++o)
       if (!is_computed(all[o]))

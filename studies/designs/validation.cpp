@@ -12,7 +12,6 @@
 namespace bentaxis::designs {
 namespace {
 
-
 constexpr double kCoverage = 2;  // u_val's, for about 95 %
 
 // Standard uncertainty of what lies within -+ half, anywhere alike (JCGM 100, 4.3.7).
@@ -34,8 +33,8 @@ bool comparable(const compare::PublishedRow& row) {
 
 // The model's numbers of rows, for a sample.
 Further numbers_of(const std::vector<ValidationRow>& rows, const compare::Published& published) {
-  return {rows.size(), [&rows, &published](const study::ReadyCase& ready, const ResultTable& table,
-                                           std::span<double> values) {
+  return {rows.size(), [&rows, &published](const study::PreparedCase& ready,
+                                           const ResultTable& table, std::span<double> values) {
             const study::PublishedInput input{&ready.the_case, ready.the_case.analytic, &table};
             study::VariantRuns runs(study::Model::analytic, input);
             for (std::size_t i = 0; i < rows.size(); ++i) {

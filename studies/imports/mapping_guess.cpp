@@ -815,13 +815,13 @@ MappingGuess Guesser::finish(const Found& found) {
       proposal.remark = pairing.columns.size() > 1
                             ? "differs by its signs, or only its name says so"
                             : "its name says so, its curve does not";
-    if (!ours_constant && !(followed >= kLeastCorrelation)) {
+    if (!ours_constant && !(followed >= kMinCorrelation)) {
       for (const std::size_t column : pairing.columns) {
         guess.ignored.emplace_back(
             table_.header[column],
             fmt::format(
                 "not recognised: looks like {}, but the correlation is {:.2f}, less than {:g}",
-                pairing.ours, proposal.correlation, kLeastCorrelation));
+                pairing.ours, proposal.correlation, kMinCorrelation));
         guess.unrecognised.push_back(table_.header[column]);
       }
       continue;
@@ -834,7 +834,7 @@ MappingGuess Guesser::finish(const Found& found) {
     throw InputError(table_.file.string() +
                      ": no column follows any of the model's curves with a "
                      "correlation of at least " +
-                     number_text(kLeastCorrelation) + "; is it of this case?");
+                     number_text(kMinCorrelation) + "; is it of this case?");
   std::stable_sort(guess.proposals.begin(), guess.proposals.end(),
                    [](const auto& x, const auto& y) { return x.difference > y.difference; });
   for (const auto& [column, why] : guess.ignored) curve.ignored.push_back(column);

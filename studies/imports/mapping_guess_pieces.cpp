@@ -196,7 +196,7 @@ double half_of_last_digit(double number, int digits) {
 
 bool is_record(const ForeignTable& table, std::size_t column, double degrees_per_second,
                AngleMap& map) {
-  constexpr double kMostTurns = 1000;
+  constexpr double kMaxTurns = 1000;
   const double scale = map.degrees_per_unit * (map.is_time ? degrees_per_second : 1);
   std::vector<double> angles;
   double turns = 0, largest = 0;
@@ -220,7 +220,7 @@ bool is_record(const ForeignTable& table, std::size_t column, double degrees_per
     widest = std::max(widest, std::abs(angles[i] - angles[i - 1]));
   // What lacks more than a sample or two of a turn has been cut off.
   if (span < 360 - kWidestGap * widest) return false;
-  if (span < kShortestRecord || span > kMostTurns * 360 ||
+  if (span < kShortestRecord || span > kMaxTurns * 360 ||
       span / static_cast<double>(angles.size() - 1) > 30)
     return false;
   const int digits = table.digits[column];

@@ -25,7 +25,7 @@ inline constexpr double kNoChannel = 0.5;
 // A column or vector whose curve has a smaller correlation with that of its channel is not
 // recognised, whatever its name says. Of a vector single components may have the other sign. At 0.8
 // the channel explains 0.8^2 = 64 % of the variance of the record.
-inline constexpr double kLeastCorrelation = 0.8;
+inline constexpr double kMinCorrelation = 0.8;
 // The coarse search for the phase has this many angles in the turn.
 inline constexpr std::size_t kCoarse = 180;
 

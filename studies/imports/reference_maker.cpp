@@ -172,7 +172,7 @@ MappingGuess guess_reference(const Case& the_case, const fs::path& file, const s
   const ForeignTable table = read_table(file, sheet);
   Case sampled = the_case;
   sampled.operation.samples_per_revolution = kGuessSamples;
-  const ReadyCase ready = prepare(std::move(sampled));
+  const PreparedCase ready = prepare(std::move(sampled));
   return guess_mapping(table, run_turn(ready, Model::analytic), frames_of(the_case),
                        6 * the_case.operation.speed_rpm);
 }
@@ -271,7 +271,7 @@ std::vector<fs::path> make_reference(const Case& the_case, bool changed, const f
 
 std::vector<fs::path> make_golden(Case the_case, bool changed, int samples, const fs::path& out,
                                   const PartProgress& progress_of) {
-  ReadyCase ready = prepare(std::move(the_case), progress_of);
+  PreparedCase ready = prepare(std::move(the_case), progress_of);
   ready.the_case.operation.samples_per_revolution = samples;
   must_be_new(out);
   const fs::path case_path = changed

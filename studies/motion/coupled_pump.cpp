@@ -13,7 +13,7 @@
 namespace bentaxis::study {
 namespace {
 
-std::unique_ptr<Oil> oil_of(const ReadyCase& ready, bool follows) {
+std::unique_ptr<Oil> oil_of(const PreparedCase& ready, bool follows) {
   const Case& c = ready.the_case;
   if (!follows)
     return coupled::prescribed_oil(c.pump.geometry.pistons, ready.pressure, c.pressure.ports);
@@ -40,7 +40,7 @@ double mass_passed(const Trajectory& run) {
   return std::max(mass, circulated);
 }
 
-CoupledPump::CoupledPump(const ReadyCase& ready, bool follows)
+CoupledPump::CoupledPump(const PreparedCase& ready, bool follows)
     : ready_(ready), oil_(oil_of(ready, follows)) {}
 
 std::unique_ptr<Mechanics> CoupledPump::mechanics(Model model) const {

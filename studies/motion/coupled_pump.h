@@ -13,7 +13,7 @@ class CoupledPump {
   /// @param ready    outlives it
   /// @param follows  whether the oil follows the motion; else its pressure is that of the case,
   ///                 over the block's angle
-  CoupledPump(const ReadyCase& ready, bool follows);
+  CoupledPump(const PreparedCase& ready, bool follows);
 
   Trajectory simulate(Model model, const coupled::Options& options,
                       const Progress& progress = {}) const;
@@ -22,7 +22,7 @@ class CoupledPump {
 
  private:
   std::unique_ptr<Mechanics> mechanics(Model model) const;
-  const ReadyCase& ready_;
+  const PreparedCase& ready_;
   std::unique_ptr<Oil> oil_;
 };
 

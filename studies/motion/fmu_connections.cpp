@@ -25,11 +25,11 @@ std::string unit_by_name(std::string_view name) {
 }
 
 std::string first_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 12;
+  constexpr std::size_t kMax = 12;
   std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i)
+  for (std::size_t i = 0; i < names.size() && i < kMax; ++i)
     text += (i == 0 ? "" : ", ") + names[i];
-  return text + (names.size() > kMost ? ", .." : "");
+  return text + (names.size() > kMax ? ", .." : "");
 }
 
 const PumpInput* input_named(std::string_view name) {

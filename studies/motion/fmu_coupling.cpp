@@ -17,8 +17,8 @@ namespace bentaxis::study {
 
 namespace {
 
-constexpr double kMostPoints = 1e6;
-constexpr std::size_t kMostSaid = 1000;  // lines
+constexpr double kMaxPoints = 1e6;
+constexpr std::size_t kMaxSaid = 1000;  // lines
 
 }  // namespace
 
@@ -27,7 +27,7 @@ class UnitCoupling::Said {
  public:
   /// @param from  of the lines: those before have been added
   void add(const std::vector<std::string>& lines, std::size_t from = 0) {
-    for (std::size_t i = from; i < lines.size() && lines_.size() < kMostSaid; ++i)
+    for (std::size_t i = from; i < lines.size() && lines_.size() < kMaxSaid; ++i)
       if (seen_.insert(lines[i]).second) lines_.push_back(lines[i]);
   }
   const std::vector<std::string>& lines() const { return lines_; }
@@ -211,11 +211,11 @@ void UnitCoupling::find_step(const UnitChoice& choice) {
   // As rounding has it, not one more.
   constexpr double kWhole = 1e-9;
   const double points = std::max(1.0, std::ceil(drive.duration / step - kWhole));
-  if (points > kMostPoints)
+  if (points > kMaxPoints)
     throw InputError(
         fmt::format("{} {}: {:.3g} steps would be made in [drive] duration_s = {}: at most {:g}",
                     choice.step ? "--communication-step" : choice.file.string() + ": stepSize",
-                    number_text(step), points, number_text(drive.duration), kMostPoints));
+                    number_text(step), points, number_text(drive.duration), kMaxPoints));
   step_ = drive.duration / points;
 }
 

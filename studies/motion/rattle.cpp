@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kBoundaryRpm = 1e-3;
 
-ReadyCase ready_at(const Case& the_case, double speed_rpm, double delivery_bar) {
+PreparedCase ready_at(const Case& the_case, double speed_rpm, double delivery_bar) {
   return prepare(rattle_case(the_case, speed_rpm, delivery_bar));
 }
 
@@ -43,7 +43,7 @@ RattleRow compute_row(const Case& the_case, const RattleOptions& options, double
                       const std::function<void()>& turn, const std::function<void()>& point) {
   RattleRow row;
   row.delivery_bar = delivery_bar;
-  std::vector<ReadyCase> ready;
+  std::vector<PreparedCase> ready;
   const std::vector<double>& speeds = options.speed_rpm;
   for (const double rpm : speeds) {
     ready.push_back(ready_at(the_case, rpm, delivery_bar));
@@ -54,7 +54,7 @@ RattleRow compute_row(const Case& the_case, const RattleOptions& options, double
   }
   row.boundary_rpm = boundary(the_case, speeds, row);
   double lag = 0, lag_rate = 0;
-  for (const ReadyCase& at : ready) {
+  for (const PreparedCase& at : ready) {
     row.up.push_back(settle(at, options, lag, lag_rate, turn));
     point();
   }

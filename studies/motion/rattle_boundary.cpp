@@ -10,7 +10,7 @@
 
 namespace bentaxis::study {
 
-std::pair<double, double> rigid_extremes(const ReadyCase& ready) {
+std::pair<double, double> rigid_extremes(const PreparedCase& ready) {
   const Case& c = ready.the_case;
   PumpParameters pump = c.pump;
   pump.gear.contact = ToothContact::rigid;

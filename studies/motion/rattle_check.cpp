@@ -20,7 +20,7 @@ constexpr double kCheckDisturbance = 1e-6;  // of the lag's scale
 // the steps grown as disturbances grow.
 constexpr double kOfTops = 1e-5;
 constexpr double kOfSteps = 1e-5;
-constexpr int kMostCheckedTurns = 3;  // an irregular motion is judged for less than one
+constexpr int kMaxCheckedTurns = 3;  // an irregular motion is judged for less than one
 constexpr double kTooMuchToJudge = 0.05;
 
 // A model under way.
@@ -30,7 +30,7 @@ struct Runner {
   coupled::ToothWatch watch;
   coupled::ToothStretch judged, whole;
 
-  Runner(const ReadyCase& ready, Model model, const RattlePoint& from, double disturbance)
+  Runner(const PreparedCase& ready, Model model, const RattlePoint& from, double disturbance)
       : oil(coupled::prescribed_oil(ready.the_case.pump.geometry.pistons, ready.pressure,
                                     ready.the_case.pressure.ports)),
         mechanics(model == Model::analytic
@@ -89,7 +89,7 @@ std::vector<std::pair<std::size_t, std::size_t>> points_to_check(const RattleMap
 RattleCheck check_point(const RattleMap& map, std::size_t row, std::size_t speed,
                         const std::function<void()>& turn) {
   const RattlePoint& point = map.rows[row].up[speed];
-  const ReadyCase ready = prepare(
+  const PreparedCase ready = prepare(
       rattle_case(map.the_case, map.options.speed_rpm[speed], map.options.delivery_bar[row]));
   Runner analytic(ready, Model::analytic, point, 0);
   Runner disturbed(ready, Model::analytic, point, kCheckDisturbance);
@@ -97,7 +97,7 @@ RattleCheck check_point(const RattleMap& map, std::size_t row, std::size_t speed
   RattleCheck check;
   check.row = row;
   check.speed = speed;
-  check.parts = std::min(point.observed, kMostCheckedTurns) * kPartsOfTurn;
+  check.parts = std::min(point.observed, kMaxCheckedTurns) * kPartsOfTurn;
   const double part = 60 / map.options.speed_rpm[speed] / kPartsOfTurn;
   double growth = 1;
   bool judging = true;

@@ -19,12 +19,12 @@ double step_tolerance(double error);
 
 /// The smallest and the largest force of rigid teeth over the turn, N, positive where the shaft
 /// pushes the block on.
-std::pair<double, double> rigid_extremes(const ReadyCase& ready);
+std::pair<double, double> rigid_extremes(const PreparedCase& ready);
 
 /// Moves the teeth at a point until it is settled and observes them.
 /// @param lag, lag_rate  where they begin, at theta = 0; then where they end
 /// @param turn           called after every turn
-RattlePoint settle(const ReadyCase& ready, const RattleOptions& options, double& lag,
+RattlePoint settle(const PreparedCase& ready, const RattleOptions& options, double& lag,
                    double& lag_rate, const std::function<void()>& turn);
 
 /// What the models differ by in the largest force, of the larger.

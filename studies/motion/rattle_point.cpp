@@ -91,7 +91,7 @@ class Settling {
 };
 
 // Teeth that do not give way: their force is what the block's balance needs.
-RattlePoint rigid_point(const ReadyCase& ready) {
+RattlePoint rigid_point(const PreparedCase& ready) {
   const Samples samples = ready.samples(Way::driven);
   RunOptions options;
   const ResultTable table = run(ready, samples, options).table;
@@ -125,7 +125,7 @@ double step_tolerance(double error) {
   return std::clamp(kErrorOfStep * error, kTightestStep, kLoosestStep);
 }
 
-RattlePoint settle(const ReadyCase& ready, const RattleOptions& options, double& lag,
+RattlePoint settle(const PreparedCase& ready, const RattleOptions& options, double& lag,
                    double& lag_rate, const std::function<void()>& turn) {
   const Case& c = ready.the_case;
   if (c.pump.gear.contact == ToothContact::rigid) {

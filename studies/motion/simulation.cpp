@@ -496,7 +496,7 @@ class Study {
     }
     // Two runs, ten times apart in accuracy, tell how the error falls; where it is not small enough
     // yet a third goes to the accuracy at which it should be, and tells again.
-    constexpr int kMostRuns = 5;
+    constexpr int kMaxRuns = 5;
     constexpr double kStep = 10, kMargin = 0.3, kUsualPower = 0.75, kTightest = 1e-12;
     double loose = kStep * multibody::accuracy_for(r_.choice.error);
     double tight = loose / kStep;
@@ -508,7 +508,7 @@ class Study {
       add_multibody(tight, *r_.multibody);
       const double change = change_of(before, *r_.multibody);
       left = change / (std::pow(loose / tight, kUsualPower) - 1);
-      if (left <= kMargin || runs == kMostRuns || tight <= kTightest) break;
+      if (left <= kMargin || runs == kMaxRuns || tight <= kTightest) break;
       const double next = tight * std::pow(kMargin / left, 1 / kUsualPower);
       loose = tight;
       tight = std::clamp(next, std::max(kTightest, tight * 1e-4), tight / kStep);
@@ -602,14 +602,14 @@ class Study {
       // that cancel leave the round-off of theirs.
       const LoadScale loads = loads_of(r_.ready.the_case, t);
       const ResultTable& table = t.table.results;
-      constexpr double kLeastTurn = 1e-6;
-      constexpr double kLeastWork = 1e-12;  // J: nor is there a torque
+      constexpr double kMinTurn = 1e-6;
+      constexpr double kMinWork = 1e-12;  // J: nor is there a torque
       // A speed that is off by some share of itself leaves twice that share of the kinetic energy.
       const double kinetic = kinetic_energy(r_.ready.the_case, t);
       const double work =
           std::max({kinetic, std::abs(record.work_of_loads), std::abs(record.work_of_drives),
                     std::abs(record.kinetic_energy_gained),
-                    kLeastTurn * std::max(table.peak("Td"), loads.moment), kLeastWork});
+                    kMinTurn * std::max(table.peak("Td"), loads.moment), kMinWork});
       // Simbody's work is integrated with its motion, to the same error.
       const double tolerance = model == Model::analytic && !pump_
                                    ? kAnalyticError
@@ -629,7 +629,7 @@ class Study {
         const double speed = std::max({1.0, kRadPerSecondPerRpm * std::abs(t.table.state(row, 3)),
                                        kRadPerSecondPerRpm * std::abs(t.table.state(row, 4))});
         const double torque = std::max(std::abs(table.at(row, table.find("Td_z1_Nm"))),
-                                       compare::kLeastScale * loads.moment);
+                                       compare::kMinScale * loads.moment);
         scale = std::max(scale, torque * speed);
       }
       constexpr double kPowerTolerance = 1e-8;
@@ -642,8 +642,8 @@ class Study {
   // Held to the error that the integration was asked for.
   void check_oil(const std::string& model, const Trajectory& t, double work) {
     const OilHistory& oil = *t.oil;
-    constexpr double kLeastEnergy = 1e-6;  // J: where nothing moves
-    double passed = std::max(work, kLeastEnergy);
+    constexpr double kMinEnergy = 1e-6;  // J: where nothing moves
+    double passed = std::max(work, kMinEnergy);
     for (const OilEnergy& energy : oil.energies) passed = std::max(passed, std::abs(energy.energy));
     const double mass = std::max(mass_passed(t), 1e-9);
     const double tolerance = r_.choice.error;
@@ -777,8 +777,8 @@ std::string SimulationResult::headline() const {
   return text;
 }
 
-ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
-                             const PartProgress& progress_of) {
+PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,
+                                const PartProgress& progress_of) {
   if (choice.unit) the_case = choice.unit->driven();
   drive_of(the_case);
   const bool hydraulic = the_case.pressure.kind == PressureKind::hydraulic;
@@ -802,12 +802,12 @@ ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
   }
   if (!hydraulic || choice.oil == OilInTime::periodic || hydraulics::needs_periodic_state(the_case))
     return prepare(std::move(the_case), progress_of);
-  ReadyCase ready;
+  PreparedCase ready;
   ready.the_case = std::move(the_case);
   return ready;
 }
 
-SimulationResult simulate(ReadyCase ready, const SimulationChoice& choice,
+SimulationResult simulate(PreparedCase ready, const SimulationChoice& choice,
                           const PartProgress& progress_of) {
   require_memory(ready.the_case, drive_of(ready.the_case), choice.only ? 1 : 2);
   SimulationResult result;

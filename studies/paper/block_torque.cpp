@@ -29,7 +29,7 @@ PressureCurve sagging(double bar) {
 }
 
 // Tcs at theta = 0. The models that assume as the case does see the first sample only.
-double torque_at_start(const ReadyCase& ready, Model model, const PartProgress& progress_of) {
+double torque_at_start(const PreparedCase& ready, Model model, const PartProgress& progress_of) {
   const ResultTable table = run_turn(ready, model, progress_of);
   return table.at(0, table.find("Tcs_z2_Nm"));
 }
@@ -40,7 +40,7 @@ class Rows {
 
   double add(const std::string& what, Case the_case) {
     the_case.operation.samples_per_revolution = 36;
-    const ReadyCase ready = prepare(std::move(the_case), progress_of_);
+    const PreparedCase ready = prepare(std::move(the_case), progress_of_);
     BlockTorque row;
     row.group = group;
     row.what = what;

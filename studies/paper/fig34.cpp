@@ -101,7 +101,7 @@ Case without_drag(Case the_case) {
 
 class Study {
  public:
-  Study(ReadyCase ready, const Fig34Options& options)
+  Study(PreparedCase ready, const Fig34Options& options)
       : ready_(std::move(ready)), options_(options) {}
 
   Fig34Curve rigid(bool drag) const {
@@ -178,7 +178,7 @@ class Study {
   }
 
  private:
-  ReadyCase ready_;
+  PreparedCase ready_;
   Fig34Options options_;
 };
 
@@ -197,7 +197,7 @@ std::vector<Fig34Point> grid(const Fig34Options& options, bool with_drag) {
 }
 
 // The case as every contact law starts from it, with its pressure.
-ReadyCase with_rigid_teeth(Case the_case, const PartProgress& progress_of) {
+PreparedCase with_rigid_teeth(Case the_case, const PartProgress& progress_of) {
   if (the_case.operation.speed_rpm == 0)
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = 0: teeth lose contact in motion only");
@@ -338,7 +338,7 @@ Fig34Study run_fig34_study(const Case& as_read, const Fig34Options& options,
   result.options = options;
   if (result.options.approaches.empty())
     result.options.approaches = {kStiff, 5e-6, adams_approach()};
-  ReadyCase ready = with_rigid_teeth(as_read, progress_of);
+  PreparedCase ready = with_rigid_teeth(as_read, progress_of);
   result.the_case = ready.the_case;
   const bool drag = result.the_case.pump.friction.block_viscous > 0;
   const Study study(std::move(ready), result.options);

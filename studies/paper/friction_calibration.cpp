@@ -26,7 +26,7 @@ std::vector<FrictionStep> calibrate_friction(Case the_case, const MeanTorques& w
   the_case.analytic.piston_friction = true;
   the_case.multibody.piston_friction = false;
   // The pressure does not depend on friction: it is computed once.
-  ReadyCase ready = prepare(the_case, progress_of);
+  PreparedCase ready = prepare(the_case, progress_of);
   const std::string file = the_case.file.string();
   // What viscous friction adds, Nm times the factor: all the rest is in proportion to Fc.
   double viscous = 0;

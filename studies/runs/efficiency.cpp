@@ -6,7 +6,7 @@
 
 namespace bentaxis::study {
 
-double pressure_difference(const ReadyCase& ready) {
+double pressure_difference(const PreparedCase& ready) {
   const PortPressures& ports = ready.the_case.pressure.ports;
   const double delivery =
       ready.hydraulics ? ready.hydraulics->summary.delivery_mean : ports.delivery;
@@ -18,7 +18,8 @@ double ideal_flow(const Case& the_case) {
          rad_per_second(the_case.operation.speed_rpm) / (2 * kPi);
 }
 
-std::optional<hydraulics::PumpPower> pump_power(const ReadyCase& ready, const Progress& progress) {
+std::optional<hydraulics::PumpPower> pump_power(const PreparedCase& ready,
+                                                const Progress& progress) {
   if (!ready.hydraulics) return std::nullopt;
   return hydraulics::pump_power(hydraulics::power_by_place(*ready.hydraulics, progress));
 }
@@ -51,8 +52,8 @@ std::span<const EfficiencyLine> efficiency_lines() {
   return kLines;
 }
 
-Efficiencies efficiencies(const ReadyCase& ready, const std::optional<hydraulics::PumpPower>& power,
-                          double mean_torque) {
+Efficiencies efficiencies(const PreparedCase& ready,
+                          const std::optional<hydraulics::PumpPower>& power, double mean_torque) {
   const double none = not_computed();
   Efficiencies e = {none, none, none, none, none, none};
   if (ready.hydraulics) e.volumetric = 100 * ready.hydraulics->summary.volumetric_efficiency;

@@ -18,7 +18,7 @@
 namespace bentaxis::study {
 namespace {
 
-constexpr int kMostThreads = 8;  // every one holds models of its own
+constexpr int kMaxThreads = 8;  // every one holds models of its own
 // A delivery pressure is printed to 0.1 bar of some hundred.
 constexpr double kPressureTolerance = 1e-6;
 // The first guess is in proportion and off by a few per cent: the first step to either side of it.
@@ -67,7 +67,7 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
   std::vector<std::string> reasons(count);
   Reporting reporting(count, progress);
   const PartProgress within = [&](const std::string&) { return [&](double) { reporting.tick(); }; };
-  numerics::parallel_for(kMostThreads, count, [&](std::size_t i) {
+  numerics::parallel_for(kMaxThreads, count, [&](std::size_t i) {
     reporting.tick();
     Case at = the_case;
     at.pressure.ports.delivery = pascals(delivery_bar[i]);

@@ -83,14 +83,14 @@ void require_memory(const Case& the_case, const DriveSpec& drive, std::size_t mo
 
 std::string to_string(Model model) { return model == Model::analytic ? "analytic" : "multibody"; }
 
-Samples ReadyCase::samples(Way way) const {
+Samples PreparedCase::samples(Way way) const {
   require_memory(the_case, Kept::table, way);
   if (way == Way::driven) return sample_case(the_case, pressure);
   return sample_case(the_case, pressure, the_case.operation.revolutions,
                      the_case.operation.speed_rpm < 0);
 }
 
-const Assumptions& ReadyCase::assumptions(Model model) const {
+const Assumptions& PreparedCase::assumptions(Model model) const {
   return model == Model::analytic ? the_case.analytic : the_case.multibody;
 }
 
@@ -109,7 +109,7 @@ void require_mesh(const Case& the_case) {
 
 }  // namespace
 
-ReadyCase prepare(Case the_case, const PartProgress& progress_of) {
+PreparedCase prepare(Case the_case, const PartProgress& progress_of) {
   require_mesh(the_case);
   std::optional<hydraulics::SteadyState> state;
   if (the_case.pressure.kind == PressureKind::hydraulic) {
@@ -120,12 +120,13 @@ ReadyCase prepare(Case the_case, const PartProgress& progress_of) {
   return {std::move(the_case), std::move(state), std::move(pressure)};
 }
 
-ModelRun run(const ReadyCase& ready, const RunOptions& options, const PartProgress& progress_of) {
+ModelRun run(const PreparedCase& ready, const RunOptions& options,
+             const PartProgress& progress_of) {
   check(options);
   return run(ready, ready.samples(options.way), options, progress_of);
 }
 
-ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& options,
+ModelRun run(const PreparedCase& ready, const Samples& samples, const RunOptions& options,
              const PartProgress& progress_of) {
   check(options);
   const Case& the_case = ready.the_case;
@@ -173,7 +174,7 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
   return result;
 }
 
-MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
+MotionTable run_states(const PreparedCase& ready, const States& states, const RunOptions& options,
                        const PartProgress& progress_of, ResultTable* teeth, BodyLoadTable* loads) {
   check(options);
   if (options.way == Way::integrated)
@@ -193,7 +194,7 @@ MotionTable run_states(const ReadyCase& ready, const States& states, const RunOp
                                options.scene.method, teeth, loads);
 }
 
-ResultTable run_turn(const ReadyCase& ready, Model model, const PartProgress& progress_of) {
+ResultTable run_turn(const PreparedCase& ready, Model model, const PartProgress& progress_of) {
   RunOptions options;
   options.model = model;
   return run(ready, options, progress_of).table;
@@ -205,7 +206,7 @@ bool computes(const RunOptions& options, const Assumptions& assumptions, const C
          multibody::computes(options.scene.scene, channel);
 }
 
-void stream_analytic(const ReadyCase& ready, const Assumptions& assumptions,
+void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
                      const PartProgress& progress_of) {
   const analytic::Model model(ready.the_case.pump, assumptions);

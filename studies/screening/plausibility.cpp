@@ -24,11 +24,11 @@ namespace {
 constexpr double kSteel = 8000;     // kg/m3; bronze is a tenth more
 constexpr double kYield = 1000e6;   // Pa, of hardened steel
 constexpr double kLightest = 0.06;  // of solid steel: hollow aluminium is a third of it, halved
-constexpr double kMostPressure = 1000e5;  // Pa; hydraulic pumps end at 500 bar
-constexpr double kFastest = 10;           // m/s, mean piston speed; bent-axis pumps reach 5..7
-constexpr double kSlowest = 0.05;         // m/s
-constexpr double kCreep = 1;              // m/s, below it losses are no longer shares of the power
-constexpr double kLightLoad = 100e5;      // Pa, likewise
+constexpr double kMaxPressure = 1000e5;  // Pa; hydraulic pumps end at 500 bar
+constexpr double kFastest = 10;          // m/s, mean piston speed; bent-axis pumps reach 5..7
+constexpr double kSlowest = 0.05;        // m/s
+constexpr double kCreep = 1;             // m/s, below it losses are no longer shares of the power
+constexpr double kLightLoad = 100e5;     // Pa, likewise
 constexpr int kTurnAngles = 72;
 constexpr double kShareOfTurn = 0.05;    // a limit violated for less is an edge of the pressure
 constexpr double kOutsideShare = 0.25;   // likewise of the film force's point, when ports open
@@ -69,7 +69,7 @@ struct Facts {
   // this circle, a usual one.
   double bore, area;    // m, m2
   double bores_radius;  // m, that encloses all bores
-  double highest;       // Pa, of the port pressures, at most kMostPressure
+  double highest;       // Pa, of the port pressures, at most kMaxPressure
   double load;          // Pa, likewise, at least kLightLoad
   double piston_span;   // m, length of a piston with its ball and head
   double block_length;  // m
@@ -158,7 +158,7 @@ Facts::Facts(const Case& of)
                : 0.8 * bore_room),
       area(kPi / 4 * square(bore)),
       bores_radius(g.bore_circle_radius + bore / 2),
-      highest(std::min(std::max(std::abs(ports.delivery), std::abs(ports.suction)), kMostPressure)),
+      highest(std::min(std::max(std::abs(ports.delivery), std::abs(ports.suction)), kMaxPressure)),
       load(std::max(highest, kLightLoad)),
       piston_span(g.piston_length + bore),
       block_length(g.piston_length + derived.stroke),
@@ -726,7 +726,7 @@ const Check kChecks[] = {
     {"pressure-beyond-1000-bar", "delivery, suction or the curve above 1000 bar",
      [](const Facts& f) {
        const auto one = [](const char* key, double p) {
-         return outside(key, bar(p), -HUGE_VAL, bar(kMostPressure), "bar",
+         return outside(key, bar(p), -HUGE_VAL, bar(kMaxPressure), "bar",
                         "hydraulic pumps end at 500 bar",
                         {{1e-5, "in pascals?"},
                          {1e-2, "in kPa?"},
@@ -1050,8 +1050,8 @@ std::string trimmed(const std::string& text) {
 }
 
 // "CODE: reason; CODE: reason"
-std::vector<Doubt> stated(const Case& the_case) {
-  std::vector<Doubt> list;
+std::vector<PlausibilityWarning> stated(const Case& the_case) {
+  std::vector<PlausibilityWarning> list;
   const std::string& text = the_case.meant;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(';', at), text.size());
@@ -1085,7 +1085,7 @@ std::string Plausibility::summary() const {
 }
 
 Plausibility plausibility(const Case& the_case) {
-  const std::vector<Doubt> reasons = stated(the_case);
+  const std::vector<PlausibilityWarning> reasons = stated(the_case);
   const Facts facts(the_case);
   Plausibility result;
   result.displacement = facts.derived.displacement;
@@ -1098,8 +1098,9 @@ Plausibility plausibility(const Case& the_case) {
   for (const Check& check : kChecks) {
     const std::string text = check.found(facts);
     if (text.empty()) continue;
-    const auto reason = std::find_if(reasons.begin(), reasons.end(),
-                                     [&](const Doubt& d) { return d.code == check.code; });
+    const auto reason =
+        std::find_if(reasons.begin(), reasons.end(),
+                     [&](const PlausibilityWarning& d) { return d.code == check.code; });
     if (reason == reasons.end())
       result.warnings.push_back({check.code, text, ""});
     else
@@ -1109,7 +1110,7 @@ Plausibility plausibility(const Case& the_case) {
 }
 
 std::string stated_reason(const Case& the_case, const std::string& code) {
-  for (const Doubt& doubt : stated(the_case))
+  for (const PlausibilityWarning& doubt : stated(the_case))
     if (doubt.code == code) return doubt.reason;
   return "";
 }

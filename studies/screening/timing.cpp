@@ -17,20 +17,20 @@ namespace bentaxis::study {
 namespace {
 
 // Limits by convention (docs/hydraulics.md, "Timing").
-constexpr double kShortCircuit = 0.005;   // of a stroke
-constexpr double kBackflow = 1.5;         // over what fills the chamber, but at least
-constexpr double kLeastBackflow = 0.01;   // of a stroke
-constexpr double kOvershoot = 0.1;        // of the mean delivery pressure, but at least
-constexpr double kLeastOvershoot = 10e5;  // Pa
+constexpr double kShortCircuit = 0.005;  // of a stroke
+constexpr double kBackflow = 1.5;        // over what fills the chamber, but at least
+constexpr double kMinBackflow = 0.01;    // of a stroke
+constexpr double kOvershoot = 0.1;       // of the mean delivery pressure, but at least
+constexpr double kMinOvershoot = 10e5;   // Pa
 
 constexpr double kLargestFillingLoss = 0.01;  // of a stroke
 
 // The search for a speed.
 constexpr double kFactor = 1.25;
-constexpr double kMostOverOwn = 8, kLeastOverOwn = 0.05;
+constexpr double kMaxOverOwn = 8, kMinOverOwn = 0.05;
 constexpr double kSpeedTolerance = 1e-3;
-constexpr std::uintmax_t kMostSolves = 20;  // between two speeds
-constexpr double kSpeedCurveError = 1e-5;   // of peak; a hundredth of what the tolerance sees
+constexpr std::uintmax_t kMaxSolves = 20;  // between two speeds
+constexpr double kSpeedCurveError = 1e-5;  // of peak; a hundredth of what the tolerance sees
 
 double bar(double pascals) { return pascals / kPascalPerBar; }
 double cm3(double volume) { return volume * 1e6; }
@@ -109,7 +109,7 @@ TimingRow backflow(const hydraulics::Timing& t, double stroke) {
   TimingRow r = row("backflow", "oil from the delivery port into a chamber", cm3(t.backflow),
                     "cm3 per chamber and turn");
   add_angles(r, t.backflow_where);
-  hold(r, cm3(std::max(kBackflow * t.filling, kLeastBackflow * stroke)));
+  hold(r, cm3(std::max(kBackflow * t.filling, kMinBackflow * stroke)));
   if (t.backflow > 0) r.theta_deg = t.largest_backflow_deg;
   r.text = fmt::format(
       "fastest {:.4g} l/min at {:.4g} deg; to bring a full chamber to delivery pressure takes "
@@ -119,7 +119,7 @@ TimingRow backflow(const hydraulics::Timing& t, double stroke) {
 }
 
 double overshoot_limit(const hydraulics::Summary& s) {
-  return bar(std::max(kOvershoot * s.delivery_mean, kLeastOvershoot));
+  return bar(std::max(kOvershoot * s.delivery_mean, kMinOvershoot));
 }
 
 TimingRow trapped(const hydraulics::Timing& t, const hydraulics::Summary& s) {
@@ -230,7 +230,7 @@ std::optional<Warning> accuracy_warning(const hydraulics::AccuracyLog::Record& r
 }
 
 std::optional<Warning> accuracy_warning(const Case& the_case,
-                                                const hydraulics::SteadyState& state) {
+                                        const hydraulics::SteadyState& state) {
   if (hydraulics::is_accurate(the_case, state)) return std::nullopt;
   return accuracy_warning({1, hydraulics::inaccurate_state(the_case, state)});
 }
@@ -277,7 +277,7 @@ SuctionSpeed search_speed(const Case& the_case, SuctionSpeed found, const Margin
   double speed = own, here = margin(own);
   found.searched_from = found.searched_to = own;
   const bool up = here >= 0;
-  const double end = own * (up ? kMostOverOwn : kLeastOverOwn);
+  const double end = own * (up ? kMaxOverOwn : kMinOverOwn);
   double before = speed, there = here;
   const auto stop = [&](double rpm, const std::exception& error) {
     found.stopped = fmt::format("at {:.5g} rpm: {}", rpm, error.what());
@@ -297,7 +297,7 @@ SuctionSpeed search_speed(const Case& the_case, SuctionSpeed found, const Margin
     (up ? found.searched_to : found.searched_from) = speed;
   }
   if ((here >= 0) != up) {
-    std::uintmax_t solves = kMostSolves;
+    std::uintmax_t solves = kMaxSolves;
     const auto close = [](double a, double b) {
       return std::abs(b - a) <= kSpeedTolerance * std::abs(a);
     };

@@ -51,7 +51,7 @@ std::string small_components(const compare::Comparison& comparison) {
 // The comparison while it is made.
 class Maker {
  public:
-  Maker(ReadyCase first, ReadyCase second, const ComparisonOptions& options,
+  Maker(PreparedCase first, PreparedCase second, const ComparisonOptions& options,
         const PartProgress& progress_of)
       : progress_of_(progress_of),
         samples_(first.samples(options.way)),
@@ -354,11 +354,11 @@ void Maker::run_without_viscous() {
   if (r.first.the_case.pump.friction.block_viscous <= 0 || integrated() ||
       r.options.scene.scene != multibody::Scene::full)
     return;
-  const auto still = [](const ReadyCase& ready) {
+  const auto still = [](const PreparedCase& ready) {
     Case the_case = ready.the_case;
     the_case.pump.friction.block_viscous = 0;
     PressureTrace pressure(the_case.pressure);
-    return ReadyCase{std::move(the_case), {}, std::move(pressure)};
+    return PreparedCase{std::move(the_case), {}, std::move(pressure)};
   };
   r.without_viscous.push_back(study::run(still(r.first), samples_, {}).table);
   r.without_viscous.push_back(
@@ -400,7 +400,7 @@ void Maker::warn() {
   if (r.first.hydraulics)
     for (auto& warning : timing_warnings(timing_rows(r.first.the_case, *r.first.hydraulics)))
       r.warnings.push_back(std::move(warning));
-  for (const ReadyCase* ready : {&r.first, &r.second})
+  for (const PreparedCase* ready : {&r.first, &r.second})
     if (ready->hydraulics && (ready == &r.first || ready->the_case.file != r.first.the_case.file))
       if (auto warning = accuracy_warning(ready->the_case, *ready->hydraulics))
         r.warnings.push_back(std::move(*warning));
@@ -653,11 +653,11 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
   if (!options.with.empty()) reference_in(options.with);  // refused before anything is computed
   if (multibody_case) check_same_run(analytic_case, *multibody_case);
   require_memory(analytic_case, Kept::compared, options.way);
-  ReadyCase first = prepare(std::move(analytic_case), progress_of);
+  PreparedCase first = prepare(std::move(analytic_case), progress_of);
   // The same case is solved once: both models get the very same curve.
-  ReadyCase second = multibody_case ? prepare(std::move(*multibody_case), progress_of)
-                                    : ReadyCase{first.the_case, first.hydraulics,
-                                                PressureTrace(first.the_case.pressure)};
+  PreparedCase second = multibody_case ? prepare(std::move(*multibody_case), progress_of)
+                                       : PreparedCase{first.the_case, first.hydraulics,
+                                                      PressureTrace(first.the_case.pressure)};
   return Maker(std::move(first), std::move(second), options, progress_of).make();
 }
 

@@ -76,7 +76,7 @@ compare::PublishedRun VariantRuns::operator()(const compare::PublishedVariant& v
   ResultTable& table = tables_[variant.name];
   if (table.rows() == 0) {
     PressureTrace pressure(the_case.pressure);
-    const ReadyCase ready{std::move(the_case), {}, std::move(pressure)};
+    const PreparedCase ready{std::move(the_case), {}, std::move(pressure)};
     table = study::run(ready, options, progress_of_).table;
   }
   run.table = &table;
@@ -97,9 +97,9 @@ compare::PublishedSection judge_case(const compare::Published& published,
 }
 
 std::optional<compare::PublishedTable> published_section(const std::filesystem::path& folder,
-                                                        const PublishedInput& analytic,
-                                                        const PublishedInput& multibody,
-                                                        const PartProgress& progress_of) {
+                                                         const PublishedInput& analytic,
+                                                         const PublishedInput& multibody,
+                                                         const PartProgress& progress_of) {
   const auto printed =
       printed_numbers_of(folder, {facts_of(*analytic.the_case, analytic.assumptions),
                                   facts_of(*multibody.the_case, multibody.assumptions)});

@@ -43,9 +43,9 @@ std::vector<fs::path> files_of(const Case& the_case) {
 
 namespace {
 
-ReadyCase read(const compare::ReferenceDescription& description, const fs::path& file,
-               const PartProgress& progress_of) {
-  ReadyCase ready = prepare(read_case(file), progress_of);
+PreparedCase read(const compare::ReferenceDescription& description, const fs::path& file,
+                  const PartProgress& progress_of) {
+  PreparedCase ready = prepare(read_case(file), progress_of);
   if (description.samples_per_revolution)
     ready.the_case.operation.samples_per_revolution = *description.samples_per_revolution;
   return ready;
@@ -65,7 +65,7 @@ ReferenceCases::ReferenceCases(const compare::ReferenceDescription& description,
     multibody_ = read(description, description.multibody_case_file, progress_of);
 }
 
-ReferenceRun run_for_reference(const ReadyCase& ready, Model model,
+ReferenceRun run_for_reference(const PreparedCase& ready, Model model,
                                const PartProgress& progress_of) {
   const Samples samples = ready.samples(Way::driven);
   RunOptions options;

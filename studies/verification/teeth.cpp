@@ -58,9 +58,9 @@ ResultTable point_errors(ResultTable& first, ResultTable& second, double round_o
 // one flank to the other.
 void add_lag_errors(ResultTable& errors, const ResultTable& table,
                     const analytic::BevelTeeth& teeth, const Gear& gear, double round_off) {
-  constexpr double kLeastTorque = 2e-9;  // Nm: BevelTeeth::rest() takes less for none
+  constexpr double kMinTorque = 2e-9;  // Nm: BevelTeeth::rest() takes less for none
   const double radius = gear.pitch_diameter / 2;
-  const double change = std::max(round_off * radius, kLeastTorque);
+  const double change = std::max(round_off * radius, kMinTorque);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     std::array<double, 3> moment = {};
     for (const PairColumns& pair : pairs_of(table)) {
@@ -104,7 +104,7 @@ TeethComparison compare_teeth(ResultTable analytic, ResultTable multibody, doubl
   scales["N"] = std::max(scales["N"], shape.stiffness() * distance);
   compare::Options options = compare::above_round_off(tolerance, scales);
   ResultTable first = analytic, second = multibody;
-  const double round_off = tolerance * compare::kLeastScale * scales["N"];
+  const double round_off = tolerance * compare::kMinScale * scales["N"];
   ResultTable errors = point_errors(first, second, round_off, 1e3 * pump.gear.teeth->face_width);
   add_lag_errors(errors, analytic, shape, pump.gear, round_off);
   options.uncertainty = &errors;

@@ -237,8 +237,8 @@ void read_as_fmu(const std::uint8_t* data, std::size_t size) {
   try {
     std::string xml(reinterpret_cast<const char*>(data), size);
     if (is_archive(data, size)) {
-      constexpr std::uint64_t kMost = 1ULL << 20U;
-      const fmu::Unpacked unpacked(file_with(data, size), kMost);
+      constexpr std::uint64_t kMax = 1ULL << 20U;
+      const fmu::Unpacked unpacked(file_with(data, size), kMax);
       for (const auto& entry : std::filesystem::recursive_directory_iterator(unpacked.folder()))
         require(entry.is_directory() || entry.is_regular_file(), "unpacked what is no file");
       xml = unpacked.description();

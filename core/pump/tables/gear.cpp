@@ -70,7 +70,7 @@ Table gear_table() {
                 .field = FIELD(c.pump.gear.flanks),
                 .words = {"one", "two"},
                 .fallback = {.computed = [](const Case& c) -> std::optional<Value> {
-                               return std::string(c.pump.gear.gives_way() ? "two" : "one");
+                               return std::string(c.pump.gear.is_compliant() ? "two" : "one");
                              },
                              .words = "one; two where `contact` is not rigid"},
                 .meaning = "one: as the paper prints, one line of action for either sign of the "
@@ -233,7 +233,7 @@ Table gear_table() {
                    .broken =
                        [](const Case& c) {
                          const Gear& gear = c.pump.gear;
-                         return gear.gives_way() && gear.flanks == Flanks::one
+                         return gear.is_compliant() && gear.flanks == Flanks::one
                                     ? std::string(
                                           "teeth that give way have two flanks: must be \"two\" "
                                           "beside contact = \"compliant\" or \"teeth\"")
@@ -247,8 +247,8 @@ Table gear_table() {
                        return std::string("needs tooth_number and face_width_mm");
                      // The cone distance grows as 1/tilt, and with it the round-off of contact
                      // points.
-                     constexpr double kLeastTilt = 1e-4 * kRadPerDegree;
-                     if (contact == ToothContact::teeth && c.pump.geometry.tilt < kLeastTilt)
+                     constexpr double kMinTilt = 1e-4 * kRadPerDegree;
+                     if (contact == ToothContact::teeth && c.pump.geometry.tilt < kMinTilt)
                        return std::string(
                            "bevel teeth need [pump] tilt_deg >= 0.0001: nearly parallel axes meet "
                            "too "

@@ -30,7 +30,7 @@ Table pump_table() {
                      {.key = "pistons",
                       .field = FIELD(c.pump.geometry.pistons),
                       .symbol = "N",
-                      .range = {1, kMostPistons},
+                      .range = {1, kMaxPistons},
                       .meaning = "number of pistons",
                       .changes_model = true},
                      {.key = "tilt_deg",

@@ -54,9 +54,9 @@ std::string end_in_words(const Returned& end) {
 }  // namespace
 
 std::string said_last(const std::vector<std::string>& lines) {
-  constexpr std::size_t kMost = 3;
+  constexpr std::size_t kMax = 3;
   std::string text;
-  for (std::size_t i = lines.size() - std::min(lines.size(), kMost); i < lines.size(); ++i)
+  for (std::size_t i = lines.size() - std::min(lines.size(), kMax); i < lines.size(); ++i)
     text += (text.empty() ? "" : "; ") + lines[i];
   return text;
 }
@@ -132,10 +132,10 @@ Returned Channel::exchange(const Call& call) {
 void Channel::send(const Call& call) {
   std::string texts;
   for (const std::string& text : call.texts) texts += text + '\0';
-  if (texts.size() > process::kMostText)
+  if (texts.size() > process::kMaxText)
     throw InputError(fmu_ + ": " + call.names.front() + ": texts of " +
                      std::to_string(texts.size()) + " bytes: at most " +
-                     std::to_string(process::kMostText) + " are passed to an FMU");
+                     std::to_string(process::kMaxText) + " are passed to an FMU");
   const Request request{call.task,
                         static_cast<std::uint32_t>(call.version),
                         call.first,

@@ -59,7 +59,7 @@ class ImportedUnit::Implementation {
   Implementation(const std::filesystem::path& archive, Limits wanted)
       : file(with_room(archive)),
         limits(std::move(wanted)),
-        unpacked(archive, kMostUnpacked,
+        unpacked(archive, kMaxUnpacked,
                  [this](const std::filesystem::path& folder) {
                    supervisor.emplace(folder, file.string());
                  }),

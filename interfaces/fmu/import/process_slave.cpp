@@ -16,7 +16,7 @@ using process::Item;
 using process::Outcome;
 using process::Task;
 
-constexpr std::size_t kMostLines = 1000;
+constexpr std::size_t kMaxLines = 1000;
 
 const char* word_of(int status) {
   static const char* words[] = {"OK", "warning", "discard", "error", "fatal"};
@@ -198,7 +198,7 @@ class ProcessSlave : public Slave {
   Returned call(const Call& asked) {
     Returned returned = channel_->call(asked);
     for (const std::string& line : returned.log)
-      if (log_.size() < kMostLines) log_.push_back(line);
+      if (log_.size() < kMaxLines) log_.push_back(line);
     return returned;
   }
 
@@ -245,9 +245,9 @@ class ProcessSlave : public Slave {
   template <class Use>
   void for_each_part(Task task, const char* verb, const std::vector<const UnitVariable*>& variables,
                      const Use& use) {
-    for (std::size_t first = 0; first < variables.size(); first += process::kMostItems) {
+    for (std::size_t first = 0; first < variables.size(); first += process::kMaxItems) {
       Call asked{task, {}, version_};
-      const std::size_t end = std::min(variables.size(), first + std::size_t{process::kMostItems});
+      const std::size_t end = std::min(variables.size(), first + std::size_t{process::kMaxItems});
       for (std::size_t i = first; i < end; ++i) {
         const UnitVariable& v = *variables[i];
         asked.items.push_back({type_of(v, version_), v.reference, 0});

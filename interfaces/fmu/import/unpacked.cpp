@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr zip_int64_t kMostEntries = 20000;
+constexpr zip_int64_t kMaxEntries = 20000;
 constexpr std::size_t kPiece = 1U << 16;
 // Of modelDescription.xml, in bytes.
 constexpr std::uint64_t kLargestDescription = 64ULL << 20U;
@@ -98,9 +98,9 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
   if (!archive) zip_source_free(source);
   if (!archive) fail(file, "is no zip archive, or a damaged one: must be a .fmu");
   const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
-  if (entries > kMostEntries)
+  if (entries > kMaxEntries)
     fail(file, "has " + std::to_string(entries) + " entries: at most " +
-                   std::to_string(kMostEntries) + " are unpacked");
+                   std::to_string(kMaxEntries) + " are unpacked");
   std::uint64_t bytes = 0;
   std::vector<char> piece(kPiece);
   for (zip_int64_t i = 0; i < entries; ++i) {

@@ -10,14 +10,14 @@
 namespace bentaxis::fmu {
 
 /// Of what is unpacked, whatever the archive says of its sizes.
-inline constexpr std::uint64_t kMostUnpacked = 1ULL << 30;
+inline constexpr std::uint64_t kMaxUnpacked = 1ULL << 30;
 
 class Unpacked {
  public:
   /// Description, resources and the libraries of this machine.
   /// @param made  called once the folder is there, and nothing in it
   /// @throws InputError where the file is no archive, or one that should not be unpacked
-  explicit Unpacked(const std::filesystem::path& archive, std::uint64_t most = kMostUnpacked,
+  explicit Unpacked(const std::filesystem::path& archive, std::uint64_t most = kMaxUnpacked,
                     const std::function<void(const std::filesystem::path& folder)>& made = {});
   ~Unpacked();
   Unpacked(const Unpacked&) = delete;

@@ -20,18 +20,17 @@ namespace {
 // Of a difference quotient, in nominal values: error and round-off are alike there.
 constexpr double kDifference = 5e-6;
 constexpr double kPressure = 1e7;  // Pa, what pressures given from outside are measured by
-constexpr double kLeastSpeed = 1, kLeastTorque = 1;  // rad/s, Nm
+constexpr double kMinSpeed = 1, kMinTorque = 1;  // rad/s, Nm
 
 double nominal_of(Input input, const Case& the_case) {
-  const double omega =
-      std::max(std::abs(rad_per_second(the_case.operation.speed_rpm)), kLeastSpeed);
+  const double omega = std::max(std::abs(rad_per_second(the_case.operation.speed_rpm)), kMinSpeed);
   switch (input) {
     case Input::speed:
       return omega;
     case Input::acceleration:
       return omega * omega;
     case Input::torque:
-      return std::max(std::abs(the_case.drive ? the_case.drive->torque : 0.0), kLeastTorque);
+      return std::max(std::abs(the_case.drive ? the_case.drive->torque : 0.0), kMinTorque);
     case Input::suction:
     case Input::delivery:
       return kPressure;

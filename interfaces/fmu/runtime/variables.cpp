@@ -195,9 +195,9 @@ class List {
 }  // namespace
 
 double least_pressure(const Case& the_case) {
-  constexpr double kStandard = 101325, kLeastAbsolute = 1;  // Pa
+  constexpr double kStandard = 101325, kMinAbsolute = 1;  // Pa
   const double atmosphere = the_case.hydraulics ? the_case.hydraulics->atmosphere : kStandard;
-  return kLeastAbsolute - atmosphere;
+  return kMinAbsolute - atmosphere;
 }
 
 Case case_with(Case the_case, const std::vector<Variable>& variables,

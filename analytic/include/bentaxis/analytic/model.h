@@ -94,7 +94,7 @@ class Model {
     BevelTeeth::Wrench wrench;
   };
   template <class Real>
-  Settled let_teeth_act(const Instant& instant, std::vector<Real>& values) const;
+  Settled resolve_tooth_contact(const Instant& instant, std::vector<Real>& values) const;
   std::optional<Settled> find(const Instant& instant, std::vector<double>& values) const;
   void act(const Instant& instant, const ToothLag& lag, TeethAction& teeth) const;
 

@@ -99,7 +99,8 @@ struct Options {
 /// the round-off of the loads would differ. With the tolerance of two exact models, 1e-9, this
 /// allows 1e-12 of the loads: five times the largest error of either model against curves of 50
 /// digits (2e-13, docs/trust.md). A tolerance that a user names scales it alike.
-inline constexpr double kLeastScale = 1e-3;
+inline constexpr double kMinScale = 1e-3;
+inline constexpr double kLeastScale [[deprecated("use kMinScale")]] = kMinScale;
 /// A channel below this share of its scale is warned of: a thousandth of itself may be wrong for
 /// each millionth that the tolerance allows.
 inline constexpr double kSmallComponent = 1e-3;
@@ -136,7 +137,7 @@ struct Comparison {
 Comparison compare_tables(const ResultTable& first, const ResultTable& second,
                           const Options& options);
 
-/// What differences of a group are held to: its peak, at least kLeastScale of the largest load; the
+/// What differences of a group are held to: its peak, at least kMinScale of the largest load; the
 /// load itself where the peak is round-off of it, so that the group is zero.
 double scale_of(double peak, double load);
 /// That of a channel: by the peak of its group in the table and the largest load of its unit.

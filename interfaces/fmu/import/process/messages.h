@@ -74,10 +74,10 @@ struct Reply {
 };
 inline constexpr std::uint32_t kTerminates = 1;     ///< The FMU ends the simulation.
 inline constexpr std::uint32_t kReturnedEarly = 2;  ///< without being allowed to
-inline constexpr std::uint32_t kMostItems = 1000;   ///< of a message
+inline constexpr std::uint32_t kMaxItems = 1000;    ///< of a message
 inline constexpr std::size_t kLargestMessage = 1U << 17;
-inline constexpr std::size_t kMostText = 1U << 15;  ///< bytes, of a request and of a reply
-inline constexpr std::size_t kLongestLine = 400;    ///< of the log, letters
+inline constexpr std::size_t kMaxText = 1U << 15;  ///< bytes, of a request and of a reply
+inline constexpr std::size_t kLongestLine = 400;   ///< of the log, letters
 
 /// Exit status of a process that has lost its channel.
 inline constexpr int kLostChannel = 113;

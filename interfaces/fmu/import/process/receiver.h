@@ -18,7 +18,7 @@ class Receiver {
  public:
   /// As recv().
   ssize_t receive(int socket, void* data, std::size_t size) {
-    if (several_processors_ && (in_vain_ < kMostInVain || ++skipped_ % kTryEvery == 0)) {
+    if (several_processors_ && (in_vain_ < kMaxInVain || ++skipped_ % kTryEvery == 0)) {
       const auto end = std::chrono::steady_clock::now() + kLook;
       do {
         const ssize_t received = recv(socket, data, size, MSG_DONTWAIT);
@@ -27,14 +27,14 @@ class Receiver {
           return received;
         }
       } while (std::chrono::steady_clock::now() < end);
-      if (in_vain_ < kMostInVain) ++in_vain_;
+      if (in_vain_ < kMaxInVain) ++in_vain_;
     }
     return recv(socket, data, size, 0);
   }
 
  private:
   static constexpr auto kLook = std::chrono::microseconds(50);
-  static constexpr int kMostInVain = 8, kTryEvery = 64;
+  static constexpr int kMaxInVain = 8, kTryEvery = 64;
 
   static bool several_processors() {
     cpu_set_t allowed;

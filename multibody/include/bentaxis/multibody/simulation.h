@@ -10,12 +10,13 @@
 namespace bentaxis::multibody {
 
 /// Steps after which a simulation gives up: some ten minutes.
-inline constexpr long kMostSteps = 1000000;
+inline constexpr long kMaxSteps = 1000000;
+inline constexpr long kMostSteps [[deprecated("use kMaxSteps")]] = kMaxSteps;
 
 /// What integrates a simulation, and when it gives up.
 struct SimulationMethod {
   Integrator integrator = Integrator::runge_kutta_merson;
-  long most_steps = kMostSteps;
+  long most_steps = kMaxSteps;
 };
 
 /// Simulates the motion of a case from its [drive] by Simbody's own integration: shaft, block and

@@ -12,7 +12,8 @@
 namespace bentaxis {
 
 /// The most pistons that a pump may have: buffers of fixed size rely on it.
-inline constexpr int kMostPistons = 99;
+inline constexpr int kMaxPistons = 99;
+inline constexpr int kMostPistons [[deprecated("use kMaxPistons")]] = kMaxPistons;
 
 /// Main dimensions. Frames: S1 has its origin O1 where the shaft axis z1 meets the plane of the
 /// piston joints, y1 up; S2 has its origin at (0, 0, axis_offset) in S1 and is bent by `tilt`
@@ -98,7 +99,8 @@ struct Gear {
   std::optional<ToothData> teeth = {};             ///< there where the contact is that of teeth
 
   /// Whether the block has a motion of its own in time.
-  bool gives_way() const { return contact != ToothContact::rigid; }
+  bool is_compliant() const { return contact != ToothContact::rigid; }
+  [[deprecated("use is_compliant")]] bool gives_way() const { return is_compliant(); }
 };
 
 /// Bearing centres on the shaft axis, z1 in m.

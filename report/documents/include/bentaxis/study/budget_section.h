@@ -12,8 +12,8 @@ namespace bentaxis::study {
 /// @param first       the analytic model's case; its hydraulics give the balance of the oil
 /// @throws ComputationError where that balance cannot be integrated
 /// @param analytic, multibody  all channels of the same runs
-report::Budget budget_section(const BudgetComparison& budgets, const ReadyCase& first,
-                              const ReadyCase& second, const ResultTable& analytic,
+report::Budget budget_section(const BudgetComparison& budgets, const PreparedCase& first,
+                              const PreparedCase& second, const ResultTable& analytic,
                               const ResultTable& multibody);
 
 /// Mean torque by cause in a line of words, of the analytic model: "drive torque 294.7 Nm: ..".

@@ -11,7 +11,7 @@ namespace bentaxis::study {
 
 /// One driven turn of the analytic model, with all loads on all bodies.
 struct ShownPump {
-  ReadyCase ready;
+  PreparedCase ready;
   ModelRun run;
   std::vector<analytic::ValidityLimit> limits;
 };

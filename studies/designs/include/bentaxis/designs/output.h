@@ -75,7 +75,7 @@ double derived_value(const Output& output, const Geometry& geometry);
 /// The numbers of one design from the tables of one of its models.
 /// @return one per output; not_computed() where the model does not give it
 /// @throws InputError, ComputationError
-std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::ReadyCase& ready,
+std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::PreparedCase& ready,
                                study::Model model);
 
 }  // namespace bentaxis::designs

@@ -19,7 +19,7 @@ namespace bentaxis::designs {
 /// Further numbers of a design, from its analytic or multibody turn.
 struct Further {
   std::size_t count = 0;
-  std::function<void(const study::ReadyCase&, const ResultTable&, std::span<double>)> of = {};
+  std::function<void(const study::PreparedCase&, const ResultTable&, std::span<double>)> of = {};
 };
 
 struct UncertaintyOptions {

@@ -43,7 +43,7 @@ struct GroupDifference {
   /// Largest difference in time over what is allowed then: 1 is the limit; not_computed() of what
   /// is not judged, and where a value is missing or not finite: then the models do not agree.
   double of_allowed = 0;
-  /// What differences are over: the peak, at least compare::kLeastScale of the loads of the run.
+  /// What differences are over: the peak, at least compare::kMinScale of the loads of the run.
   double scale = 0;
 };
 
@@ -87,7 +87,7 @@ struct PeriodicMotion {
 };
 
 struct SimulationResult {
-  ReadyCase ready;
+  PreparedCase ready;
   SimulationChoice choice;
   bool oil_follows = false;                   ///< the oil is simulated too
   std::optional<PeriodicMotion> periodic[2];  ///< by model, where it was asked for
@@ -128,12 +128,12 @@ struct SimulationResult {
 /// Makes a case ready for simulate(): as prepare(), but where the oil follows the motion the
 /// periodic pressure is only computed where the load's size or the start come from it.
 /// @throws InputError where `choice` says something that has no effect
-ReadyCase prepare_simulation(Case the_case, const SimulationChoice& choice,
-                             const PartProgress& progress_of = silent());
+PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,
+                                const PartProgress& progress_of = silent());
 
 /// Simulates a case that is ready by one model or both.
 /// @throws InputError, ComputationError
-SimulationResult simulate(ReadyCase ready, const SimulationChoice& choice,
+SimulationResult simulate(PreparedCase ready, const SimulationChoice& choice,
                           const PartProgress& progress_of = silent());
 
 }  // namespace bentaxis::study

@@ -10,14 +10,14 @@
 namespace bentaxis::study {
 
 /// Between the ports, Pa; with the hydraulic model the mean of the delivery volume.
-double pressure_difference(const ReadyCase& ready);
+double pressure_difference(const PreparedCase& ready);
 /// Displacement x speed, m3/s.
 double ideal_flow(const Case& the_case);
 
 /// The energy balance of the oil in the pump, mean over a turn, W: of a case with the hydraulic
 /// model, by one period more of its integration.
 /// @throws ComputationError
-std::optional<hydraulics::PumpPower> pump_power(const ReadyCase& ready,
+std::optional<hydraulics::PumpPower> pump_power(const PreparedCase& ready,
                                                 const Progress& progress = {});
 
 /// Mean volume flow to the load at the density of the mean delivery pressure, m3/s.
@@ -50,7 +50,7 @@ std::span<const EfficiencyLine> efficiency_lines();
 
 /// @param power        pump_power(ready)
 /// @param mean_torque  of Td, Nm
-Efficiencies efficiencies(const ReadyCase& ready, const std::optional<hydraulics::PumpPower>& power,
-                          double mean_torque);
+Efficiencies efficiencies(const PreparedCase& ready,
+                          const std::optional<hydraulics::PumpPower>& power, double mean_torque);
 
 }  // namespace bentaxis::study

@@ -20,7 +20,7 @@ void require_pressure_asked_for(const Case& the_case);
 /// One operating point: its periodic hydraulic state, and a turn by both models as the case
 /// assumes.
 struct OperatingPoint {
-  ReadyCase ready;
+  PreparedCase ready;
   ResultTable analytic, multibody;
 
   const Case& the_case() const { return ready.the_case; }

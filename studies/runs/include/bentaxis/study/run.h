@@ -30,7 +30,7 @@ enum class Way {
 };
 
 /// A case that the models can be run on, with what the hydraulic model found if it was asked.
-struct ReadyCase {
+struct PreparedCase {
   Case the_case;
   std::optional<hydraulics::SteadyState> hydraulics;  ///< of kind "hydraulic"
   PressureTrace pressure{PressureSpec{}};
@@ -41,11 +41,12 @@ struct ReadyCase {
   /// What the case lets a model assume.
   const Assumptions& assumptions(Model model) const;
 };
+using ReadyCase [[deprecated("use PreparedCase")]] = PreparedCase;
 
 /// Computes the chamber pressure of a case where its pressure is of kind "hydraulic" and puts it
 /// into the case: one curve, which both models then get. The pressure of other cases is there.
 /// @throws InputError, ComputationError
-ReadyCase prepare(Case the_case, const PartProgress& progress_of = silent());
+PreparedCase prepare(Case the_case, const PartProgress& progress_of = silent());
 
 /// The largest error of any reaction over its peak that an integrated run may have: integrator and
 /// accuracy are chosen for it by a short calibration, and the run is verified.
@@ -93,10 +94,10 @@ void require_memory(const Case& the_case, const DriveSpec& drive, std::size_t mo
 /// Runs one model.
 /// @throws InputError where the options contradict each other or the case refuses them (integrated
 ///         at standstill, say); ComputationError where a model fails
-ModelRun run(const ReadyCase& ready, const RunOptions& options,
+ModelRun run(const PreparedCase& ready, const RunOptions& options,
              const PartProgress& progress_of = silent());
 /// The same at samples that are already there: of ready.samples(way).
-ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& options,
+ModelRun run(const PreparedCase& ready, const Samples& samples, const RunOptions& options,
              const PartProgress& progress_of = silent());
 
 /// Reactions at given states of shaft and block, as options.model and options.assumptions say;
@@ -104,12 +105,12 @@ ModelRun run(const ReadyCase& ready, const Samples& samples, const RunOptions& o
 /// @throws InputError where the options say something that has no effect on given states
 /// @param teeth  if given: what the teeth do there, table of results/teeth.h
 /// @param loads  if given: all loads on the bodies there
-MotionTable run_states(const ReadyCase& ready, const States& states, const RunOptions& options,
+MotionTable run_states(const PreparedCase& ready, const States& states, const RunOptions& options,
                        const PartProgress& progress_of = silent(), ResultTable* teeth = nullptr,
                        BodyLoadTable* loads = nullptr);
 
 /// One turn by one model, driven, as the case assumes.
-ResultTable run_turn(const ReadyCase& ready, Model model,
+ResultTable run_turn(const PreparedCase& ready, Model model,
                      const PartProgress& progress_of = silent());
 
 /// Whether a run computes a channel at all: a smaller scene leaves some out, and where the block's
@@ -118,7 +119,7 @@ bool computes(const RunOptions& options, const Assumptions& assumptions, const C
 
 /// Runs the analytic model over one turn and writes its curves as CSV, row by row: memory does not
 /// grow with the number of samples. Only channels that are wanted.
-void stream_analytic(const ReadyCase& ready, const Assumptions& assumptions,
+void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
                      const PartProgress& progress_of = silent());
 

@@ -10,11 +10,12 @@
 namespace bentaxis::study {
 
 /// A value, or values together, that are hardly meant.
-struct Doubt {
+struct PlausibilityWarning {
   std::string code;    ///< stable short name: "tilt-in-radians"
   std::string text;    ///< one line: the key with its value, the limit and its reason
   std::string reason;  ///< why it is meant all the same, where the case says so
 };
+using Doubt [[deprecated("use PlausibilityWarning")]] = PlausibilityWarning;
 
 /// What an engineer checks first about a pump.
 struct Plausibility {
@@ -25,8 +26,8 @@ struct Plausibility {
   double delivery = 0;           ///< Pa gauge
   double mean_piston_speed = 0;  ///< m/s, two strokes per turn
 
-  std::vector<Doubt> warnings;  ///< in the order of the table of checks
-  std::vector<Doubt> meant;     ///< those that `[plausibility] meant` gives a reason for
+  std::vector<PlausibilityWarning> warnings;  ///< in the order of the table of checks
+  std::vector<PlausibilityWarning> meant;  ///< those that `[plausibility] meant` gives a reason for
 
   /// The pump in one line: the six numbers above.
   std::string summary() const;

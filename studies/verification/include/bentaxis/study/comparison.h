@@ -9,8 +9,8 @@
 
 #include "bentaxis/analytic/validity.h"
 #include "bentaxis/compare/comparison.h"
-#include "bentaxis/compare/split.h"
 #include "bentaxis/compare/published.h"
+#include "bentaxis/compare/split.h"
 #include "bentaxis/results/remarks.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/budget.h"
@@ -62,17 +62,17 @@ struct DifferenceCause {
 
 /// Everything that a comparison came to.
 struct ComparisonResult {
-  ReadyCase first, second;                        ///< of the analytic and of the multibody model
+  PreparedCase first, second;                     ///< of the analytic and of the multibody model
   ComparisonOptions options;                      ///< as used: with the integration that was chosen
   double tolerance = 0;                           ///< of differences over peak
   ResultTable analytic, multibody;                ///< all channels
   BodyLoadTable analytic_loads, multibody_loads;  ///< where asked for, a row per row
   compare::Comparison comparison;                 ///< of the channels asked for
   std::vector<compare::Check> checks;
-  std::optional<BudgetComparison> budget;      ///< of a driven run of full pumps whose Td is wanted
-  std::optional<TeethComparison> teeth;        ///< likewise, where the contact is that of teeth
-  std::vector<AssumptionRow> changes;  ///< where the models assume different things
-  std::optional<compare::Split> split;         ///< then: the difference taken apart
+  std::optional<BudgetComparison> budget;    ///< of a driven run of full pumps whose Td is wanted
+  std::optional<TeethComparison> teeth;      ///< likewise, where the contact is that of teeth
+  std::vector<AssumptionRow> changes;        ///< where the models assume different things
+  std::optional<compare::Split> split;       ///< then: the difference taken apart
   std::vector<IntegrationRow> integrations;  ///< integrated: one per accuracy, the last is compared
   std::string choice;                        ///< integrated to an error: what was chosen
   std::vector<ResultTable> without_viscous;  ///< both models with Cc = 0 (Fig. 32), where it is not

@@ -32,13 +32,13 @@ class ReferenceCases {
  public:
   explicit ReferenceCases(const compare::ReferenceDescription& description,
                           const PartProgress& progress_of = silent());
-  const ReadyCase& of(Model model) const {
+  const PreparedCase& of(Model model) const {
     return model == Model::multibody && multibody_ ? *multibody_ : analytic_;
   }
 
  private:
-  ReadyCase analytic_;
-  std::optional<ReadyCase> multibody_;  ///< where it is another one
+  PreparedCase analytic_;
+  std::optional<PreparedCase> multibody_;  ///< where it is another one
 };
 
 /// Runs a model over one turn of a case, driven.
@@ -46,7 +46,7 @@ struct ReferenceRun {
   ResultTable table;
   compare::ZeroScales zero_scales;
 };
-ReferenceRun run_for_reference(const ReadyCase& ready, Model model,
+ReferenceRun run_for_reference(const PreparedCase& ready, Model model,
                                const PartProgress& progress_of = silent());
 
 }  // namespace bentaxis::study
