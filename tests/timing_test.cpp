@@ -49,8 +49,7 @@ double stroke_volume(const Case& the_case) {
   return hydraulics::Network(the_case).chamber().swept();
 }
 
-const TimingRow& row_of(const std::vector<TimingRow>& rows,
-                                const std::string& code) {
+const TimingRow& row_of(const std::vector<TimingRow>& rows, const std::string& code) {
   return *std::find_if(rows.begin(), rows.end(),
                        [&](const TimingRow& r) { return r.code == code; });
 }

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bentaxis/study/reference_curves.h"
-#include "bentaxis/study/budget_section.h"
-#include "bentaxis/study/teeth_section.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/report/text.h"
+#include "bentaxis/study/budget_section.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
+#include "bentaxis/study/reference_curves.h"
 #include "bentaxis/study/regression_document.h"
+#include "bentaxis/study/teeth_section.h"
 #include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
 #include "hydraulic_sections.h"

@@ -1,3 +1,5 @@
+#include "bentaxis/study/fig34_document.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/fig34_document.h"
 #include "bentaxis/study/plausibility_section.h"
 
 namespace bentaxis::study {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "bentaxis/study/failed_points.h"
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/efficiency.h"
+#include "bentaxis/study/failed_points.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
 #include "hydraulic_results.h"

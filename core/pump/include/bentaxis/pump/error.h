@@ -9,8 +9,8 @@
 namespace bentaxis {
 
 /// The input (case file, curve, option, path) cannot be used. The text is one line that names the
-/// file, the line or key, the value and the allowed range. Exit status 2. Control characters of what
-/// it quotes are escaped.
+/// file, the line or key, the value and the allowed range. Exit status 2. Control characters of
+/// what it quotes are escaped.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& text)

@@ -49,7 +49,8 @@ struct Budget {
 /// Budgets of a run as a table: Td_CAUSE_Nm of each cause and Td_z1_Nm; Tcs_CAUSE_Nm and Tcs_z2_Nm;
 /// Fpress_z2_N, Fland_z2_N; and what must vanish: both torques and the forces of the block less the
 /// sum of their parts.
-/// @param ring   whether the bore forces do work: without it the table has no columns of Cause::ring
+/// @param ring   whether the bore forces do work: without it the table has no columns of
+/// Cause::ring
 /// @param teeth  whether the teeth are resolved: likewise for Cause::teeth
 ResultTable budget_table(const std::string& model, bool ring = false, bool teeth = false);
 /// Adds the row of an instant.

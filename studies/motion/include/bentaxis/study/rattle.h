@@ -74,12 +74,12 @@ bool carries_rigidly(double least, double greatest);
 /// A point by both models from the same state.
 struct RattleCheck {
   std::size_t row = 0, speed = 0;
-  int parts = 0;                        ///< of turns, kPartsOfTurn each, that were computed
-  int judged = 0;                       ///< of them, until a disturbance has grown too much
-  double growth = 1;                    ///< of a disturbance, within what is judged
-  double difference = 0;                ///< of the largest force, of the larger, within what is judged
-  double allowed = 0;                   ///< likewise
-  RattleClass analytic{}, multibody{};  ///< within what is judged
+  int parts = 0;          ///< of turns, kPartsOfTurn each, that were computed
+  int judged = 0;         ///< of them, until a disturbance has grown too much
+  double growth = 1;      ///< of a disturbance, within what is judged
+  double difference = 0;  ///< of the largest force, of the larger, within what is judged
+  double allowed = 0;     ///< likewise
+  RattleClass analytic{}, multibody{};                 ///< within what is judged
   RattleClass analytic_whole{}, multibody_whole{};     ///< over all
   double largest_analytic = 0, largest_multibody = 0;  ///< N, over all
   bool chaotic() const { return judged < parts; }

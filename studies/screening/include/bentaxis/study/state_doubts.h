@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bentaxis/pump/case.h"
-#include "bentaxis/results/remarks.h"
 #include "bentaxis/results/motion.h"
+#include "bentaxis/results/remarks.h"
 
 namespace bentaxis::study {
 

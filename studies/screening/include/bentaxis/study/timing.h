@@ -17,8 +17,7 @@ namespace bentaxis::study {
 /// The verdicts that docs/hydraulics.md, "Timing", defines, in its order. `meant` is the reason
 /// that `[plausibility] meant` of the case gives for one beyond its limit.
 /// @throws InputError where `[plausibility] meant` is wrong
-std::vector<TimingRow> timing_rows(const Case& the_case,
-                                           const hydraulics::SteadyState& state);
+std::vector<TimingRow> timing_rows(const Case& the_case, const hydraulics::SteadyState& state);
 
 /// Those beyond their limits without a reason.
 std::vector<Warning> timing_warnings(const std::vector<TimingRow>& rows);
@@ -27,8 +26,7 @@ std::vector<Warning> timing_warnings(const std::vector<TimingRow>& rows);
 /// none where all are.
 std::optional<Warning> accuracy_warning(const hydraulics::AccuracyLog::Record& record);
 /// The same of one state.
-std::optional<Warning> accuracy_warning(const Case& the_case,
-                                                const hydraulics::SteadyState& state);
+std::optional<Warning> accuracy_warning(const Case& the_case, const hydraulics::SteadyState& state);
 
 /// Names of all verdicts, which `[plausibility] meant` may give reasons for.
 std::vector<std::string> timing_codes();

@@ -10,7 +10,6 @@
 
 #include "bentaxis/compare/published.h"
 #include "bentaxis/pump/case.h"
-#include "bentaxis/compare/published.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/study/progress.h"
 #include "bentaxis/study/run.h"
@@ -66,9 +65,8 @@ compare::PublishedSection judge_case(const compare::Published& published,
 
 /// The section for the first pump of a folder of published data that both cases are one of, by
 /// their facts; nothing where there is none or no folder.
-std::optional<compare::PublishedTable> published_section(const std::filesystem::path& folder,
-                                                        const PublishedInput& analytic,
-                                                        const PublishedInput& multibody,
-                                                        const PartProgress& progress_of = silent());
+std::optional<compare::PublishedTable> published_section(
+    const std::filesystem::path& folder, const PublishedInput& analytic,
+    const PublishedInput& multibody, const PartProgress& progress_of = silent());
 
 }  // namespace bentaxis::study
