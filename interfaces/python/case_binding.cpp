@@ -154,7 +154,7 @@ void add_class(py::module_& module) {
 }  // namespace
 
 void add_case(py::module_& module) {
-  py::class_<PlausibilityWarning>(module, "PlausibilityWarning",
+  py::class_<PlausibilityWarning>(module, "Doubt",
                                   "A value, or values together, that are hardly meant.")
       .def_readonly("code", &PlausibilityWarning::code, "Stable short name: \"tilt-in-radians\".")
       .def_readonly("text", &PlausibilityWarning::text,
@@ -164,7 +164,7 @@ void add_case(py::module_& module) {
       .def(
           "__repr__",
           [](const PlausibilityWarning& self) {
-            return "<bentaxis.PlausibilityWarning " + self.code + ": " + self.text + ">";
+            return "<bentaxis.Doubt " + self.code + ": " + self.text + ">";
           },
           "Name and text.");
   py::class_<Parameter>(module, "Parameter", "A parameter of a case file.")
