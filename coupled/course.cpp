@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -22,6 +23,7 @@ constexpr std::size_t kMaxEvents = 1000000;
 constexpr double kBeyond = 1e-6;
 constexpr double kOnTouch = 1e-15;  // m: as good as touching
 constexpr int kMaxShortSteps = 1000;
+constexpr int kHalvings = 60;  // of a step, to a touch within it
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
 
 using Reached = numerics::StiffIntegrator::Reached;
@@ -209,32 +211,29 @@ bool HybridIntegrator::hidden_touch() {
   if (!mechanics.compliant() || touching()) return false;
   SystemState at;
   for (const int flank : {1, -1}) {
-    double low = step_start_, high = time_;
-    state_at(low, at);
-    if (mechanics.approach(low, at.motion, flank) >= 0 ||
-        mechanics.approach_rate(low, at.motion, flank) <= 0 ||
+    const double first = step_start_;
+    state_at(first, at);
+    if (mechanics.approach(first, at.motion, flank) >= 0 ||
+        mechanics.approach_rate(first, at.motion, flank) <= 0 ||
         mechanics.approach(time_, state_.motion, flank) >= 0 ||
         mechanics.approach_rate(time_, state_.motion, flank) >= 0)
       continue;
-    double nearest = low;
-    const double first = low;
-    for (int i = 0; i < 60; ++i) {
-      nearest = (low + high) / 2;
-      state_at(nearest, at);
-      (mechanics.approach_rate(nearest, at.motion, flank) > 0 ? low : high) = nearest;
-    }
+    double nearest = first;
+    numerics::bisect({first, time_}, kHalvings, [&](double t) {
+      nearest = t;
+      state_at(t, at);
+      return !(mechanics.approach_rate(t, at.motion, flank) > 0);
+    });
     if (mechanics.approach(nearest, at.motion, flank) <= 0) continue;
-    low = first;
-    high = nearest;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = (low + high) / 2;
-      state_at(middle, at);
-      (mechanics.approach(middle, at.motion, flank) > 0 ? high : low) = middle;
-    }
-    state_at(high, at);
-    read_integrals(high, integrals_);
+    const auto is_in_contact = [&](double t) {
+      state_at(t, at);
+      return mechanics.approach(t, at.motion, flank) > 0;
+    };
+    const double touch = numerics::bisect({first, nearest}, kHalvings, is_in_contact).high;
+    state_at(touch, at);
+    read_integrals(touch, integrals_);
     state_ = at;
-    time_ = high;
+    time_ = touch;
     contact_changes(flank, true);
     return true;
   }

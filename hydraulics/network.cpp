@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -218,13 +219,12 @@ std::vector<double> Network::uniform(double chambers, double delivery, double ma
 double Network::expected_log_pressure(double share) const {
   if (!loop_ || load_.sought()) return delivery_s_;
   constexpr int kHalvings = 50;
-  double low = suction_s_, high = fluid_.log_pressure(kHighestPressure);
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (low + high) / 2;
-    const double flow = load_.flow(fluid_.state(middle), suction_state_, load_.size()).value;
-    (flow < share * ideal_mass_flow() ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  const auto takes_it = [&](double s) {
+    const double flow = load_.flow(fluid_.state(s), suction_state_, load_.size()).value;
+    return !(flow < share * ideal_mass_flow());
+  };
+  return numerics::bisect({suction_s_, fluid_.log_pressure(kHighestPressure)}, kHalvings, takes_it)
+      .middle();
 }
 
 std::vector<OilColumn> Network::state_columns() const {

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/numerics/object_pool.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/numerics/stiff_integrator.h"
@@ -78,6 +79,17 @@ TEST(ObjectPool, GivesBackWhatIsUnusedAndMakesWhatLacks) {
   EXPECT_EQ(again.get(), address);
   EXPECT_EQ(made, 2);
   EXPECT_EQ(*pool.take(make), 3);
+}
+
+TEST(Bisection, HalvesABracketAroundTheRoot) {
+  const auto is_above = [](double x) { return x * x > 2; };
+  const Bracket root = bisect({1, 2}, 60, is_above);
+  EXPECT_LE(root.low, root.high);
+  EXPECT_NEAR(root.middle(), std::sqrt(2.0), 1e-15);
+  const Bracket coarse = bisect({1, 2}, 3, is_above);
+  EXPECT_EQ(coarse.low, 1.375);
+  EXPECT_EQ(coarse.high, 1.5);
+  EXPECT_EQ(bisect({1, 2}, 0, is_above).middle(), 1.5);
 }
 
 // y' = -k (y - cos t), with the integral of y and the sensitivity by k.
