@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "bentaxis/numerics/bisection.h"
+#include "bentaxis/pump/delivery_side.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -42,9 +44,7 @@ double seconds_per_degree(const Case& the_case, Network::Use use) {
                      ": refused with [pressure] kind = \"hydraulic\": " + why);
   };
   if (speed == 0) refuse("at standstill there is no periodic pressure");
-  const bool supplied = the_case.pressure.ports.delivery == 0 ||
-                        load_of(the_case).kind == LoadKind::constant_pressure;
-  if (speed < 0 && !supplied && !load_of(the_case).sets_pressure())
+  if (speed < 0 && !delivery_is_held(the_case) && !load_of(the_case).sets_pressure())
     refuse(
         "backwards the pump takes oil from the delivery line (motoring), and no size of a load "
         "gives "
@@ -73,8 +73,7 @@ Network::Network(const Case& the_case, Use use)
     : use_(use),
       direction_(use == Use::period && the_case.operation.speed_rpm < 0 ? -1 : 1),
       n_(validate(the_case).pump.geometry.pistons),
-      fixed_end_(the_case.pressure.ports.delivery == 0 ||
-                 load_of(the_case).kind == LoadKind::constant_pressure),
+      fixed_end_(delivery_is_held(the_case)),
       fluid_(data_of(the_case)),
       chamber_(the_case.pump.geometry, the_case.hydraulics->dead_volume),
       delivery_(*the_case.hydraulics, the_case.hydraulics->delivery,
@@ -248,6 +247,14 @@ std::vector<OilColumn> Network::state_columns() const {
     name(pipe_at_ + i, "delivery_line_" + std::to_string(i + 1),
          "mode of the delivery line's pressure, then of its flow");
   return all;
+}
+
+std::vector<int> Network::order_after_period() const {
+  std::vector<int> order(static_cast<std::size_t>(states_));
+  std::iota(order.begin(), order.end(), 0);
+  for (const int first : by_chamber())
+    for (int k = 0; k < n_; ++k) order[first + next_of(k)] = first + k;
+  return order;
 }
 
 void Network::exchange_sides(double* y) const {
