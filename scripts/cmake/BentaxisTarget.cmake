@@ -76,7 +76,7 @@ function(bentaxis_umbrella room)
 endfunction()
 
 # A source that uses SUNDIALS, as an object with SUNDIALS joined to it statically and out of sight
-# (scripts/cmake/isolate.cmake says why). It sees bentaxis::results and the headers of its room.
+# (scripts/cmake/isolate.cmake says why). It sees the headers of its room alone.
 #   bentaxis_with_sundials(<target> <source> <variable that receives the object>)
 function(bentaxis_with_sundials name source variable)
   set(sundials SUNDIALS::cvodes_static SUNDIALS::nvecserial_static SUNDIALS::sunmatrixdense_static
@@ -87,7 +87,7 @@ function(bentaxis_with_sundials name source variable)
   endforeach()
   add_library(${name} STATIC ${source})
   bentaxis_target(${name} 20)
-  target_link_libraries(${name} PRIVATE bentaxis::results ${sundials})
+  target_link_libraries(${name} PRIVATE ${sundials})
   target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/include)
   set(isolated ${CMAKE_CURRENT_BINARY_DIR}/${name}_with_sundials.o)
   add_custom_command(
