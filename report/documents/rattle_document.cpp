@@ -6,9 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/failed_points.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -332,11 +331,8 @@ BoundaryAgreement boundary_agreement(const RattleMap& map) {
 }
 
 report::Document rattle_document(const RattleMap& map, const report::Lines& program) {
-  report::Document document;
-  document.title = map.the_case.name + ": where the gear rattles";
-  document.program = program;
-  describe_case(document, map.the_case);
-  document.derived = derived_section(map.the_case);
+  report::Document document =
+      case_document(map.the_case, map.the_case.name + ": where the gear rattles", program);
   document.verdict = report::Verdict{map.agrees(), headline(map)};
   if (map.checks.empty()) {
     document.verdict->agrees.reset();

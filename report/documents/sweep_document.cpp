@@ -7,8 +7,7 @@
 #include <map>
 
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 #include "sweep_view.h"
 
 namespace bentaxis::designs {
@@ -278,11 +277,8 @@ std::string headline(const SweepResult& result) {
 
 report::Document sweep_document(const SweepResult& result, const report::Lines& program) {
   const SweepView view(result);
-  report::Document document;
-  document.title = result.base.name + ": a sweep";
-  document.program = program;
-  study::describe_case(document, result.base);
-  document.derived = study::derived_section(result.base);
+  report::Document document =
+      study::case_document(result.base, result.base.name + ": a sweep", program);
   document.verdict = report::Verdict{result.agrees(), headline(result)};
   if (result.checks.empty()) {
     document.verdict->agrees.reset();
