@@ -70,8 +70,7 @@ report::Section integration_section(const ComparisonResult& r) {
   section.text = fmt::format(
       "Integrator {}, {} revolution(s). Errors are the largest difference from the analytic model "
       "over the peak. In the torque-driven run the shaft is free and fed the analytic Td; its "
-      "speed "
-      "error is relative to omega. Facts are of the last accuracy.",
+      "speed error is relative to omega. Facts are of the last accuracy.",
       name_of(r.options.integration.integrator), r.second.the_case.operation.revolutions);
   section.table.columns = {"accuracy asked",
                            "error Rs",

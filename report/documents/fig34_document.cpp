@@ -88,8 +88,7 @@ Lines ruled_out(const Fig34Study& s, bool drag) {
       const Count c = count(s, [&](const Fig34Point& p) { return p.drag == drag && has(p, v); });
       if (c.both == 0)
         lines.push_back(
-            fmt::format("{}: {} of {} laws leave the axes, {} do not reverse in every "
-                        "pitch",
+            fmt::format("{}: {} of {} laws leave the axes, {} do not reverse in every pitch",
                         value_text(of, value), c.all - c.inside, c.all, c.all - c.reverses));
       else
         left.push_back(v);

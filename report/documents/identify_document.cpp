@@ -189,12 +189,10 @@ Section goodness_section(const Identification& result) {
   section.title = "Goodness of fit";
   section.text =
       "Chi-square: sum of the squared residuals, each over its standard uncertainty. p: "
-      "probability "
-      "of a larger chi-square if the model and all stated uncertainties are right and the data are "
-      "independent of each other. The degrees of freedom are the data that count (values, points "
-      "of "
-      "curves, priors, windows that the fit leaves) less the directions of the unknowns that were "
-      "fitted to them.";
+      "probability of a larger chi-square if the model and all stated uncertainties are right and "
+      "the data are independent of each other. The degrees of freedom are the data that count "
+      "(values, points of curves, priors, windows that the fit leaves) less the directions of the "
+      "unknowns that were fitted to them.";
   section.facts = {{"result", fit_text(fit)}};
   if (!fit.p_value)
     section.facts.emplace_back(
@@ -282,9 +280,8 @@ Section unknowns_section(const DataModel& model, const Identification& result) {
       "Identified: the least sum of squares. Linear: standard uncertainty as if the model were "
       "linear there and bounds normal. Profile: 95 % limits, the others fitted anew, where the sum "
       "of squares has risen by 3.841; a limit at a bound is the bound's, not the data's. "
-      "Posterior: "
-      "95 % of the draws. All of them are right only where the stated uncertainties are right: a "
-      "rise of 3.841 means 95 % for that noise alone.";
+      "Posterior: 95 % of the draws. All of them are right only where the stated uncertainties are "
+      "right: a rise of 3.841 means 95 % for that noise alone.";
   if (result.goodness.refuted()) {
     section.facts.emplace_back("withheld", kWithheld);
     section.facts.emplace_back("widened", birge_text(result.goodness));
@@ -351,9 +348,8 @@ Section fitted_section(const DataModel& model, const Identification& result) {
   section.title = "Data that unknowns are fitted to";
   section.text =
       "Residual: model minus datum over its standard uncertainty, 0 inside a window. Left out: "
-      "what "
-      "the others predict for it, with its bounds as normal priors, and how far off that is over "
-      "the standard uncertainty of prediction and datum together";
+      "what the others predict for it, with its bounds as normal priors, and how far off that is "
+      "over the standard uncertainty of prediction and datum together";
   section.text += result.goodness.refuted()
                       ? ", both as stated: as the fit is refuted, they are too small."
                       : ".";

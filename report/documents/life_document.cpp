@@ -62,8 +62,7 @@ std::string headline(const LifeStudy& s) {
 
 std::string agreement_text(const LifeStudy& s) {
   return fmt::format(
-      "The loads by both models {}: they differ by {:.1e} of the largest at most, "
-      "{:g} allowed.",
+      "The loads by both models {}: they differ by {:.1e} of the largest at most, {:g} allowed.",
       s.agrees() ? "agree" : "differ", s.models_apart(), kLifeModelsAgree);
 }
 

@@ -153,9 +153,8 @@ report::Section boundary_section(const BoundaryAgreement& agreement) {
   report::Section section{
       "Boundary by the criterion",
       "Rigid teeth keep the sign of their force as long as the drag on the block, Cc psi', and "
-      "what "
-      "its pistons take exceed what they turn it on by, all through the turn. The speed at which "
-      "the smallest force passes 0, beside the speed half way between those where the upward "
+      "what its pistons take exceed what they turn it on by, all through the turn. The speed at "
+      "which the smallest force passes 0, beside the speed half way between those where the upward "
       "sweep ceases or begins to carry: " +
           agreement_text(agreement) + ".",
       {},
@@ -197,8 +196,7 @@ report::Section checks_section(const RattleMap& map) {
       "begin. A second start of the closed form, moved a little, tells how disturbances grow: the "
       "largest force may differ by the errors of the steps grown so. Where they have grown too far "
       "nothing more is judged; such a motion is chaotic, and what follows agrees only in kind. "
-      "Where both "
-      "differ in class, the closed form's stands first.",
+      "Where both differ in class, the closed form's stands first.",
       {{"agree", fmt::format("{} of {}", agreeing(map), map.checks.size())}},
       {{"bar", "rpm", "class", "turns judged", "of", "growth", "largest force apart by", "allowed",
         "agrees", "all turns: class", "largest, N", "Simbody, N"},

@@ -74,8 +74,7 @@ std::string followers_text(const Sensitivities& s) {
   if (names.empty()) return {};
   return "The case does not give " + names +
          ": the value is that of another parameter. The row of that parameter changes both, the "
-         "row "
-         "of these changes them alone; do not add the two.";
+         "row of these changes them alone; do not add the two.";
 }
 
 Section derivatives_section(const Sensitivities& s, std::size_t o) {

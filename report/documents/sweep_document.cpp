@@ -132,9 +132,8 @@ Section infeasible_section(const SweepResult& result, const SweepView& view) {
                    [](const Group& a, const Group& b) { return a.designs > b.designs; });
   Section section{
       "Infeasible designs",
-      "What a case file with these values would be refused for, or what could not be "
-      "computed. Reasons that differ in numbers only are counted together; the first "
-      "is shown.",
+      "What a case file with these values would be refused for, or what could not be computed. "
+      "Reasons that differ in numbers only are counted together; the first is shown.",
       {{"infeasible", fmt::format("{} of {} designs, {}", result.all_infeasible, result.plan.size(),
                                   percent(result.all_infeasible, result.plan.size()))}},
       {{"reason", "designs", "first design"}, {}}};
