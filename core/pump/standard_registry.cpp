@@ -25,6 +25,44 @@ std::string path_in_pump(std::string place) {
   return place.substr(std::string("c.pump.").size());
 }
 
+Parameter number(std::string key, std::string symbol, Field field, Unit unit, NumberRange range,
+                 Default fallback, std::string meaning, Parameter more) {
+  more.key = std::move(key);
+  more.symbol = std::move(symbol);
+  more.field = std::move(field);
+  more.unit = unit;
+  more.range = range;
+  more.fallback = std::move(fallback);
+  more.meaning = std::move(meaning);
+  return more;
+}
+
+Parameter choice(std::string key, Field field, std::vector<std::string> words, Default fallback,
+                 std::string meaning, Parameter more) {
+  more.words = std::move(words);
+  return number(std::move(key), more.symbol, std::move(field), kNoUnit, kAny, std::move(fallback),
+                std::move(meaning), std::move(more));
+}
+
+Parameter choice(std::string key, Field field, std::vector<std::string> words, const char* fallback,
+                 std::string meaning, Parameter more) {
+  return choice(std::move(key), std::move(field), std::move(words), Default{std::string(fallback)},
+                std::move(meaning), std::move(more));
+}
+
+Parameter flag(std::string key, Field field, bool fallback, std::string meaning) {
+  return choice(std::move(key), std::move(field), {}, Default{fallback}, std::move(meaning));
+}
+
+Parameter text(std::string key, Field field, std::string meaning, Parameter more) {
+  return choice(std::move(key), std::move(field), {}, "", std::move(meaning), std::move(more));
+}
+
+Parameter required_text(std::string key, Field field, std::string meaning, Parameter more) {
+  return choice(std::move(key), std::move(field), {}, kRequired, std::move(meaning),
+                std::move(more));
+}
+
 }  // namespace tables
 
 namespace {

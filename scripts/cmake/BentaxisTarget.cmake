@@ -2,12 +2,13 @@
 option(BENTAXIS_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
 set(BENTAXIS_SANITIZE_LESS "" CACHE STRING "Checks of the undefined-behaviour sanitizer that are left out")
 option(BENTAXIS_SANITIZE_THREAD "Build with the thread sanitizer" OFF)
+option(BENTAXIS_WARNINGS_AS_ERRORS "A warning ends the build" ON)
 option(BENTAXIS_BUILD_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
 
 function(bentaxis_target name standard)
   target_compile_features(${name} PRIVATE cxx_std_${standard})
   target_compile_options(${name} PRIVATE
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion $<$<BOOL:${BENTAXIS_WARNINGS_AS_ERRORS}>:-Werror>
     # GCC 12 sees overlapping copies in std::string concatenation where there are none (PR 105651).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   if(BENTAXIS_SANITIZE)

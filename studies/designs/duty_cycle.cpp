@@ -6,7 +6,6 @@
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/files/csv.h"
-#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
@@ -119,8 +118,7 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
   result.analytic.points.resize(rows);
   result.multibody.points.resize(rows);
   std::vector<std::string> reasons(rows);
-  study::Reporting reporting(rows, progress_of("duty cycle"));
-  numerics::parallel_for(0, rows, [&](std::size_t row) {
+  study::for_each_of(rows, 0, progress_of("duty cycle"), [&](std::size_t row) {
     try {
       Case scratch = the_case;
       family.make(duty.rows[row].values, scratch);
@@ -137,7 +135,6 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
     } catch (const ComputationError& error) {
       reasons[row] = error.what();
     }
-    reporting.done();
   });
   if (std::all_of(reasons.begin(), reasons.end(), [](const auto& r) { return !r.empty(); }))
     throw ComputationError(

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "bentaxis/numerics/object_pool.h"
-#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/memory.h"
 #include "bentaxis/study/run.h"
 #include "turn_statistics.h"
@@ -95,15 +95,10 @@ void Evaluator::evaluate(std::size_t count, std::span<const double> values,
   auto scratch = implementation_->scratches.take([&] { return implementation_->fresh(); });
   for (std::size_t i = 0; i < count; ++i) {
     const auto to = results.subspan(i * m, m);
-    reasons[i].clear();
-    try {
+    reasons[i] = study::reason_of([&] {
       family().make(values.subspan(i * n, n), scratch->the_case);
       implementation_->find(*scratch, to);
-    } catch (const InputError& error) {
-      reasons[i] = error.what();
-    } catch (const ComputationError& error) {
-      reasons[i] = error.what();
-    }
+    });
     if (!reasons[i].empty()) std::fill(to.begin(), to.end(), not_computed());
   }
   implementation_->scratches.give_back(std::move(scratch));

@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
+#include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/run.h"
 #include "turn_statistics.h"
@@ -327,8 +328,7 @@ bool DataModel::predict(std::span<const double> x, std::span<double> numbers) co
   const Implementation& self = *implementation_;
   std::fill(numbers.begin(), numbers.end(), not_computed());
   auto scratch = self.scratches.take([&] { return self.fresh(); });
-  bool found = true;
-  try {
+  const std::string reason = study::reason_of([&] {
     for (const Implementation::State& state : self.states) {
       Case& the_case = scratch->of_branch[state.condition];
       self.make(self.branches[state.condition], x, the_case);
@@ -336,13 +336,9 @@ bool DataModel::predict(std::span<const double> x, std::span<double> numbers) co
       if (!state.kernel || !self.read_off_kernel(state, *scratch, numbers))
         self.read_off(state, the_case, numbers);
     }
-  } catch (const InputError&) {
-    found = false;
-  } catch (const ComputationError&) {
-    found = false;
-  }
+  });
   self.scratches.give_back(std::move(scratch));
-  return found;
+  return reason.empty();
 }
 
 double DataModel::residual(const Datum& datum, std::size_t number, double model) const {
@@ -443,8 +439,7 @@ LeastSquaresFit moved_least(const DataModel& model, const LeastSquaresFit& fit) 
   LeastSquaresFit moved = least_squares(problem, fit.x, options);
   moved.residuals.resize(whole.residuals);
   moved.jacobian.resize(whole.residuals * n);
-  moved.sum_of_squares = 0;
-  for (const double r : moved.residuals) moved.sum_of_squares += r * r;
+  moved.sum_of_squares = sum_of_squares(moved.residuals);
   return moved;
 }
 

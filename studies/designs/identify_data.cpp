@@ -85,32 +85,22 @@ Use read_use(TableReader& in) {
   return in.choice("use", {"fitted", "predicted"}, 0) == 0 ? Use::fitted : Use::predicted;
 }
 
-Datum read_number(TableReader in, const Case& base, const IdentificationData& data) {
+// A number with its uncertainty, or a window.
+Datum read_datum(TableReader in, bool window, const Case& base, const IdentificationData& data) {
   Datum datum;
   const std::string name = in.text("output");
   datum.output = under(in, "output", [&] { return output(name, base); });
   datum.what = datum.output->name;
   datum.unit = datum.output->unit;
   datum.where = in.text("where", "");
-  datum.value = in.number("value", {});
-  datum.uncertainty = in.number("uncertainty", kPositiveNumber);
-  datum.condition = read_condition_name(in, data);
-  datum.use = read_use(in);
-  in.finish();
-  return datum;
-}
-
-Datum read_window(TableReader in, const Case& base, const IdentificationData& data) {
-  Datum datum;
-  const std::string name = in.text("output");
-  datum.output = under(in, "output", [&] { return output(name, base); });
-  datum.what = datum.output->name;
-  datum.unit = datum.output->unit;
-  datum.where = in.text("where", "");
-  if (!in.has("above") && !in.has("below")) in.fail("above", "above or below is needed");
-  datum.low = in.has("above") ? in.number("above", {}) : -HUGE_VAL;
-  datum.high = in.has("below") ? in.number("below", {}) : HUGE_VAL;
-  if (!(datum.low < datum.high)) in.fail("above", "must be less than below");
+  if (window) {
+    if (!in.has("above") && !in.has("below")) in.fail("above", "above or below is needed");
+    datum.low = in.has("above") ? in.number("above", {}) : -HUGE_VAL;
+    datum.high = in.has("below") ? in.number("below", {}) : HUGE_VAL;
+    if (!(datum.low < datum.high)) in.fail("above", "must be less than below");
+  } else {
+    datum.value = in.number("value", {});
+  }
   datum.uncertainty = in.number("uncertainty", kPositiveNumber);
   datum.condition = read_condition_name(in, data);
   datum.use = read_use(in);
@@ -261,10 +251,9 @@ void read_identification(const fs::path& file, const Case& base, IdentificationD
   }
   for (TableReader& item : in.tables("unknown"))
     data.unknowns.push_back(read_unknown(std::move(item), base, data));
-  for (TableReader& item : in.tables("number"))
-    data.data.push_back(read_number(std::move(item), base, data));
-  for (TableReader& item : in.tables("window"))
-    data.data.push_back(read_window(std::move(item), base, data));
+  for (const char* kind : {"number", "window"})
+    for (TableReader& item : in.tables(kind))
+      data.data.push_back(read_datum(std::move(item), kind == std::string("window"), base, data));
   for (TableReader& item : in.tables("curve"))
     for (Datum& curve : read_curves(std::move(item), folder, base, data))
       data.data.push_back(std::move(curve));

@@ -9,6 +9,7 @@
 #include "bentaxis/designs/sensitivity.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/reporting.h"
 #include "row_major.h"
@@ -188,13 +189,8 @@ std::vector<Found> found_by(int threads, std::size_t count, const Job& job,
                             study::Reporting& reporting) {
   std::vector<std::optional<Found>> all(count);
   numerics::parallel_for(threads, count, [&](std::size_t i) {
-    try {
-      all[i] = job(i);
-    } catch (const InputError&) {
-      all[i].reset();  // a condition sets it, or it makes no pump
-    } catch (const ComputationError&) {
-      all[i].reset();
-    }
+    // Nothing where a condition sets it, or it makes no pump.
+    study::reason_of([&] { all[i] = job(i); });
     reporting.done();
   });
   std::vector<Found> found;

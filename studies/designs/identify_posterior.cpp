@@ -34,55 +34,31 @@ class Random {
 // Where an unknown goes in the sampler, so that what the data know well is straight: products and
 // ratios of what is positive, the stroke with the sine of the tilt, the arm of the teeth with the
 // cosine of the pressure angle.
-enum class Coordinate { own, logarithm, logarithm_of_sine, logarithm_of_cosine };
+struct Coordinate {
+  double (*inner)(double x);
+  double (*outer)(double y);
+  double (*stretch)(double x);  // logarithm of |dx/dy| at x, but for a constant
+};
+const Coordinate kOwn = {[](double x) { return x; }, [](double y) { return y; },
+                         [](double) { return 0.0; }};
+const Coordinate kLogarithm = {[](double x) { return std::log(x); },
+                               [](double y) { return std::exp(y); },
+                               [](double x) { return std::log(x); }};
+const Coordinate kLogarithmOfSine = {
+    [](double x) { return std::log(std::sin(x * kRadPerDegree)); },
+    [](double y) { return std::asin(std::exp(y)) / kRadPerDegree; },
+    [](double x) { return std::log(std::tan(x * kRadPerDegree)); }};
+const Coordinate kLogarithmOfCosine = {
+    [](double x) { return std::log(std::cos(x * kRadPerDegree)); },
+    [](double y) { return std::acos(std::exp(y)) / kRadPerDegree; },
+    [](double x) { return -std::log(std::tan(x * kRadPerDegree)); }};
 
-Coordinate coordinate_of(const Unknown& u) {
+const Coordinate& coordinate_of(const Unknown& u) {
   const bool acute = u.low > 0 && u.high < 90;
   const Scaling scaling = u.variable.parameter().scaling;
-  if (acute && scaling == Scaling::sine) return Coordinate::logarithm_of_sine;
-  if (acute && scaling == Scaling::cosine) return Coordinate::logarithm_of_cosine;
-  return u.low > 0 ? Coordinate::logarithm : Coordinate::own;
-}
-
-double inner_of(Coordinate coordinate, double x) {
-  switch (coordinate) {
-    case Coordinate::own:
-      break;
-    case Coordinate::logarithm:
-      return std::log(x);
-    case Coordinate::logarithm_of_sine:
-      return std::log(std::sin(x * kRadPerDegree));
-    case Coordinate::logarithm_of_cosine:
-      return std::log(std::cos(x * kRadPerDegree));
-  }
-  return x;
-}
-double outer_of(Coordinate coordinate, double y) {
-  switch (coordinate) {
-    case Coordinate::own:
-      break;
-    case Coordinate::logarithm:
-      return std::exp(y);
-    case Coordinate::logarithm_of_sine:
-      return std::asin(std::exp(y)) / kRadPerDegree;
-    case Coordinate::logarithm_of_cosine:
-      return std::acos(std::exp(y)) / kRadPerDegree;
-  }
-  return y;
-}
-// Logarithm of |dx/dy| at x, but for a constant.
-double stretch_of(Coordinate coordinate, double x) {
-  switch (coordinate) {
-    case Coordinate::own:
-      break;
-    case Coordinate::logarithm:
-      return std::log(x);
-    case Coordinate::logarithm_of_sine:
-      return std::log(std::tan(x * kRadPerDegree));
-    case Coordinate::logarithm_of_cosine:
-      return -std::log(std::tan(x * kRadPerDegree));
-  }
-  return 0;
+  if (acute && scaling == Scaling::sine) return kLogarithmOfSine;
+  if (acute && scaling == Scaling::cosine) return kLogarithmOfCosine;
+  return u.low > 0 ? kLogarithm : kOwn;
 }
 
 // The density in these coordinates.
@@ -94,12 +70,12 @@ class Density {
 
   Vector inner(std::span<const double> x) const {
     Vector y(x.begin(), x.end());
-    for (std::size_t i = 0; i < y.size(); ++i) y[i] = inner_of(coordinates_[i], x[i]);
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] = coordinates_[i].inner(x[i]);
     return y;
   }
   Vector outer(const Vector& y) const {
     Vector x = y;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = outer_of(coordinates_[i], y[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = coordinates_[i].outer(y[i]);
     return x;
   }
   /// Logarithm of the posterior density of y, but for a constant.
@@ -108,7 +84,7 @@ class Density {
     double sum = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (!(x[i] >= problem_.low[i] && x[i] <= problem_.high[i])) return -HUGE_VAL;
-      sum += stretch_of(coordinates_[i], x[i]);
+      sum += coordinates_[i].stretch(x[i]);
       const auto& prior = model_.data().unknowns[i].prior;
       // Of a lognormal prior the residual is that of the logarithm.
       if (prior && prior->shape == Shape::lognormal) sum -= std::log(x[i]);
@@ -157,10 +133,9 @@ Vector scattered(const DataModel& model, const Density& density, const LeastSqua
       const LeastSquaresFit found = least_squares(problem, start, rough);
       Vector residuals(whole.residuals);
       if (!whole.evaluate(found.x, residuals)) continue;
-      double sum = 0;
-      for (const double r : residuals) sum += r * r;
       // Far above the fit it is another valley, or the way down was not finished.
-      if (sum < fit.sum_of_squares + 3 * static_cast<double>(model.size())) return found.x;
+      if (sum_of_squares(residuals) < fit.sum_of_squares + 3 * static_cast<double>(model.size()))
+        return found.x;
     } catch (const ComputationError&) {
       continue;
     }
@@ -356,10 +331,8 @@ void bands_of(const DataModel& model, const IdentifyOptions& options, Identifica
               const Progress& progress) {
   const Posterior& posterior = result.posterior;
   std::vector<ResultTable> turns(posterior.count);
-  study::Reporting reporting(posterior.count, progress);
-  numerics::parallel_for(options.threads, posterior.count, [&](std::size_t d) {
+  study::for_each_of(posterior.count, options.threads, progress, [&](std::size_t d) {
     turns[d] = model.turn(std::span(posterior.unknowns).subspan(d * model.size(), model.size()));
-    reporting.done();
   });
   const ChannelLayout layout(model.base().pump.geometry.pistons);
   result.theta_deg = turns[0].theta_deg;

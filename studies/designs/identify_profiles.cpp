@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "bentaxis/designs/identify.h"
-#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/reporting.h"
 #include "row_major.h"
@@ -39,9 +38,7 @@ class Held {
     if (problem_.parameters == 0) {
       Vector residuals(whole_.residuals);
       if (!whole_.evaluate(x, residuals)) throw ComputationError("profile: no pump there");
-      double sum = 0;
-      for (const double r : residuals) sum += r * r;
-      return sum;
+      return sum_of_squares(residuals);
     }
     const LeastSquaresFit fit = least_squares(problem_, without(x), options);
     x = with(fit.x, value);
@@ -125,8 +122,7 @@ std::vector<Profile> profiles_of(const DataModel& model, const LeastSquaresFit& 
   const LeastSquaresProblem problem = model.problem();
   const Information information = information_of(model, fit.x, fit.jacobian);
   std::vector<Profile> profiles(model.size());
-  study::Reporting reporting(model.size(), progress);
-  numerics::parallel_for(threads, model.size(), [&](std::size_t i) {
+  study::for_each_of(model.size(), threads, progress, [&](std::size_t i) {
     Profile& profile = profiles[i];
     Held held(problem, i);
     const double step = 1.96 * information.deviation[i];
@@ -140,7 +136,6 @@ std::vector<Profile> profiles_of(const DataModel& model, const LeastSquaresFit& 
     std::sort(points.begin(), points.end());
     for (std::size_t k = 0; k < points.size(); ++k)
       std::tie(profile.values[k], profile.rises[k]) = points[k];
-    reporting.done();
   });
   return profiles;
 }
@@ -152,8 +147,7 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
   for (std::size_t i = 0; i < data.size(); ++i)
     if (data[i].use == Use::fitted && !data[i].curve) rows.push_back(i);
   std::vector<LeftOut> results(rows.size());
-  study::Reporting reporting(rows.size(), progress);
-  numerics::parallel_for(threads, rows.size(), [&](std::size_t r) {
+  study::for_each_of(rows.size(), threads, progress, [&](std::size_t r) {
     const Datum& datum = data[rows[r]];
     LeftOut& out = results[r];
     out.datum = rows[r];
@@ -197,7 +191,6 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
         out.deviation = deviation;
       }
     }
-    reporting.done();
   });
   return results;
 }

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 
-#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/reporting.h"
 #include "row_major.h"
@@ -82,6 +81,12 @@ class Differences {
 };
 
 }  // namespace
+
+double sum_of_squares(std::span<const double> residuals) {
+  double sum = 0;
+  for (const double r : residuals) sum += r * r;
+  return sum;
+}
 
 double LeastSquaresFit::residual_deviation() const {
   const double freedom = static_cast<double>(residuals.size()) - static_cast<double>(x.size());
@@ -164,12 +169,6 @@ class EnoughIsEnough final : public ceres::IterationCallback {
   double enough_;
   int times_ = 0;
 };
-
-double sum_of_squares(const std::vector<double>& residuals) {
-  double sum = 0;
-  for (const double r : residuals) sum += r * r;
-  return sum;
-}
 
 // Gauss-Newton steps, shortest where the data leave a choice, of the parameters that no bound
 // holds. Where Ceres stops, the sum of squares is right to round-off, the parameters to half as
@@ -286,14 +285,12 @@ std::vector<LeastSquaresFit> least_squares(const LeastSquaresProblem& problem,
                                            const LeastSquaresOptions& options, int threads,
                                            const Progress& progress) {
   std::vector<std::optional<LeastSquaresFit>> found(starts.size());
-  study::Reporting reporting(starts.size(), progress);
-  numerics::parallel_for(threads, starts.size(), [&](std::size_t i) {
+  study::for_each_of(starts.size(), threads, progress, [&](std::size_t i) {
     try {
       found[i] = least_squares(problem, starts[i], options);
     } catch (const ComputationError&) {
       found[i].reset();  // no residuals there: a start like this leads nowhere
     }
-    reporting.done();
   });
   std::vector<LeastSquaresFit> fits;
   for (auto& fit : found)

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <utility>
 
 #include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/derived.h"
@@ -118,18 +118,63 @@ bool has_ratings(const Case& the_case) {
   return the_case.ratings.tapered && the_case.ratings.cylindrical;
 }
 
-std::vector<std::string> validity_keys() {
-  return {"flank", "turned", "film", "point", "thrust", "friction", "ring", "reach"};
-}
-
-std::string after(const std::string& text, const std::string& prefix) {
-  return text.starts_with(prefix) ? text.substr(prefix.size()) : "";
-}
+// Keys of the limits of validity, and the units of their worst values.
+constexpr std::pair<const char*, const char*> kValidity[] = {
+    {"flank", "N"},  {"turned", "N"},   {"film", "N"}, {"point", "mm"},
+    {"thrust", "N"}, {"friction", "W"}, {"ring", "W"}, {"reach", "um"}};
 
 std::vector<Channel> budget_channels(const Case& the_case) {
   return budget_table("", the_case.pump.piston.contact.has_value(),
                       the_case.pump.gear.contact == ToothContact::teeth)
       .channels;
+}
+
+bool is_hydraulic(const Case& base) { return base.pressure.kind == PressureKind::hydraulic; }
+
+// What this case has that is asked for by its name alone.
+std::vector<Output> single_outputs(const Case& base) {
+  std::vector<Output> all;
+  const auto add = [&](Source source, const std::string& prefix, const std::string& item,
+                       const std::string& unit, const std::string& meaning, bool share = false) {
+    all.push_back({.name = prefix + item + (share ? ".share" : ""),
+                   .unit = unit,
+                   .meaning = meaning,
+                   .source = source,
+                   .item = item,
+                   .share = share});
+  };
+  for (const DerivedEntry& d : kDerived) add(Source::derived, "", d.name, d.unit, d.meaning);
+  for (const auto& [key, unit] : kValidity) {
+    add(Source::validity, "validity.", key, unit, "worst value against the limit");
+    add(Source::validity, "validity.", key, "", "share of the turn in which the limit is violated",
+        true);
+  }
+  for (const bool mechanical : {true, false})
+    for (const study::EfficiencyLine& e : study::efficiency_lines())
+      if ((e.key == std::string("mechanical")) == mechanical && (mechanical || is_hydraulic(base)))
+        add(Source::efficiency, "efficiency.", e.key, "%",
+            std::string(e.name) + " efficiency: " + e.meaning);
+  if (is_hydraulic(base)) {
+    hydraulics::SteadyState empty;
+    if (base.hydraulics && base.hydraulics->load) empty.summary.load = base.hydraulics->load->kind;
+    for (const hydraulics::Line& line : hydraulics::lines(empty))
+      add(Source::hydraulics, "hydraulics.", line.key, line.unit, line.name);
+  }
+  if (has_ratings(base))
+    for (const LifeEntry& e : kLives) add(Source::life, "life.", e.name, e.unit, e.meaning);
+  return all;
+}
+
+// What a case lacks for an output of this name; "" where nothing.
+std::string lacking(const std::string& name, const Case& base) {
+  if (name.starts_with("life.") && !has_ratings(base))
+    return "needs ratings of both bearings in [bearings]";
+  const auto& lines = study::efficiency_lines();
+  const bool of_oil = name.starts_with("hydraulics.") ||
+                      std::any_of(lines.begin(), lines.end(), [&](const auto& e) {
+                        return name == std::string("efficiency.") + e.key;
+                      });
+  return of_oil && !is_hydraulic(base) ? "needs [pressure] kind = \"hydraulic\"" : "";
 }
 
 [[noreturn]] void unknown(const std::string& name, const Case& base) {
@@ -165,70 +210,10 @@ Output output(const std::string& name, const Case& base) {
     o.meaning = *found + " of " + o.meaning;
     return o;
   }
-  for (const DerivedEntry& d : kDerived)
-    if (name == d.name) {
-      o.source = Source::derived;
-      o.item = name;
-      o.unit = d.unit;
-      o.meaning = d.meaning;
-      return o;
-    }
-  if (std::string item = after(name, "validity."); !item.empty()) {
-    o.source = Source::validity;
-    o.share = item.ends_with(".share");
-    if (o.share) item = item.substr(0, item.size() - 6);
-    const auto keys = validity_keys();
-    if (std::find(keys.begin(), keys.end(), item) == keys.end()) unknown(name, base);
-    o.item = item;
-    o.unit = o.share ? "" : item == "point" ? "mm" : item == "reach" ? "um" : "";
-    if (!o.share && (item == "flank" || item == "turned" || item == "film" || item == "thrust"))
-      o.unit = "N";
-    if (!o.share && (item == "friction" || item == "ring")) o.unit = "W";
-    o.meaning = o.share ? "share of the turn in which the limit is violated"
-                        : "worst value against the limit";
-    return o;
-  }
-  if (const std::string item = after(name, "efficiency."); !item.empty()) {
-    o.source = Source::efficiency;
-    for (const study::EfficiencyLine& e : study::efficiency_lines())
-      if (item == e.key) {
-        if (item != "mechanical" && base.pressure.kind != PressureKind::hydraulic)
-          throw InputError("output " + name + ": needs [pressure] kind = \"hydraulic\"");
-        o.item = item;
-        o.unit = "%";
-        o.meaning = std::string(e.name) + " efficiency: " + e.meaning;
-        return o;
-      }
-    unknown(name, base);
-  }
-  if (const std::string item = after(name, "life."); !item.empty()) {
-    if (!has_ratings(base))
-      throw InputError("output " + name + ": needs ratings of both bearings in [bearings]");
-    for (const LifeEntry& e : kLives)
-      if (item == e.name) {
-        o.source = Source::life;
-        o.item = item;
-        o.unit = e.unit;
-        o.meaning = e.meaning;
-        return o;
-      }
-    unknown(name, base);
-  }
-  if (const std::string item = after(name, "hydraulics."); !item.empty()) {
-    if (base.pressure.kind != PressureKind::hydraulic)
-      throw InputError("output " + name + ": needs [pressure] kind = \"hydraulic\"");
-    hydraulics::SteadyState empty;
-    if (base.hydraulics && base.hydraulics->load) empty.summary.load = base.hydraulics->load->kind;
-    for (const hydraulics::Line& line : hydraulics::lines(empty))
-      if (line.key == item) {
-        o.source = Source::hydraulics;
-        o.item = item;
-        o.unit = line.unit;
-        o.meaning = line.name;
-        return o;
-      }
-    unknown(name, base);
-  }
+  for (Output& single : single_outputs(base))
+    if (single.name == name) return std::move(single);
+  if (const std::string why = lacking(name, base); !why.empty())
+    throw InputError("output " + name + ": " + why);
   unknown(name, base);
 }
 
@@ -246,22 +231,7 @@ std::vector<std::string> output_names(const Case& base) {
   }
   for (const Channel& c : budget_channels(base))
     if (can_be_asked_for(c)) names.push_back("mean:budget." + c.name);
-  for (const DerivedEntry& d : kDerived) names.emplace_back(d.name);
-  for (const std::string& key : validity_keys()) {
-    names.push_back("validity." + key);
-    names.push_back("validity." + key + ".share");
-  }
-  names.emplace_back("efficiency.mechanical");
-  if (base.pressure.kind == PressureKind::hydraulic) {
-    for (const study::EfficiencyLine& e : study::efficiency_lines())
-      if (std::string(e.key) != "mechanical") names.push_back(std::string("efficiency.") + e.key);
-    hydraulics::SteadyState empty;
-    if (base.hydraulics && base.hydraulics->load) empty.summary.load = base.hydraulics->load->kind;
-    for (const hydraulics::Line& line : hydraulics::lines(empty))
-      names.push_back("hydraulics." + line.key);
-  }
-  if (has_ratings(base))
-    for (const LifeEntry& e : kLives) names.push_back(std::string("life.") + e.name);
+  for (const Output& single : single_outputs(base)) names.push_back(single.name);
   return names;
 }
 

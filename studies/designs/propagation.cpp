@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "bentaxis/designs/points.h"
-#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/memory.h"
@@ -98,15 +97,13 @@ Evaluated evaluate(const Response& response, std::size_t outputs, std::size_t di
       "lower --samples, or ask for fewer outputs");
   Evaluated all{std::vector<double>(count * outputs), std::vector<std::string>(count)};
   const std::size_t blocks = (count + kPoints - 1) / kPoints;
-  study::Reporting reporting(blocks, progress);
-  numerics::parallel_for(threads, blocks, [&](std::size_t block) {
+  study::for_each_of(blocks, threads, progress, [&](std::size_t block) {
     const std::size_t from = block * kPoints, here = std::min(kPoints, count - from);
     std::vector<double> values(here * dimension);
     for (std::size_t i = 0; i < here; ++i)
       point(from + i, std::span(values).subspan(i * dimension, dimension));
     response(here, values, std::span(all.results).subspan(from * outputs, here * outputs),
              std::span(all.reasons).subspan(from, here));
-    reporting.done();
   });
   return all;
 }

@@ -9,7 +9,6 @@
 
 #include "bentaxis/designs/points.h"
 #include "bentaxis/designs/propagation.h"
-#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/reporting.h"
@@ -158,13 +157,11 @@ SobolIndices sobol_indices(const Response& response, std::size_t outputs,
   const std::size_t rows = design.of_one();
   std::vector<double> inputs(base * rows * n), results(base * rows * outputs);
   std::vector<std::string> reasons(base * rows);
-  study::Reporting reporting(base, progress);
-  numerics::parallel_for(threads, base, [&](std::size_t i) {
+  study::for_each_of(base, threads, progress, [&](std::size_t i) {
     const auto values = std::span(inputs).subspan(i * rows * n, rows * n);
     design.points(i, values);
     response(rows, values, std::span(results).subspan(i * rows * outputs, rows * outputs),
              std::span(reasons).subspan(i * rows, rows));
-    reporting.done();
   });
 
   std::vector<std::size_t> kept;  // base points all of whose points have outputs

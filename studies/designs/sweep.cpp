@@ -11,6 +11,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/failed_point.h"
 #include "random_bits.h"
 
 namespace bentaxis::designs {
@@ -163,7 +164,7 @@ struct Sweep::Implementation {
     c.own_reason = reason;
     c.values.assign(results.size(), not_computed());
     c.scales.assign(results.size(), 0);
-    try {
+    c.reason = study::reason_of([&] {
       Case made = base;
       evaluator.family().make(values, made);
       const study::PreparedCase ready = study::prepare(made);
@@ -171,11 +172,7 @@ struct Sweep::Implementation {
       c.values = outputs_of(plan.outputs, ready,
                             analytic ? study::Model::multibody : study::Model::analytic);
       c.scales = scales_in(ready, c);
-    } catch (const InputError& error) {
-      c.reason = error.what();
-    } catch (const ComputationError& error) {
-      c.reason = error.what();
-    }
+    });
     return c;
   }
 

@@ -25,7 +25,8 @@ namespace bentaxis::designs {
 namespace fs = std::filesystem;
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "blocks are kept in little-endian order");
+static_assert(sizeof(std::size_t) == 8 && std::endian::native == std::endian::little,
+              "blocks are kept in little-endian order, counts in 64 bits");
 
 constexpr const char* kTitle = "bentaxis sweep block 1\n";
 constexpr const char* kCaseFile = "case.toml";
@@ -46,15 +47,18 @@ fs::path file_of(const fs::path& folder, std::size_t block) {
 // Numbers and texts one behind the other.
 class Writer {
  public:
-  void number(std::uint64_t value) { bytes(&value, sizeof value); }
-  void numbers(const std::vector<double>& values) {
+  explicit Writer(std::string content) : content_(std::move(content)) {}
+  void number(std::size_t value) { bytes(&value, sizeof value); }
+  void numbers(const std::vector<double>& values, std::size_t /*count*/) {
     bytes(values.data(), values.size() * sizeof(double));
   }
   void text(const std::string& text) {
     number(text.size());
     content_ += text;
   }
-  std::string& content() { return content_; }
+  template <class List>
+  void resize(List& /*list*/, std::size_t /*count*/) {}
+  const std::string& content() const { return content_; }
 
  private:
   void bytes(const void* from, std::size_t count) {
@@ -63,30 +67,33 @@ class Writer {
   std::string content_;
 };
 
-// The reverse: after the first thing that is not there, everything is empty and `bad` set.
+// The reverse: after the first thing that is not there, everything is empty and `whole` false.
 class Reader {
  public:
   explicit Reader(std::string_view content) : rest_(content) {}
-  std::uint64_t number() {
-    std::uint64_t value = 0;
+  void number(std::size_t& value) {
+    value = 0;
     bytes(&value, sizeof value);
-    return value;
   }
-  std::vector<double> numbers(std::uint64_t count) {
+  void numbers(std::vector<double>& values, std::size_t count) {
     if (count > rest_.size() / sizeof(double)) bad_ = true;
-    std::vector<double> values(bad_ ? 0 : count);
+    values.resize(bad_ ? 0 : count);
     bytes(values.data(), values.size() * sizeof(double));
-    return values;
   }
-  std::string text() {
-    const std::uint64_t size = number();
+  void text(std::string& text) {
+    std::size_t size = 0;
+    number(size);
     if (size > rest_.size()) bad_ = true;
-    std::string text(bad_ ? 0 : size, '\0');
+    text.assign(bad_ ? 0 : size, '\0');
     bytes(text.data(), text.size());
-    return text;
+  }
+  // Of entries of at least a number each: no more than the rest can hold.
+  template <class List>
+  void resize(List& list, std::size_t count) {
+    if (count > rest_.size() / sizeof(std::uint64_t)) bad_ = true;
+    list.resize(bad_ ? 0 : count);
   }
   bool whole() const { return !bad_ && rest_.empty(); }
-  bool bad() const { return bad_; }
 
  private:
   void bytes(void* to, std::size_t count) {
@@ -99,26 +106,32 @@ class Reader {
   bool bad_ = false;
 };
 
-std::string bytes_of(const SweepBlock& block, const std::string& identity) {
-  Writer out;
-  out.content() = kTitle + identity;
-  out.number(block.first);
-  out.number(block.designs);
-  out.number(block.values.size());
-  out.number(block.results.size());
-  out.numbers(block.values);
-  out.numbers(block.results);
-  for (const std::string& reason : block.reasons) out.text(reason);
-  out.number(block.checks.size());
-  for (const SweepCheck& check : block.checks) {
-    out.number(check.design);
-    out.number(check.own.size());
-    out.numbers(check.own);
-    out.numbers(check.values);
-    out.numbers(check.scales);
-    out.text(check.own_reason);
-    out.text(check.reason);
+// A block as it stands in its file, for either direction.
+template <class Way>
+void pass(Way& way, SweepBlock& block) {
+  std::size_t values = block.values.size(), results = block.results.size();
+  std::size_t checks = block.checks.size();
+  for (std::size_t* const count : {&block.first, &block.designs, &values, &results})
+    way.number(*count);
+  way.numbers(block.values, values);
+  way.numbers(block.results, results);
+  way.resize(block.reasons, block.designs);
+  for (std::string& reason : block.reasons) way.text(reason);
+  way.number(checks);
+  way.resize(block.checks, checks);
+  for (SweepCheck& check : block.checks) {
+    std::size_t outputs = check.own.size();
+    way.number(check.design);
+    way.number(outputs);
+    for (auto* const list : {&check.own, &check.values, &check.scales}) way.numbers(*list, outputs);
+    way.text(check.own_reason);
+    way.text(check.reason);
   }
+}
+
+std::string bytes_of(SweepBlock block, const std::string& identity) {
+  Writer out(kTitle + identity);
+  pass(out, block);
   return out.content() + sha256_of(out.content());
 }
 
@@ -130,24 +143,7 @@ std::optional<SweepBlock> block_of(const std::string& bytes, const std::string& 
   if (sha256_of(content) != bytes.substr(content.size())) return std::nullopt;
   Reader in(std::string_view(content).substr(head.size()));
   SweepBlock block;
-  block.first = in.number();
-  block.designs = in.number();
-  const std::uint64_t values = in.number(), results = in.number();
-  block.values = in.numbers(values);
-  block.results = in.numbers(results);
-  for (std::size_t i = 0; i < block.designs && !in.bad(); ++i) block.reasons.push_back(in.text());
-  const std::uint64_t checks = in.number();
-  for (std::uint64_t i = 0; i < checks && !in.bad(); ++i) {
-    SweepCheck check;
-    check.design = in.number();
-    const std::uint64_t outputs = in.number();
-    check.own = in.numbers(outputs);
-    check.values = in.numbers(outputs);
-    check.scales = in.numbers(outputs);
-    check.own_reason = in.text();
-    check.reason = in.text();
-    block.checks.push_back(std::move(check));
-  }
+  pass(in, block);
   if (!in.whole()) return std::nullopt;
   return block;
 }

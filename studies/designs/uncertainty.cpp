@@ -8,6 +8,7 @@
 #include "bentaxis/designs/points.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/study/failed_point.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -53,15 +54,11 @@ class Designs {
     Case scratch = family_.base();
     for (std::size_t i = 0; i < count; ++i) {
       const auto to = results.subspan(i * size(), size());
-      try {
+      reasons[i] = study::reason_of([&] {
         family_.make(values.subspan(i * n, n), scratch);
         const std::vector<double> found = of(scratch);
         std::copy(found.begin(), found.end(), to.begin());
-      } catch (const InputError& error) {
-        reasons[i] = error.what();
-      } catch (const ComputationError& error) {
-        reasons[i] = error.what();
-      }
+      });
       if (!reasons[i].empty()) std::fill(to.begin(), to.end(), not_computed());
     }
   }
@@ -105,14 +102,12 @@ CurveBand band_of(const SampledOutputs& sampled, std::size_t first, std::size_t 
   return band;
 }
 
-// The parameters of the samples that have outputs.
-std::vector<Spread> kept_parameters(const UncertainVariables& variables,
-                                    const UncertaintyOptions& options,
-                                    const SampledOutputs& sampled) {
-  const std::size_t n = variables.size();
-  const auto points = random(n, options.samples, options.seed);
-  std::vector<std::vector<double>> columns(n);
-  std::vector<double> shares(n), values(n);
+// Visits the samples that have outputs, by number, with their parameters.
+template <class Visit>
+void for_each_kept(const UncertainVariables& variables, const UncertaintyOptions& options,
+                   const SampledOutputs& sampled, const Visit& visit) {
+  const auto points = random(variables.size(), options.samples, options.seed);
+  std::vector<double> shares(variables.size()), values(variables.size());
   auto without = sampled.infeasible.begin();
   for (std::size_t i = 0; i < options.samples; ++i) {
     if (without != sampled.infeasible.end() && without->first == i) {
@@ -121,8 +116,18 @@ std::vector<Spread> kept_parameters(const UncertainVariables& variables,
     }
     points->point(i, shares);
     variables.values(shares, values);
-    for (std::size_t v = 0; v < n; ++v) columns[v].push_back(values[v]);
+    visit(i, values);
   }
+}
+
+// Their parameters.
+std::vector<Spread> kept_parameters(const UncertainVariables& variables,
+                                    const UncertaintyOptions& options,
+                                    const SampledOutputs& sampled) {
+  std::vector<std::vector<double>> columns(variables.size());
+  for_each_kept(variables, options, sampled, [&](std::size_t, const std::vector<double>& values) {
+    for (std::size_t v = 0; v < values.size(); ++v) columns[v].push_back(values[v]);
+  });
   std::vector<Spread> kept;
   for (std::vector<double>& column : columns)
     kept.push_back(spread_of(std::move(column), options.level));
@@ -138,6 +143,11 @@ SampledOutputs without_curves(const SampledOutputs& sampled, std::size_t outputs
     few.results.insert(few.results.end(), sampled.results.begin() + i,
                        sampled.results.begin() + i + outputs);
   return few;
+}
+
+void append_field(std::string& text, double value) {
+  text += ",";
+  append_number(text, value);
 }
 
 // Refuses what leaves too little to speak of.
@@ -255,10 +265,7 @@ std::string outputs_csv(const UncertaintyResult& result) {
     numbers.push_back(is_there ? first.values[o] : not_computed());
     numbers.push_back(is_there ? first.deviations[o] : not_computed());
     text += output.name + "," + output.unit;
-    for (const double number : numbers) {
-      text += ",";
-      append_number(text, number);
-    }
+    for (const double number : numbers) append_field(text, number);
     text += "\n";
   }
   return text;
@@ -274,10 +281,8 @@ std::string bands_csv(const UncertaintyResult& result) {
   for (std::size_t row = 0; row < result.theta_deg.size(); ++row) {
     append_number(text, result.theta_deg[row]);
     for (const CurveBand& band : result.bands)
-      for (const auto* curve : {&band.nominal, &band.low, &band.median, &band.high}) {
-        text += ",";
-        append_number(text, (*curve)[row]);
-      }
+      for (const auto* curve : {&band.nominal, &band.low, &band.median, &band.high})
+        append_field(text, (*curve)[row]);
     text += "\n";
   }
   return text;
@@ -289,28 +294,15 @@ std::string samples_csv(const UncertaintyResult& result) {
   for (const Variable& v : variables.variables) text += "," + v.name();
   for (const UncertainOutput& o : result.outputs) text += "," + o.output.name;
   text += "\n";
-  const auto points = random(variables.size(), result.options.samples, result.options.seed);
-  auto without = result.sampled.infeasible.begin();
   auto value = result.sampled.results.begin();
-  std::vector<double> shares(variables.size()), values(variables.size());
-  for (std::size_t i = 0; i < result.options.samples; ++i) {
-    if (without != result.sampled.infeasible.end() && without->first == i) {
-      ++without;
-      continue;
-    }
-    points->point(i, shares);
-    variables.values(shares, values);
-    text += std::to_string(i);
-    for (const double v : values) {
-      text += ",";
-      append_number(text, v);
-    }
-    for (std::size_t o = 0; o < result.outputs.size(); ++o) {
-      text += ",";
-      append_number(text, *value++);
-    }
-    text += "\n";
-  }
+  for_each_kept(variables, result.options, result.sampled,
+                [&](std::size_t sample, const std::vector<double>& values) {
+                  text += std::to_string(sample);
+                  for (const double v : values) append_field(text, v);
+                  for (std::size_t o = 0; o < result.outputs.size(); ++o)
+                    append_field(text, *value++);
+                  text += "\n";
+                });
   return text;
 }
 

@@ -5,7 +5,6 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/simulation.h"
-#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/reporting.h"
@@ -169,11 +168,8 @@ class Study {
   std::vector<Fig34Curve> simulate(const std::vector<Fig34Point>& points, int windows,
                                    const Progress& progress) const {
     std::vector<Fig34Curve> curves(points.size());
-    Reporting reporting(points.size(), progress);
-    numerics::parallel_for(0, points.size(), [&](std::size_t i) {
-      curves[i] = simulate(points[i], windows, false);
-      reporting.done();
-    });
+    for_each_of(points.size(), 0, progress,
+                [&](std::size_t i) { curves[i] = simulate(points[i], windows, false); });
     return curves;
   }
 

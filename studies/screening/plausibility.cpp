@@ -177,6 +177,7 @@ Facts::Facts(const Case& of)
 constexpr double kFarSlip = 3;
 
 using Slips = std::vector<Slip>;
+constexpr Slip kPsi{0.0689476, "in psi?"};
 using namespace slips;
 
 // The first slip that explains a value outside of [low, high]; a slip that would move it by far
@@ -203,18 +204,26 @@ std::string outside(const std::string& key, double value, double low, double hig
                      below ? low : high, unit_text, why, guess(value, low, high, slips));
 }
 
-// "" where a number of the case is in the range that its entry holds for plausible, or unused.
-std::string implausible(const Case& the_case, const char* table_name, const char* key) {
+// The same of a number of the case, as its file has it. Also "" where it is not there or unused.
+// @param shown  the key, behind the table where a reader would not know which is meant
+std::string outside(const Facts& f, const char* table_name, const std::string& shown, double low,
+                    double high, const std::string& why, const Slips& slips = {}) {
   const Table& table = table_of(standard_registry(), table_name);
-  const Parameter& parameter = parameter_of(standard_registry(), table_name, key);
-  const auto value = value_of(parameter, the_case);
+  const Parameter& parameter =
+      parameter_of(standard_registry(), table_name, shown.substr(shown.rfind(' ') + 1));
+  const auto value = value_of(parameter, f.the_case);
   const bool unused = table.part != nullptr && !table.part->needed.words.empty() &&
-                      !holds(table.part->needed, standard_registry(), the_case);
+                      !holds(table.part->needed, standard_registry(), f.the_case);
   if (unused || !value) return "";
   const auto* const whole = std::get_if<int>(&*value);
-  const auto& [low, high, why, slips] = parameter.plausible;
-  return outside(key, whole != nullptr ? *whole : std::get<double>(*value), low, high,
+  return outside(shown, whole != nullptr ? *whole : std::get<double>(*value), low, high,
                  parameter.unit.name, why, slips);
+}
+
+// "" where a number of the case is in the range that its entry holds for plausible.
+std::string implausible(const Facts& f, const char* table, const char* key) {
+  const auto& [low, high, why, slips] = parameter_of(standard_registry(), table, key).plausible;
+  return outside(f, table, key, low, high, why, slips);
 }
 
 std::string first_of(std::initializer_list<std::string> texts) {
@@ -223,19 +232,84 @@ std::string first_of(std::initializer_list<std::string> texts) {
   return "";
 }
 
+// What several checks ask alike.
+
+bool always(const Facts& /*facts*/) { return true; }
+bool has_oil(const Facts& f) { return f.oil != nullptr; }
+bool has_stroke_and_oil(const Facts& f) { return f.oil != nullptr && f.derived.stroke != 0; }
+bool has_real_pistons(const Facts& f) { return f.real && f.pump.piston.mass != 0; }
+bool has_shaft_mass(const Facts& f) { return f.pump.shaft.mass != 0; }
+bool has_block_mass(const Facts& f) { return f.pump.block.mass != 0; }
+bool has_teeth(const Facts& f) {
+  return f.pump.gear.teeth && f.pump.gear.contact == ToothContact::teeth;
+}
+
+const Slips kOfLength = {kSign, kTenfold, kTenth, kMetres, kMicrometres};
+const Slips kOfMass = {kTenth, kTenfold, kGrams, kTons};
+const Slips kOfInertia = {kTenth, kTenfold, kKgM2, kGMm2};
+
+// The ports of the plate, then those of [hydraulics], up to the first that something is said of.
+template <class Text>
+std::string of_ports(const Facts& f, const Text& text) {
+  std::string found;
+  if (f.pump.port_plate)
+    found = text("port_plate", f.pump.port_plate->delivery, f.pump.port_plate->suction);
+  if (found.empty() && f.oil != nullptr)
+    found = text("hydraulics", f.oil->delivery.arc, f.oil->suction.arc);
+  return found;
+}
+
+std::string no_body_has_it(const Facts& f) {
+  return fmt::format("no body of {:.4g} kg in a bore of {:.4g} mm over {:.4g} mm has it",
+                     f.pump.piston.mass, mm(f.bore), mm(f.piston_span));
+}
+
+// What an input in Nm/rpm takes of the torque, where that is more than a share of the ideal one.
+std::string viscous_torque(const Facts& f, const char* key, double coefficient, double share,
+                           const char* share_in_words) {
+  const double torque = coefficient * f.speed * kRadPerSecondPerRpm;
+  if (torque <= share * f.full_torque) return "";
+  return fmt::format(
+      "{} = {:.4g} takes {:.4g} Nm at {:.6g} rpm, above {} of {:.4g} Nm; in Nm s/rad it would be "
+      "{:.4g} Nm",
+      key, coefficient * kRadPerSecondPerRpm, torque, f.speed, share_in_words, f.full_torque,
+      torque * kRadPerSecondPerRpm);
+}
+
+// A limit of validity that is violated for more than a share of the turn.
+const analytic::ValidityLimit* violated(const Facts& f, const char* name, double share) {
+  const analytic::ValidityLimit* const limit = f.limit(name);
+  return limit == nullptr || limit->violated_share <= share ? nullptr : limit;
+}
+
+double block_balance(const Turn& turn) {
+  return turn.press_force > 0 ? turn.land_force / turn.press_force : HUGE_VAL;
+}
+
 // ---- Checks, in the order of the case file
 
 struct Check {
+  using Applies = bool (*)(const Facts&);
+  using Text = std::string (*)(const Facts&);
+
+  Check(const char* a_code, const char* words, Text what) : Check(a_code, words, always, what) {}
+  Check(const char* a_code, const char* words, Applies where, Text what)
+      : code(a_code), doubtful(words), applies(where), text(what) {}
+  // Of the parameter whose plausible range is asked for: {0} and {1} in the words are its bounds.
+  Check(const char* a_code, const char* words, const char* of_table, const char* of_key,
+        Applies where = always, Text what = nullptr)
+      : code(a_code), doubtful(words), applies(where), text(what), table(of_table), key(of_key) {}
+
   const char* code;
-  const char* doubtful;                         // what is, in words: docs/plausibility.md
-  std::string (*text)(const Facts&) = nullptr;  // "" where nothing is; null: implausible()
-  // Of the parameter whose plausible range is asked for, if any: {0} and {1} in the words are its
-  // bounds.
+  const char* doubtful;  // what is, in words: docs/plausibility.md
+  Applies applies;
+  Text text = nullptr;  // "" where nothing is; null: implausible()
   const char* table = nullptr;
   const char* key = nullptr;
 
   std::string found(const Facts& facts) const {
-    return text != nullptr ? text(facts) : implausible(facts.the_case, table, key);
+    if (!applies(facts)) return "";
+    return text != nullptr ? text(facts) : implausible(facts, table, key);
   }
   std::string words() const {
     if (table == nullptr) return doubtful;
@@ -246,12 +320,12 @@ struct Check {
 
 const Check kChecks[] = {
     // Main dimensions
-    {"pump-size", "Ra below {0:g} or above {1:g} mm: no bent-axis pump has this size", nullptr,
-     "pump", "joint_circle_radius_mm"},
+    {"pump-size", "Ra below {0:g} or above {1:g} mm: no bent-axis pump has this size", "pump",
+     "joint_circle_radius_mm"},
     {"tilt-in-radians", "0 < tilt < 1 deg. 0 is a limit, and meant",
-     [](const Facts& f) -> std::string {
+     [](const Facts& f) { return f.g.tilt != 0 && deg(f.g.tilt) < 1; },
+     [](const Facts& f) {
        const double tilt = deg(f.g.tilt);
-       if (tilt == 0 || tilt >= 1) return "";
        return fmt::format("tilt_deg = {:.6g} is below 1 deg: in radians it would be {:.4g} deg",
                           tilt, deg(tilt));
      }},
@@ -265,40 +339,38 @@ const Check kChecks[] = {
     {"radii-exchanged",
      "Rd > Ra, and exchanged the pistons would tilt less: the joints' circle is seen as an ellipse "
      "of half axes Ra and Ra cos(tilt), and the bores lie between the two",
+     [](const Facts& f) { return f.g.bore_circle_radius > f.g.joint_circle_radius; },
      [](const Facts& f) -> std::string {
        const Geometry& g = f.g;
-       if (g.bore_circle_radius <= g.joint_circle_radius) return "";
        Geometry exchanged = g;
        std::swap(exchanged.bore_circle_radius, exchanged.joint_circle_radius);
-       if (assembly_margin(exchanged).longest_distance >= assembly_margin(g).longest_distance)
-         return "";
+       const double then = assembly_margin(exchanged).longest_distance;
+       const double now = assembly_margin(g).longest_distance;
+       if (then >= now) return "";
        return fmt::format(
            "bore_circle_radius_mm = {:.6g} exceeds joint_circle_radius_mm = {:.6g}: the bores "
            "should lie between {:.4g} (Ra cos tilt) and Ra; exchanged, no joint would be farther "
            "than {:.3g} mm from its bore's axis instead of {:.3g}",
            mm(g.bore_circle_radius), mm(g.joint_circle_radius),
-           mm(g.joint_circle_radius) * std::cos(g.tilt),
-           mm(assembly_margin(exchanged).longest_distance),
-           mm(assembly_margin(g).longest_distance));
+           mm(g.joint_circle_radius) * std::cos(g.tilt), mm(then), mm(now));
      }},
     {"bores-overlap", "bore >= distance of neighbouring bore axes 2 Rd sin(180 deg/N), or >= 2 Rd",
-     [](const Facts& f) -> std::string {
-       const double room = f.bore_room;
-       if (f.g.bore_diameter < room) return "";
+     [](const Facts& f) { return f.g.bore_diameter >= f.bore_room; },
+     [](const Facts& f) {
        return fmt::format("bore_diameter_mm = {:.6g} is not below {:.4g}, {}: the bores overlap{}",
-                          mm(f.g.bore_diameter), mm(room),
+                          mm(f.g.bore_diameter), mm(f.bore_room),
                           f.g.pistons > 2
                               ? fmt::format("the distance of {} neighbours on Rd", f.g.pistons)
                               : "twice Rd",
-                          guess(mm(f.g.bore_diameter), mm(room) / 2, mm(room) * 0.97,
+                          guess(mm(f.g.bore_diameter), mm(f.bore_room) / 2, mm(f.bore_room) * 0.97,
                                 {kDiameter, kTenth, kMicrometres}));
      }},
     {"bores-touch",
      "the wall between neighbouring bores would bear more than 1000 MPa: highest pressure x bore "
      "/ wall, or is thinner than 2 % of the bore",
+     [](const Facts& f) { return f.g.pistons >= 3 && f.g.bore_diameter < f.spacing; },
      [](const Facts& f) -> std::string {
        const double wall = f.spacing - f.g.bore_diameter;
-       if (f.g.pistons < 3 || wall <= 0) return "";
        const double stress = f.highest * f.g.bore_diameter / wall;
        if (stress <= kYield && wall >= 0.02 * f.g.bore_diameter) return "";
        return fmt::format(
@@ -310,20 +382,19 @@ const Check kChecks[] = {
      "bore below half of the distance of neighbours (less than 3 pistons: 0.3 Rd): a radius, or "
      "metres",
      [](const Facts& f) {
-       const double most = f.bore_room;
-       const double least = least_filling(f.g.pistons) * most;
-       const double d = mm(f.g.bore_diameter);
-       return d >= mm(least) ? std::string()
-                             : outside("bore_diameter_mm", d, mm(least), mm(most), "mm",
-                                       fmt::format("the block would be solid between {} bores on "
-                                                   "Rd = {:.4g}",
-                                                   f.g.pistons, mm(f.g.bore_circle_radius)),
-                                       {kRadius, kCentimetres, kInches, kMetres});
+       return mm(f.g.bore_diameter) < mm(least_filling(f.g.pistons) * f.bore_room);
+     },
+     [](const Facts& f) {
+       return outside("bore_diameter_mm", mm(f.g.bore_diameter),
+                      mm(least_filling(f.g.pistons) * f.bore_room), mm(f.bore_room), "mm",
+                      fmt::format("the block would be solid between {} bores on Rd = {:.4g}",
+                                  f.g.pistons, mm(f.g.bore_circle_radius)),
+                      {kRadius, kCentimetres, kInches, kMetres});
      }},
     {"axis-offset", "b beyond +-Ra/2",
      [](const Facts& f) {
        const double most = mm(f.g.joint_circle_radius) / 2;
-       return outside("axis_offset_mm", mm(f.g.axis_offset), -most, most, "mm",
+       return outside(f, "pump", "axis_offset_mm", -most, most,
                       "the axes meet far from the plane of the joints", {kMicrometres, kTenth});
      }},
     {"piston-tilt",
@@ -346,8 +417,8 @@ const Check kChecks[] = {
      "b1 below the stroke (the shaft would meet the block) or half the bore, or above 4 Ra",
      [](const Facts& f) {
        return outside(
-           "piston_length_mm", mm(f.g.piston_length), mm(std::max(f.derived.stroke, f.bore / 2)),
-           mm(4 * f.g.joint_circle_radius), "mm",
+           f, "pump", "piston_length_mm", mm(std::max(f.derived.stroke, f.bore / 2)),
+           mm(4 * f.g.joint_circle_radius),
            fmt::format("a piston is longer than its stroke of {:.4g} mm or half its bore, and "
                        "shorter than 4 Ra",
                        mm(f.derived.stroke)),
@@ -356,26 +427,19 @@ const Check kChecks[] = {
     // Gear
     {"gear-inside-bores", "d/2 < Rd + Dpi/2: the teeth would stand in the bores",
      [](const Facts& f) {
-       return outside("pitch_diameter_mm", mm(f.pump.gear.pitch_diameter), mm(2 * f.bores_radius),
-                      HUGE_VAL, "mm",
+       return outside(f, "gear", "pitch_diameter_mm", mm(2 * f.bores_radius), HUGE_VAL,
                       "the teeth would stand within the bores, which reach to this diameter",
                       {kRadius, kCentimetres, kInches, kMetres});
      }},
     {"gear-large", "d/2 > 3 (Rd + Dpi/2)",
      [](const Facts& f) {
-       return outside("pitch_diameter_mm", mm(f.pump.gear.pitch_diameter), 0,
-                      mm(6 * f.bores_radius), "mm", "three times what encloses the bores",
-                      {kDiameter, kTenth, kMicrometres});
+       return outside(f, "gear", "pitch_diameter_mm", 0, mm(6 * f.bores_radius),
+                      "three times what encloses the bores", {kDiameter, kTenth, kMicrometres});
      }},
-    {"pressure-angle", "0 < pressure angle < {0:g} deg, or > {1:g} deg",
-     [](const Facts& f) -> std::string {
-       if (f.pump.gear.pressure_angle == 0) return "";
-       return implausible(f.the_case, "gear", "pressure_angle_deg");
-     },
-     "gear", "pressure_angle_deg"},
-    {"tooth-module", "module of the teeth, d/Z, below 1 or above 12 mm",
-     [](const Facts& f) -> std::string {
-       if (!f.pump.gear.teeth || f.pump.gear.contact != ToothContact::teeth) return "";
+    {"pressure-angle", "0 < pressure angle < {0:g} deg, or > {1:g} deg", "gear",
+     "pressure_angle_deg", [](const Facts& f) { return f.pump.gear.pressure_angle != 0; }},
+    {"tooth-module", "module of the teeth, d/Z, below 1 or above 12 mm", has_teeth,
+     [](const Facts& f) {
        const int count = f.pump.gear.teeth->count;
        return outside(fmt::format("tooth_number = {}: module", count),
                       mm(f.pump.gear.pitch_diameter) / count, 1, 12, "mm",
@@ -385,8 +449,8 @@ const Check kChecks[] = {
      "backlash above a tenth of the module, tip relief or crowning above a fiftieth, run-out above "
      "a "
      "twentieth, a face wider than half the distance from O2",
-     [](const Facts& f) -> std::string {
-       if (!f.pump.gear.teeth || f.pump.gear.contact != ToothContact::teeth) return "";
+     has_teeth,
+     [](const Facts& f) {
        const ToothData& teeth = *f.pump.gear.teeth;
        const double module = f.pump.gear.pitch_diameter / teeth.count;
        const double um = 1e6;
@@ -400,30 +464,30 @@ const Check kChecks[] = {
             one("lead_crowning_um", teeth.lead_crowning, 0.02, "crownings are some microns"),
             one("shaft_runout_um", teeth.shaft.runout, 0.05, "run-outs are some hundredths"),
             one("block_runout_um", teeth.block.runout, 0.05, "run-outs are some hundredths"),
-            outside("face_width_mm", mm(teeth.face_width), 0,
-                    mm(f.pump.gear.pitch_diameter) / (4 * std::cos(f.g.tilt / 2)), "mm",
+            outside(f, "gear", "face_width_mm", 0,
+                    mm(f.pump.gear.pitch_diameter) / (4 * std::cos(f.g.tilt / 2)),
                     "half the distance of the teeth from where the axes meet")});
      }},
     // Bearings
     {"bearing-side", "a bearing at z1 > -Ra/4: on the pistons' side, or in the plane of the joints",
      [](const Facts& f) {
-       const double most = -mm(f.g.joint_circle_radius) / 4;
-       const auto one = [&](const char* key, double z) {
-         return outside(key, mm(z), -HUGE_VAL, most, "mm",
+       const auto one = [&](const char* key) {
+         return outside(f, "bearings", key, -HUGE_VAL, -mm(f.g.joint_circle_radius) / 4,
                         "the shaft leaves the joints towards -z1, the pistons stand at +z1",
-                        {{-1, "with the other sign?"}, kMetres, kCentimetres});
+                        {kSign, kMetres, kCentimetres});
        };
-       return first_of({one("tapered_z_mm", f.pump.bearings.tapered_z),
-                        one("cylindrical_z_mm", f.pump.bearings.cylindrical_z)});
+       return first_of({one("tapered_z_mm"), one("cylindrical_z_mm")});
      }},
     {"bearings-exchanged", "the tapered bearing is the farther one from the joints",
-     [](const Facts& f) -> std::string {
+     [](const Facts& f) {
        const Bearings& b = f.pump.bearings;
-       if (b.tapered_z >= b.cylindrical_z || b.cylindrical_z > 0) return "";
+       return b.tapered_z < b.cylindrical_z && b.cylindrical_z <= 0;
+     },
+     [](const Facts& f) {
        return fmt::format(
            "tapered_z_mm = {:.6g} is farther from the joints than cylindrical_z_mm = {:.6g}: the "
            "tapered bearing, which takes the thrust, sits next to the pistons",
-           mm(b.tapered_z), mm(b.cylindrical_z));
+           mm(f.pump.bearings.tapered_z), mm(f.pump.bearings.cylindrical_z));
      }},
     {"bearings-close", "bearings less than Ra/4 apart: there is no room for two",
      [](const Facts& f) -> std::string {
@@ -438,21 +502,20 @@ const Check kChecks[] = {
      [](const Facts& f) {
        const Bearings& b = f.pump.bearings;
        const bool tapered_nearer = std::abs(b.tapered_z) < std::abs(b.cylindrical_z);
-       const auto one = [&](const char* key, double z, bool nearer) {
-         const double most = (nearer ? 5 : 10) * mm(f.g.joint_circle_radius);
-         return outside(key, mm(z), -most, HUGE_VAL, "mm",
+       const auto one = [&](const char* key, bool nearer) {
+         return outside(f, "bearings", key, -(nearer ? 5 : 10) * mm(f.g.joint_circle_radius),
+                        HUGE_VAL,
                         nearer ? "5 Ra from the pistons that it carries" : "10 Ra from the pistons",
                         {kTenth, kMicrometres});
        };
-       return first_of({one("tapered_z_mm", b.tapered_z, tapered_nearer),
-                        one("cylindrical_z_mm", b.cylindrical_z, !tapered_nearer)});
+       return first_of(
+           {one("tapered_z_mm", tapered_nearer), one("cylindrical_z_mm", !tapered_nearer)});
      }},
     // Piston
     {"piston-heavier-than-steel",
      "piston mass above a steel cylinder of the bore's diameter and the length b1 + Dpi",
      [](const Facts& f) {
-       const double most = kSteel * f.area * f.piston_span;
-       return outside("[piston] mass_kg", f.pump.piston.mass, 0, most, "kg",
+       return outside(f, "piston", "[piston] mass_kg", 0, kSteel * f.area * f.piston_span,
                       fmt::format("a solid steel cylinder of bore {:.4g} mm and length {:.4g} mm",
                                   mm(f.bore), mm(f.piston_span)),
                       {kTenth, kHundredth, kGrams});
@@ -462,68 +525,58 @@ const Check kChecks[] = {
      "where pressure forces exceed the inertia of a steel piston ten times",
      [](const Facts& f) -> std::string {
        const double steel = kSteel * f.area * f.piston_span;
-       const double mass = f.pump.piston.mass;
        const double omega = f.speed * kRadPerSecondPerRpm;
        const double inertia = steel / 3 * f.g.joint_circle_radius * square(omega);
-       if (mass == 0 && f.highest * f.area >= 10 * inertia) return "";
-       if (mass == 0)
-         return fmt::format(
-             "[piston] mass_kg = 0 where inertia matters: a steel piston would be pushed with "
-             "{:.3g} N at {:.4g} rpm, pressure pushes with {:.3g} N",
-             inertia, f.speed, f.highest * f.area);
-       return outside("[piston] mass_kg", mass, kLightest * steel, HUGE_VAL, "kg",
+       const double push = f.highest * f.area;
+       if (f.pump.piston.mass == 0)
+         return push >= 10 * inertia
+                    ? ""
+                    : fmt::format(
+                          "[piston] mass_kg = 0 where inertia matters: a steel piston "
+                          "would be pushed with {:.3g} N at {:.4g} rpm, pressure pushes "
+                          "with {:.3g} N",
+                          inertia, f.speed, push);
+       return outside(f, "piston", "[piston] mass_kg", kLightest * steel, HUGE_VAL,
                       "a hollow piston of aluminium weighs this",
                       {kTenfold, {100, "a hundred times too small?"}, kTons});
      }},
     {"piston-centre-of-mass", "centre of mass outside 0.1 .. 0.9 b1 from A (lumped: (1 - chi) b1)",
-     [](const Facts& f) -> std::string {
-       if (f.pump.piston.mass == 0) return "";
+     [](const Facts& f) { return f.pump.piston.mass != 0; },
+     [](const Facts& f) {
        const double b1 = mm(f.g.piston_length);
-       if (f.real)
-         return outside("[piston] centre_of_mass_mm", mm(f.pump.piston.real->centre_of_mass),
-                        0.1 * b1, 0.9 * b1, "mm",
-                        fmt::format("it lies between A and B, {:.4g} mm apart", b1),
-                        {kCentimetres, kTenth, kMetres, kMicrometres, kSign});
-       return implausible(f.the_case, "piston", "joint_mass_fraction");
+       return f.real ? outside(f, "piston", "[piston] centre_of_mass_mm", 0.1 * b1, 0.9 * b1,
+                               fmt::format("it lies between A and B, {:.4g} mm apart", b1),
+                               {kCentimetres, kTenth, kMetres, kMicrometres, kSign})
+                     : implausible(f, "piston", "joint_mass_fraction");
      }},
     {"piston-transverse-inertia",
      "It outside of what a steel body of that mass within bore and length b1 + Dpi can have: of a "
      "solid disc that fills the bore, and of two masses at the ends",
-     [](const Facts& f) -> std::string {
-       if (!f.real || f.pump.piston.mass == 0) return "";
+     has_real_pistons,
+     [](const Facts& f) {
        const double m = f.pump.piston.mass;
        const double r = f.bore / 2;
        const double disc = m / (1.1 * kSteel * f.area);
-       const double least = m * (square(r) / 4 + square(disc) / 12);
-       const double most = m * (square(f.piston_span / 2) + square(r) / 2);
-       return outside(
-           "transverse_inertia_kg_mm2", f.pump.piston.real->transverse_inertia * 1e6, least * 1e6,
-           most * 1e6, "kg mm2",
-           fmt::format("no body of {:.4g} kg in a bore of {:.4g} mm over {:.4g} mm has it", m,
-                       mm(f.bore), mm(f.piston_span)),
-           {kTenth, kTenfold, kKgM2, kGMm2, kHundredth});
+       return outside(f, "piston", "transverse_inertia_kg_mm2",
+                      m * (square(r) / 4 + square(disc) / 12) * 1e6,
+                      m * (square(f.piston_span / 2) + square(r) / 2) * 1e6, no_body_has_it(f),
+                      {kTenth, kTenfold, kKgM2, kGMm2, kHundredth});
      }},
     {"piston-axial-inertia",
      "Ia outside of what a steel body of that mass within bore and length b1 + Dpi can have: of a "
      "rod of that length, and of a tube on the bore",
-     [](const Facts& f) -> std::string {
-       if (!f.real || f.pump.piston.mass == 0) return "";
+     has_real_pistons,
+     [](const Facts& f) {
        const double m = f.pump.piston.mass;
-       const double least = m * m / (2 * kPi * 1.1 * kSteel * f.piston_span);
-       const double most = m * square(f.bore / 2);
-       return outside(
-           "[piston] axial_inertia_kg_mm2", f.pump.piston.real->axial_inertia * 1e6, least * 1e6,
-           most * 1e6, "kg mm2",
-           fmt::format("no body of {:.4g} kg in a bore of {:.4g} mm over {:.4g} mm has it", m,
-                       mm(f.bore), mm(f.piston_span)),
-           {kTenth, kTenfold, kKgM2, kGMm2});
+       return outside(f, "piston", "[piston] axial_inertia_kg_mm2",
+                      m * m / (2 * kPi * 1.1 * kSteel * f.piston_span) * 1e6,
+                      m * square(f.bore / 2) * 1e6, no_body_has_it(f), kOfInertia);
      }},
     {"piston-spin", "spin beyond +-2.5 x speed: shaft and block, which drag it round, turn slower",
-     [](const Facts& f) -> std::string {
-       if (!f.real) return "";
-       const double most = 2.5 * f.speed;
+     [](const Facts& f) { return f.real; },
+     [](const Facts& f) {
        return outside(
-           "spin_rpm", f.pump.piston.real->spin / kRadPerSecondPerRpm, -most, most, "rpm",
+           f, "piston", "spin_rpm", -2.5 * f.speed, 2.5 * f.speed,
            fmt::format("shaft and block, which drag the pistons round, turn at {:.4g}", f.speed),
            {kTenth});
      }},
@@ -531,78 +584,76 @@ const Check kChecks[] = {
     {"shaft-mass",
      "shaft mass outside 0.12 .. 4 times a steel cylinder of radius Ra + Dpi/2 to the farther "
      "bearing; 0 is a limit, and meant",
-     [](const Facts& f) -> std::string {
-       if (f.pump.shaft.mass == 0) return "";
+     has_shaft_mass,
+     [](const Facts& f) {
        const double size =
            kSteel * kPi * square(f.g.joint_circle_radius + f.bore / 2) * f.shaft_reach;
        return outside(
-           "[shaft] mass_kg", f.pump.shaft.mass, 0.12 * size, 4 * size, "kg",
+           f, "shaft", "[shaft] mass_kg", 0.12 * size, 4 * size,
            fmt::format("a steel cylinder around joints and bearings weighs {:.3g} kg", size),
-           {kTenth, kTenfold, kGrams, kTons});
+           kOfMass);
      }},
     {"shaft-centre-of-mass",
-     "shaft's centre of mass at z1 > -Ra/5, or beyond twice the farther bearing",
-     [](const Facts& f) -> std::string {
-       if (f.pump.shaft.mass == 0) return "";
-       return outside("[shaft] centre_of_mass_z_mm", mm(f.pump.shaft.centre_of_mass_z),
-                      -2 * mm(f.shaft_reach), -mm(f.g.joint_circle_radius) / 5, "mm",
+     "shaft's centre of mass at z1 > -Ra/5, or beyond twice the farther bearing", has_shaft_mass,
+     [](const Facts& f) {
+       return outside(f, "shaft", "[shaft] centre_of_mass_z_mm", -2 * mm(f.shaft_reach),
+                      -mm(f.g.joint_circle_radius) / 5,
                       "the shaft reaches from the joints past its bearings, along -z1",
                       {kSign, kTenth, kMetres, kMicrometres});
      }},
     {"shaft-inertia",
      "I_s of a shaft: below a steel rod of that mass to the farther bearing, or above m (2.5 Ra)2",
-     [](const Facts& f) -> std::string {
-       if (f.pump.shaft.mass == 0 || f.defaulted("shaft", "axial_inertia_kg_mm2")) return "";
-       const double m = f.pump.shaft.mass;
-       const double rod =
-           m * m / (2 * kPi * kSteel * (2 * f.shaft_reach + f.g.joint_circle_radius));
-       return outside("[shaft] axial_inertia_kg_mm2", f.pump.shaft.axial_inertia * 1e6, rod * 1e6,
-                      m * square(2.5 * f.g.joint_circle_radius) * 1e6, "kg mm2",
-                      fmt::format("no shaft of {:.4g} kg and this size has it", m),
-                      {kTenth, kTenfold, kKgM2, kGMm2});
+     [](const Facts& f) {
+       return has_shaft_mass(f) && !f.defaulted("shaft", "axial_inertia_kg_mm2");
+     },
+     [](const Facts& f) {
+       const double m = f.pump.shaft.mass, ra = f.g.joint_circle_radius;
+       return outside(f, "shaft", "[shaft] axial_inertia_kg_mm2",
+                      m * m / (2 * kPi * kSteel * (2 * f.shaft_reach + ra)) * 1e6,
+                      m * square(2.5 * ra) * 1e6,
+                      fmt::format("no shaft of {:.4g} kg and this size has it", m), kOfInertia);
      }},
     {"block-mass",
      "block mass outside 0.1 .. 1.2 times a steel cylinder of radius Rd + Dpi and length b1 + "
      "stroke; 0 is a limit, and meant",
-     [](const Facts& f) -> std::string {
-       if (f.pump.block.mass == 0) return "";
+     has_block_mass,
+     [](const Facts& f) {
        const double size = kSteel * kPi * square(f.g.bore_circle_radius + f.bore) * f.block_length;
-       return outside("[block] mass_kg", f.pump.block.mass, 0.1 * size, 1.2 * size, "kg",
+       return outside(f, "block", "[block] mass_kg", 0.1 * size, 1.2 * size,
                       fmt::format("a steel cylinder around the bores weighs {:.3g} kg", size),
-                      {kTenth, kTenfold, kGrams, kTons});
+                      kOfMass);
      }},
     {"block-centre-of-mass", "block's centre of mass at z2 < b1/10 or > b1 + stroke + Dpi",
-     [](const Facts& f) -> std::string {
-       if (f.pump.block.mass == 0) return "";
-       return outside("[block] centre_of_mass_z_mm", mm(f.pump.block.centre_of_mass_z),
-                      mm(f.g.piston_length) / 10, mm(f.block_length + f.bore), "mm",
-                      "the block stands around the pistons' heads, along +z2",
-                      {kSign, kTenfold, kTenth, kMetres, kMicrometres});
+     has_block_mass,
+     [](const Facts& f) {
+       return outside(f, "block", "[block] centre_of_mass_z_mm", mm(f.g.piston_length) / 10,
+                      mm(f.block_length + f.bore),
+                      "the block stands around the pistons' heads, along +z2", kOfLength);
      }},
     {"block-inertia",
      "I_c of a block: below a steel rod of that mass and the block's length, or above m (Rd + "
      "Dpi)2",
-     [](const Facts& f) -> std::string {
-       if (f.pump.block.mass == 0 || f.defaulted("block", "axial_inertia_kg_mm2")) return "";
+     [](const Facts& f) {
+       return has_block_mass(f) && !f.defaulted("block", "axial_inertia_kg_mm2");
+     },
+     [](const Facts& f) {
        const double m = f.pump.block.mass;
-       return outside("[block] axial_inertia_kg_mm2", f.pump.block.axial_inertia * 1e6,
+       return outside(f, "block", "[block] axial_inertia_kg_mm2",
                       m * m / (2 * kPi * kSteel * f.block_length) * 1e6,
-                      m * square(f.g.bore_circle_radius + f.bore) * 1e6, "kg mm2",
-                      fmt::format("no block of {:.4g} kg and this size has it", m),
-                      {kTenth, kTenfold, kKgM2, kGMm2});
+                      m * square(f.g.bore_circle_radius + f.bore) * 1e6,
+                      fmt::format("no block of {:.4g} kg and this size has it", m), kOfInertia);
      }},
     {"pin-position", "pin at z2 < 0.15 (b1 + stroke), or > b1 + stroke + 2 Dpi: outside the block",
      [](const Facts& f) {
-       return outside("pin_z_mm", mm(f.pump.block.pin_z), 0.15 * mm(f.block_length),
-                      mm(f.block_length + 2 * f.bore), "mm",
-                      "the pin meets the block inside of it, along +z2",
-                      {kSign, kTenfold, kTenth, kMetres, kMicrometres});
+       return outside(f, "block", "pin_z_mm", 0.15 * mm(f.block_length),
+                      mm(f.block_length + 2 * f.bore),
+                      "the pin meets the block inside of it, along +z2", kOfLength);
      }},
     {"bottom-area", "Ac above the area of a bore, or 0 < Ac below a twentieth of it",
-     [](const Facts& f) -> std::string {
-       if (f.pump.block.bottom_area == 0) return "";
+     [](const Facts& f) { return f.pump.block.bottom_area != 0; },
+     [](const Facts& f) {
        const double area = mm2(f.area);
-       return outside("bottom_area_mm2", mm2(f.pump.block.bottom_area), area / 20, area, "mm2",
+       return outside(f, "block", "bottom_area_mm2", area / 20, area,
                       fmt::format("it is a part of each bore's {:.4g} mm2", area),
                       {kTenth,
                        kTenfold,
@@ -614,18 +665,17 @@ const Check kChecks[] = {
     {"spring-force",
      "spring above what a coil spring between the bores bears at 1000 MPa, or below a tenth of the "
      "block's weight; 0 is a limit, and meant",
-     [](const Facts& f) -> std::string {
-       const double force = f.pump.block.spring_force;
-       if (force == 0) return "";
+     [](const Facts& f) { return f.pump.block.spring_force != 0; },
+     [](const Facts& f) {
        // Of outer radius r and index 4: wire 2 r/5, mean diameter 8 r/5; F = pi d^3 tau / (8 D).
        const double r = std::max(f.g.bore_circle_radius - f.bore / 2, 0.1 * f.g.bore_circle_radius);
        const double most = kPi * 0.005 * square(r) * kYield;
-       const double least = std::min(0.1 * f.pump.block.mass * 9.81, most);
+       const double weight = f.pump.block.mass * 9.81;
        return outside(
-           "spring_force_N", force, least, most, "N",
+           f, "block", "spring_force_N", std::min(0.1 * weight, most), most,
            fmt::format("a coil spring of {:.3g} mm between the bores bears {:.3g} N, the "
                        "block weighs {:.3g} N",
-                       2 * mm(r), most, f.pump.block.mass * 9.81),
+                       2 * mm(r), most, weight),
            {kTenth, kTenfold, {1e3, "in kN?"}, kThousandth});
      }},
     // Friction
@@ -644,29 +694,19 @@ const Check kChecks[] = {
            force);
      }},
     {"block-viscous-torque", "Cc n above a tenth of N A 2 Ra p/(2 pi), with p of 100 bar at least",
-     [](const Facts& f) -> std::string {
-       const double torque = f.pump.friction.block_viscous * f.speed * kRadPerSecondPerRpm;
-       if (torque <= 0.1 * f.full_torque) return "";
-       return fmt::format(
-           "block_viscous_Nm_per_rpm = {:.4g} takes {:.4g} Nm at {:.6g} rpm, above a tenth of "
-           "{:.4g} Nm; in Nm s/rad it would be {:.4g} Nm",
-           f.pump.friction.block_viscous * kRadPerSecondPerRpm, torque, f.speed, f.full_torque,
-           torque * kRadPerSecondPerRpm);
+     [](const Facts& f) {
+       return viscous_torque(f, "block_viscous_Nm_per_rpm", f.pump.friction.block_viscous, 0.1,
+                             "a tenth");
      }},
     {"shaft-viscous-torque", "Cs n above 3 % of that torque",
-     [](const Facts& f) -> std::string {
-       const double torque = f.pump.friction.shaft_viscous * f.speed * kRadPerSecondPerRpm;
-       if (torque <= 0.03 * f.full_torque) return "";
-       return fmt::format(
-           "shaft_viscous_Nm_per_rpm = {:.4g} takes {:.4g} Nm at {:.6g} rpm, above 3 % of {:.4g} "
-           "Nm; in Nm s/rad it would be {:.4g} Nm",
-           f.pump.friction.shaft_viscous * kRadPerSecondPerRpm, torque, f.speed, f.full_torque,
-           torque * kRadPerSecondPerRpm);
+     [](const Facts& f) {
+       return viscous_torque(f, "shaft_viscous_Nm_per_rpm", f.pump.friction.shaft_viscous, 0.03,
+                             "3 %");
      }},
     {"torque-factor", "Ct below 0.8: the loss instead of what is left, or per cent",
-     [](const Facts& f) -> std::string {
+     [](const Facts& f) { return f.pump.friction.shaft_torque_factor < 0.8; },
+     [](const Facts& f) {
        const double ct = f.pump.friction.shaft_torque_factor;
-       if (ct >= 0.8) return "";
        return fmt::format(
            "shaft_torque_factor = {:.6g} is below 0.8: {:.3g} % of the drive torque would be lost "
            "(1 is no loss)",
@@ -674,10 +714,10 @@ const Check kChecks[] = {
      }},
     {"regularization",
      "v_reg above a tenth of the joints' speed omega Ra: friction hardly acts fully",
-     [](const Facts& f) -> std::string {
-       if (f.pump.friction.piston_coulomb == 0 || f.speed == 0) return "";
-       return outside("regularization_m_per_s", f.pump.friction.regularization, 0,
-                      f.speed * kRadPerSecondPerRpm * f.g.joint_circle_radius / 10, "m/s",
+     [](const Facts& f) { return f.pump.friction.piston_coulomb != 0 && f.speed != 0; },
+     [](const Facts& f) {
+       return outside(f, "friction", "regularization_m_per_s", 0,
+                      f.speed * kRadPerSecondPerRpm * f.g.joint_circle_radius / 10,
                       "a tenth of the speed of the joints: Coulomb friction would hardly act fully",
                       {{1e-3, "in mm/s?"}, kTenth});
      }},
@@ -694,16 +734,16 @@ const Check kChecks[] = {
                           f.the_case.operation.speed_rpm, rpm);
      }},
     {"piston-speed", "mean piston speed, two strokes per turn, above 10 m/s",
-     [](const Facts& f) -> std::string {
-       if (f.piston_speed <= kFastest) return "";
+     [](const Facts& f) { return f.piston_speed > kFastest; },
+     [](const Facts& f) {
        return fmt::format(
            "the pistons move at {:.4g} m/s on average at speed_rpm = {:.6g} (stroke {:.4g} mm): "
            "pumps reach 5 to 7 m/s",
            f.piston_speed, f.the_case.operation.speed_rpm, mm(f.derived.stroke));
      }},
     {"speed-low", "a speed, not 0, at which the pistons of the full stroke move below 0.05 m/s",
+     [](const Facts& f) { return f.speed != 0; },
      [](const Facts& f) -> std::string {
-       if (f.speed == 0) return "";
        const double v = f.speed / 60 * 2 * std::max(f.derived.stroke, f.g.joint_circle_radius);
        if (v >= kSlowest) return "";
        return fmt::format(
@@ -712,26 +752,18 @@ const Check kChecks[] = {
            f.the_case.operation.speed_rpm, v, 60 * f.the_case.operation.speed_rpm);
      }},
     {"gravity", "gravity that is not 0 and outside {0:g} .. {1:g} m/s2 (it acts along -y1)",
-     [](const Facts& f) -> std::string {
-       if (f.pump.gravity == 0) return "";
-       return implausible(f.the_case, "operation", "gravity_m_per_s2");
-     },
-     "operation", "gravity_m_per_s2"},
+     "operation", "gravity_m_per_s2", [](const Facts& f) { return f.pump.gravity != 0; }},
     {"samples", "fewer than 6 or more than 1e6 angles in a turn, or more than 1e4 revolutions",
      [](const Facts& f) {
-       return first_of({implausible(f.the_case, "operation", "samples_per_revolution"),
-                        implausible(f.the_case, "operation", "revolutions")});
+       return first_of({implausible(f, "operation", "samples_per_revolution"),
+                        implausible(f, "operation", "revolutions")});
      }},
     // Pressure
     {"pressure-beyond-1000-bar", "delivery, suction or the curve above 1000 bar",
      [](const Facts& f) {
        const auto one = [](const char* key, double p) {
          return outside(key, bar(p), -HUGE_VAL, bar(kMaxPressure), "bar",
-                        "hydraulic pumps end at 500 bar",
-                        {{1e-5, "in pascals?"},
-                         {1e-2, "in kPa?"},
-                         {0.0689476, "in psi?"},
-                         {0.1, "ten times too large?"}});
+                        "hydraulic pumps end at 500 bar", {kPascals, kKilopascals, kPsi, kTenth});
        };
        return first_of({one("delivery_bar", f.ports.delivery), one("suction_bar", f.ports.suction),
                         f.turn && f.the_case.pressure.kind == PressureKind::curve
@@ -739,42 +771,41 @@ const Check kChecks[] = {
                             : std::string()});
      }},
     {"pressure-low", "0 < delivery < 3 bar. 0 is no load, and meant",
-     [](const Facts& f) -> std::string {
-       const double p = bar(f.ports.delivery);
-       if (p <= 0) return "";
-       return outside("delivery_bar", p, 3, HUGE_VAL, "bar", "next to no load",
+     [](const Facts& f) { return f.ports.delivery > 0; },
+     [](const Facts& f) {
+       return outside(f, "pressure", "delivery_bar", 3, HUGE_VAL, "next to no load",
                       {{100, "in units of 100 bar?"}, {1000, "in kbar?"}});
      }},
     {"delivery-below-suction", "delivery pressure below suction pressure",
-     [](const Facts& f) -> std::string {
-       if (f.ports.delivery >= f.ports.suction) return "";
+     [](const Facts& f) { return f.ports.delivery < f.ports.suction; },
+     [](const Facts& f) {
        return fmt::format("delivery_bar = {:.6g} is below suction_bar = {:.6g}: exchanged?",
                           bar(f.ports.delivery), bar(f.ports.suction));
      }},
     {"suction-pressure",
      "suction below {0:g} bar (absolute vacuum), above {1:g} bar, or 1 atmosphere (pressures are "
      "gauge)",
+     "pressure", "suction_bar", always,
      [](const Facts& f) -> std::string {
        const double suction = bar(f.ports.suction);
        if (std::abs(suction - 1.01325) < 1e-3)
          return fmt::format("suction_bar = {:.6g}: pressures are gauge; absolute?", suction);
-       return implausible(f.the_case, "pressure", "suction_bar");
-     },
-     "pressure", "suction_bar"},
+       return implausible(f, "pressure", "suction_bar");
+     }},
     {"transition", "0 < transition < {0:g} deg (0 is a step, and meant), or > {1:g} deg",
-     [](const Facts& f) -> std::string {
+     "pressure", "transition_deg",
+     [](const Facts& f) {
        const PressureSpec& p = f.the_case.pressure;
-       if (p.kind != PressureKind::ideal || p.transition_deg == 0) return "";
-       return implausible(f.the_case, "pressure", "transition_deg");
-     },
-     "pressure", "transition_deg"},
+       return p.kind == PressureKind::ideal && p.transition_deg != 0;
+     }},
     {"pressure-phase",
      "the pressure on a piston does less than 0.6 of the ideal work (delivery - suction) x A x "
      "stroke over a turn: it does not act while the chamber shrinks (180 .. 360 deg)",
-     [](const Facts& f) -> std::string {
-       if (!f.turn || f.ports.delivery - f.ports.suction < kPascalPerBar ||
-           f.derived.stroke < 0.01 * f.g.joint_circle_radius || f.turn->work_ratio >= 0.6)
-         return "";
+     [](const Facts& f) {
+       return f.turn && f.ports.delivery - f.ports.suction >= kPascalPerBar &&
+              f.derived.stroke >= 0.01 * f.g.joint_circle_radius && !(f.turn->work_ratio >= 0.6);
+     },
+     [](const Facts& f) {
        const bool ideal = f.the_case.pressure.kind == PressureKind::ideal;
        const double start = f.the_case.pressure.delivery_start_deg;
        return fmt::format(
@@ -790,25 +821,25 @@ const Check kChecks[] = {
     {"curve-pressure",
      "the highest pressure of the curve is not within 0.5 .. 2 times delivery_bar, or the lowest "
      "is below absolute vacuum by more than 10 % of it",
-     [](const Facts& f) -> std::string {
-       if (f.the_case.pressure.kind != PressureKind::curve || !f.turn) return "";
-       const double delivery = bar(f.ports.delivery), top = bar(f.turn->highest_pressure);
-       if (delivery <= 1) return "";
-       return first_of({outside("[pressure] file: its highest", top, delivery / 2, 2 * delivery,
-                                "bar", fmt::format("delivery_bar = {:.6g}", delivery),
-                                {{10, "in MPa?"},
-                                 {1e-5, "in pascals?"},
-                                 {1e-2, "in kPa?"},
-                                 {0.0689476, "in psi?"}}),
-                        outside("[pressure] file: its lowest", bar(f.turn->lowest_pressure),
-                                -1.014 - delivery / 10, HUGE_VAL, "bar",
-                                "absolute vacuum is at -1.013", {kSign})});
+     [](const Facts& f) {
+       return f.the_case.pressure.kind == PressureKind::curve && f.turn &&
+              bar(f.ports.delivery) > 1;
+     },
+     [](const Facts& f) {
+       const double delivery = bar(f.ports.delivery);
+       return first_of(
+           {outside("[pressure] file: its highest", bar(f.turn->highest_pressure), delivery / 2,
+                    2 * delivery, "bar", fmt::format("delivery_bar = {:.6g}", delivery),
+                    {{10, "in MPa?"}, kPascals, kKilopascals, kPsi}),
+            outside("[pressure] file: its lowest", bar(f.turn->lowest_pressure),
+                    -1.014 - delivery / 10, HUGE_VAL, "bar", "absolute vacuum is at -1.013",
+                    {kSign})});
      }},
     // Port plate
     {"lands-off-bores",
      "the bore circle lies outside r1 .. r4, or the groove r2 .. r3 reaches beyond Rd -+ Dpi/2",
+     [](const Facts& f) { return f.pump.port_plate.has_value(); },
      [](const Facts& f) -> std::string {
-       if (!f.pump.port_plate) return "";
        const PortPlate& p = *f.pump.port_plate;
        const double rd = f.g.bore_circle_radius, half = f.bore / 2;
        if (p.r1 < rd && rd < p.r4 && p.r2 >= rd - half && p.r3 <= rd + half) return "";
@@ -822,50 +853,38 @@ const Check kChecks[] = {
     {"port-arcs-exchanged",
      "delivery port over 0 .. 180 deg, where chambers fill, and suction port over 180 .. 360: by "
      "the y of their middles",
-     [](const Facts& f) -> std::string {
-       const auto middle = [](const PortArc& arc) { return (arc.from_deg + arc.to_deg) / 2; };
-       const auto wrong = [&](const PortArc& delivery, const PortArc& suction) {
-         return std::sin(middle(delivery) * kRadPerDegree) >
-                std::sin(middle(suction) * kRadPerDegree);
-       };
-       const auto text = [&](const char* table, const PortArc& delivery, const PortArc& suction) {
-         return wrong(delivery, suction)
-                    ? fmt::format(
-                          "[{}] delivery_arc_deg = [{:.6g}, {:.6g}], suction_arc_deg = [{:.6g}, "
-                          "{:.6g}]: chambers fill from 0 to 180 deg and deliver from 180 to 360: "
-                          "exchanged?",
-                          table, delivery.from_deg, delivery.to_deg, suction.from_deg,
-                          suction.to_deg)
-                    : std::string();
-       };
-       // A pump that delivers elsewhere is the business of pressure-phase.
-       if (f.turn && f.turn->work_ratio < 0.6) return "";
-       return first_of(
-           {f.pump.port_plate
-                ? text("port_plate", f.pump.port_plate->delivery, f.pump.port_plate->suction)
-                : std::string(),
-            f.oil ? text("hydraulics", f.oil->delivery.arc, f.oil->suction.arc) : std::string()});
+     // A pump that delivers elsewhere is the business of pressure-phase.
+     [](const Facts& f) { return !f.turn || !(f.turn->work_ratio < 0.6); },
+     [](const Facts& f) {
+       return of_ports(f, [](const char* table, const PortArc& d, const PortArc& s) {
+         const auto y = [](const PortArc& arc) {
+           return std::sin((arc.from_deg + arc.to_deg) / 2 * kRadPerDegree);
+         };
+         return y(d) > y(s) ? fmt::format(
+                                  "[{}] delivery_arc_deg = [{:.6g}, {:.6g}], "
+                                  "suction_arc_deg = [{:.6g}, {:.6g}]: chambers fill from "
+                                  "0 to 180 deg and deliver from 180 to 360: exchanged?",
+                                  table, d.from_deg, d.to_deg, s.from_deg, s.to_deg)
+                            : std::string();
+       });
      }},
     {"port-arc", "a port of less than 30 or more than 180 deg",
      [](const Facts& f) {
-       const auto one = [](const std::string& key, const PortArc& arc) {
-         return outside(key + " covers", arc.to_deg - arc.from_deg, 30, 180, "deg",
-                        fmt::format("from {:.6g} to {:.6g}; a port serves half a turn less the "
-                                    "bridges",
-                                    arc.from_deg, arc.to_deg),
-                        {kRadians});
-       };
-       return first_of(
-           {f.pump.port_plate ? one("[port_plate] delivery_arc_deg", f.pump.port_plate->delivery)
-                              : std::string(),
-            f.pump.port_plate ? one("[port_plate] suction_arc_deg", f.pump.port_plate->suction)
-                              : std::string(),
-            f.oil ? one("[hydraulics] delivery_arc_deg", f.oil->delivery.arc) : std::string(),
-            f.oil ? one("[hydraulics] suction_arc_deg", f.oil->suction.arc) : std::string()});
+       return of_ports(f, [](const char* table, const PortArc& delivery, const PortArc& suction) {
+         const auto one = [&](const char* port, const PortArc& arc) {
+           return outside(fmt::format("[{}] {}_arc_deg covers", table, port),
+                          arc.to_deg - arc.from_deg, 30, 180, "deg",
+                          fmt::format("from {:.6g} to {:.6g}; a port serves half a turn less the "
+                                      "bridges",
+                                      arc.from_deg, arc.to_deg),
+                          {kRadians});
+         };
+         return first_of({one("delivery", delivery), one("suction", suction)});
+       });
      }},
     {"port-arcs-overlap", "delivery and suction port share an angle",
      [](const Facts& f) {
-       const auto one = [](const char* table, const PortArc& a, const PortArc& b) -> std::string {
+       return of_ports(f, [](const char* table, const PortArc& a, const PortArc& b) -> std::string {
          const auto within = [](double angle, const PortArc& arc) {
            double past = std::fmod(angle - arc.from_deg, 360);
            if (past < 0) past += 360;
@@ -876,61 +895,53 @@ const Check kChecks[] = {
              "[{}] delivery_arc_deg = [{:.6g}, {:.6g}] and suction_arc_deg = [{:.6g}, {:.6g}] "
              "overlap: the ports would be one",
              table, a.from_deg, a.to_deg, b.from_deg, b.to_deg);
-       };
-       return first_of(
-           {f.pump.port_plate
-                ? one("port_plate", f.pump.port_plate->delivery, f.pump.port_plate->suction)
-                : std::string(),
-            f.oil ? one("hydraulics", f.oil->delivery.arc, f.oil->suction.arc) : std::string()});
+       });
      }},
     // One turn of the analytic model
     {"block-lifts-off",
      "the film would have to pull the block onto the plate (Fh > 0) in more than 5 % of the turn",
      [](const Facts& f) -> std::string {
-       const auto* limit = f.limit("Fh reversed");
-       if (limit == nullptr || limit->violated_share <= kShareOfTurn) return "";
+       const auto* limit = violated(f, "Fh reversed", kShareOfTurn);
+       if (limit == nullptr) return "";
        return fmt::format(
            "the block lifts off its plate in {:.3g} % of the turn, worst {:.4g} N at {:.4g} deg: "
            "block balance (push of the lands over bottom areas and spring) is {:.3g} (lands {:.4g} "
            "N, bottom_area_mm2 = {:.6g} and spring_force_N = {:.6g} make {:.4g} N)",
-           100 * limit->violated_share, limit->worst, limit->theta_deg,
-           f.turn->press_force > 0 ? f.turn->land_force / f.turn->press_force : HUGE_VAL,
+           100 * limit->violated_share, limit->worst, limit->theta_deg, block_balance(*f.turn),
            f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
            f.turn->press_force);
      }},
     {"block-overpressed",
      "block balance below 0.3 at more than 100 bar: the film would have to carry the rest",
-     [](const Facts& f) -> std::string {
-       if (!f.pump.port_plate || !f.turn || f.ports.delivery < kLightLoad ||
-           f.turn->press_force <= 0)
-         return "";
-       const double balance = f.turn->land_force / f.turn->press_force;
-       if (balance >= 0.3) return "";
+     [](const Facts& f) {
+       return f.pump.port_plate && f.turn && f.ports.delivery >= kLightLoad &&
+              block_balance(*f.turn) < 0.3;
+     },
+     [](const Facts& f) {
        return fmt::format(
            "block balance is {:.3g}, below 0.3: the lands push {:.4g} N, bottom_area_mm2 = {:.6g} "
            "and spring_force_N = {:.6g} {:.4g} N; the film would have to carry the rest",
-           balance, f.turn->land_force, mm2(f.pump.block.bottom_area), f.pump.block.spring_force,
-           f.turn->press_force);
+           block_balance(*f.turn), f.turn->land_force, mm2(f.pump.block.bottom_area),
+           f.pump.block.spring_force, f.turn->press_force);
      }},
     {"film-force-outside",
      "the film force would act beyond r4 in more than 25 % of the turn: the block tips",
      [](const Facts& f) -> std::string {
-       const auto* limit = f.limit("(xh, yh) beyond r4");
-       if (limit == nullptr || limit->violated_share <= kOutsideShare) return "";
+       const auto* limit = violated(f, "(xh, yh) beyond r4", kOutsideShare);
+       if (limit == nullptr) return "";
        return fmt::format(
            "the film force acts outside of the plate (r4 = {:.4g} mm) in {:.3g} % of the turn, up "
            "to {:.4g} mm from its axis at {:.4g} deg: the block tips; block balance is {:.3g}",
            mm(f.pump.port_plate->r4), 100 * limit->violated_share, limit->worst, limit->theta_deg,
-           f.turn->press_force > 0 ? f.turn->land_force / f.turn->press_force : HUGE_VAL);
+           block_balance(*f.turn));
      }},
     {"tooth-force-flank",
      "one flank, and Rcs < 0 in more than 5 % of the turn, but at standstill: the other flank "
      "would carry",
+     [](const Facts& f) { return f.speed != 0 && f.pump.gear.flanks != Flanks::two; },
      [](const Facts& f) -> std::string {
-       const auto* limit = f.limit("Rcs < 0");
-       if (limit == nullptr || limit->violated_share <= kShareOfTurn || f.speed == 0 ||
-           f.pump.gear.flanks == Flanks::two)
-         return "";
+       const auto* limit = violated(f, "Rcs < 0", kShareOfTurn);
+       if (limit == nullptr) return "";
        return fmt::format(
            "the tooth force is on the other flank in {:.3g} % of the turn, worst {:.4g} N at "
            "{:.4g} "
@@ -940,29 +951,25 @@ const Check kChecks[] = {
            f.pump.friction.block_viscous * kRadPerSecondPerRpm);
      }},
     // Hydraulics
-    {"oil-density", "density outside {0:g} .. {1:g} kg/m3", nullptr, "hydraulics",
-     "density_kg_per_m3"},
-    {"bulk-modulus", "bulk modulus outside {0:g} .. {1:g} MPa", nullptr, "hydraulics",
-     "bulk_modulus_MPa"},
-    {"air-content", "air below {0:g} or above {1:g} per cent", nullptr, "hydraulics",
-     "air_percent"},
-    {"atmosphere", "atmosphere outside {0:g} .. {1:g} bar", nullptr, "hydraulics",
-     "atmosphere_bar"},
+    {"oil-density", "density outside {0:g} .. {1:g} kg/m3", "hydraulics", "density_kg_per_m3"},
+    {"bulk-modulus", "bulk modulus outside {0:g} .. {1:g} MPa", "hydraulics", "bulk_modulus_MPa"},
+    {"air-content", "air below {0:g} or above {1:g} per cent", "hydraulics", "air_percent"},
+    {"atmosphere", "atmosphere outside {0:g} .. {1:g} bar", "hydraulics", "atmosphere_bar"},
     {"kidney",
      "kidney wider than the pitch 360/N or narrower than a fifth of the bore; higher than the bore "
      "or of less than 8 % of its area",
-     [](const Facts& f) -> std::string {
-       if (f.oil == nullptr) return "";
+     has_oil,
+     [](const Facts& f) {
        const double pitch = 360.0 / f.g.pistons;
        const double bore = 2 * deg(std::asin(std::min(1.0, f.bore / 2 / f.g.bore_circle_radius)));
        const double area =
            f.oil->kidney_width_deg * kRadPerDegree * f.g.bore_circle_radius * f.oil->kidney_height;
        return first_of(
-           {outside("kidney_width_deg", f.oil->kidney_width_deg, bore / 5, pitch, "deg",
+           {outside(f, "hydraulics", "kidney_width_deg", bore / 5, pitch,
                     fmt::format("a bore covers {:.3g} deg, the pitch of {} kidneys is {:.4g}", bore,
                                 f.g.pistons, pitch),
                     {kRadians, kTenfold, kTenth}),
-            outside("kidney_height_mm", mm(f.oil->kidney_height), 0, mm(f.bore), "mm",
+            outside(f, "hydraulics", "kidney_height_mm", 0, mm(f.bore),
                     "a kidney is not higher than its bore", {kTenth, kMicrometres}),
             outside("kidney_height_mm: kidney area", mm2(area), 0.08 * mm2(f.area), HUGE_VAL, "mm2",
                     fmt::format("8 % of the bore's {:.4g} mm2 (height {:.4g} mm)", mm2(f.area),
@@ -970,34 +977,31 @@ const Check kChecks[] = {
      }},
     {"notch",
      "a notch of less than 1 deg, or of less than 2e-4 or more than 0.2 of the bore's area",
-     [](const Facts& f) -> std::string {
-       if (f.oil == nullptr) return "";
+     has_oil,
+     [](const Facts& f) {
+       const double area = mm2(f.area);
        const auto one = [&](const std::string& port, const Notch& notch) -> std::string {
          if (notch.length_deg == 0 || notch.area == 0) return "";
-         const double area = mm2(f.area);
          return first_of(
-             {outside(port + "_notch_deg", notch.length_deg, 1, 90, "deg",
+             {outside(f, "hydraulics", port + "_notch_deg", 1, 90,
                       "a silencing notch leads by 5 to 20 deg", {kRadians}),
-              outside(port + "_notch_area_mm2", mm2(notch.area), 2e-4 * area, 0.2 * area, "mm2",
+              outside(f, "hydraulics", port + "_notch_area_mm2", 2e-4 * area, 0.2 * area,
                       fmt::format("a bore has {:.4g} mm2, a notch some", area),
                       {kSquareCm, kHundredth, kSquareM, kTenth})});
        };
        return first_of(
            {one("delivery", f.oil->delivery.notch), one("suction", f.oil->suction.notch)});
      }},
-    {"discharge-coefficient", "Cd outside {0:g} .. {1:g}", nullptr, "hydraulics",
-     "discharge_coefficient"},
-    {"transition-pressure", "p_cr above 5 bar and a twentieth of the delivery pressure",
+    {"discharge-coefficient", "Cd outside {0:g} .. {1:g}", "hydraulics", "discharge_coefficient"},
+    {"transition-pressure", "p_cr above 5 bar and a twentieth of the delivery pressure", has_oil,
      [](const Facts& f) {
-       return f.oil == nullptr ? std::string()
-                               : outside("transition_pressure_bar", bar(f.oil->transition_pressure),
-                                         0, std::max(5.0, bar(f.ports.delivery) / 20), "bar",
-                                         "orifices are turbulent well below the delivery pressure",
-                                         {{1e-5, "in pascals?"}, kTenth});
+       return outside(
+           f, "hydraulics", "transition_pressure_bar", 0, std::max(5.0, bar(f.ports.delivery) / 20),
+           "orifices are turbulent well below the delivery pressure", {kPascals, kTenth});
      }},
     {"leakage", "chambers on delivery lose more than 15 % of the ideal flow (at 1 m/s at least)",
+     has_stroke_and_oil,
      [](const Facts& f) -> std::string {
-       if (f.oil == nullptr || f.derived.stroke == 0) return "";
        const double lost = 0.5 * f.g.pistons * f.oil->leakage * std::max(0.0, f.ports.delivery);
        const double flow = f.g.pistons * f.area * std::max(f.piston_speed, kCreep) / 2;
        if (lost <= 0.15 * flow) return "";
@@ -1006,31 +1010,29 @@ const Check kChecks[] = {
            "{:.4g} l/min",
            f.oil->leakage * 6e4 * kPascalPerBar, lost * 6e4, bar(f.ports.delivery), flow * 6e4);
      }},
-    {"case-pressure", "case pressure above {1:g} bar", nullptr, "hydraulics", "case_bar"},
-    {"dead-volume", "V0 below 0.03 or above 5 times the stroke's volume",
-     [](const Facts& f) -> std::string {
-       if (f.oil == nullptr || f.derived.stroke == 0) return "";
+    {"case-pressure", "case pressure above {1:g} bar", "hydraulics", "case_bar"},
+    {"dead-volume", "V0 below 0.03 or above 5 times the stroke's volume", has_stroke_and_oil,
+     [](const Facts& f) {
        const double stroke = f.area * f.derived.stroke * 1e6;
        return outside(
-           "dead_volume_cm3", f.oil->dead_volume * 1e6, 0.03 * stroke, 5 * stroke, "cm3",
+           f, "hydraulics", "dead_volume_cm3", 0.03 * stroke, 5 * stroke,
            fmt::format("a stroke displaces {:.4g} cm3", stroke),
            {{1e-3, "in mm3?"}, {1e3, "in litres?"}, {1e6, "in m3?"}, kTenfold, kHundredth});
      }},
     {"delivery-volume", "delivery volume below 0.05 or above 1000 times the displacement",
-     [](const Facts& f) -> std::string {
-       if (f.oil == nullptr || f.derived.stroke == 0) return "";
+     has_stroke_and_oil,
+     [](const Facts& f) {
        const double turn = f.derived.displacement * 1e3;
-       return outside("delivery_volume_l", f.oil->delivery_volume * 1e3, 0.05 * turn, 1000 * turn,
-                      "l", fmt::format("a turn displaces {:.4g} l", turn),
+       return outside(f, "hydraulics", "delivery_volume_l", 0.05 * turn, 1000 * turn,
+                      fmt::format("a turn displaces {:.4g} l", turn),
                       {{1e-3, "in cm3?"}, {1e3, "in m3?"}});
      }},
     {"curve-points", "a spline of fewer than {0:g} points of the computed pressure in a turn",
+     "pressure", "points",
      [](const Facts& f) {
-       return f.the_case.pressure.kind != PressureKind::hydraulic || f.the_case.pressure.points == 0
-                  ? std::string()
-                  : implausible(f.the_case, "pressure", "points");
-     },
-     "pressure", "points"},
+       const PressureSpec& p = f.the_case.pressure;
+       return p.kind == PressureKind::hydraulic && p.points != 0;
+     }},
 };
 
 bool is_code(const std::string& code) {

@@ -27,84 +27,47 @@ Table drive_table() {
   return {
       .name = "drive",
       .meaning =
-          "what turns the shaft in `bentaxis simulate`, and for how long; other commands "
-          "leave it aside",
+          "what turns the shaft in `bentaxis simulate`, and for how long; other commands leave it "
+          "aside",
       .part = &kDrive,
       .parameters =
-          {{.key = "kind",
-            .field = FIELD(c.drive->kind),
-            .words = {"speed", "torque", "motor"},
-            .fallback = {std::string("speed")},
-            .meaning = "the shaft's speed is given; a torque turns it; or a rotor turns it through "
-                       "a coupling, Td = K (phi - theta) + D (phi' - theta')"},
-           {.key = "file",
-            .field =
+          {choice("kind", FIELD(c.drive->kind), {"speed", "torque", "motor"}, "speed",
+                  "the shaft's speed is given; a torque turns it; or a rotor turns it through a "
+                  "coupling, Td = K (phi - theta) + D (phi' - theta')"),
+           text("file",
                 curve_at(PLACE(c.drive->curve.file), {.drive = [](Case& c) { return &*c.drive; }}),
-            .fallback = {std::string()},
-            .meaning =
-                "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case "
-                "file, at least 4 points from a time <= 0 on: the speed or the torque over time "
-                "instead; of a motor `speed_rpm,torque_Nm`, its torque over its speed; empty: "
-                "none"},
-           {.key = "torque_Nm",
-            .field = FIELD(c.drive->torque),
-            .symbol = "Td, T0",
-            .unit = {"Nm"},
-            .fallback = {.computed = [](const Case& c) -> std::optional<Value> {
-                           if (c.drive->curve.time.empty()) return std::nullopt;
-                           return 0.0;
-                         },
-                         .words = "required, but beside a `file`"},
-            .meaning =
-                "of the drive, or of a motor at the speed of `[operation]`; unused beside a `file`",
-            .active = kGivenTorque},
-           {.key = "torque_slope_Nm_s_per_rad",
-            .field = FIELD(c.drive->motor->torque_slope),
-            .symbol = "s",
-            .unit = {"Nm s/rad"},
-            .fallback = {0.0},
-            .meaning = "the motor's torque is T0 - s (phi' - omega), beside a `file` it is unused",
-            .part = &kMotorData},
-           {.key = "rotor_inertia_kg_m2",
-            .field = FIELD(c.drive->motor->rotor_inertia),
-            .symbol = "J_m",
-            .unit = {"kg m2"},
-            .range = kPositive,
-            .meaning = "of the rotor, at the angle phi",
-            .part = &kMotorData},
-           {.key = "coupling_stiffness_Nm_per_rad",
-            .field = FIELD(c.drive->motor->coupling_stiffness),
-            .symbol = "K",
-            .unit = {"Nm/rad"},
-            .range = kPositive,
-            .meaning = "of the coupling",
-            .part = &kMotorData},
-           {.key = "coupling_damping_Nm_s_per_rad",
-            .field = FIELD(c.drive->motor->coupling_damping),
-            .symbol = "D",
-            .unit = {"Nm s/rad"},
-            .range = kNotNegative,
-            .fallback = {0.0},
-            .meaning = "of the coupling",
-            .part = &kMotorData},
-           {.key = "start_rpm",
-            .field = FIELD(c.drive->start_speed),
-            .unit = kRotation,
-            .fallback = {.words = "`speed_rpm`"},
-            .meaning = "speed of every body at the start, not beside a given speed; from 0 the "
-                       "coupling is unwound",
-            .part = &kStartSpeed},
-           {.key = "duration_s",
-            .field = FIELD(c.drive->duration),
-            .unit = {"s"},
-            .range = kPositive,
-            .meaning = "simulated time",
-            .in_fmu = InFmu::absent},
-           {.key = "samples",
-            .field = FIELD(c.drive->samples),
-            .range = kCount,
-            .meaning = "rows at 0, duration/samples, .., duration"}},
-      .rules = {{.key = "file", .after = "file", .broken = curve_refusal}}};
+                "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case file, at "
+                "least 4 points from a time <= 0 on: the speed or the torque over time instead; of "
+                "a motor `speed_rpm,torque_Nm`, its torque over its speed; empty: none"),
+           number(
+               "torque_Nm", "Td, T0", FIELD(c.drive->torque), {"Nm"}, kAny,
+               {.computed = [](const Case& c) -> std::optional<Value> {
+                  if (c.drive->curve.time.empty()) return std::nullopt;
+                  return 0.0;
+                },
+                .words = "required, but beside a `file`"},
+               "of the drive, or of a motor at the speed of `[operation]`; unused beside a `file`",
+               {.active = kGivenTorque}),
+           number("torque_slope_Nm_s_per_rad", "s", FIELD(c.drive->motor->torque_slope),
+                  {"Nm s/rad"}, kAny, {0.0},
+                  "the motor's torque is T0 - s (phi' - omega), beside a `file` it is unused",
+                  {.part = &kMotorData}),
+           number("rotor_inertia_kg_m2", "J_m", FIELD(c.drive->motor->rotor_inertia), {"kg m2"},
+                  kPositive, kRequired, "of the rotor, at the angle phi", {.part = &kMotorData}),
+           number("coupling_stiffness_Nm_per_rad", "K", FIELD(c.drive->motor->coupling_stiffness),
+                  {"Nm/rad"}, kPositive, kRequired, "of the coupling", {.part = &kMotorData}),
+           number("coupling_damping_Nm_s_per_rad", "D", FIELD(c.drive->motor->coupling_damping),
+                  {"Nm s/rad"}, kNotNegative, {0.0}, "of the coupling", {.part = &kMotorData}),
+           number("start_rpm", "", FIELD(c.drive->start_speed), kRotation, kAny,
+                  {.words = "`speed_rpm`"},
+                  "speed of every body at the start, not beside a given speed; from 0 the coupling "
+                  "is unwound",
+                  {.part = &kStartSpeed}),
+           number("duration_s", "", FIELD(c.drive->duration), {"s"}, kPositive, kRequired,
+                  "simulated time", {.in_fmu = InFmu::absent}),
+           number("samples", "", FIELD(c.drive->samples), kNoUnit, kCount, kRequired,
+                  "rows at 0, duration/samples, .., duration")},
+      .rules = {after("file", curve_refusal)}};
 }
 
 }  // namespace bentaxis::tables

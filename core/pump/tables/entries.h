@@ -135,6 +135,31 @@ Field kept_at(Place place, const char* text) {
     return choice_at(place, text);
 }
 
+// ---- Entries, in the order of the columns of docs/case_file.md; `more` says by name what few have
+
+inline constexpr Unit kNoUnit{};
+inline const Default kRequired{};
+
+/// A number, a whole number or a pair.
+Parameter number(std::string key, std::string symbol, Field field, Unit unit, NumberRange range,
+                 Default fallback, std::string meaning, Parameter more = {});
+Parameter choice(std::string key, Field field, std::vector<std::string> words, Default fallback,
+                 std::string meaning, Parameter more = {});
+Parameter choice(std::string key, Field field, std::vector<std::string> words, const char* fallback,
+                 std::string meaning, Parameter more = {});
+Parameter flag(std::string key, Field field, bool fallback, std::string meaning);
+/// A text or a file; empty where the case does not give it.
+Parameter text(std::string key, Field field, std::string meaning, Parameter more = {});
+Parameter required_text(std::string key, Field field, std::string meaning, Parameter more = {});
+
+/// Rules that are checked once the key is read, and at the end of its table.
+inline Rule after(const std::string& key, std::string (*broken)(const Case&)) {
+  return {key, key, broken};
+}
+inline Rule at_end(const std::string& key, std::string (*broken)(const Case&)) {
+  return {key, "", broken};
+}
+
 // ---- Data that a case may lack
 
 /// @param place  of an optional in a case; may return null where what it lies in is missing

@@ -17,33 +17,21 @@ std::string loop_refusal(const Case& c) {
 }  // namespace
 
 Table loop_table() {
-  return {.name = "loop",
-          .meaning =
-              "closed circuit: the load leads into a volume at the suction port, and a "
-              "charge supply at `suction_bar` feeds either side through a check valve",
-          .part = &kLoop,
-          .parameters = {{.key = "volume_l",
-                          .field = FIELD(c.hydraulics->loop->volume),
-                          .symbol = "V_s",
-                          .unit = kLitres,
-                          .range = kPositive,
-                          .fallback = {0.5},
-                          .meaning = "of the closed loop at the suction port"},
-                         {.key = "charge_area_mm2",
-                          .field = FIELD(c.hydraulics->loop->charge_area),
-                          .symbol = "a_c",
-                          .unit = kSquareMillimetres,
-                          .range = kPositive,
-                          .fallback = {50.0},
-                          .meaning = "of each check valve, fully open"},
-                         {.key = "charge_opening_bar",
-                          .field = FIELD(c.hydraulics->loop->opening),
-                          .unit = kBar,
-                          .range = {1e-3, 1000},
-                          .fallback = {1.0},
-                          .meaning = "pressure difference over which its area grows from 0 to "
-                                     "that, in proportion"}},
-          .rules = {{.key = "volume_l", .after = "", .broken = loop_refusal}}};
+  return {
+      .name = "loop",
+      .meaning =
+          "closed circuit: the load leads into a volume at the suction port, and a charge supply "
+          "at `suction_bar` feeds either side through a check valve",
+      .part = &kLoop,
+      .parameters =
+          {number("volume_l", "V_s", FIELD(c.hydraulics->loop->volume), kLitres, kPositive, {0.5},
+                  "of the closed loop at the suction port"),
+           number("charge_area_mm2", "a_c", FIELD(c.hydraulics->loop->charge_area),
+                  kSquareMillimetres, kPositive, {50.0}, "of each check valve, fully open"),
+           number("charge_opening_bar", "", FIELD(c.hydraulics->loop->opening), kBar, {1e-3, 1000},
+                  {1.0},
+                  "pressure difference over which its area grows from 0 to that, in proportion")},
+      .rules = {at_end("volume_l", loop_refusal)}};
 }
 
 }  // namespace bentaxis::tables

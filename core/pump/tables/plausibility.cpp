@@ -7,11 +7,8 @@ Table plausibility_table() {
   return {.name = "plausibility",
           .meaning = "reasons for values that a check holds to be doubtful (plausibility.md)",
           .presence = Presence::silent,
-          .parameters = {{.key = "meant",
-                          .field = FIELD(c.meant),
-                          .fallback = {std::string()},
-                          .meaning = "`CODE: reason; CODE: reason`: these are meant, and do not "
-                                     "warn"}}};
+          .parameters = {text("meant", FIELD(c.meant),
+                              "`CODE: reason; CODE: reason`: these are meant, and do not warn")}};
 }
 
 }  // namespace bentaxis::tables

@@ -6,11 +6,9 @@ namespace bentaxis::tables {
 Table top_level() {
   return {.name = "",
           .meaning = "the file itself",
-          .parameters = {{.key = "schema",
-                          .field = IntegerField{},
-                          .range = {1, 1},
-                          .meaning = "version of this format"},
-                         {.key = "name", .field = FIELD(c.name), .meaning = "shown in reports"}}};
+          .parameters = {number("schema", "", IntegerField{}, kNoUnit, {1, 1}, kRequired,
+                                "version of this format"),
+                         required_text("name", FIELD(c.name), "shown in reports")}};
 }
 
 }  // namespace bentaxis::tables

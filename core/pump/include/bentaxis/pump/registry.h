@@ -106,7 +106,7 @@ enum class Scaling { value, sine, cosine };
 enum class InFmu { absent, fixed, tunable };
 
 struct Parameter {
-  std::string key;  ///< in the file, with the unit: "tilt_deg"
+  std::string key = {};  ///< in the file, with the unit: "tilt_deg"
   Field field = NumberField{};
   /// Of a number of PumpParameters, its path there: "geometry.tilt"; of a pair both. Filled in by
   /// standard_registry() from the field.

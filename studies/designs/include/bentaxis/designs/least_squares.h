@@ -23,6 +23,8 @@ struct LeastSquaresProblem {
   std::vector<double> low = {}, high = {};  ///< bounds, one per parameter; empty: none
 };
 
+double sum_of_squares(std::span<const double> residuals);
+
 struct LeastSquaresFit {
   std::vector<double> x;
   std::vector<double> residuals;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bentaxis/pump/error.h"
+
 namespace bentaxis::study {
 
 struct FailedPoint {
@@ -11,6 +13,19 @@ struct FailedPoint {
   std::string point;   ///< "delivery_bar = 175"
   std::string reason;  ///< of the computation
 };
+
+/// Does a job. @return why it is refused or fails, one line; "" where it is done
+template <class Job>
+std::string reason_of(const Job& job) {
+  try {
+    job();
+  } catch (const InputError& error) {
+    return error.what();
+  } catch (const ComputationError& error) {
+    return error.what();
+  }
+  return "";
+}
 
 }  // namespace bentaxis::study
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/study/progress.h"
 
 namespace bentaxis::study {
@@ -37,5 +38,16 @@ class Reporting {
   std::size_t all_, done_ = 0;
   Progress progress_;
 };
+
+/// Calls job(0) .. job(count - 1) side by side and reports each that is done.
+/// @param threads  0: one per processor
+inline void for_each_of(std::size_t count, int threads, const Progress& progress,
+                        const std::function<void(std::size_t)>& job) {
+  Reporting reporting(count, progress);
+  numerics::parallel_for(threads, count, [&](std::size_t i) {
+    job(i);
+    reporting.done();
+  });
+}
 
 }  // namespace bentaxis::study
