@@ -126,26 +126,31 @@ class OilInTime : public Oil {
 
   std::vector<OilColumn> columns() const override {
     std::vector<OilColumn> all;
-    for (int k = 1; k <= pistons(); ++k)
-      all.push_back({"p_" + std::to_string(k) + "_bar",
-                     "pressure in chamber " + std::to_string(k) + ", gauge"});
-    all.push_back({"p_suction_bar", "pressure in the suction port, gauge"});
-    all.push_back({"p_delivery_bar", "pressure in the delivery volume, gauge"});
-    if (network_.has_delivery_line())
-      all.push_back({"p_load_bar", "pressure at the end of the delivery line, gauge"});
-    if (network_.has_accumulator())
-      all.push_back({"p_accumulator_bar", "pressure in the accumulator, gauge"});
-    all.push_back({"flow_suction_l_per_min", network_.has_loop()
-                                                 ? "from the charge supply, at suction density"
-                                                 : "taken in, at suction density"});
-    all.push_back({"flow_delivery_l_per_min", "into the load, at suction density"});
-    all.push_back({"leakage_l_per_min", "leakage of all chambers, at suction density"});
-    if (network_.load().has_relief() && !network_.fixed_end())
+    const auto pressure = [&](const std::string& group, const std::string& meaning) {
+      all.push_back({group + "_bar", meaning + ", gauge", "bar", group});
+    };
+    const auto flow = [&](const std::string& group, const std::string& meaning) {
+      all.push_back({group + "_l_per_min", meaning + ", at suction density", "l/min", group});
+    };
+    for (int k = 1; k <= pistons(); ++k) {
+      const std::string number = std::to_string(k);
       all.push_back(
-          {"flow_relief_l_per_min", "over the relief valve beside the load, at suction density"});
+          {"p_" + number + "_bar", "pressure in chamber " + number + ", gauge", "bar", "p", k});
+    }
+    pressure("p_suction", "pressure in the suction port");
+    pressure("p_delivery", "pressure in the delivery volume");
+    if (network_.has_delivery_line())
+      pressure("p_load", "pressure at the end of the delivery line");
+    if (network_.has_accumulator()) pressure("p_accumulator", "pressure in the accumulator");
+    flow("flow_suction", network_.has_loop() ? "from the charge supply" : "taken in");
+    flow("flow_delivery", "into the load");
+    flow("leakage", "leakage of all chambers");
+    if (network_.load().has_relief() && !network_.fixed_end())
+      flow("flow_relief", "over the relief valve beside the load");
     all.push_back({"power_useful_W",
                    "what the oil carries out of the delivery volume less what it carries in to the "
-                   "suction port, mass flow times pressure potential"});
+                   "suction port, mass flow times pressure potential",
+                   "W"});
     return all;
   }
 
