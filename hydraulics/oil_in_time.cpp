@@ -159,43 +159,46 @@ class OilInTime : public Oil {
   std::vector<Column> all_columns() const {
     using Flows = Network::Flows;
     std::vector<Column> all;
-    const auto pressure = [&](const std::string& name, const std::string& where, auto gauge) {
-      all.push_back({{name, "pressure " + where + ", gauge"},
+    const auto pressure = [&](const std::string& group, const std::string& where, auto gauge,
+                              int chamber = 0) {
+      const std::string of = chamber > 0 ? "_" + std::to_string(chamber) : "";
+      all.push_back({{group + of + "_bar", "pressure " + where + ", gauge", "bar", group, chamber},
                      [gauge](const double* y, const Flows&) { return gauge(y) / kPascalPerBar; }});
     };
-    const auto flow = [&](const std::string& name, const std::string& what, auto mass) {
-      all.push_back({{name, what + ", at suction density"}, [this, mass](auto, const Flows& flows) {
+    const auto flow = [&](const std::string& group, const std::string& what, auto mass) {
+      all.push_back({{group + "_l_per_min", what + ", at suction density", "l/min", group},
+                     [this, mass](auto, const Flows& flows) {
                        return mass(flows) / density_ / kLitrePerMinute;
                      }});
     };
-    for (int k = 0; k < pistons(); ++k) {
-      const std::string number = std::to_string(k + 1);
-      pressure("p_" + number + "_bar", "in chamber " + number,
-               [this, k](const double* y) { return network_.fluid().gauge(y[k]); });
-    }
-    pressure("p_suction_bar", "in the suction port",
+    for (int k = 0; k < pistons(); ++k)
+      pressure(
+          "p", "in chamber " + std::to_string(k + 1),
+          [this, k](const double* y) { return network_.fluid().gauge(y[k]); }, k + 1);
+    pressure("p_suction", "in the suction port",
              [this](const double* y) { return network_.suction_gauge(y); });
-    pressure("p_delivery_bar", "in the delivery volume",
+    pressure("p_delivery", "in the delivery volume",
              [this](const double* y) { return network_.delivery_gauge(y); });
     if (network_.has_delivery_line())
-      pressure("p_load_bar", "at the end of the delivery line",
+      pressure("p_load", "at the end of the delivery line",
                [this](const double* y) { return network_.load_gauge(y); });
     if (network_.has_accumulator())
-      pressure("p_accumulator_bar", "in the accumulator",
+      pressure("p_accumulator", "in the accumulator",
                [this](const double* y) { return network_.accumulator_gauge(y); });
-    flow("flow_suction_l_per_min", network_.has_loop() ? "from the charge supply" : "taken in",
+    flow("flow_suction", network_.has_loop() ? "from the charge supply" : "taken in",
          [](const Flows& flows) { return flows.taken; });
-    flow("flow_delivery_l_per_min", "into the load",
+    flow("flow_delivery", "into the load",
          [](const Flows& flows) { return flows.load - flows.relief; });
-    flow("leakage_l_per_min", "leakage of all chambers",
+    flow("leakage", "leakage of all chambers",
          [](const Flows& flows) { return sum_over_chambers(flows.leakage); });
     if (network_.load().has_relief() && !network_.fixed_end())
-      flow("flow_relief_l_per_min", "over the relief valve beside the load",
+      flow("flow_relief", "over the relief valve beside the load",
            [](const Flows& flows) { return flows.relief; });
     all.push_back(
         {{"power_useful_W",
           "what the oil carries out of the delivery volume less what it carries in to "
-          "the suction port, mass flow times pressure potential"},
+          "the suction port, mass flow times pressure potential",
+          "W"},
          [this](const double* y, const Flows& flows) { return network_.port_power(y, flows); }});
     return all;
   }

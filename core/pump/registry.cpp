@@ -69,12 +69,8 @@ void check(const Table& table, const Parameter& parameter, const Case& the_case)
     refuse(table, parameter, the_case,
            "must be " + (std::isfinite(*value) ? range.text() : range.text_of("a finite number")));
   };
-  if (const auto* field = std::get_if<NumberField>(&parameter.field)) {
-    number(read(field->place, the_case));
-  } else if (const auto* pair = std::get_if<PairField>(&parameter.field)) {
-    number(read(pair->first, the_case));
-    number(read(pair->second, the_case));
-  } else if (const auto* integer = std::get_if<IntegerField>(&parameter.field)) {
+  for (const Access<double>* place : numbers_of(parameter.field)) number(read(*place, the_case));
+  if (const auto* integer = std::get_if<IntegerField>(&parameter.field)) {
     const int* value = read(integer->place, the_case);
     if (value != nullptr && !parameter.range.contains(*value))
       refuse(table, parameter, the_case,
@@ -102,6 +98,12 @@ void check_tables(const Case& the_case, const Registry& registry) {
 }
 
 }  // namespace
+
+std::vector<const Access<double>*> numbers_of(const Field& field) {
+  if (const auto* number = std::get_if<NumberField>(&field)) return {&number->place};
+  if (const auto* pair = std::get_if<PairField>(&field)) return {&pair->first, &pair->second};
+  return {};
+}
 
 const Table& table_of(const Registry& registry, const std::string& name) {
   for (const Table& table : registry.tables)
@@ -141,65 +143,60 @@ double in_file_unit(double si, const Unit& unit) {
 
 std::optional<Value> value_of(const Parameter& parameter, const Case& the_case) {
   if (!is_there(parameter, the_case)) return std::nullopt;
-  const auto as_value = [](const auto* value) {
-    return value == nullptr ? std::nullopt : std::optional<Value>(*value);
-  };
-  return std::visit(
-      Overloaded{[&](const NumberField& field) -> std::optional<Value> {
-                   const double* si = read(field.place, the_case);
-                   if (si == nullptr) return std::nullopt;
-                   return in_file_unit(*si, parameter.unit);
-                 },
-                 [&](const IntegerField& field) { return as_value(read(field.place, the_case)); },
-                 [&](const FlagField& field) { return as_value(read(field.place, the_case)); },
-                 [&](const TextField& field) { return as_value(read(field.place, the_case)); },
-                 [&](const ChoiceField& field) -> std::optional<Value> {
-                   if (field.read == nullptr) return std::nullopt;
-                   const std::size_t index = field.read(the_case);
-                   if (index >= parameter.words.size()) return std::nullopt;
-                   return parameter.words[index];
-                 },
-                 [&](const PairField& field) -> std::optional<Value> {
-                   const double* first = read(field.first, the_case);
-                   const double* second = read(field.second, the_case);
-                   if (first == nullptr || second == nullptr) return std::nullopt;
-                   return std::array{in_file_unit(*first, parameter.unit),
-                                     in_file_unit(*second, parameter.unit)};
-                 },
-                 [&](const CurveField& field) -> std::optional<Value> {
-                   const std::filesystem::path* file = read(field.file, the_case);
-                   if (file == nullptr) return std::nullopt;
-                   return file->empty() ? std::string() : std::filesystem::absolute(*file).string();
-                 }},
-      parameter.field);
+  return std::visit(Overloaded{[&]<class T>(const PlainField<T>& field) -> std::optional<Value> {
+                                 const T* value = read(field.place, the_case);
+                                 if (value == nullptr) return std::nullopt;
+                                 if constexpr (std::is_same_v<T, double>)
+                                   return in_file_unit(*value, parameter.unit);
+                                 else
+                                   return *value;
+                               },
+                               [&](const ChoiceField& field) -> std::optional<Value> {
+                                 if (field.read == nullptr) return std::nullopt;
+                                 const std::size_t index = field.read(the_case);
+                                 if (index >= parameter.words.size()) return std::nullopt;
+                                 return parameter.words[index];
+                               },
+                               [&](const PairField& field) -> std::optional<Value> {
+                                 const double* first = read(field.first, the_case);
+                                 const double* second = read(field.second, the_case);
+                                 if (first == nullptr || second == nullptr) return std::nullopt;
+                                 return std::array{in_file_unit(*first, parameter.unit),
+                                                   in_file_unit(*second, parameter.unit)};
+                               },
+                               [&](const CurveField& field) -> std::optional<Value> {
+                                 const std::filesystem::path* file = read(field.file, the_case);
+                                 if (file == nullptr) return std::nullopt;
+                                 return file->empty() ? std::string()
+                                                      : std::filesystem::absolute(*file).string();
+                               }},
+                    parameter.field);
 }
 
 void store(const Parameter& parameter, Case& the_case, const Value& value) {
   if (!is_there(parameter, the_case)) return;
   std::visit(
-      Overloaded{
-          [&](const NumberField& field) {
-            write(field.place, the_case, to_si(std::get<double>(value), parameter.unit));
-          },
-          [&](const IntegerField& field) { write(field.place, the_case, std::get<int>(value)); },
-          [&](const FlagField& field) { write(field.place, the_case, std::get<bool>(value)); },
-          [&](const TextField& field) {
-            write(field.place, the_case, std::get<std::string>(value));
-          },
-          [&](const ChoiceField& field) {
-            if (field.write == nullptr) return;
-            const auto& words = parameter.words;
-            const auto word = std::find(words.begin(), words.end(), std::get<std::string>(value));
-            field.write(the_case, static_cast<std::size_t>(word - words.begin()));
-          },
-          [&](const PairField& field) {
-            const auto& pair = std::get<std::array<double, 2>>(value);
-            write(field.first, the_case, to_si(pair[0], parameter.unit));
-            write(field.second, the_case, to_si(pair[1], parameter.unit));
-          },
-          [&](const CurveField& field) {
-            write(field.file, the_case, std::filesystem::path(std::get<std::string>(value)));
-          }},
+      Overloaded{[&]<class T>(const PlainField<T>& field) {
+                   if constexpr (std::is_same_v<T, double>)
+                     write(field.place, the_case, to_si(std::get<double>(value), parameter.unit));
+                   else
+                     write(field.place, the_case, std::get<T>(value));
+                 },
+                 [&](const ChoiceField& field) {
+                   if (field.write == nullptr) return;
+                   const auto& words = parameter.words;
+                   const auto word =
+                       std::find(words.begin(), words.end(), std::get<std::string>(value));
+                   field.write(the_case, static_cast<std::size_t>(word - words.begin()));
+                 },
+                 [&](const PairField& field) {
+                   const auto& pair = std::get<std::array<double, 2>>(value);
+                   write(field.first, the_case, to_si(pair[0], parameter.unit));
+                   write(field.second, the_case, to_si(pair[1], parameter.unit));
+                 },
+                 [&](const CurveField& field) {
+                   write(field.file, the_case, std::filesystem::path(std::get<std::string>(value)));
+                 }},
       parameter.field);
 }
 
@@ -271,15 +268,10 @@ std::vector<PumpInput> continuous_inputs(PumpParameters& pump, const Registry& r
     for (const Parameter& parameter : table.parameters) {
       if (parameter.path.empty() || !is_there(parameter, the_case)) continue;
       auto& list = parameter.within == nullptr ? always : in_parts;
-      const auto add = [&](const Access<double>& place, const std::string& path) {
-        list.push_back({path, place.in_pump(pump), si_range(parameter, the_case)});
-      };
-      if (const auto* number = std::get_if<NumberField>(&parameter.field)) {
-        add(number->place, parameter.path[0]);
-      } else if (const auto* pair = std::get_if<PairField>(&parameter.field)) {
-        add(pair->first, parameter.path[0]);
-        add(pair->second, parameter.path[1]);
-      }
+      const auto numbers = numbers_of(parameter.field);
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        list.push_back(
+            {parameter.path[i], numbers[i]->in_pump(pump), si_range(parameter, the_case)});
     }
   always.insert(always.end(), in_parts.begin(), in_parts.end());
   return always;

@@ -73,11 +73,8 @@ void complete(Parameter& parameter, const Table& table) {
   if (parameter.differentiable == nullptr) parameter.differentiable = table.differentiable;
   if (!parameter.in_fmu) parameter.in_fmu = table.in_fmu;
   parameter.within = parameter.part != nullptr ? parameter.part : table.part;
-  if (const auto* number = std::get_if<NumberField>(&parameter.field)) {
-    if (number->place.in_pump != nullptr) parameter.path = {number->place.path};
-  } else if (const auto* pair = std::get_if<PairField>(&parameter.field)) {
-    if (pair->first.in_pump != nullptr) parameter.path = {pair->first.path, pair->second.path};
-  }
+  for (const Access<double>* place : numbers_of(parameter.field))
+    if (place->in_pump != nullptr) parameter.path.push_back(place->path);
 }
 
 Registry make_registry() {

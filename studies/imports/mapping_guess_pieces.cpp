@@ -27,6 +27,16 @@ constexpr double kWrongUnit = 1.5;
 constexpr std::array<const char*, 14> kGuessedUnits = {
     "N", "kN", "MN", "lbf", "Nm", "kNm", "Nmm", "lbf in", "m", "mm", "um", "bar", "MPa", "Pa"};
 
+using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+Eigen::Map<const Matrix> matrix(const Axes& axes) {
+  return Eigen::Map<const Matrix>(axes[0].data());
+}
+Axes axes_of(const Matrix& matrix) {
+  Axes axes;
+  Eigen::Map<Matrix>(axes[0].data()) = matrix;
+  return axes;
+}
+
 bool is_word_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '?'; }
 
 }  // namespace
@@ -412,25 +422,17 @@ double cost_without_signs(const Products& p, const Axes& axes, double factor,
 }
 
 Axes carried(const Axes& axes, const Axes& from, const Axes& to) {
-  Axes out{};
-  for (std::size_t j = 0; j < 3; ++j)
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t l = 0; l < 3; ++l) out[j][i] += axes[j][k] * from[k][l] * to[i][l];
-  return out;
+  return axes_of(matrix(axes) * matrix(from) * matrix(to).transpose());
 }
 
 std::array<Series, 3> in_axes(const std::array<Series, 3>& parts, const Axes& from,
                               const Axes& to) {
+  const Matrix cosines = matrix(to) * matrix(from).transpose();
   std::array<Series, 3> out;
-  for (std::size_t j = 0; j < 3; ++j) {
-    out[j].assign(parts[0].size(), 0);
-    for (std::size_t i = 0; i < 3; ++i) {
-      double cosine = 0;
-      for (std::size_t l = 0; l < 3; ++l) cosine += to[j][l] * from[i][l];
-      for (std::size_t row = 0; row < parts[0].size(); ++row) out[j][row] += cosine * parts[i][row];
-    }
-  }
+  for (int j = 0; j < 3; ++j)
+    for (std::size_t row = 0; row < parts[0].size(); ++row)
+      out[j].push_back(
+          cosines.row(j).dot(Eigen::RowVector3d(parts[0][row], parts[1][row], parts[2][row])));
   return out;
 }
 
@@ -442,11 +444,7 @@ const std::vector<Axes>& right_angles() {
       for (int signs = 0; signs < 8; ++signs) {
         Axes axes{};
         for (std::size_t j = 0; j < 3; ++j) axes[j][order[j]] = (signs >> j & 1) != 0 ? -1 : 1;
-        const double determinant =
-            axes[0][0] * (axes[1][1] * axes[2][2] - axes[1][2] * axes[2][1]) -
-            axes[0][1] * (axes[1][0] * axes[2][2] - axes[1][2] * axes[2][0]) +
-            axes[0][2] * (axes[1][0] * axes[2][1] - axes[1][1] * axes[2][0]);
-        if (determinant > 0) list.push_back(axes);
+        if (matrix(axes).determinant() > 0) list.push_back(axes);
       }
     } while (std::next_permutation(order.begin(), order.end()));
     return list;
@@ -454,12 +452,7 @@ const std::vector<Axes>& right_angles() {
   return all;
 }
 
-double trace_of(const Axes& a, const Axes& b) {
-  double sum = 0;
-  for (std::size_t j = 0; j < 3; ++j)
-    sum += std::inner_product(a[j].begin(), a[j].end(), b[j].begin(), 0.0);
-  return sum;
-}
+double trace_of(const Axes& a, const Axes& b) { return matrix(a).cwiseProduct(matrix(b)).sum(); }
 
 double angle_from_right_angles(const Axes& axes) {
   double cosine = -1;
@@ -487,16 +480,12 @@ std::array<double, 3> euler_angles(const Axes& axes, const std::string& sequence
 
 Axes nearest_rotation(const std::vector<Axes>& products, const std::vector<double>& weights) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < products.size(); ++i)
-    sum += weights[i] *
-           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(products[i][0].data());
+  for (std::size_t i = 0; i < products.size(); ++i) sum += weights[i] * matrix(products[i]);
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
   // A rotation and no reflection: the sign is that of the direction which the vectors show least.
   const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
-  Axes axes{};
-  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(axes[0].data()) =
-      svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
-  return axes;
+  return axes_of(svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() *
+                 svd.matrixV().transpose());
 }
 
 std::function<int(int)> best_numbering(const std::vector<std::pair<int, int>>& votes, int pistons) {

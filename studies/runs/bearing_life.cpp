@@ -74,27 +74,22 @@ BearingLife life_of(Bearing bearing, const BearingRating& rating,
   return life;
 }
 
-// Scans what must not be negative at any angle; `shown` is what is said of it.
-class LimitScan {
- public:
-  LimitScan(const std::vector<LifePoint>& points, const std::vector<double>& revolutions,
-            std::vector<LifeLimit>& limits)
-      : points_(points), revolutions_(revolutions), limits_(limits) {}
-
+std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<LifePoint>& points,
+                                 const std::vector<double>& revolutions) {
+  std::vector<LifeLimit> limits;
   using OfAngle = std::function<double(const BearingLoads&, std::size_t)>;
-  void add(LifeLimit limit, const OfAngle& not_negative, const OfAngle& shown) {
-    double all = 0, violated = 0, smallest = 0;
-    bool first = true;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const LifePoint& p = points_[i];
+  // Scans what must not be negative at any angle; `shown` is what is said of it.
+  const auto scan = [&](LifeLimit limit, const OfAngle& not_negative, const OfAngle& shown) {
+    double all = 0, violated = 0, smallest = HUGE_VAL;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const LifePoint& p = points[i];
       const BearingLoads& loads = p.loads[static_cast<std::size_t>(limit.bearing)];
-      const double each = revolutions_[i] / static_cast<double>(p.theta_deg.size());
+      const double each = revolutions[i] / static_cast<double>(p.theta_deg.size());
       for (std::size_t k = 0; k < p.theta_deg.size(); ++k) {
         const double value = not_negative(loads, k);
         all += each;
         if (value < 0) violated += each;
-        if (!first && value >= smallest) continue;
-        first = false;
+        if (value >= smallest) continue;
         smallest = value;
         limit.worst = shown(loads, k);
         limit.point = i;
@@ -103,32 +98,17 @@ class LimitScan {
     }
     // At standstill every angle counts alike: there are no revolutions to weigh them by.
     limit.violated_share = all > 0 ? violated / all : smallest < 0 ? 1 : 0;
-    limits_.push_back(std::move(limit));
-  }
-
- private:
-  const std::vector<LifePoint>& points_;
-  const std::vector<double>& revolutions_;
-  std::vector<LifeLimit>& limits_;
-};
-
-std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<LifePoint>& points,
-                                 const std::vector<double>& revolutions) {
-  std::vector<LifeLimit> limits;
-  LimitScan scan(points, revolutions, limits);
-  const LimitScan::OfAngle axial = [](const BearingLoads& l, std::size_t k) { return l.axial[k]; };
-  const LimitScan::OfAngle load = [](const BearingLoads& l, std::size_t k) {
-    return l.equivalent[k];
+    limits.push_back(std::move(limit));
   };
-  const LimitScan::OfAngle load0 = [](const BearingLoads& l, std::size_t k) {
-    return l.equivalent0[k];
-  };
-  scan.add({Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
-            "it takes thrust one way only; its life is computed from the magnitude and says "
-            "nothing there"},
-           axial, axial);
+  const OfAngle axial = [](const BearingLoads& l, std::size_t k) { return l.axial[k]; };
+  const OfAngle load = [](const BearingLoads& l, std::size_t k) { return l.equivalent[k]; };
+  const OfAngle load0 = [](const BearingLoads& l, std::size_t k) { return l.equivalent0[k]; };
+  scan({Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
+        "it takes thrust one way only; its life is computed from the magnitude and says "
+        "nothing there"},
+       axial, axial);
   const double per_radial = 1 / (2 * b.tapered->axial_factor);
-  scan.add(
+  scan(
       {Bearing::tapered, "seated", "thrust exceeds what the taper itself makes: Fa >= Fr/(2Y)",
        "without a bearing opposed to it fewer than half of the rollers carry; P is too small "
        "there"},
@@ -136,21 +116,21 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
       axial);
   for (const Bearing bearing : kBearings) {
     const BearingRating& rating = rating_of(b, bearing);
-    scan.add(
+    scan(
         {bearing, "smallest", "load enough for the rollers to roll: P >= 0.02 C",
          "rollers may slide instead of rolling: wear that no rating life counts"},
         [&](const BearingLoads& l, std::size_t k) {
           return l.equivalent[k] - kSmallestLoad * rating.dynamic_rating;
         },
         load);
-    scan.add(
+    scan(
         {bearing, "largest", "load within what ISO 281 holds for: P <= 0.5 C",
          "the rating life is too long there"},
         [&](const BearingLoads& l, std::size_t k) {
           return kLargestLoad * rating.dynamic_rating - l.equivalent[k];
         },
         load);
-    scan.add(
+    scan(
         {bearing, "static", "no lasting dents: P0 <= C0", "rollers leave dents at standstill"},
         [&](const BearingLoads& l, std::size_t k) {
           return rating.static_rating - l.equivalent0[k];

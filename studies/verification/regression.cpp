@@ -20,19 +20,15 @@ std::vector<GroupLine> group_lines(const compare::Judgement& judgement) {
   std::map<std::string, GroupLine> groups;
   for (const auto& channel : judgement.channels) {
     if (channel.finding == Finding::absent) continue;
-    groups[channel.comparison.channel.group].channels.push_back(channel);
+    GroupLine& line = groups[channel.comparison.channel.group];
+    line.group = channel.comparison.channel.group;
+    line.compared += channel.finding == Finding::agrees || channel.finding == Finding::differs;
+    line.missing += channel.finding == Finding::missing;
+    line.failed += channel.failed();
+    line.channels.push_back(channel);
   }
   std::vector<GroupLine> lines;
-  for (auto& [group, line] : groups) {
-    line.group = group;
-    lines.push_back(std::move(line));
-  }
-  for (auto& line : lines)
-    for (const auto& channel : line.channels) {
-      line.compared += channel.finding == Finding::agrees || channel.finding == Finding::differs;
-      line.missing += channel.finding == Finding::missing;
-      line.failed += channel.failed();
-    }
+  for (auto& [group, line] : groups) lines.push_back(std::move(line));
   return lines;
 }
 

@@ -122,14 +122,8 @@ CurveField curve_at(Place place, const char* text, CurveField points = {}) {
 template <class Place>
 Field kept_at(Place place, const char* text) {
   using T = std::remove_pointer_t<std::invoke_result_t<Place, Case&>>;
-  if constexpr (std::is_same_v<T, double>)
-    return NumberField{access<T>(place, text)};
-  else if constexpr (std::is_same_v<T, int>)
-    return IntegerField{access<T>(place, text)};
-  else if constexpr (std::is_same_v<T, bool>)
-    return FlagField{access<T>(place, text)};
-  else if constexpr (std::is_same_v<T, std::string>)
-    return TextField{access<T>(place, text)};
+  if constexpr (std::is_constructible_v<Field, PlainField<T>>)
+    return PlainField<T>{access<T>(place, text)};
   else if constexpr (std::is_same_v<T, std::filesystem::path>)
     return curve_at(place, text);
   else

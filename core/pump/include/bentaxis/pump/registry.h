@@ -33,18 +33,14 @@ struct Access {
 };
 
 // The types of parameters.
-struct NumberField {
-  Access<double> place;
+template <class T>
+struct PlainField {
+  Access<T> place;
 };
-struct IntegerField {
-  Access<int> place;
-};
-struct FlagField {
-  Access<bool> place;
-};
-struct TextField {
-  Access<std::string> place;
-};
+using NumberField = PlainField<double>;
+using IntegerField = PlainField<int>;
+using FlagField = PlainField<bool>;
+using TextField = PlainField<std::string>;
 /// An enumeration, whose values are those of the words in their order.
 struct ChoiceField {
   std::size_t (*read)(const Case&) = nullptr;
@@ -65,6 +61,9 @@ struct CurveField {
 };
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;
+
+/// The numbers of a field, which may be one, two or none.
+std::vector<const Access<double>*> numbers_of(const Field& field);
 
 /// A value as a case file has it, in the file's unit; a choice as its word.
 using Value = std::variant<double, int, bool, std::string, std::array<double, 2>>;
