@@ -56,7 +56,6 @@ Log::Sink sink_of(const fmi2CallbackFunctions& functions, const std::string& nam
 }
 
 using Version = bentaxis::fmu::Calls<fmi2Status, fmi2Error>;
-constexpr auto& no_values = Version::no_values;
 template <class... Arguments>
 fmi2Status call(Arguments... arguments) noexcept {
   return Version::call(arguments...);
@@ -133,11 +132,11 @@ fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           fmi2Integer /*value*/[]) {
-  return no_values(c, __func__, kGet, vr, count, "Integer");
+  return Version::no_values(c, __func__, kGet, vr, count, "Integer");
 }
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          fmi2String /*value*/[]) {
-  return no_values(c, __func__, kGet, vr, count, "String");
+  return Version::no_values(c, __func__, kGet, vr, count, "String");
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                        const fmi2Real value[]) {
@@ -148,7 +147,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t co
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           const fmi2Integer /*value*/[]) {
-  return no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
+  return Version::no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           const fmi2Boolean value[]) {
@@ -159,7 +158,7 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          const fmi2String /*value*/[]) {
-  return no_values(c, __func__, kSetDiscrete, vr, count, "String");
+  return Version::no_values(c, __func__, kSetDiscrete, vr, count, "String");
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],

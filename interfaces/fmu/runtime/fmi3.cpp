@@ -41,7 +41,6 @@ void require_scalars(std::size_t count, std::size_t value_count) {
 }
 
 using Version = bentaxis::fmu::Calls<fmi3Status, fmi3Error>;
-constexpr auto& no_values = Version::no_values;
 template <class... Arguments>
 fmi3Status call(Arguments... arguments) noexcept {
   return Version::call(arguments...);
@@ -186,11 +185,11 @@ fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], 
 #define BENTAXIS_NO_TYPE(Type)                                                                 \
   fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
                            fmi3##Type /*values*/[], size_t /*value_count*/) {                  \
-    return no_values(instance, __func__, kGet, vr, count, #Type);                              \
+    return Version::no_values(instance, __func__, kGet, vr, count, #Type);                     \
   }                                                                                            \
   fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
                            const fmi3##Type /*values*/[], size_t /*value_count*/) {            \
-    return no_values(instance, __func__, kSetDiscrete, vr, count, #Type);                      \
+    return Version::no_values(instance, __func__, kSetDiscrete, vr, count, #Type);             \
   }
 BENTAXIS_NO_TYPE(Float32)
 BENTAXIS_NO_TYPE(Int8)
@@ -205,20 +204,20 @@ BENTAXIS_NO_TYPE(String)
 #undef BENTAXIS_NO_TYPE
 fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                          size_t /*sizes*/[], fmi3Binary /*values*/[], size_t /*value_count*/) {
-  return no_values(instance, __func__, kGet, vr, count, "Binary");
+  return Version::no_values(instance, __func__, kGet, vr, count, "Binary");
 }
 fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                          const size_t /*sizes*/[], const fmi3Binary /*values*/[],
                          size_t /*value_count*/) {
-  return no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
+  return Version::no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
 }
 fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                         fmi3Clock /*values*/[]) {
-  return no_values(instance, __func__, kGet, vr, count, "Clock");
+  return Version::no_values(instance, __func__, kGet, vr, count, "Clock");
 }
 fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                         const fmi3Clock /*values*/[]) {
-  return no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
+  return Version::no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference /*vr*/,
