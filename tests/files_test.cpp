@@ -416,7 +416,18 @@ TEST(ForeignUnits, AreKnownByAnySpelling) {
   EXPECT_EQ(known_unit("N*m"), "Nm");
   EXPECT_EQ(known_unit("N-m"), "Nm");
   EXPECT_EQ(known_unit("newton_mm"), "Nmm");
+  const std::map<std::string, std::string> written = {
+      {"KN", "kN"},      {"mNm", "Nmm"},        {"lbf ft", "lbf ft"},
+      {"µm", "um"},      {"N/mm²", "MPa"},      {"°", "deg"},
+      {"\xB0", "deg"},   {"rev", "turn"},       {"grad", "gon"},
+      {"µs", "us"},      {"Newtons", "N"},      {"Kilo-Newton-Meter", "kNm"},
+      {"Umdr.", "turn"}, {"sek", "s"},          {"poundforce inch", "lbf in"},
+      {"Grad°", "deg"},  {"megapascal", "MPa"}, {"kilogram-force", "kgf"}};
+  for (const auto& [text, unit] : written) EXPECT_EQ(known_unit(text), unit) << text;
   EXPECT_EQ(known_unit("furlong"), "");
+  // Units of this program that no measured column has.
+  for (const char* other : {"rpm", "J", "cSt", "kg", "1/s", "percent"})
+    EXPECT_EQ(known_unit(other), "") << other;
 }
 
 // FIPS 180-4's examples, and lengths about those of its blocks, by sha256sum.

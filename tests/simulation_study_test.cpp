@@ -8,6 +8,7 @@
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
@@ -40,6 +41,25 @@ TEST(SimulationStudy, ColumnsOfTheOilThatAreCompared) {
   is("flow_delivery_l_per_min", "flow_delivery", "l/min", false);
   is("leakage_l_per_min", "leakage", "l/min", false);
   is("power_useful_W", "", "W", true);
+}
+
+TEST(SimulationStudy, EveryColumnOverTimeHasAKnownUnit) {
+  const Case the_case =
+      read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_motor_start.toml");
+  std::vector<Column> columns = state_columns(*the_case.drive);
+  ASSERT_EQ(columns.size(), 6U);
+  EXPECT_EQ(columns[static_cast<std::size_t>(StateColumn::time)].unit, "s");
+  EXPECT_EQ(columns[static_cast<std::size_t>(StateColumn::psi)].name, "psi_deg");
+  EXPECT_EQ(columns[static_cast<std::size_t>(StateColumn::shaft_speed)].name, "shaft_rpm");
+  EXPECT_EQ(columns[static_cast<std::size_t>(StateColumn::block_speed)].name, "block_rpm");
+  EXPECT_EQ(columns[static_cast<std::size_t>(StateColumn::motor_speed)].name, "motor_rpm");
+  const Case with_oil = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_start_up.toml");
+  for (Column& column : hydraulics::oil_in_time(with_oil, {})->columns())
+    columns.push_back(std::move(column));
+  for (const Column& column : columns) {
+    ASSERT_NE(find_unit_of_measure(column.unit), nullptr) << column.name;
+    EXPECT_FALSE(column.meaning.empty()) << column.name;
+  }
 }
 
 TEST(SimulationStudy, RowsAreJudgedUntilADisturbanceHasGrownTooLarge) {

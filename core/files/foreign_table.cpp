@@ -367,7 +367,7 @@ std::string known_unit(const std::string& text) {
   const auto name_of = [](const UnitOfMeasure* unit) {
     return unit != nullptr && quantities.count(unit->quantity) > 0 ? unit->name : "";
   };
-  if (const std::string name = name_of(find_written_unit(bare)); !name.empty()) return name;
+  if (std::string name = name_of(find_written_unit(bare)); !name.empty()) return name;
   std::transform(bare.begin(), bare.end(), bare.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return name_of(find_unit_by_word(bare));

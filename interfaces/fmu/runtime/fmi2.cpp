@@ -1,11 +1,10 @@
 // The functions of FMI 2.0: each checks its pointers and hands over to the instance.
 #include "interface/fmi2.h"
 
-#include <algorithm>
 #include <cstring>
-#include <initializer_list>
 #include <memory>
 
+#include "calls.h"
 #include "instance.h"
 
 extern "C" {
@@ -20,14 +19,19 @@ using bentaxis::fmu::Instance;
 using bentaxis::fmu::kAny;
 using bentaxis::fmu::kContinuous;
 using bentaxis::fmu::kEvent;
+using bentaxis::fmu::kGet;
 using bentaxis::fmu::kInitialization;
 using bentaxis::fmu::kInstantiated;
 using bentaxis::fmu::kKnown;
 using bentaxis::fmu::kRunning;
+using bentaxis::fmu::kSet;
+using bentaxis::fmu::kSetDiscrete;
 using bentaxis::fmu::kStep;
 using bentaxis::fmu::kTerminated;
 using bentaxis::fmu::Log;
 using bentaxis::fmu::Refused;
+using bentaxis::fmu::require_place;
+using bentaxis::fmu::require_places;
 using bentaxis::fmu::Status;
 using Kind = Instance::Kind;
 
@@ -51,42 +55,15 @@ Log::Sink sink_of(const fmi2CallbackFunctions& functions, const std::string& nam
   };
 }
 
-void require_places(std::size_t count, std::initializer_list<const void*> places) {
-  if (count > 0 && std::find(places.begin(), places.end(), nullptr) != places.end())
-    throw Refused("a null pointer where values should be");
+using Version = bentaxis::fmu::Calls<fmi2Status, fmi2Error>;
+template <class... Arguments>
+fmi2Status call(Arguments... arguments) noexcept {
+  return Version::call(arguments...);
 }
-void require_place(const void* place) { require_places(1, {place}); }
-
-template <class Body>
-fmi2Status call(fmi2Component c, const char* function, unsigned modes, Body body) noexcept {
-  if (c == nullptr) return fmi2Error;
-  Instance& it = *static_cast<Instance*>(c);
-  return static_cast<fmi2Status>(it.call(function, modes, [&] { return body(it); }));
+template <class... Arguments>
+fmi2Status numbers(Arguments... arguments) noexcept {
+  return Version::numbers(arguments...);
 }
-
-// Of one kind only.
-template <class Body>
-fmi2Status call(fmi2Component c, const char* function, Kind kind, unsigned modes,
-                Body body) noexcept {
-  if (c == nullptr) return fmi2Error;
-  Instance& it = *static_cast<Instance*>(c);
-  const Status right = it.call(function, kAny, [&] { it.require(kind); });
-  if (right != Status::ok) return fmi2Error;
-  return call(c, function, modes, body);
-}
-
-// Of types that no variable has.
-fmi2Status no_values(fmi2Component c, const char* function, unsigned modes,
-                     const fmi2ValueReference vr[], std::size_t count, const char* type) noexcept {
-  return call(c, function, modes, [&](Instance& it) {
-    require_places(count, {vr});
-    it.refuse_values(vr, count, type);
-  });
-}
-
-constexpr unsigned kGet = kInstantiated | kKnown;  // what is not known yet is refused one by one
-constexpr unsigned kSet = kInstantiated | kInitialization | kRunning;
-constexpr unsigned kSetDiscrete = kInstantiated | kInitialization | kEvent | kStep;
 
 }  // namespace
 
@@ -121,15 +98,7 @@ void fmi2FreeInstance(fmi2Component c) { delete static_cast<Instance*>(c); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count,
                                const fmi2String categories[]) {
-  return call(c, __func__, kAny, [&](Instance& it) {
-    require_places(count, {categories});
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < count; ++i) {
-      require_place(categories[i]);
-      names.emplace_back(categories[i]);
-    }
-    if (!it.log().set_debug(on != fmi2False, names)) throw Refused("there is no such category");
-  });
+  return Version::set_debug_logging(c, __func__, on != fmi2False, count, categories);
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance,
@@ -145,15 +114,6 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, f
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   return call(c, __func__, kInstantiated, [](Instance& it) { it.enter_initialization(); });
-}
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return call(c, __func__, kInitialization, [](Instance& it) { it.exit_initialization(); });
-}
-fmi2Status fmi2Terminate(fmi2Component c) {
-  return call(c, __func__, kRunning, [](Instance& it) { it.terminate(); });
-}
-fmi2Status fmi2Reset(fmi2Component c) {
-  return call(c, __func__, kAny, [](Instance& it) { it.reset(); });
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
@@ -172,11 +132,11 @@ fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           fmi2Integer /*value*/[]) {
-  return no_values(c, __func__, kGet, vr, count, "Integer");
+  return Version::no_values(c, __func__, kGet, vr, count, "Integer");
 }
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          fmi2String /*value*/[]) {
-  return no_values(c, __func__, kGet, vr, count, "String");
+  return Version::no_values(c, __func__, kGet, vr, count, "String");
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                        const fmi2Real value[]) {
@@ -187,7 +147,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t co
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           const fmi2Integer /*value*/[]) {
-  return no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
+  return Version::no_values(c, __func__, kSetDiscrete, vr, count, "Integer");
 }
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                           const fmi2Boolean value[]) {
@@ -198,37 +158,7 @@ fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
 }
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t count,
                          const fmi2String /*value*/[]) {
-  return no_values(c, __func__, kSetDiscrete, vr, count, "String");
-}
-
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return call(c, __func__, kAny, [&](Instance& it) { it.save(state); });
-}
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return call(c, __func__, kAny, [&](Instance& it) { it.restore(state); });
-}
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return call(c, __func__, kAny, [&](Instance& it) { it.free_state(state); });
-}
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return call(c, __func__, kAny, [&](Instance& it) {
-    require_place(size);
-    *size = it.serialized_size(state);
-  });
-}
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[],
-                                 size_t size) {
-  return call(c, __func__, kAny, [&](Instance& it) {
-    require_place(bytes);
-    it.serialize(state, bytes, size);
-  });
-}
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
-                                   fmi2FMUstate* state) {
-  return call(c, __func__, kAny, [&](Instance& it) {
-    require_place(bytes);
-    it.deserialize(bytes, size, state);
-  });
+  return Version::no_values(c, __func__, kSetDiscrete, vr, count, "String");
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[],
@@ -241,6 +171,10 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     it.derivative(unknown, unknowns, known, knowns, known_seed, unknown_sensitivity);
   });
 }
+
+BENTAXIS_STATE_FUNCTIONS(fmi2, FMUstate, DeSerialize)
+
+BENTAXIS_COMMON_FUNCTIONS(fmi2)
 
 // Model exchange.
 
@@ -258,51 +192,8 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
     info->nextEventTime = event.next_time.value_or(0);
   });
 }
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  return call(c, __func__, Kind::model_exchange, kEvent,
-              [](Instance& it) { it.enter_continuous_mode(); });
-}
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean /*no_set_state_before*/,
-                                       fmi2Boolean* enter_event_mode, fmi2Boolean* terminate) {
-  return call(c, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
-    require_places(1, {enter_event_mode, terminate});
-    *enter_event_mode = it.step_completed() ? fmi2True : fmi2False;
-    *terminate = fmi2False;
-  });
-}
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
-  return call(c, __func__, Kind::model_exchange, kEvent | kContinuous,
-              [&](Instance& it) { it.set_time(time); });
-}
-fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t count) {
-  return call(c, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
-    require_places(count, {x});
-    it.set_states(x, count);
-  });
-}
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t count) {
-  return call(c, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
-    require_places(count, {derivatives});
-    it.rates(derivatives, count);
-  });
-}
-fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t count) {
-  return call(c, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
-    require_places(count, {indicators});
-    it.indicators(indicators, count);
-  });
-}
-fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t count) {
-  return call(c, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
-    require_places(count, {x});
-    it.states(x, count);
-  });
-}
-fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[], size_t count) {
-  return call(c, __func__, Kind::model_exchange, kAny, [&](Instance& it) {
-    require_places(count, {nominals});
-    it.nominals(nominals, count);
-  });
+  return numbers(c, __func__, kKnown, derivatives, count, &Instance::rates);
 }
 
 // Co-simulation.

@@ -1,10 +1,9 @@
 // The functions of FMI 3.0: each checks its pointers and hands over to the instance.
 #include "interface/fmi3.h"
 
-#include <algorithm>
-#include <initializer_list>
 #include <memory>
 
+#include "calls.h"
 #include "instance.h"
 
 extern "C" {
@@ -19,20 +18,20 @@ using bentaxis::fmu::Instance;
 using bentaxis::fmu::kAny;
 using bentaxis::fmu::kContinuous;
 using bentaxis::fmu::kEvent;
+using bentaxis::fmu::kGet;
 using bentaxis::fmu::kInitialization;
 using bentaxis::fmu::kInstantiated;
 using bentaxis::fmu::kKnown;
 using bentaxis::fmu::kRunning;
+using bentaxis::fmu::kSet;
+using bentaxis::fmu::kSetDiscrete;
 using bentaxis::fmu::kStep;
 using bentaxis::fmu::Log;
 using bentaxis::fmu::Refused;
+using bentaxis::fmu::require_place;
+using bentaxis::fmu::require_places;
 using bentaxis::fmu::Status;
 using Kind = Instance::Kind;
-
-void require_places(std::size_t count, std::initializer_list<const void*> places) {
-  if (count > 0 && std::find(places.begin(), places.end(), nullptr) != places.end())
-    throw Refused("a null pointer where values should be");
-}
 
 // All variables are scalars.
 void require_scalars(std::size_t count, std::size_t value_count) {
@@ -41,34 +40,14 @@ void require_scalars(std::size_t count, std::size_t value_count) {
                   std::to_string(value_count));
 }
 
-template <class Body>
-fmi3Status call(fmi3Instance c, const char* function, unsigned modes, Body body) noexcept {
-  if (c == nullptr) return fmi3Error;
-  Instance& it = *static_cast<Instance*>(c);
-  return static_cast<fmi3Status>(it.call(function, modes, [&] { return body(it); }));
+using Version = bentaxis::fmu::Calls<fmi3Status, fmi3Error>;
+template <class... Arguments>
+fmi3Status call(Arguments... arguments) noexcept {
+  return Version::call(arguments...);
 }
-
-// Of one kind only.
-template <class Body>
-fmi3Status call(fmi3Instance c, const char* function, Kind kind, unsigned modes,
-                Body body) noexcept {
-  if (c == nullptr) return fmi3Error;
-  Instance& it = *static_cast<Instance*>(c);
-  if (it.call(function, kAny, [&] { it.require(kind); }) != Status::ok) return fmi3Error;
-  return call(c, function, modes, body);
-}
-
-constexpr unsigned kGet = kInstantiated | kKnown;  // what is not known yet is refused one by one
-constexpr unsigned kSet = kInstantiated | kInitialization | kRunning;
-constexpr unsigned kSetDiscrete = kInstantiated | kInitialization | kEvent | kStep;
-
-// Of types that no variable has.
-fmi3Status no_values(fmi3Instance c, const char* function, unsigned modes,
-                     const fmi3ValueReference vr[], std::size_t count, const char* type) noexcept {
-  return call(c, function, modes, [&](Instance& it) {
-    require_places(count, {vr});
-    it.refuse_values(vr, count, type);
-  });
+template <class... Arguments>
+fmi3Status numbers(Arguments... arguments) noexcept {
+  return Version::numbers(arguments...);
 }
 
 fmi3Status refuse(fmi3Instance c, const char* function, const char* why) noexcept {
@@ -113,15 +92,7 @@ const char* fmi3GetVersion() { return fmi3Version; }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t count,
                                const fmi3String categories[]) {
-  return call(instance, __func__, kAny, [&](Instance& it) {
-    require_places(count, {categories});
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < count; ++i) {
-      require_places(1, {categories[i]});
-      names.emplace_back(categories[i]);
-    }
-    if (!it.log().set_debug(on, names)) throw Refused("there is no such category");
-  });
+  return Version::set_debug_logging(instance, __func__, on, count, categories);
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token,
@@ -172,18 +143,9 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
     it.enter_initialization();
   });
 }
-fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
-  return call(instance, __func__, kInitialization, [](Instance& it) { it.exit_initialization(); });
-}
 fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
   return call(instance, __func__, Kind::model_exchange, kContinuous,
               [](Instance& it) { it.enter_event_mode(); });
-}
-fmi3Status fmi3Terminate(fmi3Instance instance) {
-  return call(instance, __func__, kRunning, [](Instance& it) { it.terminate(); });
-}
-fmi3Status fmi3Reset(fmi3Instance instance) {
-  return call(instance, __func__, kAny, [](Instance& it) { it.reset(); });
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
@@ -223,11 +185,11 @@ fmi3Status fmi3SetBoolean(fmi3Instance instance, const fmi3ValueReference vr[], 
 #define BENTAXIS_NO_TYPE(Type)                                                                 \
   fmi3Status fmi3Get##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
                            fmi3##Type /*values*/[], size_t /*value_count*/) {                  \
-    return no_values(instance, __func__, kGet, vr, count, #Type);                              \
+    return Version::no_values(instance, __func__, kGet, vr, count, #Type);                     \
   }                                                                                            \
   fmi3Status fmi3Set##Type(fmi3Instance instance, const fmi3ValueReference vr[], size_t count, \
                            const fmi3##Type /*values*/[], size_t /*value_count*/) {            \
-    return no_values(instance, __func__, kSetDiscrete, vr, count, #Type);                      \
+    return Version::no_values(instance, __func__, kSetDiscrete, vr, count, #Type);             \
   }
 BENTAXIS_NO_TYPE(Float32)
 BENTAXIS_NO_TYPE(Int8)
@@ -242,20 +204,20 @@ BENTAXIS_NO_TYPE(String)
 #undef BENTAXIS_NO_TYPE
 fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                          size_t /*sizes*/[], fmi3Binary /*values*/[], size_t /*value_count*/) {
-  return no_values(instance, __func__, kGet, vr, count, "Binary");
+  return Version::no_values(instance, __func__, kGet, vr, count, "Binary");
 }
 fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                          const size_t /*sizes*/[], const fmi3Binary /*values*/[],
                          size_t /*value_count*/) {
-  return no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
+  return Version::no_values(instance, __func__, kSetDiscrete, vr, count, "Binary");
 }
 fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                         fmi3Clock /*values*/[]) {
-  return no_values(instance, __func__, kGet, vr, count, "Clock");
+  return Version::no_values(instance, __func__, kGet, vr, count, "Clock");
 }
 fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference vr[], size_t count,
                         const fmi3Clock /*values*/[]) {
-  return no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
+  return Version::no_values(instance, __func__, kSetDiscrete, vr, count, "Clock");
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference /*vr*/,
@@ -270,36 +232,6 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference
                                        fmi3DependencyKind /*kinds*/[], size_t /*count*/) {
   return refuse(instance, __func__,
                 "dependencies of elements are not given: providesPerElementDependencies is false");
-}
-
-fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState* state) {
-  return call(instance, __func__, kAny, [&](Instance& it) { it.save(state); });
-}
-fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
-  return call(instance, __func__, kAny, [&](Instance& it) { it.restore(state); });
-}
-fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState* state) {
-  return call(instance, __func__, kAny, [&](Instance& it) { it.free_state(state); });
-}
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t* size) {
-  return call(instance, __func__, kAny, [&](Instance& it) {
-    require_places(1, {size});
-    *size = it.serialized_size(state);
-  });
-}
-fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[],
-                                 size_t size) {
-  return call(instance, __func__, kAny, [&](Instance& it) {
-    require_places(1, {bytes});
-    it.serialize(state, reinterpret_cast<char*>(bytes), size);
-  });
-}
-fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
-                                   fmi3FMUState* state) {
-  return call(instance, __func__, kAny, [&](Instance& it) {
-    require_places(1, {bytes});
-    it.deserialize(reinterpret_cast<const char*>(bytes), size, state);
-  });
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
@@ -390,55 +322,15 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean* again,
   });
 }
 
+BENTAXIS_STATE_FUNCTIONS(fmi3, FMUState, Deserialize)
+
+BENTAXIS_COMMON_FUNCTIONS(fmi3)
+
 // Model exchange.
 
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
-  return call(instance, __func__, Kind::model_exchange, kEvent,
-              [](Instance& it) { it.enter_continuous_mode(); });
-}
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean /*no_set_state_before*/,
-                                       fmi3Boolean* enter_event_mode, fmi3Boolean* terminate) {
-  return call(instance, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
-    require_places(1, {enter_event_mode, terminate});
-    *enter_event_mode = it.step_completed();
-    *terminate = false;
-  });
-}
-fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {
-  return call(instance, __func__, Kind::model_exchange, kEvent | kContinuous,
-              [&](Instance& it) { it.set_time(time); });
-}
-fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 x[], size_t count) {
-  return call(instance, __func__, Kind::model_exchange, kContinuous, [&](Instance& it) {
-    require_places(count, {x});
-    it.set_states(x, count);
-  });
-}
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[],
                                              size_t count) {
-  return call(instance, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
-    require_places(count, {derivatives});
-    it.rates(derivatives, count);
-  });
-}
-fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 indicators[], size_t count) {
-  return call(instance, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
-    require_places(count, {indicators});
-    it.indicators(indicators, count);
-  });
-}
-fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 x[], size_t count) {
-  return call(instance, __func__, Kind::model_exchange, kKnown, [&](Instance& it) {
-    require_places(count, {x});
-    it.states(x, count);
-  });
-}
-fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[],
-                                             size_t count) {
-  return call(instance, __func__, Kind::model_exchange, kAny, [&](Instance& it) {
-    require_places(count, {nominals});
-    it.nominals(nominals, count);
-  });
+  return numbers(instance, __func__, kKnown, derivatives, count, &Instance::rates);
 }
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t* count) {
   return call(instance, __func__, Kind::model_exchange, kAny, [&](Instance& it) {
