@@ -55,6 +55,11 @@ std::optional<Gap> find_gap(const ResultTable& first, std::size_t a, const Resul
     const double x = a < first.columns() ? first.at(row, a) : not_computed();
     const double y = b < second.columns() ? second.at(row, b) : not_computed();
     const Comparable why = comparable(x, y);
+    if (why == Comparable::yes && options.band &&
+        !(std::isfinite(options.band->low->at(row, a)) &&
+          std::isfinite(options.band->high->at(row, a))))
+      return Gap{false, Comparable::not_finite,
+                 "no finite limit of the band at " + number_text(first.theta_deg[row]) + " deg"};
     if (why == Comparable::yes) continue;
     const bool both = why == Comparable::both_missing;
     if (why != Comparable::not_finite &&

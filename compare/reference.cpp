@@ -16,6 +16,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
+#include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::compare {
@@ -40,50 +41,29 @@ const std::vector<std::string> kKinds = {"high-precision", "published", "golden"
 const std::vector<std::string> kFolders = {"high_precision", "published", "golden", ""};
 const std::vector<std::string> kModels = {"analytic", "multibody"};
 
-constexpr double kPoundForce = 4.4482216152605;
-constexpr double kKilogramForce = 9.80665;
-constexpr double kInch = 0.0254;
+// Quantities of foreign columns, by the channels' unit of each.
+const std::map<std::string, std::string>& families() {
+  static const std::map<std::string, std::string> all = {
+      {"Force", "N"}, {"Torque", "Nm"}, {"Length", "mm"}, {"Pressure", "bar"}};
+  return all;
+}
 
 // Units a foreign column may have: the channel unit it is a multiple of, and its SI value.
 const std::map<std::string, ForeignUnit>& units() {
-  static const std::map<std::string, ForeignUnit> all = {
-      {"N", {"N", 1}},
-      {"kN", {"N", 1e3}},
-      {"MN", {"N", 1e6}},
-      {"daN", {"N", 10}},
-      {"kgf", {"N", kKilogramForce}},
-      {"lbf", {"N", kPoundForce}},
-      {"Nm", {"Nm", 1}},
-      {"kNm", {"Nm", 1e3}},
-      {"Nmm", {"Nm", 1e-3}},
-      {"lbf in", {"Nm", kPoundForce * kInch}},
-      {"lbf ft", {"Nm", kPoundForce * 12 * kInch}},
-      {"m", {"mm", 1}},
-      {"cm", {"mm", 1e-2}},
-      {"mm", {"mm", 1e-3}},
-      {"um", {"mm", 1e-6}},
-      {"in", {"mm", kInch}},
-      {"Pa", {"bar", 1}},
-      {"kPa", {"bar", 1e3}},
-      {"MPa", {"bar", 1e6}},
-      {"bar", {"bar", 1e5}},
-      {"mbar", {"bar", 1e2}},
-      {"psi", {"bar", 6894.757293168361}}};
+  static const std::map<std::string, ForeignUnit> all = [] {
+    std::map<std::string, ForeignUnit> made;
+    for (const UnitOfMeasure& unit : units_of_measure())
+      if (const auto family = families().find(unit.quantity); family != families().end())
+        made[unit.name] = {family->second, unit.factor};
+    return made;
+  }();
   return all;
 }
 
-const std::map<std::string, double>& angle_units() {
-  static const std::map<std::string, double> all = {{"deg", 1},
-                                                    {"rad", 1 / kRadPerDegree},
-                                                    {"mrad", 1e-3 / kRadPerDegree},
-                                                    {"turn", 360},
-                                                    {"gon", 0.9}};
-  return all;
-}
-const std::map<std::string, double>& time_units() {
-  static const std::map<std::string, double> all = {
-      {"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}};
-  return all;
+// SI value of a unit of this quantity; 0 where it is none of it.
+double size_of(const std::string& unit, const char* quantity) {
+  const UnitOfMeasure* const found = find_unit_of_measure(unit);
+  return found != nullptr && found->quantity == quantity ? found->factor : 0;
 }
 
 // Sign and any further factor.
@@ -93,9 +73,8 @@ double read_factor(TableReader& in) {
   return sign * in.number("factor", kPositive, 1.0);
 }
 
-// The SI value of the unit of a column; `family` is the unit of ours.
-double read_unit(TableReader& in, const std::string& unit, const std::string& family,
-                 const std::string& ours) {
+// The SI value of the unit of a column; 0 where it has that of ours.
+double read_unit(TableReader& in, const std::string& unit) {
   if (unit.empty()) return 0;
   const auto it = units().find(unit);
   if (it == units().end()) {
@@ -103,8 +82,6 @@ double read_unit(TableReader& in, const std::string& unit, const std::string& fa
     for (const auto& [name, value] : units()) known += (known.empty() ? "" : ", ") + name;
     in.fail("unit", "must be one of " + known);
   }
-  if (!family.empty() && family != it->second.family)
-    in.fail("unit", "cannot become " + family + ", the unit of " + ours);
   return it->second.si;
 }
 
@@ -113,8 +90,7 @@ ColumnMap read_column(TableReader in) {
   map.theirs = in.text("theirs");
   map.ours = in.text("ours");
   map.unit = in.text("unit", "");
-  // The suffix of a channel's name is its unit.
-  map.unit_in_si = read_unit(in, map.unit, map.ours.substr(map.ours.rfind('_') + 1), map.ours);
+  map.unit_in_si = read_unit(in, map.unit);
   map.factor = read_factor(in);
   in.finish();
   return map;
@@ -128,7 +104,7 @@ VectorMap read_vector(TableReader in) {
   std::copy(theirs.begin(), theirs.end(), map.theirs.begin());
   map.ours = in.text("ours");
   map.unit = in.text("unit", "");
-  map.unit_in_si = read_unit(in, map.unit, "", map.ours);
+  map.unit_in_si = read_unit(in, map.unit);
   map.factor = read_factor(in);
   in.finish();
   return map;
@@ -594,13 +570,9 @@ const ForeignUnit* find_unit(const std::string& name) {
   return it == units().end() ? nullptr : &it->second;
 }
 double degrees_per(const std::string& angle_unit) {
-  const auto it = angle_units().find(angle_unit);
-  return it == angle_units().end() ? 0 : it->second;
+  return size_of(angle_unit, "Angle") / kRadPerDegree;
 }
-double seconds_per(const std::string& time_unit) {
-  const auto it = time_units().find(time_unit);
-  return it == time_units().end() ? 0 : it->second;
-}
+double seconds_per(const std::string& time_unit) { return size_of(time_unit, "Time"); }
 
 Axes turned_axes(const std::string& sequence, const std::array<double, 3>& angles_deg) {
   Axes axes = kNoTurn;
@@ -805,6 +777,11 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
     table.channels.push_back(channel);
     sources.push_back(std::move(source));
   };
+  const auto require_convertible = [&](const std::string& theirs, const std::string& ours,
+                                       const std::string& unit) {
+    if (const ForeignUnit* known = find_unit(theirs); known != nullptr && known->family != unit)
+      fail("unit " + theirs + " of " + ours + " cannot become " + unit);
+  };
   const auto in_our_unit = [](double unit, const Channel& channel) {
     return unit == 0 ? 1 : unit / channel.unit_in_si;
   };
@@ -817,10 +794,7 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
           (ours.empty() || ours.front().frame == channel.frame))
         ours.push_back(channel);
     if (ours.empty()) fail("a vector is mapped to \"" + map.ours + "\", which is none of a result");
-    const std::string& unit = ours.front().unit;
-    if (const ForeignUnit* theirs = find_unit(map.unit);
-        theirs != nullptr && theirs->family != unit)
-      fail("unit " + map.unit + " of " + map.ours + " cannot become " + unit);
+    require_convertible(map.unit, map.ours, ours.front().unit);
     std::array<std::optional<std::size_t>, 3> columns;
     for (std::size_t j = 0; j < 3; ++j)
       if (!map.theirs[j].empty()) columns[j] = is_free(map.theirs[j]);
@@ -874,6 +848,7 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
     if (channel == channels.end())
       fail("column \"" + map.theirs + "\" is mapped to \"" + map.ours +
            "\", which is no column of a result");
+    require_convertible(map.unit, map.ours, channel->unit);
     take(*channel, {{column, map.factor * in_our_unit(map.unit_in_si, *channel)}});
   }
   for (const auto& name : curve.ignored) taken.insert(column_index(name));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -22,7 +23,23 @@ constexpr std::size_t kMaxEvents = 1000000;
 constexpr double kBeyond = 1e-6;
 constexpr double kOnTouch = 1e-15;  // m: as good as touching
 constexpr int kMaxShortSteps = 1000;
+constexpr int kHalvings = 60;  // of a step, to a touch within it
 constexpr double kRounding = std::numeric_limits<double>::epsilon();
+
+using Reached = numerics::StiffIntegrator::Reached;
+using Reason = numerics::IntegrationFailure::Reason;
+
+const char* text_of(Reason reason) {
+  switch (reason) {
+    case Reason::tolerance:
+      return "the tolerance asks for more than double precision gives there";
+    case Reason::no_rates:
+      return "motion or pressures have no finite rate of change from there on";
+    case Reason::step:
+      break;
+  }
+  return "motion or pressures change faster there than steps above round-off can follow";
+}
 
 }  // namespace
 
@@ -62,7 +79,7 @@ void HybridIntegrator::go_back(double time) {
   if (time < time_) {
     SystemState there;
     state_at(time, there);
-    if (!integrals_.empty()) integrator_.integrals_at(time, integrals_.data());
+    read_integrals(time, integrals_);
     state_ = there;
     time_ = time;
     touching_ = before_.touching;
@@ -151,15 +168,19 @@ void HybridIntegrator::state_at(double time, SystemState& state) const {
     state = state_;
     return;
   }
-  sampled_y_.resize(system_.scale().size());
-  integrator_.state_at(time, sampled_y_.data());
   state = state_;
-  system_.unscaled(sampled_y_.data(), state);
+  system_.unscaled(integrator_.state_at(time), state);
+}
+
+void HybridIntegrator::read_integrals(double time, std::vector<double>& integrals) const {
+  if (integrals.empty()) return;
+  const double* from = integrator_.integrals_at(time);
+  std::copy_n(from, integrals.size(), integrals.begin());
 }
 
 void HybridIntegrator::integrals_at(double time, std::vector<double>& integrals) const {
   integrals = integrals_;
-  if (step_start_ != time_ && !integrals.empty()) integrator_.integrals_at(time, integrals.data());
+  if (step_start_ != time_) read_integrals(time, integrals);
   for (std::size_t i = 0; i < integrals.size(); ++i)
     integrals[i] *= system_.integral_scale(static_cast<int>(i));
 }
@@ -190,32 +211,29 @@ bool HybridIntegrator::hidden_touch() {
   if (!mechanics.compliant() || touching()) return false;
   SystemState at;
   for (const int flank : {1, -1}) {
-    double low = step_start_, high = time_;
-    state_at(low, at);
-    if (mechanics.approach(low, at.motion, flank) >= 0 ||
-        mechanics.approach_rate(low, at.motion, flank) <= 0 ||
+    const double first = step_start_;
+    state_at(first, at);
+    if (mechanics.approach(first, at.motion, flank) >= 0 ||
+        mechanics.approach_rate(first, at.motion, flank) <= 0 ||
         mechanics.approach(time_, state_.motion, flank) >= 0 ||
         mechanics.approach_rate(time_, state_.motion, flank) >= 0)
       continue;
-    double nearest = low;
-    const double first = low;
-    for (int i = 0; i < 60; ++i) {
-      nearest = (low + high) / 2;
-      state_at(nearest, at);
-      (mechanics.approach_rate(nearest, at.motion, flank) > 0 ? low : high) = nearest;
-    }
+    double nearest = first;
+    numerics::bisect({first, time_}, kHalvings, [&](double t) {
+      nearest = t;
+      state_at(t, at);
+      return !(mechanics.approach_rate(t, at.motion, flank) > 0);
+    });
     if (mechanics.approach(nearest, at.motion, flank) <= 0) continue;
-    low = first;
-    high = nearest;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = (low + high) / 2;
-      state_at(middle, at);
-      (mechanics.approach(middle, at.motion, flank) > 0 ? high : low) = middle;
-    }
-    state_at(high, at);
-    if (!integrals_.empty()) integrator_.integrals_at(high, integrals_.data());
+    const auto is_in_contact = [&](double t) {
+      state_at(t, at);
+      return mechanics.approach(t, at.motion, flank) > 0;
+    };
+    const double touch = numerics::bisect({first, nearest}, kHalvings, is_in_contact).high;
+    state_at(touch, at);
+    read_integrals(touch, integrals_);
     state_ = at;
-    time_ = high;
+    time_ = touch;
     contact_changes(flank, true);
     return true;
   }
@@ -252,9 +270,8 @@ void HybridIntegrator::keep_going() {
     short_steps_ = 0;
     integrator_.forget_complaint();
   } else if (++short_steps_ > kMaxShortSteps) {
-    fail(integrator_.complaint().empty()
-             ? "motion or pressures change faster there than steps above round-off can follow"
-             : integrator_.complaint());
+    const std::string complaint = integrator_.complaint();
+    fail(complaint.empty() ? text_of(Reason::step) : complaint);
   }
 }
 
@@ -270,18 +287,18 @@ void HybridIntegrator::advance(double end) {
   before_ = {touching_, events_.size(), apart_};
   const double stop = horizon(end);
   const double before = time_;
-  Integrator::Reached reached{};
+  Reached reached{};
   try {
     reached = integrator_.step(stop);
+  } catch (const numerics::IntegrationFailure& failure) {
+    fail(text_of(failure.reason()));
   } catch (const ComputationError& error) {
     fail(error.what());
   }
   step_start_ = before;
   time_ = integrator_.time();
-  y_.resize(system_.scale().size());
-  integrator_.state_at(time_, y_.data());
-  system_.unscaled(y_.data(), state_);
-  if (!integrals_.empty()) integrator_.integrals_at(time_, integrals_.data());
+  system_.unscaled(integrator_.state_at(time_), state_);
+  read_integrals(time_, integrals_);
 
   if (!touching() && system_.mechanics().compliant()) {
     restart_ = hidden_touch();
@@ -297,7 +314,7 @@ void HybridIntegrator::advance(double end) {
     const double angle = block(time_, state_).angle;
     const std::vector<int>& passed = integrator_.passed();
     int side = 0;
-    if (reached == Integrator::Reached::guard)
+    if (reached == Reached::event)
       side = passed[System::kTo] != 0 ? 1 : passed[System::kFrom] != 0 ? -1 : 0;
     if (side != 0) {
       passed_edge_ = side > 0 ? edges_.to() : edges_.from();
@@ -310,7 +327,7 @@ void HybridIntegrator::advance(double end) {
     }
     set_interval();
   }
-  if (reached == Integrator::Reached::guard && system_.mechanics().compliant()) {
+  if (reached == Reached::event && system_.mechanics().compliant()) {
     const std::vector<int>& passed = integrator_.passed();
     for (const bool touch : {false, true})
       for (const int flank : {1, -1}) {

@@ -84,6 +84,7 @@ class HybridIntegrator {
   bool touching() const { return touching(1) || touching(-1); }
   void contact_changes(int flank, bool touch);
   void close_contact(Touching& of);
+  void read_integrals(double time, std::vector<double>& integrals) const;  // scaled
   bool hidden_touch();
   double horizon(double end) const;
   void keep_going();
@@ -91,7 +92,7 @@ class HybridIntegrator {
   double duration_ = 0;
   std::string name_;
   System system_;
-  Integrator integrator_;
+  numerics::StiffIntegrator integrator_;
   PortEdges edges_;
   std::vector<double> knots_;
   bool has_oil_;
@@ -107,7 +108,6 @@ class HybridIntegrator {
   int short_steps_ = 0;
   long forgotten_steps_ = 0;
   mutable SystemState sampled_;
-  mutable std::vector<double> sampled_y_;
 };
 
 }  // namespace bentaxis::coupled

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bentaxis/pump/error.h"
 #include "course.h"
 
 namespace bentaxis::coupled {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
 
 namespace bentaxis::coupled {
@@ -218,13 +219,17 @@ void System::integrands(double time, const double* y, double* dq) {
   for (int i = 0; i < integrals(); ++i) dq[i] /= integral_scale(i);
 }
 
-void System::guard_values(double time, const double* y, double* values) {
+void System::event_values(double time, const double* y, double* values) {
   set(time, y);
   values[kTo] = block_.angle - to;
   values[kFrom] = block_.angle - from;
   if (!mechanics_.compliant()) return;
   values[kFlankPlus] = mechanics_.approach(time, state_.motion, 1);
   values[kFlankMinus] = mechanics_.approach(time, state_.motion, -1);
+}
+
+bool System::is_recoverable(const std::exception& error) const {
+  return dynamic_cast<const ComputationError*>(&error) != nullptr;
 }
 
 }  // namespace bentaxis::coupled

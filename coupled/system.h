@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "bentaxis/coupled/system_state.h"
+#include "bentaxis/numerics/stiff_integrator.h"
 #include "bentaxis/results/mechanics.h"
 #include "bentaxis/results/oil.h"
-#include "integrator.h"
 
 namespace bentaxis::coupled {
 
-class System : public Equations {
+class System : public numerics::Equations {
  public:
   /// @param balances  works, impulse and what goes by each place of the oil are integrated too
   System(Mechanics& mechanics, const Oil& oil, bool balances);
@@ -48,7 +48,8 @@ class System : public Equations {
   void jacobian(double time, const double* y, const double* dy, bool again,
                 double* by_state) override;
   void integrands(double time, const double* y, double* dq) override;
-  void guard_values(double time, const double* y, double* values) override;
+  void event_values(double time, const double* y, double* values) override;
+  bool is_recoverable(const std::exception& error) const override;
 
   /// The mechanics have changed their law: what is known of their derivatives is of no use.
   void forget() { known_ = false; }

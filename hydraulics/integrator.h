@@ -1,8 +1,7 @@
-// Time integration of the network over one period by CVODES (variable-order BDF).
+// Time integration of the network over one period.
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <vector>
 
 #include "bentaxis/pump/error.h"
@@ -24,7 +23,7 @@ class IntegrationFailure : public ComputationError {
 
 /// What an integration cost.
 struct Work {
-  long steps = 0, evaluations = 0, factorizations = 0;
+  long steps = 0, evaluations = 0;
 };
 
 /// A way in the space of parameters: the equations a little before and after on it.
@@ -35,8 +34,8 @@ struct Direction {
   double apart;                   ///< of the two on the way
 };
 
-/// Carries states through one period of 360/N degrees. Restarts at every port edge. Uses CVODES'
-/// dense Newton iteration with the network's own Jacobian, and its forward sensitivities.
+/// Carries states through one period of 360/N degrees. Restarts at every port edge. Uses the
+/// network's own Jacobian, and forward sensitivities.
 class Integrator {
  public:
   /// @param alive  called now and then; may throw
@@ -84,7 +83,6 @@ class Integrator {
   void spend_at_most(double share) { most_ = share; }
 
  private:
-  struct Implementation;
   const Network& network_;
   std::function<void()> alive_;
   std::vector<Direction> directions_;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
+#include "bentaxis/numerics/bisection.h"
+#include "bentaxis/pump/delivery_side.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -41,9 +44,7 @@ double seconds_per_degree(const Case& the_case, Network::Use use) {
                      ": refused with [pressure] kind = \"hydraulic\": " + why);
   };
   if (speed == 0) refuse("at standstill there is no periodic pressure");
-  const bool supplied = the_case.pressure.ports.delivery == 0 ||
-                        load_of(the_case).kind == LoadKind::constant_pressure;
-  if (speed < 0 && !supplied && !load_of(the_case).sets_pressure())
+  if (speed < 0 && !delivery_is_held(the_case) && !load_of(the_case).sets_pressure())
     refuse(
         "backwards the pump takes oil from the delivery line (motoring), and no size of a load "
         "gives "
@@ -72,8 +73,7 @@ Network::Network(const Case& the_case, Use use)
     : use_(use),
       direction_(use == Use::period && the_case.operation.speed_rpm < 0 ? -1 : 1),
       n_(validate(the_case).pump.geometry.pistons),
-      fixed_end_(the_case.pressure.ports.delivery == 0 ||
-                 load_of(the_case).kind == LoadKind::constant_pressure),
+      fixed_end_(delivery_is_held(the_case)),
       fluid_(data_of(the_case)),
       chamber_(the_case.pump.geometry, the_case.hydraulics->dead_volume),
       delivery_(*the_case.hydraulics, the_case.hydraulics->delivery,
@@ -218,13 +218,12 @@ std::vector<double> Network::uniform(double chambers, double delivery, double ma
 double Network::expected_log_pressure(double share) const {
   if (!loop_ || load_.sought()) return delivery_s_;
   constexpr int kHalvings = 50;
-  double low = suction_s_, high = fluid_.log_pressure(kHighestPressure);
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (low + high) / 2;
-    const double flow = load_.flow(fluid_.state(middle), suction_state_, load_.size()).value;
-    (flow < share * ideal_mass_flow() ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  const auto takes_it = [&](double s) {
+    const double flow = load_.flow(fluid_.state(s), suction_state_, load_.size()).value;
+    return !(flow < share * ideal_mass_flow());
+  };
+  return numerics::bisect({suction_s_, fluid_.log_pressure(kHighestPressure)}, kHalvings, takes_it)
+      .middle();
 }
 
 std::vector<OilColumn> Network::state_columns() const {
@@ -248,6 +247,14 @@ std::vector<OilColumn> Network::state_columns() const {
     name(pipe_at_ + i, "delivery_line_" + std::to_string(i + 1),
          "mode of the delivery line's pressure, then of its flow");
   return all;
+}
+
+std::vector<int> Network::order_after_period() const {
+  std::vector<int> order(static_cast<std::size_t>(states_));
+  std::iota(order.begin(), order.end(), 0);
+  for (const int first : by_chamber())
+    for (int k = 0; k < n_; ++k) order[first + next_of(k)] = first + k;
+  return order;
 }
 
 void Network::exchange_sides(double* y) const {

@@ -170,10 +170,6 @@ class Network {
   }
   /// Place in the state of the air that is out, of chambers 1..N; 0: it is no state.
   int air_at() const { return air_at_; }
-  /// Places in the state where something of chambers 1..N begins.
-  std::vector<int> by_chamber() const {
-    return air_at_ > 0 ? std::vector<int>{0, air_at_} : std::vector<int>{0};
-  }
   /// Share of the dissolved air that is out in chamber k, from 0, at a state.
   double air_out(const double* y, int k) const {
     return air_at_ > 0 ? y[air_at_ + k] : fluid_.equilibrium(y[k]).value;
@@ -205,8 +201,14 @@ class Network {
   double chamber_deg(double block_deg, int k) const { return block_deg - period_deg() * k; }
   /// Which chamber k, from 0, is after a period: it has come to where that one began.
   int next_of(int k) const { return (k + n_ - direction_) % n_; }
+  /// Of each of states(): which one, at the end of a period, comes to its place.
+  std::vector<int> order_after_period() const;
 
  private:
+  // Places in the state where something of chambers 1..N begins.
+  std::vector<int> by_chamber() const {
+    return air_at_ > 0 ? std::vector<int>{0, air_at_} : std::vector<int>{0};
+  }
   Load::Flow to_load(const double* y, const Fluid::State& line, const Fluid::State& source,
                      double load_size) const;
   Fluid::State source_of(const double* y) const;  // the suction port

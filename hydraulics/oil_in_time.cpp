@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "bentaxis/pump/delivery_side.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/time_signal.h"
 #include "bentaxis/pump/units.h"
@@ -71,13 +73,7 @@ class OilInTime : public Oil {
     return edges;
   }
 
-  std::vector<int> order_after_period() const override {
-    std::vector<int> order(start_.size());
-    std::iota(order.begin(), order.end(), 0);
-    for (const int first : network_.by_chamber())
-      for (int k = 0; k < pistons(); ++k) order[first + k] = first + (k + 1) % pistons();
-    return order;
-  }
+  std::vector<int> order_after_period() const override { return network_.order_after_period(); }
 
   bool rates(double time, const AxisMotion& shaft, const AxisMotion& block, const double* y,
              double* dy) const override {
@@ -126,26 +122,7 @@ class OilInTime : public Oil {
 
   std::vector<OilColumn> columns() const override {
     std::vector<OilColumn> all;
-    for (int k = 1; k <= pistons(); ++k)
-      all.push_back({"p_" + std::to_string(k) + "_bar",
-                     "pressure in chamber " + std::to_string(k) + ", gauge"});
-    all.push_back({"p_suction_bar", "pressure in the suction port, gauge"});
-    all.push_back({"p_delivery_bar", "pressure in the delivery volume, gauge"});
-    if (network_.has_delivery_line())
-      all.push_back({"p_load_bar", "pressure at the end of the delivery line, gauge"});
-    if (network_.has_accumulator())
-      all.push_back({"p_accumulator_bar", "pressure in the accumulator, gauge"});
-    all.push_back({"flow_suction_l_per_min", network_.has_loop()
-                                                 ? "from the charge supply, at suction density"
-                                                 : "taken in, at suction density"});
-    all.push_back({"flow_delivery_l_per_min", "into the load, at suction density"});
-    all.push_back({"leakage_l_per_min", "leakage of all chambers, at suction density"});
-    if (network_.load().has_relief() && !network_.fixed_end())
-      all.push_back(
-          {"flow_relief_l_per_min", "over the relief valve beside the load, at suction density"});
-    all.push_back({"power_useful_W",
-                   "what the oil carries out of the delivery volume less what it carries in to the "
-                   "suction port, mass flow times pressure potential"});
+    for (const Column& column : columns_) all.push_back(column.column);
     return all;
   }
 
@@ -153,17 +130,7 @@ class OilInTime : public Oil {
            double* values) const override {
     Network::Flows flows;
     network_.flows(Network::at(shaft, block), y, load_size(time), flows);
-    for (int k = 0; k < pistons(); ++k) *values++ = network_.fluid().gauge(y[k]) / kPascalPerBar;
-    *values++ = network_.suction_gauge(y) / kPascalPerBar;
-    *values++ = network_.delivery_gauge(y) / kPascalPerBar;
-    if (network_.has_delivery_line()) *values++ = network_.load_gauge(y) / kPascalPerBar;
-    if (network_.has_accumulator()) *values++ = network_.accumulator_gauge(y) / kPascalPerBar;
-    const auto add_flow = [&](double mass) { *values++ = mass / density_ / kLitrePerMinute; };
-    add_flow(flows.taken);
-    add_flow(flows.load - flows.relief);
-    add_flow(sum_over_chambers(flows.leakage));
-    if (network_.load().has_relief() && !network_.fixed_end()) add_flow(flows.relief);
-    *values++ = network_.port_power(y, flows);
+    for (const Column& column : columns_) *values++ = column.value(y, flows);
   }
 
  private:
@@ -181,6 +148,59 @@ class OilInTime : public Oil {
   double load_size(double time) const {
     if (outside_share_) return network_.load().shared(load_size_, *outside_share_);
     return share_ ? network_.load().shared(load_size_, share_->value(time)) : load_size_;
+  }
+
+  // A column and its value at a state.
+  struct Column {
+    OilColumn column;
+    std::function<double(const double* y, const Network::Flows& flows)> value;
+  };
+
+  std::vector<Column> all_columns() const {
+    using Flows = Network::Flows;
+    std::vector<Column> all;
+    const auto pressure = [&](const std::string& group, const std::string& where, auto gauge,
+                              int chamber = 0) {
+      const std::string of = chamber > 0 ? "_" + std::to_string(chamber) : "";
+      all.push_back({{group + of + "_bar", "pressure " + where + ", gauge", "bar", group, chamber},
+                     [gauge](const double* y, const Flows&) { return gauge(y) / kPascalPerBar; }});
+    };
+    const auto flow = [&](const std::string& group, const std::string& what, auto mass) {
+      all.push_back({{group + "_l_per_min", what + ", at suction density", "l/min", group},
+                     [this, mass](auto, const Flows& flows) {
+                       return mass(flows) / density_ / kLitrePerMinute;
+                     }});
+    };
+    for (int k = 0; k < pistons(); ++k)
+      pressure(
+          "p", "in chamber " + std::to_string(k + 1),
+          [this, k](const double* y) { return network_.fluid().gauge(y[k]); }, k + 1);
+    pressure("p_suction", "in the suction port",
+             [this](const double* y) { return network_.suction_gauge(y); });
+    pressure("p_delivery", "in the delivery volume",
+             [this](const double* y) { return network_.delivery_gauge(y); });
+    if (network_.has_delivery_line())
+      pressure("p_load", "at the end of the delivery line",
+               [this](const double* y) { return network_.load_gauge(y); });
+    if (network_.has_accumulator())
+      pressure("p_accumulator", "in the accumulator",
+               [this](const double* y) { return network_.accumulator_gauge(y); });
+    flow("flow_suction", network_.has_loop() ? "from the charge supply" : "taken in",
+         [](const Flows& flows) { return flows.taken; });
+    flow("flow_delivery", "into the load",
+         [](const Flows& flows) { return flows.load - flows.relief; });
+    flow("leakage", "leakage of all chambers",
+         [](const Flows& flows) { return sum_over_chambers(flows.leakage); });
+    if (network_.load().has_relief() && !network_.fixed_end())
+      flow("flow_relief", "over the relief valve beside the load",
+           [](const Flows& flows) { return flows.relief; });
+    all.push_back(
+        {{"power_useful_W",
+          "what the oil carries out of the delivery volume less what it carries in to "
+          "the suction port, mass flow times pressure potential",
+          "W"},
+         [this](const double* y, const Flows& flows) { return network_.port_power(y, flows); }});
+    return all;
   }
 
   std::vector<double> at_rest() const {
@@ -201,6 +221,7 @@ class OilInTime : public Oil {
   std::optional<TimeSignal> share_;  // of that
   std::optional<double> outside_share_;
   std::vector<double> start_;
+  std::vector<Column> columns_ = all_columns();
 };
 
 }  // namespace
@@ -216,9 +237,7 @@ bool starts_periodic(const Case& the_case) {
 
 bool needs_periodic_state(const Case& the_case) {
   const LoadData load = the_case.hydraulics->load.value_or(LoadData());
-  const bool held =
-      the_case.pressure.ports.delivery == 0 || load.kind == LoadKind::constant_pressure;
-  return starts_periodic(the_case) || (!held && !load.sets_pressure());
+  return starts_periodic(the_case) || (!delivery_is_held(the_case) && !load.sets_pressure());
 }
 
 OilStart running(const SteadyState& state) {

@@ -28,10 +28,8 @@ std::vector<double> PeriodMap::states(const Vector& z) const {
 }
 
 std::vector<double> PeriodMap::relabelled(const std::vector<double>& end) const {
-  const int n = network_.pistons();
-  std::vector<double> next(end.begin(), end.begin() + network_.states());
-  for (const int first : network_.by_chamber())
-    for (int k = 0; k < n; ++k) next[first + network_.next_of(k)] = end[first + k];
+  std::vector<double> next;
+  for (const int from : network_.order_after_period()) next.push_back(end[from]);
   return next;
 }
 
@@ -41,7 +39,6 @@ PeriodMap::Vector PeriodMap::residual(const Vector& z, double tolerance, Matrix*
   const auto end =
       integrator_.over_period(states(z), load_size(z), tolerance,
                               jacobian != nullptr ? &sensitivity : nullptr, integrals, watch);
-  const int n = network_.pistons();
   const int size = network_.size();
   Vector result(unknowns());
   const auto next = relabelled(end);
@@ -52,10 +49,8 @@ PeriodMap::Vector PeriodMap::residual(const Vector& z, double tolerance, Matrix*
   if (jacobian != nullptr) {
     const Eigen::Map<const Matrix> end_by_start(sensitivity.data(), size, unknowns());
     jacobian->resize(unknowns(), unknowns());
-    for (int i = n; i < network_.states(); ++i) jacobian->row(i) = end_by_start.row(i);
-    for (const int first : network_.by_chamber())
-      for (int k = 0; k < n; ++k)
-        jacobian->row(first + network_.next_of(k)) = end_by_start.row(first + k);
+    const std::vector<int> order = network_.order_after_period();
+    for (int i = 0; i < network_.states(); ++i) jacobian->row(i) = end_by_start.row(order[i]);
     if (sized_) jacobian->row(unknowns() - 1) = end_by_start.row(size - 1);
     for (int i = 0; i < network_.states(); ++i) (*jacobian)(i, i) -= 1;
   }

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "bentaxis/pump/units.h"
+#include "boole.h"
 #include "timing_record.h"
 
 namespace bentaxis::hydraulics {
 namespace {
 
-// Boole's rule, exact for polynomials of degree 5, on every step of the integration.
-constexpr double kWeights[] = {7.0 / 90, 32.0 / 90, 12.0 / 90, 32.0 / 90, 7.0 / 90};
-constexpr std::size_t kNodes = 5;
+// On every step of the integration.
+constexpr std::size_t kNodes = kBooleNodes;
 // Gaps of a stretch shorter than this are none, degrees.
 constexpr double kNoGap = 1e-6;
 // The largest area of a stretch is looked for at as many angles.
@@ -160,8 +160,8 @@ Timing TimingRecord::timing(double delivery_mean) const {
     for (std::size_t j = 0; j < kNodes; ++j) {
       const Node& node = turn[i + j];
       const double into = std::max(0.0, -node.to_delivery);
-      back += kWeights[j] * into;
-      through += kWeights[j] * std::min(into, std::max(0.0, -node.from_suction));
+      back += kBoole[j] * into;
+      through += kBoole[j] * std::min(into, std::max(0.0, -node.from_suction));
       if (into / density > result.largest_backflow) {
         result.largest_backflow = into / density;
         result.largest_backflow_deg = wrap_degrees(node.theta_deg);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "bentaxis/pump/units.h"
+#include "boole.h"
 
 namespace bentaxis::hydraulics {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 // which a port opens is none.
 constexpr double kRippleWindow = 0.25;
 constexpr int kPerWindow = 10;
-constexpr double kBoole[] = {7. / 90, 32. / 90, 12. / 90, 32. / 90, 7. / 90};
 
 Channel channel(const std::string& name, const std::string& meaning, const std::string& unit,
                 double unit_in_si, int piston) {

@@ -1,25 +1,11 @@
 #include <fmt/format.h>
 
+#include "bentaxis/files/csv_rows.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/report/picture.h"
 
 namespace bentaxis::report {
 namespace {
-
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-std::string field(double value) { return number_text(value); }
-
-template <class... Fields>
-void line(std::string& csv, const Fields&... fields) {
-  std::string text;
-  ((text += "," + field(fields)), ...);
-  csv += text.substr(1) + "\n";
-}
 
 std::string heading_of(const Axis& axis) {
   return axis.unit.empty() ? axis.label : fmt::format("{} ({})", axis.label, axis.unit);
@@ -27,15 +13,16 @@ std::string heading_of(const Axis& axis) {
 
 // Columns of equal length beside each other.
 std::string beside(const std::vector<std::pair<std::string, const Values*>>& columns) {
-  std::string csv;
-  for (const auto& [name, values] : columns) csv += (csv.empty() ? "" : ",") + field(name);
-  csv += "\n";
+  CsvRows csv;
+  std::vector<std::string> names;
+  for (const auto& [name, values] : columns) names.push_back(name);
+  csv.row(names);
   for (std::size_t row = 0; row < columns.front().second->size(); ++row) {
-    std::string text;
-    for (const auto& [name, values] : columns) text += "," + field((*values)[row]);
-    csv += text.substr(1) + "\n";
+    Values numbers;
+    for (const auto& [name, values] : columns) numbers.push_back((*values)[row]);
+    csv.row(numbers);
   }
-  return csv;
+  return std::move(csv).text();
 }
 
 std::string channels_csv(const std::vector<std::string>& channels, const Curves& curves,
@@ -82,49 +69,48 @@ std::string numbers(const OwnFigure& figure, const Curves&) {
 }
 
 std::string numbers(const XyFigure& figure, const Curves&) {
-  std::string csv;
-  line(csv, std::string("series"), heading_of(figure.x), heading_of(figure.y));
+  CsvRows csv;
+  csv.row("series", heading_of(figure.x), heading_of(figure.y));
   for (const XySeries& series : figure.series)
     for (std::size_t i = 0; i < series.x.size(); ++i)
-      line(csv, series.label, series.x[i], series.y[i]);
-  return csv;
+      csv.row(series.label, series.x[i], series.y[i]);
+  return std::move(csv).text();
 }
 
 std::string numbers(const MapFigure& figure, const Curves&) {
-  std::string csv;
-  line(csv, heading_of(figure.x), heading_of(figure.y), heading_of(figure.z));
+  CsvRows csv;
+  csv.row(heading_of(figure.x), heading_of(figure.y), heading_of(figure.z));
   for (std::size_t i = 0; i < figure.values.size(); ++i)
     for (std::size_t j = 0; j < figure.values[i].size(); ++j) {
       const double value = figure.values[i][j];
       if (!figure.classes.empty() && is_computed(value))
-        line(csv, figure.x_values[j], figure.y_values[i],
-             figure.classes.at(static_cast<std::size_t>(value)));
+        csv.row(figure.x_values[j], figure.y_values[i],
+                figure.classes.at(static_cast<std::size_t>(value)));
       else
-        line(csv, figure.x_values[j], figure.y_values[i], value);
+        csv.row(figure.x_values[j], figure.y_values[i], value);
     }
-  return csv;
+  return std::move(csv).text();
 }
 
 std::string numbers(const ScatterFigure& figure, const Curves&) {
-  std::string csv;
-  line(csv, std::string("series"), heading_of(figure.x), heading_of(figure.y), std::string("note"));
+  CsvRows csv;
+  csv.row("series", heading_of(figure.x), heading_of(figure.y), "note");
   for (const ScatterSeries& series : figure.series)
     for (const ScatterPoint& point : series.points)
-      line(csv, series.name, point.x, point.y, point.note);
-  return csv;
+      csv.row(series.name, point.x, point.y, point.note);
+  return std::move(csv).text();
 }
 
 std::string numbers(const DrawingFigure& figure, const Curves&) {
-  std::string csv;
-  line(csv, figure.axis.empty() ? "theta_deg" : figure.axis, std::string("panel"),
-       std::string("look"), std::string("shape"), std::string("x"), std::string("y"));
+  CsvRows csv;
+  csv.row(figure.axis.empty() ? "theta_deg" : figure.axis, "panel", "look", "shape", "x", "y");
   const auto name = [&](int look) { return figure.looks[static_cast<std::size_t>(look)].label; };
   double shape = 0;
   const auto put = [&](const std::vector<DrawingFigure::Line>& lines, double theta_deg) {
     for (const DrawingFigure::Line& drawn : lines) {
       ++shape;
       for (std::size_t i = 0; i < drawn.x.size(); ++i)
-        line(csv, theta_deg, drawn.panel + 1.0, name(drawn.look), shape, drawn.x[i], drawn.y[i]);
+        csv.row(theta_deg, drawn.panel + 1.0, name(drawn.look), shape, drawn.x[i], drawn.y[i]);
     }
   };
   put(figure.ground, not_computed());
@@ -133,55 +119,57 @@ std::string numbers(const DrawingFigure& figure, const Curves&) {
     put(frame.lines, frame.theta_deg);
     for (const DrawingFigure::Arrow& arrow : frame.arrows) {
       ++shape;
-      line(csv, frame.theta_deg, arrow.panel + 1.0, name(arrow.look), shape, arrow.x, arrow.y);
-      line(csv, frame.theta_deg, arrow.panel + 1.0, name(arrow.look), shape, arrow.x + arrow.dx,
-           arrow.y + arrow.dy);
+      csv.row(frame.theta_deg, arrow.panel + 1.0, name(arrow.look), shape, arrow.x, arrow.y);
+      csv.row(frame.theta_deg, arrow.panel + 1.0, name(arrow.look), shape, arrow.x + arrow.dx,
+              arrow.y + arrow.dy);
     }
   }
-  return csv;
+  return std::move(csv).text();
 }
 
 std::string numbers(const BarsFigure& figure, const Curves&) {
-  std::string csv;
-  line(csv, heading_of(figure.x), std::string("low"), std::string("high"), std::string("from"),
-       std::string("to"), std::string("note"));
+  CsvRows csv;
+  csv.row(heading_of(figure.x), "low", "high", "from", "to", "note");
   for (const BarsFigure::Bar& bar : figure.bars) {
     const auto [from, to] = bar.interval.value_or(std::pair{not_computed(), not_computed()});
-    line(csv, bar.label, bar.low, bar.high, from, to, bar.note);
+    csv.row(bar.label, bar.low, bar.high, from, to, bar.note);
   }
-  return csv;
+  return std::move(csv).text();
 }
 
 std::string numbers(const BandFigure& figure, const Curves&) {
-  std::string csv;
-  line(csv, std::string("series"), heading_of(figure.x), heading_of(figure.y), std::string("low"),
-       std::string("high"));
+  CsvRows csv;
+  csv.row("series", heading_of(figure.x), heading_of(figure.y), "low", "high");
   for (const BandFigure::Band& band : figure.bands)
     for (std::size_t i = 0; i < figure.x_values.size(); ++i)
-      line(csv, band.label, figure.x_values[i], band.middle[i], band.low[i], band.high[i]);
+      csv.row(band.label, figure.x_values[i], band.middle[i], band.low[i], band.high[i]);
   for (const XySeries& series : figure.lines)
     for (std::size_t i = 0; i < series.x.size(); ++i)
-      line(csv, series.label, series.x[i], series.y[i], not_computed(), not_computed());
-  return csv;
+      csv.row(series.label, series.x[i], series.y[i], not_computed(), not_computed());
+  return std::move(csv).text();
 }
 
 std::string numbers(const ParallelFigure& figure, const Curves&) {
-  if (figure.columns.empty()) return "marked\n";
+  CsvRows csv;
+  std::vector<std::string> names;
+  for (const auto& column : figure.columns)
+    names.push_back(heading_of({column.label, column.unit}));
+  csv.row(names, "marked");
+  if (figure.columns.empty()) return std::move(csv).text();
   Values marked(figure.columns.front().values.size(), 0.0);
   for (const std::size_t design : figure.marked) marked.at(design) = 1;
-  std::string csv;
-  for (const auto& column : figure.columns)
-    csv += field(heading_of({column.label, column.unit})) + ",";
-  csv += "marked\n";
   for (std::size_t row = 0; row < marked.size(); ++row) {
+    std::vector<Cell> cells;
     for (const auto& column : figure.columns) {
       const double value = column.values[row];
-      const bool named = is_computed(value) && !column.words.empty();
-      csv += (named ? field(column.words.at(static_cast<std::size_t>(value))) : field(value)) + ",";
+      if (is_computed(value) && !column.words.empty())
+        cells.emplace_back(column.words.at(static_cast<std::size_t>(value)));
+      else
+        cells.emplace_back(value);
     }
-    csv += field(marked[row]) + "\n";
+    csv.row(cells, marked[row]);
   }
-  return csv;
+  return std::move(csv).text();
 }
 
 }  // namespace

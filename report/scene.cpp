@@ -4,34 +4,53 @@
 
 #include <bit>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base64.h"
 #include "bentaxis/report/document.h"
+#include "json_fields.h"
+
+namespace bentaxis {
+
+inline void to_json(nlohmann::json& json, ForceKind kind) {
+  constexpr const char* kNames[] = {"reaction", "applied", "inertia"};
+  json = kNames[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace bentaxis
 
 namespace bentaxis::report {
-namespace {
 
 using Json = nlohmann::json;
 
-const char* to_string(ForceKind kind) {
-  switch (kind) {
-    case ForceKind::reaction:
-      return "reaction";
-    case ForceKind::applied:
-      return "applied";
-    case ForceKind::inertia:
-      break;
-  }
-  return "inertia";
+inline void to_json(Json& json, Look look) {
+  constexpr const char* kNames[] = {"shaft",   "piston", "block",   "plate", "delivery",
+                                    "suction", "gear",   "bearing", "pin",   "axis"};
+  json = kNames[static_cast<std::size_t>(look)];
 }
 
-const char* to_string(Look look) {
-  static constexpr const char* kNames[] = {"shaft",   "piston", "block",   "plate", "delivery",
-                                           "suction", "gear",   "bearing", "pin",   "axis"};
-  return kNames[static_cast<std::size_t>(look)];
+inline void to_json(Json& json, const Scalar& scalar) {
+  json = scalar.constant;
+  if (scalar.factor == 0) return;
+  Json source = scalar.channel;
+  if (scalar.series) source = *scalar.series;
+  json = Json::array({scalar.constant, scalar.factor, source});
 }
+
+inline void to_json(Json& json, const Vector& vector) {
+  json = Json::array();
+  for (const auto& [axis, by] : vector.terms)
+    json.push_back(Json::array({axis[0], axis[1], axis[2], by}));
+}
+
+inline void to_json(Json& json, const Place& place) {
+  json = {{"at", place.at}};
+  if (!place.body.empty()) json["body"] = place.body;
+}
+
+BENTAXIS_JSON(SceneSum, body, force_over_sum, moment_over_sum)
+
+namespace {
 
 std::string base64_floats(const Values& values) {
   std::string bytes;
@@ -42,31 +61,10 @@ std::string base64_floats(const Values& values) {
   return base64_of(std::move(bytes));
 }
 
-Json json_of(const Scalar& scalar) {
-  if (scalar.factor == 0) return scalar.constant;
-  Json source = scalar.channel;
-  if (scalar.series) source = *scalar.series;
-  return Json::array({scalar.constant, scalar.factor, source});
-}
-
-Json json_of(const Vector& vector) {
-  Json terms = Json::array();
-  for (const auto& [axis, by] : vector.terms)
-    terms.push_back(Json::array({axis[0], axis[1], axis[2], json_of(by)}));
-  return terms;
-}
-
-Json json_of(const Place& place) {
-  Json json = {{"at", json_of(place.at)}};
-  if (!place.body.empty()) json["body"] = place.body;
-  return json;
-}
-
 // One alone stands for all models.
 template <class Item>
 Json per_model(const std::vector<Item>& items) {
-  Json list = Json::array();
-  for (const Item& item : items) list.push_back(json_of(item));
+  const Json list = items;
   bool alike = !list.empty();
   for (const Json& one : list) alike = alike && one == list.front();
   return alike ? Json::array({list.front()}) : list;
@@ -113,58 +111,48 @@ void put_form(Json& json, const Wire& wire) {
   if (wire.closed) json["wire"]["closed"] = true;
 }
 
-Json json_of(const Shape& shape) {
-  Json json = {{"look", to_string(shape.look)}};
-  if (shape.see_through) json["see_through"] = true;
-  if (shape.tint) json["tint"] = json_of(*shape.tint);
-  std::visit([&](const auto& form) { put_form(json, form); }, shape.form);
-  return json;
-}
-
 void put_motion(Json&, const Standing&) {}
-void put_motion(Json& json, const Turning& turning) { json["turns"] = json_of(turning.angle); }
+void put_motion(Json& json, const Turning& turning) { json["turns"] = turning.angle; }
 void put_motion(Json& json, const Between& between) {
-  json["from"] = json_of(between.from);
-  json["to"] = json_of(between.to);
+  json["from"] = between.from;
+  json["to"] = between.to;
 }
 
-Json json_of(const SceneBody& body) {
-  Json json = {{"name", body.name}, {"origin", body.origin}, {"axes", body.axes}};
+}  // namespace
+
+inline void to_json(Json& json, const Shape& shape) {
+  json = {{"look", shape.look}};
+  if (shape.see_through) json["see_through"] = true;
+  if (shape.tint) json["tint"] = *shape.tint;
+  std::visit([&](const auto& form) { put_form(json, form); }, shape.form);
+}
+
+inline void to_json(Json& json, const SceneBody& body) {
+  json = {
+      {"name", body.name}, {"origin", body.origin}, {"axes", body.axes}, {"shapes", body.shapes}};
   std::visit([&](const auto& motion) { put_motion(json, motion); }, body.motion);
-  json["shapes"] = Json::array();
-  for (const Shape& shape : body.shapes) json["shapes"].push_back(json_of(shape));
-  return json;
 }
 
-Json json_of(const SceneLoad& load) {
-  Json json = {
-      {"id", load.id}, {"label", load.label}, {"group", load.group}, {"kind", to_string(load.kind)},
-      {"on", load.on}, {"by", load.by},       {"point", load.point}, {"at", per_model(load.at)}};
+inline void to_json(Json& json, const SceneLoad& load) {
+  json = {{"id", load.id},       {"label", load.label},     {"group", load.group},
+          {"kind", load.kind},   {"on", load.on},           {"by", load.by},
+          {"point", load.point}, {"at", per_model(load.at)}};
   if (!load.frame.empty()) json["frame"] = load.frame;
   if (!load.axes.empty()) json["axes"] = load.axes;
   if (!load.force.empty()) json["force"] = per_model(load.force);
   if (!load.moment.empty()) json["moment"] = per_model(load.moment);
   if (load.counterpart) json["counterpart"] = true;
-  return json;
 }
-
-}  // namespace
 
 std::string compact_json(const Scene& scene) {
   Json json = {{"models", scene.models},  {"rows", scene.rows},     {"series", Json::array()},
-               {"bodies", Json::array()}, {"loads", Json::array()}, {"sums", Json::array()},
+               {"bodies", scene.bodies},  {"loads", scene.loads},   {"sums", scene.sums},
                {"frames", Json::array()}, {"centre", scene.centre}, {"radius", scene.radius},
                {"note", scene.note}};
   for (const Values& series : scene.series) json["series"].push_back(base64_floats(series));
-  for (const SceneBody& body : scene.bodies) json["bodies"].push_back(json_of(body));
-  for (const SceneLoad& load : scene.loads) json["loads"].push_back(json_of(load));
-  for (const SceneSum& sum : scene.sums)
-    json["sums"].push_back({{"body", sum.body},
-                            {"force_over_sum", sum.force_over_sum},
-                            {"moment_over_sum", sum.moment_over_sum}});
   for (const auto& [name, axes] : scene.frames)
     json["frames"].push_back({{"name", name}, {"axes", axes}});
-  if (scene.film_point) json["film_point"] = json_of(*scene.film_point);
+  if (scene.film_point) json["film_point"] = *scene.film_point;
   if (!scene.film_path.empty()) json["film_path"] = scene.film_path;
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   // The curves in the format of their own block, behind the rest.

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/compare/split.h"
@@ -308,6 +310,25 @@ TEST(Verdict, WithinABandOnlyTheDistanceFromItCounts) {
 }
 
 // A record that had to be resampled is uncertain by its own amount at each angle: only there.
+TEST(Verdict, ABandWithoutAFiniteLimitHoldsNothing) {
+  const std::vector<Channel> channels = {channel("X_N", "X")};
+  const auto a = table("a", channels, {[](double) { return 100; }});
+  auto low = table("low", channels, {[](double) { return 90; }});
+  auto high = table("high", channels, {[](double) { return 110; }});
+  Options options;
+  options.tolerance = 1e-3;
+  options.band = Band{&low, &high};
+  EXPECT_TRUE(compare_tables(a, a, options).agrees());
+  for (const double limit : {not_computed(), std::numeric_limits<double>::infinity()})
+    for (ResultTable* side : {&low, &high}) {
+      const double kept = std::exchange(side->values[5], limit);
+      const Comparison c = compare_tables(a, a, options);
+      side->values[5] = kept;
+      EXPECT_FALSE(c.agrees());
+      EXPECT_EQ(c.channels.at(0).verdict, Verdict::incomplete);
+    }
+}
+
 TEST(Verdict, AnUncertaintyExcusesWhereItIsAndByItsSize) {
   const std::vector<Channel> channels = {channel("X_N", "X")};
   const auto at_90 = [](double most, double elsewhere) {

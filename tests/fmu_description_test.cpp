@@ -21,7 +21,7 @@ TEST(Units, EveryUnitOfAParameterIsDefinedWithTheFactorOfItsConversion) {
   int converted = 0;
   for (const Table& table : standard_registry().tables)
     for (const Parameter& parameter : table.parameters) {
-      const UnitDefinition* unit = unit_definition(parameter.unit.name);
+      const UnitOfMeasure* unit = unit_definition(parameter.unit.name);
       if (unit == nullptr || parameter.unit.to_si == nullptr) continue;
       for (const double value : {1.0, 7.25}) {
         const double si = unit->factor * value + unit->offset;
@@ -47,8 +47,9 @@ TEST(Units, OneThatIsNotKnownIsAnErrorAndNoneIsNone) {
 // A unit and what it is a product of, by hand: 1 N m = 1 kg m2/s2.
 TEST(Units, ExponentsAreThoseOfTheBaseUnits) {
   const auto exponents = [](const char* name) {
-    const UnitDefinition* unit = unit_definition(name);
-    return std::vector{unit->kg, unit->m, unit->s, unit->kelvin, unit->rad};
+    const UnitOfMeasure* unit = unit_definition(name);
+    const Dimension& d = unit->dimension;
+    return std::vector{d.kg, d.m, d.s, d.kelvin, d.rad};
   };
   EXPECT_THAT(exponents("Nm"), ElementsAre(1, 2, -2, 0, 0));
   EXPECT_THAT(exponents("bar"), ElementsAre(1, -1, -2, 0, 0));
@@ -63,7 +64,7 @@ TEST(Units, ExponentsAreThoseOfTheBaseUnits) {
 
 TEST(Units, WhatPeopleReadIsTheUnitOfThatName) {
   for (const char* name : {"rad/s", "Pa", "m3/s", "rad", "m"}) {
-    const UnitDefinition* unit = unit_definition(name);
+    const UnitOfMeasure* unit = unit_definition(name);
     ASSERT_FALSE(unit->display.empty()) << name;
     const std::string ours = unit->display == "L/min" ? "l/min"
                              : unit->display == "L"   ? "l"

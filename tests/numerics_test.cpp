@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/numerics/object_pool.h"
 #include "bentaxis/numerics/parallel_for.h"
+#include "bentaxis/numerics/stiff_integrator.h"
 #include "bentaxis/study/in_threads.h"
 
 namespace bentaxis::numerics {
@@ -76,6 +79,119 @@ TEST(ObjectPool, GivesBackWhatIsUnusedAndMakesWhatLacks) {
   EXPECT_EQ(again.get(), address);
   EXPECT_EQ(made, 2);
   EXPECT_EQ(*pool.take(make), 3);
+}
+
+TEST(Bisection, HalvesABracketAroundTheRoot) {
+  const auto is_above = [](double x) { return x * x > 2; };
+  const Bracket root = bisect({1, 2}, 60, is_above);
+  EXPECT_LE(root.low, root.high);
+  EXPECT_NEAR(root.middle(), std::sqrt(2.0), 1e-15);
+  const Bracket coarse = bisect({1, 2}, 3, is_above);
+  EXPECT_EQ(coarse.low, 1.375);
+  EXPECT_EQ(coarse.high, 1.5);
+  EXPECT_EQ(bisect({1, 2}, 0, is_above).middle(), 1.5);
+}
+
+// y' = -k (y - cos t), with the integral of y and the sensitivity by k.
+class Relaxation : public Equations {
+ public:
+  static constexpr double kRate = 1000;
+  int states() const override { return 1; }
+  int integrals() const override { return 1; }
+  bool rates(double t, const double* y, double* dy) override {
+    *dy = -kRate * (*y - std::cos(t));
+    return true;
+  }
+  void jacobian(double, const double*, const double*, bool, double* by_state) override {
+    *by_state = -kRate;
+  }
+  void integrands(double, const double* y, double* dq) override { *dq = *y; }
+  bool sensitivity_rates(double t, const double* y, const std::vector<const double*>& s,
+                         const std::vector<double*>& ds) override {
+    *ds[0] = -kRate * *s[0] - (*y - std::cos(t));
+    return true;
+  }
+  // What remains of the solution once the start is forgotten.
+  static double solution(double t, double k = kRate) {
+    return k * (k * std::cos(t) + std::sin(t)) / (k * k + 1);
+  }
+};
+
+TEST(StiffIntegrator, IntegratesStatesIntegralsAndSensitivities) {
+  Relaxation equations;
+  StiffIntegrator integrator(equations, 1e-10, {1, 1e-10, true});
+  integrator.start(0, {Relaxation::solution(0)}, {0}, {0});
+  while (integrator.step(1) != StiffIntegrator::Reached::stop) {
+  }
+  integrator.restart();  // as at an edge: what was reached stays
+  while (integrator.step(2) != StiffIntegrator::Reached::stop) {
+  }
+  EXPECT_EQ(integrator.time(), 2);
+  constexpr double kError = 1e-7;  // of a thousand steps
+  EXPECT_NEAR(*integrator.state_at(2), Relaxation::solution(2), kError);
+  const double k = Relaxation::kRate;
+  const double integral = k * (k * std::sin(2) + 1 - std::cos(2)) / (k * k + 1);
+  EXPECT_NEAR(*integrator.integrals_at(2), integral, kError);
+  const double by_k = (Relaxation::solution(2, k + 1) - Relaxation::solution(2, k - 1)) / 2;
+  EXPECT_NEAR(integrator.sensitivities_at(2)[0] / by_k, 1, 1e-4);
+}
+
+// y' = 1; the first trial beyond a time throws, and from `broken` on no rate is finite.
+class Obstacle : public Equations {
+ public:
+  int states() const override { return 1; }
+  std::vector<int> event_functions() const override { return {1}; }
+  bool rates(double t, const double*, double* dy) override {
+    *dy = 1;
+    if (t > 0.5 && !thrown) {
+      thrown = true;
+      throw std::runtime_error("too far");
+    }
+    return !broken;
+  }
+  void jacobian(double, const double*, const double*, bool, double* by_state) override {
+    *by_state = 0;
+  }
+  void event_values(double, const double* y, double* values) override { *values = *y - 0.25; }
+  bool is_recoverable(const std::exception&) const override { return recoverable; }
+
+  bool thrown = false, recoverable = true, broken = false;
+};
+
+TEST(StiffIntegrator, ForgetsWhatAShorterStepHasAvoided) {
+  Obstacle equations;
+  StiffIntegrator integrator(equations, 1e-6);
+  integrator.start(0, {0});
+  EXPECT_TRUE(integrator.complaint().empty());
+  bool event = false;
+  try {
+    while (integrator.time() < 3) {
+      event |= integrator.step(3) == StiffIntegrator::Reached::event;
+      equations.broken = integrator.time() > 1;
+    }
+    FAIL() << "went on";
+  } catch (const IntegrationFailure& failure) {  // and not the exception of long ago
+    EXPECT_EQ(failure.reason(), IntegrationFailure::Reason::no_rates);
+  }
+  EXPECT_TRUE(event);
+  EXPECT_TRUE(equations.thrown);
+  EXPECT_GT(integrator.time(), 1);
+  EXPECT_EQ(integrator.complaint(), "too far");
+  integrator.forget_complaint();
+  EXPECT_TRUE(integrator.complaint().empty());
+}
+
+TEST(StiffIntegrator, ThrowsOnWhatNoShorterStepAvoids) {
+  Obstacle equations;
+  equations.recoverable = false;
+  StiffIntegrator integrator(equations, 1e-6);
+  integrator.start(0, {0});
+  try {
+    while (integrator.time() < 2) integrator.step(2);
+    FAIL() << "went on";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "too far");
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
 #include <cmath>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -90,12 +91,8 @@ double first_above(const EventFunction& from, const EventFunction& to, double h)
     if (!(end > 0 && end <= 1)) continue;
     const bool above = end == 1 ? to.value > 0 : at(end) > 0;
     if (above) {
-      double high = end;
-      for (int i = 0; i < 60; ++i) {
-        const double middle = (low + high) / 2;
-        (at(middle) > 0 ? high : low) = middle;
-      }
-      return high * h;
+      constexpr int kHalvings = 60;
+      return numerics::bisect({low, end}, kHalvings, [&](double s) { return at(s) > 0; }).high * h;
     }
     low = end;
   }

@@ -13,6 +13,7 @@
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/unit_of_measure.h"
 #include "foreign_grid.h"
 
 namespace bentaxis {
@@ -350,61 +351,9 @@ std::string ForeignTable::place(std::size_t row) const {
 }
 
 std::string known_unit(const std::string& text) {
-  static const std::map<std::string, std::string> exact = {
-      {"N", "N"},          {"kN", "kN"},        {"KN", "kN"},        {"MN", "MN"},
-      {"daN", "daN"},      {"kgf", "kgf"},      {"lbf", "lbf"},      {"Nm", "Nm"},
-      {"kNm", "kNm"},      {"Nmm", "Nmm"},      {"mNm", "Nmm"},      {"lbfin", "lbf in"},
-      {"inlbf", "lbf in"}, {"lbfft", "lbf ft"}, {"ftlbf", "lbf ft"}, {"m", "m"},
-      {"mm", "mm"},        {"cm", "cm"},        {"um", "um"},        {"µm", "um"},
-      {"in", "in"},        {"Pa", "Pa"},        {"kPa", "kPa"},      {"MPa", "MPa"},
-      {"bar", "bar"},      {"mbar", "mbar"},    {"psi", "psi"},      {"deg", "deg"},
-      {"°", "deg"},        {"\xB0", "deg"},     {"rad", "rad"},      {"mrad", "mrad"},
-      {"turn", "turn"},    {"rev", "turn"},     {"gon", "gon"},      {"grad", "gon"},
-      {"s", "s"},          {"ms", "ms"},        {"us", "us"},        {"µs", "us"},
-      {"min", "min"},      {"N/mm2", "MPa"},    {"N/mm^2", "MPa"},   {"N/mm²", "MPa"}};
-  static const std::map<std::string, std::string> words = {{"newton", "N"},
-                                                           {"newtons", "N"},
-                                                           {"kilonewton", "kN"},
-                                                           {"knewton", "kN"},
-                                                           {"newtonmm", "Nmm"},
-                                                           {"newtonmeter", "Nm"},
-                                                           {"newtonmetre", "Nm"},
-                                                           {"newtonm", "Nm"},
-                                                           {"newtonmillimeter", "Nmm"},
-                                                           {"kilonewtonmeter", "kNm"},
-                                                           {"kilonewtonm", "kNm"},
-                                                           {"poundforce", "lbf"},
-                                                           {"poundforceinch", "lbf in"},
-                                                           {"meter", "m"},
-                                                           {"metre", "m"},
-                                                           {"millimeter", "mm"},
-                                                           {"millimetre", "mm"},
-                                                           {"inch", "in"},
-                                                           {"pascal", "Pa"},
-                                                           {"megapascal", "MPa"},
-                                                           {"degree", "deg"},
-                                                           {"degrees", "deg"},
-                                                           {"grad°", "deg"},
-                                                           {"radian", "rad"},
-                                                           {"radians", "rad"},
-                                                           {"revolution", "turn"},
-                                                           {"revolutions", "turn"},
-                                                           {"turns", "turn"},
-                                                           {"umdr", "turn"},
-                                                           {"sec", "s"},
-                                                           {"second", "s"},
-                                                           {"seconds", "s"},
-                                                           {"sek", "s"},
-                                                           {"millisecond", "ms"},
-                                                           {"milliseconds", "ms"},
-                                                           {"msec", "ms"},
-                                                           {"kilogramforce", "kgf"},
-                                                           {"minutes", "min"},
-                                                           {"mpa", "MPa"},
-                                                           {"nm", "Nm"},
-                                                           {"nmm", "Nmm"},
-                                                           {"deg", "deg"},
-                                                           {"n", "N"}};
+  // What columns of other programs hold.
+  static const std::set<std::string> quantities = {"Force",    "Torque", "Length",
+                                                   "Pressure", "Angle",  "Time"};
   std::string bare;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text.compare(i, 2, "·") == 0) {  // in two bytes
@@ -415,11 +364,13 @@ std::string known_unit(const std::string& text) {
         text[i] != '\xB7')
       bare += text[i];
   }
-  if (const auto it = exact.find(bare); it != exact.end()) return it->second;
+  const auto name_of = [](const UnitOfMeasure* unit) {
+    return unit != nullptr && quantities.count(unit->quantity) > 0 ? unit->name : "";
+  };
+  if (const std::string name = name_of(find_written_unit(bare)); !name.empty()) return name;
   std::transform(bare.begin(), bare.end(), bare.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto it = words.find(bare);
-  return it == words.end() ? "" : it->second;
+  return name_of(find_unit_by_word(bare));
 }
 
 std::string unit_in_name(const std::string& name) {

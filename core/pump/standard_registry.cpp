@@ -3,6 +3,13 @@
 #include "tables/entries.h"
 
 namespace bentaxis {
+
+bool delivery_is_held(const Case& the_case) {
+  const LoadData* load = tables::find(the_case, &HydraulicData::load);
+  return the_case.pressure.ports.delivery == 0 ||
+         (load != nullptr && load->kind == LoadKind::constant_pressure);
+}
+
 namespace tables {
 
 std::string short_text(double value) { return rounded_text(value, 6); }
@@ -10,12 +17,6 @@ std::string short_text(double value) { return rounded_text(value, 6); }
 std::string arc_refusal(const PortArc& arc) {
   if (arc.from_deg < arc.to_deg && arc.to_deg <= arc.from_deg + 360) return "";
   return "must be [from, to] with from < to <= from + 360";
-}
-
-bool delivery_is_held(const Case& c) {
-  const LoadData* load = find(c, &HydraulicData::load);
-  return c.pressure.ports.delivery == 0 ||
-         (load != nullptr && load->kind == LoadKind::constant_pressure);
 }
 
 std::string path_in_pump(std::string place) {

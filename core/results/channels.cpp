@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "bentaxis/pump/unit_of_measure.h"
+
 namespace bentaxis {
 namespace {
 
@@ -30,7 +32,7 @@ Channel describe(const QuantityEntry& entry, char component, int piston) {
   channel.by_body = of_piston(entry.by_body, piston);
   channel.point = of_piston(entry.point, piston);
   channel.unit = entry.unit;
-  channel.unit_in_si = entry.unit == "mm" ? 1e-3 : entry.unit == "bar" ? 1e5 : 1.0;
+  channel.unit_in_si = unit_in_si(entry.unit);
   channel.group = entry.group;
   channel.kind = entry.kind;
   channel.name = channel.quantity;

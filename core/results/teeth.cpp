@@ -4,6 +4,7 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
+#include "bentaxis/pump/unit_of_measure.h"
 
 namespace bentaxis {
 namespace {
@@ -27,6 +28,7 @@ ResultTable teeth_table(const std::string& model) {
     channel.name = channel.quantity = name;
     channel.meaning = meaning;
     channel.unit = unit;
+    channel.unit_in_si = unit_in_si(unit);
     channel.group = group;
     channel.axis = axis;
     channel.frame = axis.empty() ? "" : "S1";

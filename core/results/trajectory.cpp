@@ -13,6 +13,12 @@ std::vector<std::string> trajectory_columns(const DriveSpec& drive) {
   return names;
 }
 
+std::vector<Column> state_columns(const DriveSpec& drive) {
+  std::vector<Column> columns;
+  for (const std::string& name : trajectory_columns(drive)) columns.push_back(state_column(name));
+  return columns;
+}
+
 std::vector<double> trajectory_times(const DriveSpec& drive) {
   std::vector<double> times;
   for (int i = 0; i <= drive.samples; ++i) times.push_back(drive.duration * i / drive.samples);

@@ -40,22 +40,23 @@ const char* word_of(Variability variability) {
   return "continuous";
 }
 
-void add_base(pugi::xml_node unit, const UnitDefinition& definition) {
+void add_base(pugi::xml_node unit, const UnitOfMeasure& definition) {
   pugi::xml_node base = unit.append_child("BaseUnit");
   for (const auto& [name, exponent] :
-       {std::pair{"kg", definition.kg}, std::pair{"m", definition.m}, std::pair{"s", definition.s},
-        std::pair{"K", definition.kelvin}, std::pair{"rad", definition.rad}})
+       {std::pair{"kg", definition.dimension.kg}, std::pair{"m", definition.dimension.m},
+        std::pair{"s", definition.dimension.s}, std::pair{"K", definition.dimension.kelvin},
+        std::pair{"rad", definition.dimension.rad}})
     if (exponent != 0) base.append_attribute(name) = exponent;
   if (definition.factor != 1) set(base, "factor", definition.factor);
   if (definition.offset != 0) set(base, "offset", definition.offset);
 }
 
-void set_unit(pugi::xml_node node, const UnitDefinition& unit) {
-  set(node, "unit", unit.name);
+void set_unit(pugi::xml_node node, const UnitOfMeasure& unit) {
+  set(node, "unit", unit.standard);
   if (!unit.display.empty()) set(node, "displayUnit", unit.display);
 }
 
-std::vector<const UnitDefinition*> definitions_for(const std::vector<Variable>& variables) {
+std::vector<const UnitOfMeasure*> definitions_for(const std::vector<Variable>& variables) {
   std::vector<std::string> used;
   for (const Variable& variable : variables)
     if (!variable.boolean) used.push_back(variable.unit);
@@ -118,9 +119,9 @@ void add_units(pugi::xml_node root, const std::vector<Variable>& variables) {
   const auto definitions = definitions_for(variables);
   if (definitions.empty()) return;
   pugi::xml_node all = root.append_child("UnitDefinitions");
-  for (const UnitDefinition* definition : definitions) {
+  for (const UnitOfMeasure* definition : definitions) {
     pugi::xml_node unit = all.append_child("Unit");
-    set(unit, "name", definition->name);
+    set(unit, "name", definition->standard);
     add_base(unit, *definition);
     if (definition->display.empty()) continue;
     pugi::xml_node display = unit.append_child("DisplayUnit");
@@ -133,7 +134,7 @@ void add_types(pugi::xml_node root, const std::vector<Variable>& variables, Vers
   const auto definitions = definitions_for(variables);
   if (definitions.empty()) return;
   pugi::xml_node all = root.append_child("TypeDefinitions");
-  for (const UnitDefinition* definition : definitions) {
+  for (const UnitOfMeasure* definition : definitions) {
     const bool nested = version == Version::fmi2;
     pugi::xml_node type = all.append_child(nested ? "SimpleType" : "Float64Type");
     set(type, "name", type_name(*definition));
@@ -185,7 +186,7 @@ void set_values(pugi::xml_node node, const Variable& variable) {
     if (starts) set(node, "start", *variable.start != 0);
     return;
   }
-  if (const UnitDefinition* unit = unit_definition(variable.unit)) {
+  if (const UnitOfMeasure* unit = unit_definition(variable.unit)) {
     set(node, "declaredType", type_name(*unit));
     set_unit(node, *unit);
   }

@@ -2,7 +2,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <map>
 #include <set>
 
 #include "bentaxis/files/csv.h"
@@ -27,49 +26,8 @@ Column column_of(const Channel& channel, const double* first, std::size_t stride
   return {channel.name, channel.unit, meaning_of(channel), first, stride, channel};
 }
 
-// The unit that a name ends with, and what columns without a channel are.
-Column state_column(const std::string& name, const double* first, std::size_t stride) {
-  static const std::map<std::string, std::string> units = {{"rad_per_s2", "rad/s2"},
-                                                           {"l_per_min", "l/min"},
-                                                           {"_deg", "deg"},
-                                                           {"_rpm", "rpm"},
-                                                           {"_s", "s"},
-                                                           {"_bar", "bar"},
-                                                           {"_N", "N"},
-                                                           {"_Nm", "Nm"},
-                                                           {"_kW", "kW"},
-                                                           {"_urad", "urad"},
-                                                           {"_um", "um"},
-                                                           {"_mm", "mm"},
-                                                           {"_cm3", "cm3"},
-                                                           {"_percent", "%"},
-                                                           {"_C", "C"},
-                                                           {"_m_per_s", "m/s"}};
-  static const std::map<std::string, std::string> meanings = {
-      {"theta_deg", "angle of the shaft"},
-      {"psi_deg", "angle of the block"},
-      {"time_s", "time"},
-      {"shaft_rpm", "speed of the shaft"},
-      {"block_rpm", "speed of the block"},
-      {"motor_rpm", "speed of the motor's rotor"},
-      {"theta_rpm", "speed of the shaft"},
-      {"psi_rpm", "speed of the block"},
-      {"theta_rad_per_s2", "acceleration of the shaft"},
-      {"psi_rad_per_s2", "acceleration of the block"},
-      {"suction_bar", "pressure in the suction port, gauge"},
-      {"delivery_bar", "pressure in the delivery port, gauge"}};
-  Column column{name, "", "", first, stride};
-  std::size_t longest = 0;
-  for (const auto& [end, unit] : units)
-    if (end.size() > longest && name.ends_with(end)) {
-      longest = end.size();
-      column.unit = unit;
-    }
-  const auto known = meanings.find(name);
-  column.meaning = known != meanings.end()  ? known->second
-                   : name.starts_with("p_") ? "pressure in a chamber, gauge"
-                                            : "";
-  return column;
+Column column_of(const bentaxis::Column& of, const double* first, std::size_t stride) {
+  return {of.name, of.unit, of.meaning, first, stride};
 }
 
 // Short names: without the unit, and of a quantity of one component its symbol, with or without it.
@@ -120,7 +78,7 @@ Table table_of(std::shared_ptr<const ResultTable> of) {
   Table table;
   table.name = of->name;
   table.rows = of->rows();
-  table.columns.push_back(state_column("theta_deg", of->theta_deg.data(), 1));
+  table.columns.push_back(column_of(state_column("theta_deg"), of->theta_deg.data(), 1));
   add_channels(table, *of);
   table.csv = [of] { return to_csv(*of); };
   table.owner = std::move(of);
@@ -132,8 +90,13 @@ Table table_of(std::shared_ptr<const MotionTable> of) {
   table.name = of->results.name;
   table.rows = of->results.rows();
   const std::size_t width = of->state_names.size();
-  for (std::size_t i = 0; i < width; ++i)
-    table.columns.push_back(state_column(of->state_names[i], of->states.data() + i, width));
+  for (std::size_t i = 0; i < width; ++i) {
+    bentaxis::Column state = state_column(of->state_names[i]);
+    // Pressures of the chambers are given in states and stand among the results too.
+    if (const std::size_t same = of->results.find(state.name); same < of->results.columns())
+      state = {state.name, of->results.channels[same].meaning, of->results.channels[same].unit};
+    table.columns.push_back(column_of(state, of->states.data() + i, width));
+  }
   add_channels(table, of->results);
   table.csv = [of] { return to_csv(*of); };
   table.owner = std::move(of);
@@ -145,14 +108,11 @@ Table oil_table_of(std::shared_ptr<const Trajectory> of, const std::string& name
   table.name = name;
   table.rows = of->table.results.rows();
   table.columns.push_back(
-      state_column("time_s", of->table.states.data(), of->table.state_names.size()));
+      column_of(state_column("time_s"), of->table.states.data(), of->table.state_names.size()));
   table.first_of_block = 1;
-  for (std::size_t i = 0; i < of->oil->columns.size(); ++i) {
-    Column column =
-        state_column(of->oil->columns[i].name, of->oil->values.data() + i, of->oil->columns.size());
-    column.meaning = of->oil->columns[i].meaning;
-    table.columns.push_back(std::move(column));
-  }
+  const std::vector<OilColumn>& columns = of->oil->columns;
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    table.columns.push_back(column_of(columns[i], of->oil->values.data() + i, columns.size()));
   table.csv = [of] { return oil_csv(*of); };
   table.owner = std::move(of);
   return table;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "bentaxis/numerics/bisection.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "integration/integrators.h"
@@ -48,13 +49,8 @@ double root_between(const Look& low, const Look& high) {
     return r * r * ((1 + 2 * s) * low.value + s * h * low.rate) +
            s * s * ((1 + 2 * r) * high.value - r * h * high.rate);
   };
-  double below = 0;
-  double above = 1;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (below + above) / 2;
-    (cubic(middle) > 0 ? above : below) = middle;
-  }
-  return low.time + (below + above) / 2 * h;
+  const auto is_above = [&](double s) { return cubic(s) > 0; };
+  return low.time + numerics::bisect({0, 1}, kHalvings, is_above).middle() * h;
 }
 
 }  // namespace

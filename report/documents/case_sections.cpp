@@ -60,8 +60,7 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
            ? "high-precision instants and the frame of O4; what one line of action would change is "
              "among the limits of validity"
            : "high-precision curves and the frame of O4 check the algebra; that real teeth push "
-             "otherwise "
-             "backwards and on the other flank is among the limits of validity"},
+             "otherwise backwards and on the other flank is among the limits of validity"},
       {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
       {"rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
        "nothing here: a rig or an elastic model"},
@@ -87,8 +86,7 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
              ? "omega given; no torsion; the teeth stand back by their lag"
              : "omega given; no torsion, no play in the gear",
          "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, "
-         "holds "
-         "its speed"});
+         "holds its speed"});
     return inputs;
   }
   const DriveSpec& drive = *the_case.drive;

@@ -9,15 +9,14 @@
 #include "bentaxis/report/text.h"
 #include "bentaxis/study/budget_section.h"
 #include "bentaxis/study/calibration.h"
-#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/force_figures.h"
-#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/reference_curves.h"
 #include "bentaxis/study/regression_document.h"
 #include "bentaxis/study/teeth_section.h"
 #include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
+#include "document_parts.h"
 #include "hydraulic_sections.h"
 #include "key_figures.h"
 
@@ -71,8 +70,7 @@ report::Section integration_section(const ComparisonResult& r) {
   section.text = fmt::format(
       "Integrator {}, {} revolution(s). Errors are the largest difference from the analytic model "
       "over the peak. In the torque-driven run the shaft is free and fed the analytic Td; its "
-      "speed "
-      "error is relative to omega. Facts are of the last accuracy.",
+      "speed error is relative to omega. Facts are of the last accuracy.",
       name_of(r.options.integration.integrator), r.second.the_case.operation.revolutions);
   section.table.columns = {"accuracy asked",
                            "error Rs",
@@ -150,17 +148,13 @@ void add_reference(report::Document& document, const Outcome& outcome) {
 
 report::Document comparison_document(const ComparisonResult& r, const report::Lines& program) {
   const Case& the_case = r.first.the_case;
-  report::Document document;
-  document.title = the_case.name;
-  document.program = program;
   std::optional<report::Scene> scene;
   // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
   const bool all_loads = r.multibody_loads.rows() > 0;
   if (all_loads)
     scene =
         pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
-  describe_case(document, the_case, std::move(scene));
-  document.derived = derived_section(the_case);
+  report::Document document = case_document(the_case, the_case.name, program, std::move(scene));
   document.verdict = verdict_of(r);
   document.meaning =
       "Two models that agree have solved the same equations correctly: that is verification. It "
@@ -189,19 +183,16 @@ report::Document comparison_document(const ComparisonResult& r, const report::Li
   if (!r.integrations.empty()) document.runs->push_back(integration_section(r));
   document.figures = comparison_figures(r);
   if (r.options.channels.all())
-    for (auto& figure :
-         force_figures({the_case, r.analytic, all_loads ? &r.analytic_loads : nullptr}))
-      document.figures->push_back(std::move(figure));
+    append(document.figures,
+           force_figures({the_case, r.analytic, all_loads ? &r.analytic_loads : nullptr}));
   if (r.first.hydraulics) {
     document.runs->push_back(hydraulic_section(the_case, *r.first.hydraulics));
-    for (auto& figure : hydraulic_figures(the_case, *r.first.hydraulics))
-      document.figures->push_back(std::move(figure));
+    append(document.figures, hydraulic_figures(the_case, *r.first.hydraulics));
   }
   if (r.teeth) {
     document.runs->push_back(teeth_section(*r.teeth, the_case.pump));
     document.figures->push_back(teeth_picture(the_case.pump, r.teeth->analytic));
-    for (auto& figure : teeth_figures(*r.teeth, the_case.pump))
-      document.figures->push_back(std::move(figure));
+    append(document.figures, teeth_figures(*r.teeth, the_case.pump));
   }
   document.runs->push_back(rounding_section(r.rounding));
   if (r.with) add_reference(document, *r.with);

@@ -8,8 +8,7 @@
 
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -89,8 +88,7 @@ Lines ruled_out(const Fig34Study& s, bool drag) {
       const Count c = count(s, [&](const Fig34Point& p) { return p.drag == drag && has(p, v); });
       if (c.both == 0)
         lines.push_back(
-            fmt::format("{}: {} of {} laws leave the axes, {} do not reverse in every "
-                        "pitch",
+            fmt::format("{}: {} of {} laws leave the axes, {} do not reverse in every pitch",
                         value_text(of, value), c.all - c.inside, c.all, c.all - c.reverses));
       else
         left.push_back(v);
@@ -351,23 +349,11 @@ report::Figure scatter_figure(const Fig34Study& s) {
           std::move(content)};
 }
 
-void append_row(std::string& text, const std::vector<double>& values) {
-  bool first = true;
-  for (const double value : values) {
-    if (!first) text += ',';
-    first = false;
-    append_number(text, value);
-  }
-}
-
 }  // namespace
 
 report::Document fig34_document(const Fig34Study& s, const report::Lines& program) {
-  report::Document document;
-  document.title = "What Fig. 34 can mean: " + s.the_case.name;
-  document.program = program;
-  describe_case(document, s.the_case);
-  document.derived = derived_section(s.the_case);
+  report::Document document =
+      case_document(s.the_case, "What Fig. 34 can mean: " + s.the_case.name, program);
   document.verdict = report::Verdict{std::nullopt, headline(s),
                                      s.as_expected() ? "As expected" : "Not all as expected"};
   document.summary = summary_of(s);
@@ -378,43 +364,35 @@ report::Document fig34_document(const Fig34Study& s, const report::Lines& progra
 }
 
 std::string fig34_csv(const Fig34Study& s) {
-  std::string text =
+  CsvRows csv(
       "drag,exponent,approach_at_100N_um,backlash_um,dissipation_s_per_m,block_inertia_kg_mm2,"
       "least_Rcs_x2_N,greatest_Rcs_x2_N,share_without_contact,sign_changes_per_turn,"
       "share_of_pitches_with_both_signs,inside_axes,reverses,failure,"
       "largest_Rcs_x2_N_least_window,largest_Rcs_x2_N_greatest_window,"
-      "share_without_contact_least_window,share_without_contact_greatest_window\n";
+      "share_without_contact_least_window,share_without_contact_greatest_window");
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     const Fig34Point& p = s.points[i];
     const Fig34Curve& c = s.curves[i];
-    append_row(text, {p.drag ? 1.0 : 0.0, p.exponent, 1e6 * p.approach, 1e6 * p.backlash,
-                      p.dissipation, 1e6 * p.block_inertia});
-    text += ',';
-    if (c.done())
-      append_row(text, {c.least, c.greatest, c.apart, c.sign_changes, c.both_signs,
-                        c.inside() ? 1.0 : 0.0, c.reverses() ? 1.0 : 0.0});
-    else
-      text += ",,,,,,";
-    text += c.done() ? ",," : ",\"" + c.failure + "\",";
-    if (c.done())
-      append_row(text, {c.largest_over.minimum, c.largest_over.maximum, c.apart_over.minimum,
-                        c.apart_over.maximum});
-    else
-      text += ",,,";
-    text += '\n';
+    const auto if_done = [&](report::Values values) {
+      return c.done() ? std::move(values) : report::Values(values.size(), not_computed());
+    };
+    csv.row(p.drag ? 1 : 0, p.exponent, 1e6 * p.approach, 1e6 * p.backlash, p.dissipation,
+            1e6 * p.block_inertia,
+            if_done({c.least, c.greatest, c.apart, c.sign_changes, c.both_signs,
+                     c.inside() ? 1.0 : 0.0, c.reverses() ? 1.0 : 0.0}),
+            c.failure,
+            if_done({c.largest_over.minimum, c.largest_over.maximum, c.apart_over.minimum,
+                     c.apart_over.maximum}));
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string fig34_curves_csv(const Fig34Study& s) {
-  std::string text = "curve,theta_deg,Rcs_x2_N\n";
+  CsvRows csv("curve,theta_deg,Rcs_x2_N");
   for (const auto& [name, curve] : s.pictured)
-    for (std::size_t i = 0; i < curve.force.size(); ++i) {
-      text += '"' + name + "\",";
-      append_row(text, {curve.theta_deg[i], curve.force[i]});
-      text += '\n';
-    }
-  return text;
+    for (std::size_t i = 0; i < curve.force.size(); ++i)
+      csv.row(Quoted{name}, curve.theta_deg[i], curve.force[i]);
+  return std::move(csv).text();
 }
 
 std::string fig34_text(const Fig34Study& s) {

@@ -3,18 +3,13 @@
 #include <fmt/format.h>
 
 #include "bentaxis/pump/number.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
 
 constexpr double kMuch = 1e-2;  // of peak
 constexpr std::size_t kMaxLines = 20;
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 std::string arrow(const Connection& c) {
   const auto with_unit = [](const std::string& name, const std::string& unit) {
@@ -64,9 +59,9 @@ report::Section coupling_section(const SimulationResult& r) {
   for (const Connection& c : coupling.connections())
     section.facts.emplace_back(fmt::format("connection {}", ++number), arrow(c));
   if (const auto loose = coupling.loose_inputs(); !loose.empty())
-    section.facts.emplace_back("inputs of the unit left as they start", listed(loose));
+    section.facts.emplace_back("inputs of the unit left as they start", report::joined(loose));
   if (const auto loose = coupling.loose_outputs(); !loose.empty())
-    section.facts.emplace_back("outputs of the unit that are not used", listed(loose));
+    section.facts.emplace_back("outputs of the unit that are not used", report::joined(loose));
   const std::vector<std::string> said = coupling.log();
   for (std::size_t i = 0; i < said.size() && i < kMaxLines; ++i)
     section.facts.emplace_back("the unit says", said[i]);

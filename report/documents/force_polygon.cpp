@@ -173,8 +173,7 @@ report::Figure force_polygon(const DiagramRun& run, const std::string& body,
           piston ? "Fig. 14b" : "", std::move(drawing),
           fmt::format("All forces on the body, by the {} model: what is given first, then the "
                       "reactions, which close the polygon; numbers are of all of a name together. "
-                      "What is never as much as {:g} of the "
-                      "largest force is left out.",
+                      "What is never as much as {:g} of the largest force is left out.",
                       run.table.name, kNothing)};
 }
 

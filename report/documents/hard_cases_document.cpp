@@ -6,20 +6,12 @@
 #include <cmath>
 
 #include "bentaxis/pump/number.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
 
 double digits(double loss) { return loss > 0 ? std::clamp(-std::log10(loss), 0.0, 16.0) : 16; }
-
-std::string joined(const std::vector<std::string>& parts, const char* between) {
-  std::string text;
-  for (const auto& part : parts) {
-    if (!text.empty()) text += between;
-    text += part;
-  }
-  return text;
-}
 
 const char* expected(const HardOutcome& outcome) {
   return outcome.refusal_expected ? "refused" : "accurate";
@@ -86,14 +78,14 @@ std::vector<report::Section> sections(const HardCaseStudy& study) {
                   "it is.",
                   {},
                   {columns, {}}});
-    std::vector<report::Cell> row = {hard.name, hard.hard, joined(hard.changes, ", ")};
+    std::vector<report::Cell> row = {hard.name, hard.hard, report::joined(hard.changes, ", ")};
     std::vector<std::string> messages;
     for (std::size_t m = 0; m < hard_models().size(); ++m) {
       const HardOutcome& o = study.runs[i + m].outcome;
       row.emplace_back(o.worst() ? fmt::format("{} {}", cell(o), o.worst()->group) : cell(o));
       if (!o.message.empty()) messages.push_back(fmt::format("{}: {}", o.model, o.message));
     }
-    row.emplace_back(joined(messages, "; "));
+    row.emplace_back(report::joined(messages, "; "));
     block->table.rows.push_back(std::move(row));
   }
   return blocks;

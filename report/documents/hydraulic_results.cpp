@@ -9,6 +9,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/efficiency.h"
+#include "document_parts.h"
 #include "hydraulic_sections.h"
 
 namespace bentaxis::study {
@@ -241,36 +242,26 @@ std::vector<report::Figure> result_figures(const Case& the_case, const SteadySta
 }
 
 std::string power_csv(const SteadyState& state, const PowerBudget& power) {
-  std::string text = "place,what,power_W\n";
-  for (const Place place : state.places) {
-    text += fmt::format("{},{},", hydraulics::key_of(place),
-                        hydraulics::name_of(hydraulics::use_of(place)));
-    append_number(text, power[place]);
-    text += '\n';
-  }
-  return text;
+  CsvRows csv("place,what,power_W");
+  for (const Place place : state.places)
+    csv.row(hydraulics::key_of(place), hydraulics::name_of(hydraulics::use_of(place)),
+            power[place]);
+  return std::move(csv).text();
 }
 
 std::string orders_csv(const Case& the_case, const SteadyState& state) {
-  std::string text =
-      "order,frequency_Hz,Qload_l_per_min,p_delivery_bar,p_load_bar,dp_1_bar_per_deg\n";
+  CsvRows csv("order,frequency_Hz,Qload_l_per_min,p_delivery_bar,p_load_bar,dp_1_bar_per_deg");
   const auto rates = hydraulics::orders_of_rate(*state.computed, state.orders.back().order);
   const int n = the_case.pump.geometry.pistons;
   for (std::size_t i = 0; i < rates.size(); ++i) {
     const int number = static_cast<int>(i) + 1;
     const hydraulics::Order order =
         number % n == 0 ? state.orders[number / n - 1] : hydraulics::Order{};
-    text += std::to_string(number);
-    for (const double value :
-         {number * turns_per_second(the_case), order.flow / state.summary.density / kLitrePerMinute,
-          order.delivery / kPascalPerBar, order.load_pressure / kPascalPerBar,
-          per_degree(rates[i])}) {
-      text += ',';
-      append_number(text, value);
-    }
-    text += '\n';
+    csv.row(number, number * turns_per_second(the_case),
+            order.flow / state.summary.density / kLitrePerMinute, order.delivery / kPascalPerBar,
+            order.load_pressure / kPascalPerBar, per_degree(rates[i]));
   }
-  return text;
+  return std::move(csv).text();
 }
 
 }  // namespace bentaxis::study

@@ -81,9 +81,8 @@ std::vector<report::Figure> hydraulic_figures(const Case& the_case,
   const auto& s = state.summary;
   figures.back().note = fmt::format(
       "Chamber: greatest {:.5g} bar at {:.4g} deg, least {:.3g} bar at {:.4g} deg. Delivery: "
-      "{:.5g} "
-      "to {:.5g} bar, mean {:.5g} bar. The chamber is above the delivery volume by the pressure "
-      "drop of the port.",
+      "{:.5g} to {:.5g} bar, mean {:.5g} bar. The chamber is above the delivery volume by the "
+      "pressure drop of the port.",
       s.chamber_greatest / kPascalPerBar, s.chamber_greatest_deg, s.chamber_least / kPascalPerBar,
       s.chamber_least_deg, s.delivery_least / kPascalPerBar, s.delivery_greatest / kPascalPerBar,
       s.delivery_mean / kPascalPerBar);

@@ -9,7 +9,7 @@
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -77,12 +77,6 @@ double worst_residual(const Identification& result, std::size_t datum) {
 }
 
 // ---- Goodness of fit
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 constexpr std::size_t kWorstShown = 10, kWorstPrinted = 5;
 constexpr std::size_t kFurtherShown = 5;
@@ -163,7 +157,8 @@ std::string further_line(const DataModel& model, const FurtherUnknown& f) {
   if (f.fit.refuted()) text += ", still refuted";
   if (!model.base().analytic.piston_friction && f.variable.name().starts_with("friction.piston_"))
     text += "; it acts with piston_friction = true of [assumptions.analytic] only";
-  if (!f.implausible.empty()) text += "; the value is implausible: " + listed(f.implausible);
+  if (!f.implausible.empty())
+    text += "; the value is implausible: " + report::joined(f.implausible);
   return text;
 }
 
@@ -184,7 +179,7 @@ std::string further_text(const DataModel& model, const Identification& result) {
   std::string text = "the further unknown that would improve the fit most: " +
                      further_line(model, result.further.front());
   if (const auto names = as_good_as_best(result); !names.empty())
-    text += ". The data cannot tell it from " + listed(names);
+    text += ". The data cannot tell it from " + report::joined(names);
   return text;
 }
 
@@ -194,12 +189,10 @@ Section goodness_section(const Identification& result) {
   section.title = "Goodness of fit";
   section.text =
       "Chi-square: sum of the squared residuals, each over its standard uncertainty. p: "
-      "probability "
-      "of a larger chi-square if the model and all stated uncertainties are right and the data are "
-      "independent of each other. The degrees of freedom are the data that count (values, points "
-      "of "
-      "curves, priors, windows that the fit leaves) less the directions of the unknowns that were "
-      "fitted to them.";
+      "probability of a larger chi-square if the model and all stated uncertainties are right and "
+      "the data are independent of each other. The degrees of freedom are the data that count "
+      "(values, points of curves, priors, windows that the fit leaves) less the directions of the "
+      "unknowns that were fitted to them.";
   section.facts = {{"result", fit_text(fit)}};
   if (!fit.p_value)
     section.facts.emplace_back(
@@ -257,7 +250,7 @@ Section further_section(const DataModel& model, const Identification& result) {
     section.table.rows.push_back({f.variable.name(), f.variable.unit(), f.before, f.value,
                                   f.fit.chi_square, static_cast<long>(f.fit.degrees_of_freedom()),
                                   f.fit.p_value ? Cell(*f.fit.p_value) : Cell(), f.fit.refuted(),
-                                  listed(f.implausible)});
+                                  report::joined(f.implausible)});
   }
   return section;
 }
@@ -287,9 +280,8 @@ Section unknowns_section(const DataModel& model, const Identification& result) {
       "Identified: the least sum of squares. Linear: standard uncertainty as if the model were "
       "linear there and bounds normal. Profile: 95 % limits, the others fitted anew, where the sum "
       "of squares has risen by 3.841; a limit at a bound is the bound's, not the data's. "
-      "Posterior: "
-      "95 % of the draws. All of them are right only where the stated uncertainties are right: a "
-      "rise of 3.841 means 95 % for that noise alone.";
+      "Posterior: 95 % of the draws. All of them are right only where the stated uncertainties are "
+      "right: a rise of 3.841 means 95 % for that noise alone.";
   if (result.goodness.refuted()) {
     section.facts.emplace_back("withheld", kWithheld);
     section.facts.emplace_back("widened", birge_text(result.goodness));
@@ -356,9 +348,8 @@ Section fitted_section(const DataModel& model, const Identification& result) {
   section.title = "Data that unknowns are fitted to";
   section.text =
       "Residual: model minus datum over its standard uncertainty, 0 inside a window. Left out: "
-      "what "
-      "the others predict for it, with its bounds as normal priors, and how far off that is over "
-      "the standard uncertainty of prediction and datum together";
+      "what the others predict for it, with its bounds as normal priors, and how far off that is "
+      "over the standard uncertainty of prediction and datum together";
   section.text += result.goodness.refuted()
                       ? ", both as stated: as the fit is refuted, they are too small."
                       : ".";
@@ -607,10 +598,9 @@ report::Document identify_document(const DataModel& model, const Identification&
   if (!warnings.empty()) document.warnings = std::move(warnings);
   document.runs = {goodness_section(result), worst_section(model, result)};
   if (result.goodness.refuted()) document.runs->push_back(further_section(model, result));
-  for (Section& section :
-       std::vector{unknowns_section(model, result), determined_section(model, result),
-                   fitted_section(model, result)})
-    document.runs->push_back(std::move(section));
+  append(document.runs,
+         std::vector{unknowns_section(model, result), determined_section(model, result),
+                     fitted_section(model, result)});
   document.runs->push_back(predicted_section(model, result));
   document.runs->push_back(left_out_section(model));
   if (!result.bands.empty()) {

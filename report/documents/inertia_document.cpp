@@ -8,9 +8,8 @@
 #include <tuple>
 
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -50,16 +49,6 @@ const ResultTable& multibody_of(const InertiaRun& run, bool real) {
 
 // ---- Figures
 
-// Adds one name's curve by each model and their difference.
-void add(Curves& curves, const std::string& name, const Values& analytic, const Values& multibody) {
-  Values difference;
-  for (std::size_t i = 0; i < analytic.size(); ++i)
-    difference.push_back(multibody[i] - analytic[i]);
-  curves.tables[0].columns.emplace_back(name, analytic);
-  curves.tables[1].columns.emplace_back(name, multibody);
-  curves.difference.emplace_back(name, std::move(difference));
-}
-
 // |R| of both kinds of piston at all speeds, without load or loaded.
 Figure magnitude_figure(const InertiaStudy& s, Curves& curves, const std::string& id,
                         const std::string& symbol, const Names& parts, bool loaded,
@@ -70,8 +59,8 @@ Figure magnitude_figure(const InertiaStudy& s, Curves& curves, const std::string
     for (const bool real : {false, true}) {
       names.push_back(fmt::format("|{}| {}, {}, {}", symbol, rpm(run.speed_rpm),
                                   real ? "real piston" : "2 masses", load_name(loaded)));
-      add(curves, names.back(), magnitude(analytic_of(run, real), parts),
-          magnitude(multibody_of(run, real), parts));
+      add_both(curves, names.back(), magnitude(analytic_of(run, real), parts),
+               magnitude(multibody_of(run, real), parts));
     }
   }
   return {id, fmt::format("|{}| of a piston, {}", symbol, load_name(loaded)), paper,
@@ -85,8 +74,8 @@ Figure component_figure(const InertiaRun& run, Curves& curves, const std::string
   for (const auto& part : parts) {
     for (const bool real : {false, true}) {
       names.push_back(part + (real ? ", real piston" : ", 2 masses"));
-      add(curves, names.back(), values_of(analytic_of(run, real), part),
-          values_of(multibody_of(run, real), part));
+      add_both(curves, names.back(), values_of(analytic_of(run, real), part),
+               values_of(multibody_of(run, real), part));
     }
   }
   return {id, fmt::format("{} by component, no load, {}", symbol, rpm(run.speed_rpm)), "",
@@ -101,7 +90,7 @@ Figure effect_figure(const InertiaRun& run, Curves& curves, const std::string& i
   const ResultTable multibody = difference(run.multibody_lumped, run.multibody_real, "");
   for (const auto& channel : channels) {
     names.push_back(channel + ", 2 masses - real");
-    add(curves, names.back(), values_of(analytic, channel), values_of(multibody, channel));
+    add_both(curves, names.back(), values_of(analytic, channel), values_of(multibody, channel));
   }
   return {id, fmt::format("{}, {}, {}", title, rpm(run.speed_rpm), load_name(run.loaded)), "",
           report::ChannelFigure{unit, names}};
@@ -113,8 +102,8 @@ Figure cause_figure(const InertiaStudy& s, Curves& curves, const std::string& id
   for (const auto part :
        {&ErrorCauses::all, &ErrorCauses::centre, &ErrorCauses::transverse, &ErrorCauses::spin}) {
     names.push_back(fmt::format("|error of {}| by {}", symbol, (s.causes.*part).name));
-    add(curves, names.back(), magnitude(s.causes.*part, parts),
-        magnitude(s.multibody_causes.*part, parts));
+    add_both(curves, names.back(), magnitude(s.causes.*part, parts),
+             magnitude(s.multibody_causes.*part, parts));
   }
   return {
       id,
@@ -380,10 +369,7 @@ InertiaReport inertia_report(const InertiaStudy& s, const compare::Published* pu
   curves.theta_deg = s.one_piston.front().analytic_real.theta_deg;
   curves.tables = {{"analytic", {}}, {"multibody", {}}};
   report::Document& document = result.document;
-  document.title = "Lumped or real pistons: " + s.the_case.name;
-  document.program = program;
-  describe_case(document, s.the_case);
-  document.derived = derived_section(s.the_case);
+  document = case_document(s.the_case, "Lumped or real pistons: " + s.the_case.name, program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->tolerance = kInertiaModelsAgree;
   document.runs = {
@@ -407,7 +393,7 @@ InertiaReport inertia_report(const InertiaStudy& s, const compare::Published* pu
 }
 
 std::string inertia_curves_csv(const InertiaStudy& s) {
-  std::string text = "theta_deg";
+  std::string header = "theta_deg";
   std::vector<Values> columns;
   for (const InertiaRun& run : s.one_piston) {
     for (const auto& [name, table] : {std::pair{"analytic_lumped", &run.analytic_lumped},
@@ -418,61 +404,42 @@ std::string inertia_curves_csv(const InertiaStudy& s) {
           fmt::format(",{}_{}_{:g}rpm_", name, run.loaded ? "loaded" : "noload", run.speed_rpm);
       for (const auto* parts : {&kRs, &kRc}) {
         for (const auto& part : *parts) {
-          text += prefix + part;
+          header += prefix + part;
           columns.push_back(values_of(*table, part));
         }
-        text += prefix + (parts == &kRs ? "Rs_1_magnitude_N" : "Rc_1_magnitude_N");
+        header += prefix + (parts == &kRs ? "Rs_1_magnitude_N" : "Rc_1_magnitude_N");
         columns.push_back(magnitude(*table, *parts));
       }
     }
   }
-  text += "\n";
+  CsvRows csv(header);
   const ResultTable& first = s.one_piston.front().analytic_real;
   for (std::size_t row = 0; row < first.rows(); ++row) {
-    append_number(text, first.theta_deg[row]);
-    for (const auto& values : columns) {
-      text += ',';
-      append_number(text, values[row]);
-    }
-    text += '\n';
+    Values numbers = {first.theta_deg[row]};
+    for (const auto& values : columns) numbers.push_back(values[row]);
+    csv.row(numbers);
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string inertia_errors_csv(const InertiaStudy& s) {
-  std::string text =
+  CsvRows csv(
       "reaction,unit,speed_rpm,load,error_analytic,error_multibody,peak,peak_loaded,"
-      "error_over_peak_loaded\n";
-  for (const InertiaRun& run : s.full) {
-    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm))) {
-      text += error.group + "," + error.unit + ",";
-      append_number(text, error.speed_rpm);
-      text += error.loaded ? ",loaded" : ",no_load";
-      for (const double v :
-           {error.analytic, error.multibody, error.peak, error.loaded_peak, error.fraction()}) {
-        text += ',';
-        append_number(text, v);
-      }
-      text += '\n';
-    }
-  }
-  return text;
+      "error_over_peak_loaded");
+  for (const InertiaRun& run : s.full)
+    for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm)))
+      csv.row(error.group, error.unit, error.speed_rpm, error.loaded ? "loaded" : "no_load",
+              error.analytic, error.multibody, error.peak, error.loaded_peak, error.fraction());
+  return std::move(csv).text();
 }
 
 std::string inertia_map_csv(const ErrorMap& map) {
-  std::string text = map.axis == MapAxis::mass ? "mass_factor" : "length_factor";
-  text += ",speed_rpm,Rs_error_over_loaded,Rc_error_over_loaded\n";
-  for (std::size_t i = 0; i < map.factor.size(); ++i) {
-    for (std::size_t j = 0; j < map.speed_rpm.size(); ++j) {
-      append_number(text, map.factor[i]);
-      for (const double v : {map.speed_rpm[j], map.rs[i][j], map.rc[i][j]}) {
-        text += ',';
-        append_number(text, v);
-      }
-      text += '\n';
-    }
-  }
-  return text;
+  CsvRows csv((map.axis == MapAxis::mass ? "mass_factor" : "length_factor") +
+              std::string(",speed_rpm,Rs_error_over_loaded,Rc_error_over_loaded"));
+  for (std::size_t i = 0; i < map.factor.size(); ++i)
+    for (std::size_t j = 0; j < map.speed_rpm.size(); ++j)
+      csv.row(map.factor[i], map.speed_rpm[j], map.rs[i][j], map.rc[i][j]);
+  return std::move(csv).text();
 }
 
 std::string inertia_text(const InertiaStudy& s) {

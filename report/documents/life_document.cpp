@@ -7,9 +7,8 @@
 
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/failed_points.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -63,8 +62,7 @@ std::string headline(const LifeStudy& s) {
 
 std::string agreement_text(const LifeStudy& s) {
   return fmt::format(
-      "The loads by both models {}: they differ by {:.1e} of the largest at most, "
-      "{:g} allowed.",
+      "The loads by both models {}: they differ by {:.1e} of the largest at most, {:g} allowed.",
       s.agrees() ? "agree" : "differ", s.models_apart(), kLifeModelsAgree);
 }
 
@@ -161,14 +159,9 @@ report::Figure turn_figure(const LifeStudy& s, Bearing bearing, std::size_t row)
   std::vector<std::string> names;
   const auto add = [&](const std::string& name, std::vector<double> study::BearingLoads::*which) {
     const auto i = static_cast<std::size_t>(bearing);
-    const Values& first = s.analytic.points[row].loads[i].*which;
-    const Values& second = s.multibody.points[row].loads[i].*which;
-    Values difference;
-    for (std::size_t k = 0; k < first.size(); ++k) difference.push_back(second[k] - first[k]);
     names.push_back(name);
-    curves.tables[0].columns.emplace_back(name, first);
-    curves.tables[1].columns.emplace_back(name, second);
-    curves.difference.emplace_back(name, std::move(difference));
+    add_both(curves, name, s.analytic.points[row].loads[i].*which,
+             s.multibody.points[row].loads[i].*which);
   };
   if (bearing == Bearing::tapered) {
     add("P, equivalent load", &study::BearingLoads::equivalent);
@@ -222,11 +215,8 @@ report::Figure spectrum_figure(const LifeStudy& s) {
 }  // namespace
 
 report::Document life_document(const LifeStudy& s, const report::Lines& program) {
-  report::Document document;
-  document.title = s.the_case.name + ": life of the bearings";
-  document.program = program;
-  study::describe_case(document, s.the_case);
-  document.derived = study::derived_section(s.the_case);
+  report::Document document =
+      study::case_document(s.the_case, s.the_case.name + ": life of the bearings", program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.meaning =
       agreement_text(s) +
@@ -243,54 +233,43 @@ report::Document life_document(const LifeStudy& s, const report::Lines& program)
 }
 
 std::string life_csv(const LifeStudy& s) {
-  std::string text = "row,time_share,revolution_share";
-  for (const Variable& v : s.duty.variables) text += "," + v.name();
+  std::string header = "row,time_share,revolution_share";
+  for (const Variable& v : s.duty.variables) header += "," + v.name();
   for (const Bearing bearing : study::kBearings)
     for (const char* what : {"P_N", "P_multibody_N", "life_share"})
-      text += "," + to_string(bearing) + "_" + what;
-  text += ",reason\n";
+      header += "," + to_string(bearing) + "_" + what;
+  CsvRows csv(header + ",reason");
   const study::DutyShares shares = study::duty_shares(s.analytic.points);
-  const auto add = [&](double value) {
-    text += ',';
-    append_number(text, value);
-  };
+  const std::string no_reason;
   for (std::size_t row = 0; row < s.duty.rows.size(); ++row) {
-    text += std::to_string(s.duty.rows[row].number);
-    add(shares.time[row]);
-    add(shares.revolutions[row]);
-    for (const double value : s.duty.rows[row].values) add(value);
-    for (const Bearing bearing : study::kBearings) {
-      add(load_of(s.analytic.points[row], bearing));
-      add(load_of(s.multibody.points[row], bearing));
-      add(s.analytic.life.of(bearing).life_share[row]);
-    }
-    text += ",\n";
+    std::vector<double> loads;
+    for (const Bearing bearing : study::kBearings)
+      loads.insert(loads.end(), {load_of(s.analytic.points[row], bearing),
+                                 load_of(s.multibody.points[row], bearing),
+                                 s.analytic.life.of(bearing).life_share[row]});
+    csv.row(s.duty.rows[row].number, shares.time[row], shares.revolutions[row],
+            s.duty.rows[row].values, loads, no_reason);
   }
-  const std::size_t empty = 2 + s.duty.variables.size() + 3 * std::size(study::kBearings);
+  const std::vector<double> nothing(2 + s.duty.variables.size() + 3 * std::size(study::kBearings),
+                                    not_computed());
   for (const study::FailedPoint& f : s.failed)
-    text += fmt::format("{:g}", f.value) + std::string(empty + 1, ',') + csv_text(f.reason) + "\n";
-  return text;
+    csv.row(fmt::format("{:g}", f.value), nothing, f.reason);
+  return std::move(csv).text();
 }
 
 std::string life_loads_csv(const LifeStudy& s) {
-  std::string text =
-      "row,theta_deg,model,tapered_Fr_N,tapered_Fa_N,tapered_P_N,tapered_P0_N,cylindrical_P_N\n";
+  CsvRows csv(
+      "row,theta_deg,model,tapered_Fr_N,tapered_Fa_N,tapered_P_N,tapered_P0_N,cylindrical_P_N");
   for (std::size_t row = 0; row < s.duty.rows.size(); ++row)
     for (std::size_t k = 0; k < s.analytic.points[row].theta_deg.size(); ++k)
       for (const auto* of : {&s.analytic, &s.multibody}) {
         const LifePoint& p = of->points[row];
-        text += std::to_string(s.duty.rows[row].number) + ",";
-        append_number(text, p.theta_deg[k]);
-        text += of == &s.analytic ? ",analytic" : ",multibody";
-        for (const double value :
-             {p.loads[0].radial[k], p.loads[0].axial[k], p.loads[0].equivalent[k],
-              p.loads[0].equivalent0[k], p.loads[1].equivalent[k]}) {
-          text += ',';
-          append_number(text, value);
-        }
-        text += "\n";
+        csv.row(s.duty.rows[row].number, p.theta_deg[k],
+                of == &s.analytic ? "analytic" : "multibody", p.loads[0].radial[k],
+                p.loads[0].axial[k], p.loads[0].equivalent[k], p.loads[0].equivalent0[k],
+                p.loads[1].equivalent[k]);
       }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string life_text(const LifeStudy& s) {

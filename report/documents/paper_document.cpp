@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/paper_figures.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -198,20 +197,11 @@ report::Figure figure_of(const PaperStudy& s, const DrawnPanel& p) {
           std::move(content), std::move(note)};
 }
 
-std::string quoted(std::string text) {
-  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
-    text.insert(at, "\"");
-  return '"' + text + '"';
-}
-
 }  // namespace
 
 report::Document paper_document(const PaperStudy& s, const report::Lines& program) {
-  report::Document document;
-  document.title = "The paper's figures: " + s.list.numbers.name;
-  document.program = program;
-  describe_case(document, s.cases.front());
-  document.derived = derived_section(s.cases.front());
+  report::Document document =
+      case_document(s.cases.front(), "The paper's figures: " + s.list.numbers.name, program);
   document.verdict = report::Verdict{std::nullopt, headline(s)};
   document.runs = {figures_section(s), numbers_section(s)};
   document.figures.emplace();
@@ -225,19 +215,13 @@ report::Document paper_document(const PaperStudy& s, const report::Lines& progra
 }
 
 std::string paper_csv(const PaperStudy& s) {
-  std::string text = "figure,title,axis_from,axis_to,axis_known,least,greatest,unit,verdict\n";
+  CsvRows csv("figure,title,axis_from,axis_to,axis_known,least,greatest,unit,verdict");
   for (const DrawnPanel& p : s.panels) {
-    text += p.figure.id(p.panel) + "," + quoted(p.panel.title) + ",";
-    if (p.known()) append_number(text, p.panel.y.range->first);
-    text += ',';
-    if (p.known()) append_number(text, p.panel.y.range->second);
-    text += "," + quoted(p.panel.y.text()) + ",";
-    append_number(text, p.least.y);
-    text += ',';
-    append_number(text, p.greatest.y);
-    text += "," + p.panel.y.unit + "," + verdict(p) + "\n";
+    const auto [from, to] = p.panel.y.range.value_or(std::pair{not_computed(), not_computed()});
+    csv.row(p.figure.id(p.panel), Quoted{p.panel.title}, from, to, Quoted{p.panel.y.text()},
+            p.least.y, p.greatest.y, p.panel.y.unit, verdict(p));
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string paper_text(const PaperStudy& s) {

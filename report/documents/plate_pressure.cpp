@@ -157,8 +157,7 @@ report::Figure plate_pressure(const DiagramRun& run) {
   if (ports)
     note +=
         " Ports between r2 and r3 have the pressure of the port, lands fall linearly to 0 at r1 "
-        "and "
-        "r4: the models' law of the film, drawn in steps.";
+        "and r4: the models' law of the film, drawn in steps.";
   return {"plate_pressure", "Pressure on the port plate, and where the film force acts", "",
           std::move(drawing), note};
 }

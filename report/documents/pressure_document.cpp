@@ -8,11 +8,10 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
-#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/failed_points.h"
-#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/published_section.h"
+#include "document_parts.h"
 #include "hydraulic_results.h"
 #include "hydraulic_sections.h"
 #include "key_figures.h"
@@ -32,11 +31,7 @@ report::Document pressure_document(const OperatingPoint& point,
                                    const hydraulics::PowerBudget& power,
                                    const report::Lines& program) {
   const Case& the_case = point.the_case();
-  report::Document document;
-  document.title = the_case.name;
-  document.program = program;
-  describe_case(document, the_case);
-  document.derived = derived_section(the_case);
+  report::Document document = case_document(the_case, the_case.name, program);
   document.key_figures = {{"hydraulic model"}, "deg", oil_figures(point.state().summary, 1)};
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
   document.runs = {hydraulic_section(the_case, point.state()),
@@ -51,8 +46,7 @@ report::Document pressure_document(const OperatingPoint& point,
                   mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"), bar(point)),
       "Pressure"};
   document.figures = hydraulic_figures(the_case, point.state());
-  for (report::Figure& figure : result_figures(the_case, point.state(), power))
-    document.figures->push_back(std::move(figure));
+  append(document.figures, result_figures(the_case, point.state(), power));
   document.figures->push_back(
       {"td", "Drive torque Td", "Fig. 17", report::ChannelFigure{"Nm", {"Td_z1_Nm"}},
        fmt::format("Mean torque: analytic {:.5g} Nm, multibody {:.5g} Nm.",

@@ -1,29 +1,17 @@
 #include "bentaxis/study/pump_document.h"
 
-#include <iterator>
 #include <utility>
 
 #include "bentaxis/study/assumptions.h"
-#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/force_figures.h"
-#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/timing.h"
 #include "comparison_figures.h"
+#include "document_parts.h"
 #include "hydraulic_sections.h"
 #include "key_figures.h"
 
 namespace bentaxis::study {
-namespace {
-
-template <class Item>
-void append(std::vector<Item>& list, std::vector<Item> more) {
-  list.insert(list.end(), std::make_move_iterator(more.begin()),
-              std::make_move_iterator(more.end()));
-}
-
-}  // namespace
-
 ShownPump show_pump(Case the_case, const PartProgress& progress_of) {
   require_memory(the_case, Kept::shown, Way::driven);
   ShownPump pump{prepare(std::move(the_case), progress_of), {}, {}};
@@ -39,25 +27,22 @@ ShownPump show_pump(Case the_case, const PartProgress& progress_of) {
 report::Document pump_document(const ShownPump& pump, const report::Lines& program) {
   const Case& the_case = pump.ready.the_case;
   const ResultTable& table = pump.run.table;
-  report::Document document;
-  document.title = the_case.name;
-  document.program = program;
-  describe_case(document, the_case, pump_scene(the_case, {{table, pump.run.loads}}));
-  document.derived = derived_section(the_case);
+  report::Document document = case_document(the_case, the_case.name, program,
+                                            pump_scene(the_case, {{table, pump.run.loads}}));
   document.verdict = {std::nullopt, "The analytic model alone: nothing is compared.", "One model"};
   document.key_figures = {{table.name}, "deg", turn_figures({&table})};
   document.validity = validity_section(pump.limits);
   document.models = {report::model_of(table, in_words(the_case.analytic))};
   document.runs.emplace();
   document.figures = force_figures({the_case, table, &pump.run.loads});
-  append(*document.figures, channel_figures({&table}));
+  append(document.figures, channel_figures({&table}));
   if (pump.ready.hydraulics) {
     const hydraulics::SteadyState& state = *pump.ready.hydraulics;
     append(document.key_figures->rows, oil_figures(state.summary, 1));
     document.timing = timing_rows(the_case, state);
     document.warnings = timing_warnings(*document.timing);
     document.runs->push_back(hydraulic_section(the_case, state));
-    append(*document.figures, hydraulic_figures(the_case, state));
+    append(document.figures, hydraulic_figures(the_case, state));
   }
   return document;
 }

@@ -6,9 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/failed_points.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -154,9 +153,8 @@ report::Section boundary_section(const BoundaryAgreement& agreement) {
   report::Section section{
       "Boundary by the criterion",
       "Rigid teeth keep the sign of their force as long as the drag on the block, Cc psi', and "
-      "what "
-      "its pistons take exceed what they turn it on by, all through the turn. The speed at which "
-      "the smallest force passes 0, beside the speed half way between those where the upward "
+      "what its pistons take exceed what they turn it on by, all through the turn. The speed at "
+      "which the smallest force passes 0, beside the speed half way between those where the upward "
       "sweep ceases or begins to carry: " +
           agreement_text(agreement) + ".",
       {},
@@ -198,8 +196,7 @@ report::Section checks_section(const RattleMap& map) {
       "begin. A second start of the closed form, moved a little, tells how disturbances grow: the "
       "largest force may differ by the errors of the steps grown so. Where they have grown too far "
       "nothing more is judged; such a motion is chaotic, and what follows agrees only in kind. "
-      "Where both "
-      "differ in class, the closed form's stands first.",
+      "Where both differ in class, the closed form's stands first.",
       {{"agree", fmt::format("{} of {}", agreeing(map), map.checks.size())}},
       {{"bar", "rpm", "class", "turns judged", "of", "growth", "largest force apart by", "allowed",
         "agrees", "all turns: class", "largest, N", "Simbody, N"},
@@ -332,11 +329,8 @@ BoundaryAgreement boundary_agreement(const RattleMap& map) {
 }
 
 report::Document rattle_document(const RattleMap& map, const report::Lines& program) {
-  report::Document document;
-  document.title = map.the_case.name + ": where the gear rattles";
-  document.program = program;
-  describe_case(document, map.the_case);
-  document.derived = derived_section(map.the_case);
+  report::Document document =
+      case_document(map.the_case, map.the_case.name + ": where the gear rattles", program);
   document.verdict = report::Verdict{map.agrees(), headline(map)};
   if (map.checks.empty()) {
     document.verdict->agrees.reset();

@@ -7,8 +7,7 @@
 #include <numeric>
 
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -75,8 +74,7 @@ std::string followers_text(const Sensitivities& s) {
   if (names.empty()) return {};
   return "The case does not give " + names +
          ": the value is that of another parameter. The row of that parameter changes both, the "
-         "row "
-         "of these changes them alone; do not add the two.";
+         "row of these changes them alone; do not add the two.";
 }
 
 Section derivatives_section(const Sensitivities& s, std::size_t o) {
@@ -180,11 +178,8 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
 report::Document sensitivity_document(const Sensitivities& found,
                                       const std::optional<SensitivityCheck>& check,
                                       const report::Lines& program) {
-  report::Document document;
-  document.title = "Sensitivities: " + found.base.name;
-  document.program = program;
-  study::describe_case(document, found.base);
-  document.derived = study::derived_section(found.base);
+  report::Document document =
+      study::case_document(found.base, "Sensitivities: " + found.base.name, program);
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
                                      headline(found, check), check ? "" : "Sensitivities"};
   document.meaning =
@@ -209,32 +204,20 @@ report::Document sensitivity_document(const Sensitivities& found,
 
 std::string sensitivity_csv(const Sensitivities& found,
                             const std::optional<SensitivityCheck>& check) {
-  std::string text =
-      "output,output_unit,output_value,parameter,parameter_unit,parameter_value,derivative,"
-      "elasticity,found_by,error";
-  text += check ? ",derivative_of_other_model,difference\n" : "\n";
+  CsvRows csv(
+      std::string("output,output_unit,output_value,parameter,parameter_unit,parameter_value,"
+                  "derivative,elasticity,found_by,error") +
+      (check ? ",derivative_of_other_model,difference" : ""));
   for (std::size_t o = 0; o < found.outputs.size(); ++o)
     for (std::size_t v = 0; v < found.variables.size(); ++v) {
       const Derivative& d = found.derivatives[o][v];
-      const auto number = [&](double value) {
-        text += ',';
-        append_number(text, value);
-      };
-      text += found.outputs[o].name + "," + found.outputs[o].unit;
-      number(found.values[o]);
-      text += "," + found.variables[v].name() + "," + found.variables[v].unit();
-      number(found.at[v]);
-      number(d.value);
-      number(found.elasticity(o, v));
-      text += "," + (is_computed(d.value) ? to_string(d.way) : std::string());
-      number(d.error);
-      if (check) {
-        number(check->other.derivatives[o][v].value);
-        number(check->differences[o][v]);
-      }
-      text += '\n';
+      std::vector<double> other;
+      if (check) other = {check->other.derivatives[o][v].value, check->differences[o][v]};
+      csv.row(found.outputs[o].name, found.outputs[o].unit, found.values[o],
+              found.variables[v].name(), found.variables[v].unit(), found.at[v], d.value,
+              found.elasticity(o, v), is_computed(d.value) ? to_string(d.way) : "", d.error, other);
     }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string sensitivity_text(const Sensitivities& found,

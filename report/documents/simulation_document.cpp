@@ -44,7 +44,7 @@ bool compliant(const SimulationResult& r) { return r.ready.the_case.pump.gear.is
 Values times_of(const Trajectory& run) {
   Values times;
   for (std::size_t row = 0; row < run.lag.size(); ++row)
-    times.push_back(kMilliseconds * run.table.state(row, 0));
+    times.push_back(kMilliseconds * run.state(row, StateColumn::time));
   return times;
 }
 
@@ -55,16 +55,11 @@ Values state_of(const Trajectory& run, std::size_t column) {
   return values;
 }
 
-// Columns of the oil in a unit; of chambers none.
-std::vector<std::string> columns_of(const SimulationResult& r, const std::string& unit, bool all) {
+// Columns of the oil in a unit, those of chambers apart.
+std::vector<std::string> columns_of(const SimulationResult& r, const std::string& unit) {
   std::vector<std::string> names;
-  for (const OilColumn& column : runs_of(r).front().second->oil->columns) {
-    const std::string& name = column.name;
-    const bool chamber = !all && name.size() > 2 && name[2] >= '0' && name[2] <= '9';
-    if (name.size() > unit.size() && !chamber &&
-        name.compare(name.size() - unit.size(), unit.size(), unit) == 0)
-      names.push_back(name);
-  }
+  for (const OilColumn& column : runs_of(r).front().second->oil->columns)
+    if (column.unit == unit && column.piston == 0) names.push_back(column.name);
   return names;
 }
 
@@ -87,9 +82,8 @@ std::vector<Figure> figures_of(const SimulationResult& r) {
                     : "Chamber pressure of piston 1, which both models take at the block's angle",
       "bar", {"p_1_bar"});
   if (r.oil_follows) {
-    add("ports", "Pressures of the ports", "bar", columns_of(r, "_bar", false));
-    add("flows", "Flows: into the load, from suction, leakage", "l/min",
-        columns_of(r, "_l_per_min", true));
+    add("ports", "Pressures of the ports", "bar", columns_of(r, "bar"));
+    add("flows", "Flows: into the load, from suction, leakage", "l/min", columns_of(r, "l/min"));
   }
   add("rs", "Joint force Rs on piston 1, in S2", "N", {"Rs_1_x2_N", "Rs_1_y2_N", "Rs_1_z2_N"});
   add("rc", "Bore force Rc on piston 1, in S2", "N", {"Rc_1_x2_N", "Rc_1_y2_N"});
@@ -285,10 +279,10 @@ report::Section steady_power_section(const SimulationResult& r) {
     const ResultTable& table = run->table.results;
     const std::size_t torque = table.find("Td_z1_Nm");
     const std::size_t last = table.rows() - 1;
-    const double duration = run->table.state(last, 0) - run->table.state(0, 0);
+    const double duration = run->state(last, StateColumn::time) - run->state(0, StateColumn::time);
     double drive = 0;
     for (std::size_t row = 0; row < last; ++row)
-      drive += table.at(row, torque) * rad_per_second(run->table.state(row, 3)) /
+      drive += table.at(row, torque) * rad_per_second(run->state(row, StateColumn::shaft_speed)) /
                static_cast<double>(last);
     hydraulics::PowerBudget budget;
     for (const OilEnergy& e : run->oil->energies)
@@ -414,7 +408,8 @@ std::vector<report::Warning> doubts_of(const SimulationResult& r) {
   const Case& the_case = r.ready.the_case;
   double lowest = 0, lowest_at = 0, fastest = 0, fastest_at = 0;
   for (std::size_t row = 0; row < run->lag.size(); ++row) {
-    const double time = run->table.state(row, 0), speed = run->table.state(row, 3);
+    const double time = run->state(row, StateColumn::time),
+                 speed = run->state(row, StateColumn::shaft_speed);
     for (int k = 0; k < the_case.pump.geometry.pistons; ++k)
       if (const double p = run->oil->value(row, k); p < lowest) {
         lowest = p;
@@ -494,7 +489,7 @@ std::optional<report::Scene> scene_of(const SimulationResult& r) {
   const Trajectory& first = *runs_of(r).front().second;
   motion.time_ms = times_of(first);
   for (std::size_t row = 0; row < first.lag.size(); ++row) {
-    motion.shaft.push_back(radians(first.table.state(row, 1)));
+    motion.shaft.push_back(radians(first.state(row, StateColumn::theta)));
     motion.block.push_back(motion.shaft.back() - first.lag[row]);
   }
   return pump_scene(r.ready.the_case, shown, &motion);
@@ -517,7 +512,7 @@ std::vector<report::Figure> diagrams_of(const SimulationResult& r) {
   DiagramRun shown{r.ready.the_case, run.table.results, &run.loads};
   shown.time_ms = times_of(run);
   for (std::size_t row = 0; row < run.lag.size(); ++row)
-    shown.block_deg.push_back(run.table.state(row, 1) - run.lag[row] / kRadPerDegree);
+    shown.block_deg.push_back(run.state(row, StateColumn::theta) - run.lag[row] / kRadPerDegree);
   shown.constant_ports = !r.oil_follows;
   return force_figures(shown);
 }
@@ -596,7 +591,7 @@ report::Curves simulation_curves(const SimulationResult& r) {
   for (const auto& [name, run] : runs) {
     report::Curves::Table table{name, {}};
     const auto& states = run->table.state_names;
-    for (std::size_t i = 3; i < states.size(); ++i)  // behind time and angles
+    for (auto i = static_cast<std::size_t>(StateColumn::shaft_speed); i < states.size(); ++i)
       table.columns.emplace_back(states[i], state_of(*run, i));
     Values lag = run->lag;
     for (double& value : lag) value *= 1e3;

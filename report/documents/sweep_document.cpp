@@ -7,8 +7,7 @@
 #include <map>
 
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 #include "sweep_view.h"
 
 namespace bentaxis::designs {
@@ -133,9 +132,8 @@ Section infeasible_section(const SweepResult& result, const SweepView& view) {
                    [](const Group& a, const Group& b) { return a.designs > b.designs; });
   Section section{
       "Infeasible designs",
-      "What a case file with these values would be refused for, or what could not be "
-      "computed. Reasons that differ in numbers only are counted together; the first "
-      "is shown.",
+      "What a case file with these values would be refused for, or what could not be computed. "
+      "Reasons that differ in numbers only are counted together; the first is shown.",
       {{"infeasible", fmt::format("{} of {} designs, {}", result.all_infeasible, result.plan.size(),
                                   percent(result.all_infeasible, result.plan.size()))}},
       {{"reason", "designs", "first design"}, {}}};
@@ -278,11 +276,8 @@ std::string headline(const SweepResult& result) {
 
 report::Document sweep_document(const SweepResult& result, const report::Lines& program) {
   const SweepView view(result);
-  report::Document document;
-  document.title = result.base.name + ": a sweep";
-  document.program = program;
-  study::describe_case(document, result.base);
-  document.derived = study::derived_section(result.base);
+  report::Document document =
+      study::case_document(result.base, result.base.name + ": a sweep", program);
   document.verdict = report::Verdict{result.agrees(), headline(result)};
   if (result.checks.empty()) {
     document.verdict->agrees.reset();

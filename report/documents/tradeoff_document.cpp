@@ -8,8 +8,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/calibration.h"
-#include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::study {
 namespace {
@@ -112,17 +111,6 @@ const std::vector<Column>& columns() {
       {"status", "status",
        [](const TradeoffRun& r) { return Cell(r.done() ? "done" : "failed: " + r.failure); }}};
   return list;
-}
-
-std::string csv_field(const Cell& cell) {
-  if (const auto* count = std::get_if<long>(&cell)) return std::to_string(*count);
-  if (const auto* number = std::get_if<double>(&cell)) return number_text(*number);
-  const auto* text = std::get_if<std::string>(&cell);
-  if (text == nullptr) return "";
-  if (text->find_first_of(",\"") == std::string::npos) return *text;
-  std::string quoted = "\"";
-  for (const char c : *text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::vector<TradeoffRun> all_runs(const TradeoffStudy& study) {
@@ -277,20 +265,15 @@ report::Document tradeoff_document(const TradeoffStudy& study, const report::Lin
 }
 
 std::string tradeoff_csv(const TradeoffStudy& study) {
-  std::string text;
-  for (const Column& column : columns())
-    text += (text.empty() ? "" : ",") + std::string(column.key);
-  text += "\n";
+  std::vector<std::string> keys;
+  for (const Column& column : columns()) keys.emplace_back(column.key);
+  CsvRows csv(report::joined(keys, ","));
   for (const TradeoffRun& run : all_runs(study)) {
-    bool first = true;
-    for (const Column& column : columns()) {
-      if (!first) text += ',';
-      first = false;
-      text += csv_field(column.cell(run));
-    }
-    text += '\n';
+    std::vector<Cell> cells;
+    for (const Column& column : columns()) cells.push_back(column.cell(run));
+    csv.row(cells);
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string tradeoff_text(const TradeoffStudy& study) {

@@ -7,8 +7,7 @@
 #include <map>
 
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility_section.h"
+#include "document_parts.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -329,11 +328,8 @@ std::vector<report::Figure> band_figures(const UncertaintyResult& result) {
 
 report::Document uncertainty_document(const UncertaintyResult& result,
                                       const report::Lines& program) {
-  report::Document document;
-  document.title = result.the_case.name + ": what is not known exactly";
-  document.program = program;
-  study::describe_case(document, result.the_case);
-  document.derived = study::derived_section(result.the_case);
+  report::Document document = study::case_document(
+      result.the_case, result.the_case.name + ": what is not known exactly", program);
   document.verdict = report::Verdict{std::nullopt, headline(result), "Uncertainty"};
   document.meaning =
       "What the stated distributions of parameters do to the results of the " +
@@ -359,8 +355,7 @@ report::Document uncertainty_document(const UncertaintyResult& result,
   }
   if (!result.bands.empty()) {
     document.runs->push_back(bands_section(result));
-    for (report::Figure& figure : band_figures(result))
-      document.figures->push_back(std::move(figure));
+    append(document.figures, band_figures(result));
   }
   add_left_out(document, result);
   return document;

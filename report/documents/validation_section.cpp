@@ -52,9 +52,8 @@ Section curves_section(const Validation& v) {
   Section section{
       "Comparison errors of the curves of " + v.reference,
       std::string(kMeaning) +
-          "the reference's tolerance, tube and error of resampling as half width, over the root "
-          "of 3. At the angle "
-          "where |E| / u_val is largest; of channels that have a band.",
+          "the reference's tolerance, tube and error of resampling as half width, over the root of "
+          "3. At the angle where |E| / u_val is largest; of channels that have a band.",
       {},
       {columns({"channel", "unit", "angle, deg"}), {}}};
   section.table.columns.emplace_back("could be 0, % of the turn");

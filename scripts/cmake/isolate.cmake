@@ -1,7 +1,7 @@
 # Joins the objects of an archive with what they need of some static libraries, and makes every
 # symbol of these libraries local:
 #   -DOUTPUT=x.o -DARCHIVE=x.a "-DLIBRARIES=a.a;b.a" -DLINKER= -DNM= -DOBJCOPY=
-# Used by hydraulics/ and coupled/: Simbody exports functions of its own old copy of SUNDIALS (N_VNew_Serial and a
+# Used by numerics/: Simbody exports functions of its own old copy of SUNDIALS (N_VNew_Serial and a
 # hundred more), and whichever library the loader finds first would serve both.
 set(symbols "")
 foreach(library IN LISTS LIBRARIES)

@@ -35,7 +35,7 @@ double mass_passed(const Trajectory& run) {
     constexpr double kUsualDensity = 850;  // kg/m3: a scale need not be exact
     for (std::size_t row = 1; row < run.lag.size(); ++row)
       circulated += std::abs(oil.value(row, c)) * kLitrePerMinute * kUsualDensity *
-                    (run.table.state(row, 0) - run.table.state(row - 1, 0));
+                    (run.state(row, StateColumn::time) - run.state(row - 1, StateColumn::time));
   }
   return std::max(mass, circulated);
 }

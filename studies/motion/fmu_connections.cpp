@@ -7,6 +7,7 @@
 
 #include "bentaxis/hydraulics/oil_in_time.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/results/channels.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/trajectory.h"
@@ -14,14 +15,10 @@
 namespace bentaxis::study {
 namespace {
 
-// By the end of a column's name.
-std::string unit_by_name(std::string_view name) {
-  constexpr std::pair<std::string_view, const char*> kEnds[] = {
-      {"_l_per_min", "L/min"}, {"_bar", "bar"}, {"_rpm", "rpm"},
-      {"_deg", "deg"},         {"_s", "s"},     {"_W", "W"}};
-  for (const auto& [end, unit] : kEnds)
-    if (name.size() > end.size() && name.substr(name.size() - end.size()) == end) return unit;
-  return "?";
+// As descriptions of FMUs call it.
+std::string unit_in_descriptions(const std::string& unit) {
+  const UnitOfMeasure* const found = find_unit_of_measure(unit);
+  return found == nullptr ? "?" : found->standard;
 }
 
 std::string first_of(const std::vector<std::string>& names) {
@@ -227,10 +224,13 @@ const std::vector<PumpInput>& pump_inputs() {
 
 PumpSide pump_side(const Case& the_case, bool oil_follows) {
   PumpSide side;
-  for (const std::string& name : trajectory_columns(*the_case.drive)) {
-    side.columns.push_back(name);
-    side.units.push_back(unit_by_name(name));
-  }
+  const auto add_columns = [&](const std::vector<Column>& columns) {
+    for (const Column& column : columns) {
+      side.columns.push_back(column.name);
+      side.units.push_back(unit_in_descriptions(column.unit));
+    }
+  };
+  add_columns(state_columns(*the_case.drive));
   const auto add = [&](const std::vector<Channel>& channels) {
     for (const Channel& channel : channels) {
       side.columns.push_back(channel.name);
@@ -245,10 +245,7 @@ PumpSide pump_side(const Case& the_case, bool oil_follows) {
     return side;
   }
   const auto oil = hydraulics::oil_in_time(the_case, {});
-  for (const OilColumn& column : oil->columns()) {
-    side.columns.push_back(column.name);
-    side.units.push_back(unit_by_name(column.name));
-  }
+  add_columns(oil->columns());
   const TakesFromOutside of_oil = oil->takes();
   side.takes.suction = of_oil.suction;
   side.takes.delivery = of_oil.delivery;

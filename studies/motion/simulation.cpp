@@ -42,24 +42,12 @@ constexpr double kAnalyticError = 1e-8;
 constexpr double kOneTime = 1e-12;  // of the duration: times nearer than that are one
 // A run longer than this is not repeated for the table of efforts.
 constexpr double kCheap = 1.0;  // s
-
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
+constexpr const char* kFlow = "l/min";
 
 }  // namespace
 
-Compared compared_column(const std::string& name) {
-  const auto without = [&](const char* end) {
-    return name.substr(0, name.size() - std::string(end).size());
-  };
-  if (ends_with(name, "_l_per_min")) return {without("_l_per_min"), "l/min", false};
-  if (ends_with(name, "_bar")) {
-    const std::string group = without("_bar");
-    const bool chamber = group.size() > 2 && group[2] >= '0' && group[2] <= '9';
-    return {chamber ? "p" : group, "bar", true};
-  }
-  return {};
+Compared compared_column(const Column& column) {
+  return {column.group, column.unit, column.unit != kFlow};
 }
 
 std::size_t judged_rows(const std::vector<double>& growth, double error, double disturbance) {
@@ -134,7 +122,7 @@ void for_each_value(const Trajectory& run, std::size_t row, const Use& use) {
   if (!run.teeth.empty()) for_each_tooth_value(run, row, use);
   if (!run.oil) return;
   for (std::size_t c = 0; c < run.oil->columns.size(); ++c)
-    if (const Compared what = compared_column(run.oil->columns[c].name); !what.group.empty())
+    if (const Compared what = compared_column(run.oil->columns[c]); !what.group.empty())
       use(what, run.oil->value(row, c));
 }
 
@@ -148,6 +136,14 @@ std::map<std::string, double> peaks_of(const Trajectory& run) {
   return peaks;
 }
 
+// Of the faster body at a row, rad/s.
+double fastest_speed(const Trajectory& run, std::size_t row) {
+  double speed = 0;
+  for (const StateColumn body : {StateColumn::shaft_speed, StateColumn::block_speed})
+    speed = std::max(speed, kRadPerSecondPerRpm * std::abs(run.state(row, body)));
+  return speed;
+}
+
 // Largest loads of a run: those of the case under the pressures and at the speeds that it came to.
 LoadScale loads_of(const Case& the_case, const Trajectory& run) {
   Samples samples;
@@ -155,9 +151,7 @@ LoadScale loads_of(const Case& the_case, const Trajectory& run) {
   samples.ports = the_case.pressure.ports;
   const ResultTable& table = run.table.results;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    for (const std::size_t speed : {3, 4})
-      samples.omega =
-          std::max(samples.omega, kRadPerSecondPerRpm * std::abs(run.table.state(row, speed)));
+    samples.omega = std::max(samples.omega, fastest_speed(run, row));
     for (std::size_t c = 0; c < table.columns(); ++c)
       if (table.channels[c].quantity == "p" && is_computed(table.at(row, c)))
         samples.chamber_pressure.push_back(table.at(row, c) * table.channels[c].unit_in_si);
@@ -170,8 +164,7 @@ double kinetic_energy(const Case& the_case, const Trajectory& run) {
   const PumpParameters& pump = the_case.pump;
   double speed = 0;
   for (std::size_t row = 0; row < run.lag.size(); ++row)
-    for (const std::size_t column : {3, 4})
-      speed = std::max(speed, kRadPerSecondPerRpm * std::abs(run.table.state(row, column)));
+    speed = std::max(speed, fastest_speed(run, row));
   const double pistons = pump.geometry.pistons * pump.piston.mass *
                          pump.geometry.joint_circle_radius * pump.geometry.joint_circle_radius;
   return 0.5 * (pump.shaft.axial_inertia + pump.block.axial_inertia + pistons) * speed * speed;
@@ -186,13 +179,13 @@ std::map<std::string, double> scales_of(const Trajectory& run, const LoadScale& 
   const double bar = scales.count("p") > 0 ? scales.at("p") : 0;
   double flow = 0;
   for_each_value(run, 0, [&](const Compared& what, double) {
-    if (what.unit == "l/min") flow = std::max(flow, scales.at(what.group));
+    if (what.unit == kFlow) flow = std::max(flow, scales.at(what.group));
   });
   for_each_value(run, 0, [&](const Compared& what, double) {
     double& scale = scales.at(what.group);
     if (what.unit == "rad")
       scale = std::max(scale, compare::kNoSignal / error);
-    else if (what.unit == "l/min")
+    else if (what.unit == kFlow)
       scale = scale > 0 ? scale : flow;
     else
       scale = compare::scale_of(scale, what.unit == "N"     ? loads.force
@@ -251,7 +244,7 @@ std::vector<GroupDifference> group_differences(const Trajectory& first, const Tr
                           group.scale = scales.at(what.group);
                           group.judged = what.judged;
                           if (in_time.keep_larger(difference))
-                            group.time_s = first.table.state(row, 0);
+                            group.time_s = first.state(row, StateColumn::time);
                           if (what.judged)
                             update_max_abs(group.of_allowed, difference.share() / allowed[row]);
                         });
@@ -402,7 +395,7 @@ class Study {
     if (r_.multibody) compare_periods();
     // Nothing grows: both are where the motion returns to.
     r_.growth.assign(r_.analytic->lag.size(), 1.0);
-    r_.judged_until_s = r_.analytic->table.state(r_.growth.size() - 1, 0);
+    r_.judged_until_s = r_.analytic->state(r_.growth.size() - 1, StateColumn::time);
   }
 
   // Rows are at equal shares of either period: the periods themselves must agree too.
@@ -433,7 +426,7 @@ class Study {
       r_.growth.push_back(growth);
     }
     const std::size_t judged = judged_rows();
-    r_.judged_until_s = judged == 0 ? 0 : run.table.state(judged - 1, 0);
+    r_.judged_until_s = judged == 0 ? 0 : run.state(judged - 1, StateColumn::time);
   }
 
   std::size_t judged_rows() const {
@@ -563,9 +556,10 @@ class Study {
     double fastest = 0;
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
       r_.difference.push_back(largest_difference(a, m, scales_, row));
-      fastest = std::max(fastest, std::abs(a.table.state(row, 3)));
+      fastest = std::max(fastest, std::abs(a.state(row, StateColumn::shaft_speed)));
       if (row >= allowed.size()) continue;
-      update_max_abs(r_.speed_difference, a.table.state(row, 3) - m.table.state(row, 3));
+      update_max_abs(r_.speed_difference, a.state(row, StateColumn::shaft_speed) -
+                                              m.state(row, StateColumn::shaft_speed));
       update_max_abs(r_.lag_difference, a.lag[row] - m.lag[row]);
     }
     if (fastest > 0) r_.speed_difference /= fastest;
@@ -578,10 +572,11 @@ class Study {
     analytic::SimulationOptions options;
     options.error = std::min(kAnalyticError, kAnalyticShare * r_.choice.error);
     for (std::size_t row = 0; row < a.lag.size(); ++row) {
-      const double speed = 6 * a.table.state(row, 3);  // deg/s
+      const double speed = 6 * a.state(row, StateColumn::shaft_speed);  // deg/s
       const double late =
-          speed != 0 ? (m.table.state(row, 1) - a.table.state(row, 1)) / speed : 0.0;
-      const double time = a.table.state(row, 0);
+          speed != 0 ? (m.state(row, StateColumn::theta) - a.state(row, StateColumn::theta)) / speed
+                     : 0.0;
+      const double time = a.state(row, StateColumn::time);
       const double spacing = r_.ready.the_case.drive->duration / r_.ready.the_case.drive->samples;
       const double earliest = options.times.empty() ? 0.0 : options.times.back();
       options.times.push_back(
@@ -628,8 +623,7 @@ class Study {
         }
         // Of the torque, at the faster body's speed; at rest at 1 rad/s, as in virtual work. At
         // least what a comparison holds the same power to: its tolerance of the loads.
-        const double speed = std::max({1.0, kRadPerSecondPerRpm * std::abs(t.table.state(row, 3)),
-                                       kRadPerSecondPerRpm * std::abs(t.table.state(row, 4))});
+        const double speed = std::max(1.0, fastest_speed(t, row));
         const double torque = std::max(std::abs(table.at(row, table.find("Td_z1_Nm"))),
                                        kDrivenTolerance / kPowerTolerance * loads.moment);
         scale = std::max(scale, torque * speed);

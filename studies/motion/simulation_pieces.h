@@ -17,9 +17,8 @@ struct Compared {
   std::string group, unit;
   bool judged = true;
 };
-// Of a column of the oil: "p_1_bar" is one of a group "p", "p_delivery_bar" a group of its own; no
-// group where it is not compared.
-Compared compared_column(const std::string& name);
+// Of a column of the oil; no group where it is not compared.
+Compared compared_column(const Column& column);
 
 // Rows before the first in which a disturbance of the wanted error, or the one that growth was
 // found by, has grown too large for anything to be judged.

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "bentaxis/pump/delivery_side.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/pump/units.h"
 
@@ -190,8 +191,6 @@ inline bool always(const Case& /*the_case*/) { return true; }
 std::string short_text(double value);
 /// "" where from < to <= from + 360.
 std::string arc_refusal(const PortArc& arc);
-/// Whether what the pump delivers to is held at a pressure.
-bool delivery_is_held(const Case& c);
 
 // ---- The tables
 

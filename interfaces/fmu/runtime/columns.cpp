@@ -14,14 +14,6 @@
 namespace bentaxis::fmu {
 namespace {
 
-std::string meaning_of(const std::string& column) {
-  if (column == "theta_deg") return "angle of the shaft, theta";
-  if (column == "psi_deg") return "angle of the block, psi";
-  if (column == "shaft_rpm") return "speed of the shaft";
-  if (column == "block_rpm") return "speed of the block";
-  return "speed of the motor's rotor";
-}
-
 std::string meaning_of(const Channel& channel) {
   std::string text = channel.meaning;
   const auto add = [&](const char* how, const std::string& what) {
@@ -32,13 +24,6 @@ std::string meaning_of(const Channel& channel) {
   add("at ", channel.point);
   add("in ", channel.frame);
   return text;
-}
-
-std::string unit_in_name(const std::string& name) {
-  for (const auto& [end, unit] :
-       {std::pair{"_l_per_min", "l/min"}, std::pair{"_bar", "bar"}, std::pair{"_W", "W"}})
-    if (name.ends_with(end)) return unit;
-  return {};
 }
 
 }  // namespace
@@ -81,10 +66,9 @@ std::vector<OutputPlace> output_places(const Machine& machine) {
     names.push_back(column.name);
     places.push_back({std::move(column), from, index, unit});
   };
-  const std::vector<std::string> states = trajectory_columns(*machine.the_case.drive);
-  for (std::size_t i = 1; i < states.size(); ++i)
-    add({states[i], states[i].ends_with("_deg") ? "deg" : "rpm", meaning_of(states[i])},
-        OutputPlace::From::state, i, 1);
+  const std::vector<Column> states = state_columns(*machine.the_case.drive);
+  for (auto i = static_cast<std::size_t>(StateColumn::theta); i < states.size(); ++i)
+    add({states[i].name, states[i].unit, states[i].meaning}, OutputPlace::From::state, i, 1);
   const std::vector<Channel>& channels = machine.mechanics->layout().channels();
   for (std::size_t i = 0; i < channels.size(); ++i)
     add({channels[i].name, channels[i].unit, meaning_of(channels[i])}, OutputPlace::From::row, i,
@@ -97,7 +81,7 @@ std::vector<OutputPlace> output_places(const Machine& machine) {
           checks[i].unit_in_si);
   const std::vector<OilColumn> oil = machine.oil->columns();
   for (std::size_t i = 0; i < oil.size(); ++i)
-    add({oil[i].name, unit_in_name(oil[i].name), oil[i].meaning}, OutputPlace::From::oil, i, 1);
+    add({oil[i].name, oil[i].unit, oil[i].meaning}, OutputPlace::From::oil, i, 1);
   return places;
 }
 

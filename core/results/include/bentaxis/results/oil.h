@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bentaxis/pump/pressure.h"
+#include "bentaxis/results/column.h"
 #include "bentaxis/results/instant.h"
 #include "bentaxis/results/surroundings.h"
 
@@ -32,11 +33,8 @@ struct OilPlace {
   PowerUse use;
 };
 
-/// A value of a table over time.
-struct OilColumn {
-  std::string name;  ///< with its unit: "p_delivery_bar"
-  std::string meaning;
-};
+/// A value of the oil over time.
+using OilColumn = Column;
 
 /// Oil whose state changes with time and with the motion of shaft and block. Rates are per second
 /// and finite at any speed, standstill and both directions among them. Both mechanical models are

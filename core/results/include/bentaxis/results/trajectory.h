@@ -8,6 +8,7 @@
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/channels.h"
+#include "bentaxis/results/column.h"
 #include "bentaxis/results/motion.h"
 #include "bentaxis/results/oil.h"
 #include "bentaxis/results/teeth.h"
@@ -80,6 +81,9 @@ struct OilHistory {
   }
 };
 
+/// The columns of trajectory_columns(), in their order.
+enum class StateColumn : std::size_t { time, theta, psi, shaft_speed, block_speed, motor_speed };
+
 /// A simulated motion: rows at 0, duration/samples, .., duration.
 struct Trajectory {
   /// State columns as trajectory_columns() has them.
@@ -89,10 +93,18 @@ struct Trajectory {
   std::optional<OilHistory> oil;   ///< where oil is simulated too
   std::vector<TeethAction> teeth;  ///< per row, where the contact is that of teeth
   BodyLoadTable loads;             ///< on all bodies, a row per row, where they were asked for
+
+  /// A state in the unit of its column: s, deg, rpm.
+  double state(std::size_t row, StateColumn column) const {
+    return table.state(row, static_cast<std::size_t>(column));
+  }
 };
 
 /// time_s, theta_deg, psi_deg, shaft_rpm, block_rpm, and motor_rpm where a motor drives.
 std::vector<std::string> trajectory_columns(const DriveSpec& drive);
+
+/// The same with units and meanings.
+std::vector<Column> state_columns(const DriveSpec& drive);
 
 /// Times of the rows of a simulation, s.
 std::vector<double> trajectory_times(const DriveSpec& drive);
