@@ -136,21 +136,24 @@ LifeStudy life_study(const Case& the_case, const DutyCycle& duty,
       reasons[row] = error.what();
     }
   });
-  if (std::all_of(reasons.begin(), reasons.end(), [](const auto& r) { return !r.empty(); }))
-    throw ComputationError(
-        (rows > 1 ? "no row of the duty cycle could be computed; the first: " : std::string()) +
-        reasons[0]);
-  for (std::size_t row = rows; row-- > 0;) {
-    if (reasons[row].empty()) continue;
-    const auto at = static_cast<std::ptrdiff_t>(row);
-    result.failed.insert(result.failed.begin(), {static_cast<double>(duty.rows[row].number),
-                                                 duty.name_of(row), reasons[row]});
-    result.duty.rows.erase(result.duty.rows.begin() + at);
-    for (LifeStudy::OfModel* of : {&result.analytic, &result.multibody})
-      of->points.erase(of->points.begin() + at);
-  }
-  for (LifeStudy::OfModel* of : {&result.analytic, &result.multibody})
+  result.failed = study::without_failed(
+      reasons,
+      [&](std::size_t row) {
+        return study::FailedPoint{static_cast<double>(duty.rows[row].number), duty.name_of(row),
+                                  ""};
+      },
+      [&](std::size_t from, std::size_t to) {
+        if (from == to) return;
+        result.duty.rows[to] = std::move(result.duty.rows[from]);
+        for (LifeStudy::OfModel* of : {&result.analytic, &result.multibody})
+          of->points[to] = std::move(of->points[from]);
+      },
+      rows > 1 ? "no row of the duty cycle" : "");
+  result.duty.rows.resize(rows - result.failed.size());
+  for (LifeStudy::OfModel* of : {&result.analytic, &result.multibody}) {
+    of->points.resize(result.duty.rows.size());
     of->life = study::pump_life(the_case, of->points);
+  }
   return result;
 }
 

@@ -253,9 +253,7 @@ struct DataModel::Implementation {
     Assumptions assumptions = the_case.analytic;
     study::apply_variant(state.variant, ready.the_case, assumptions);
     run.facts = study::facts_of(ready.the_case, assumptions);
-    study::RunOptions options;
-    options.assumptions = assumptions;
-    const ResultTable table = study::run(ready, options).table;
+    const ResultTable table = study::run(ready, {.assumptions = assumptions}).table;
     run.table = &table;
     read_table(
         state, run, [](std::size_t column) { return column; }, results);
@@ -433,10 +431,8 @@ LeastSquaresFit moved_least(const DataModel& model, const LeastSquaresFit& fit) 
                                        (x[i] - start[i]) / (whole.high[i] - whole.low[i]);
     return true;
   };
-  LeastSquaresOptions options;
-  options.most_iterations = 60;
-  options.enough = 1e-3 * kSame;
-  LeastSquaresFit moved = least_squares(problem, fit.x, options);
+  LeastSquaresFit moved =
+      least_squares(problem, fit.x, {.most_iterations = 60, .enough = 1e-3 * kSame});
   moved.residuals.resize(whole.residuals);
   moved.jacobian.resize(whole.residuals * n);
   moved.sum_of_squares = sum_of_squares(moved.residuals);
@@ -472,11 +468,9 @@ Identification identify(const DataModel& model, const IdentifyOptions& options,
     }
     starts.push_back(std::move(x));
   }
-  LeastSquaresOptions fitting;
-  fitting.most_iterations = 60;
-  fitting.enough = 1e-3;
   const std::vector<LeastSquaresFit> fits =
-      least_squares(model.problem(), starts, fitting, options.threads, progress_of("fit"));
+      least_squares(model.problem(), starts, {.most_iterations = 60, .enough = 1e-3},
+                    options.threads, progress_of("fit"));
   if (fits.empty())
     throw ComputationError("identify: no start between the bounds makes a pump that can be run");
   result.fit = moved_least(model, fits[nearest_of_best(model, fits)]);

@@ -169,9 +169,7 @@ std::optional<FurtherUnknown> refit(const DataModel& model, const LeastSquaresFi
   const DataModel larger =
       with_further(model, promise.variable, std::max(range.low, promise.before - reach),
                    std::min(range.high, promise.before + reach));
-  LeastSquaresOptions options;
-  options.most_iterations = 60;
-  options.enough = 1e-3;
+  const LeastSquaresOptions options{.most_iterations = 60, .enough = 1e-3};
   std::vector<double> start = fit.x;
   start.push_back(promise.before);
   const LeastSquaresFit found = least_squares(larger.problem(), start, options);

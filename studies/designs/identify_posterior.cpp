@@ -120,9 +120,7 @@ Vector scattered(const DataModel& model, const Density& density, const LeastSqua
     for (std::size_t i = 0; i < noise.size(); ++i) residuals[i] += noise[i];
     return true;
   };
-  LeastSquaresOptions rough;
-  rough.most_iterations = 15;
-  rough.enough = 0.1;
+  const LeastSquaresOptions rough{.most_iterations = 15, .enough = 0.1};
   double share = 1;
   for (int attempt = 0; attempt < 4; ++attempt, share /= 3) {
     Vector start(fit.x);

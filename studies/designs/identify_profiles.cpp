@@ -32,9 +32,7 @@ class Held {
   double refit(double value, Vector& x) {
     value_ = value;
     x[held_] = value;
-    LeastSquaresOptions options;
-    options.most_iterations = 20;
-    options.enough = 0.01;
+    const LeastSquaresOptions options{.most_iterations = 20, .enough = 0.01};
     if (problem_.parameters == 0) {
       Vector residuals(whole_.residuals);
       if (!whole_.evaluate(x, residuals)) throw ComputationError("profile: no pump there");
@@ -151,9 +149,7 @@ std::vector<LeftOut> leave_one_out(const DataModel& model, const LeastSquaresFit
     const Datum& datum = data[rows[r]];
     LeftOut& out = results[r];
     out.datum = rows[r];
-    LeastSquaresOptions options;
-    options.most_iterations = 40;
-    options.enough = 1e-3;
+    const LeastSquaresOptions options{.most_iterations = 40, .enough = 1e-3};
     const LeastSquaresFit refit = least_squares(model.problem(rows[r], true), fit.x, options);
     std::vector<double> numbers(model.numbers());
     model.predict(refit.x, numbers);

@@ -294,10 +294,7 @@ class Turn {
  public:
   Turn(const study::PreparedCase& ready, study::Model model, bool budget)
       : ready_(ready), model_(model) {
-    study::RunOptions options;
-    options.model = model;
-    options.budget = budget;
-    run_ = study::run(ready, options);
+    run_ = study::run(ready, {.model = model, .budget = budget});
   }
 
   double value(const Output& o) {

@@ -86,19 +86,16 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
     }
     reporting.done();
   });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!reasons[i].empty()) {
-      curve.failed.push_back(
-          {delivery_bar[i], "delivery_bar = " + number_text(delivery_bar[i]), reasons[i]});
-      continue;
-    }
-    for (auto* values : columns) (*values)[kept] = (*values)[i];
-    ++kept;
-  }
-  if (kept == 0 && count > 0)
-    throw ComputationError("no point of the series could be computed; the first: " + reasons[0]);
-  for (auto* values : columns) values->resize(kept);
+  curve.failed = without_failed(
+      reasons,
+      [&](std::size_t i) {
+        return FailedPoint{delivery_bar[i], "delivery_bar = " + number_text(delivery_bar[i]), ""};
+      },
+      [&](std::size_t from, std::size_t to) {
+        for (auto* values : columns) (*values)[to] = (*values)[from];
+      },
+      "no point of the series");
+  for (auto* values : columns) values->resize(count - curve.failed.size());
   return curve;
 }
 

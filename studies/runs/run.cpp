@@ -195,9 +195,7 @@ MotionTable run_states(const PreparedCase& ready, const States& states, const Ru
 }
 
 ResultTable run_turn(const PreparedCase& ready, Model model, const PartProgress& progress_of) {
-  RunOptions options;
-  options.model = model;
-  return run(ready, options, progress_of).table;
+  return run(ready, {.model = model}, progress_of).table;
 }
 
 bool computes(const RunOptions& options, const Assumptions& assumptions, const Channel& channel) {

@@ -98,13 +98,10 @@ class Maker {
   }
 
   RunOptions multibody_run(double accuracy) const {
-    RunOptions options;
-    options.model = Model::multibody;
-    options.way = result_.options.way;
-    options.scene = result_.options.scene;
-    options.integration = result_.options.integration;
-    options.integration.accuracy = accuracy;
-    return options;
+    return {.model = Model::multibody,
+            .way = result_.options.way,
+            .scene = result_.options.scene,
+            .integration = {result_.options.integration.integrator, accuracy}};
   }
 
   void run_models();
@@ -145,11 +142,13 @@ void Maker::run_models() {
                 : o.target     ? o.target->error
                 : integrated() ? kIntegratedFactor * o.accuracies.back()
                                : kDrivenTolerance;
-  RunOptions analytic_run;
-  analytic_run.budget = has_budget();
-  analytic_run.teeth = has_teeth();
-  analytic_run.loads = has_loads();
-  ModelRun analytic = study::run(r.first, samples_, analytic_run, progress_of_);
+  const auto with_all = [&](RunOptions options) {
+    options.budget = has_budget();
+    options.teeth = has_teeth();
+    options.loads = has_loads();
+    return options;
+  };
+  ModelRun analytic = study::run(r.first, samples_, with_all({}), progress_of_);
   r.analytic = std::move(analytic.table);
   r.analytic_loads = std::move(analytic.loads);
   analytic_budget_ = std::move(analytic.budget);
@@ -158,11 +157,8 @@ void Maker::run_models() {
     integrate_all();
     return;
   }
-  RunOptions driven = multibody_run(0);
-  driven.budget = has_budget();
-  driven.teeth = has_teeth();
-  driven.loads = has_loads();
-  ModelRun multibody = study::run(r.second, multibody_samples_, driven, progress_of_);
+  ModelRun multibody =
+      study::run(r.second, multibody_samples_, with_all(multibody_run(0)), progress_of_);
   r.multibody = std::move(multibody.table);
   r.multibody_loads = std::move(multibody.loads);
   multibody_budget_ = std::move(multibody.budget);
@@ -313,9 +309,7 @@ void Maker::split_assumptions() {
   }
   if (names.empty()) return;
   const auto run_of = [&](unsigned mask, bool budget) {
-    RunOptions options;
-    options.budget = budget;
-    options.assumptions = from;
+    RunOptions options{.assumptions = from, .budget = budget};
     for (std::size_t i = 0; i < changes.size(); ++i)
       if ((mask & (1U << i)) != 0) changes[i](*options.assumptions, to);
     return study::run(r.first, samples_, options);
@@ -525,17 +519,15 @@ std::string whole_of(const std::string& column) {
 
 std::vector<Failure> failures_of(const ComparisonResult& r) {
   std::vector<Failure> failures;
-  for (const auto& c : r.comparison.channels)
-    if (c.judged && c.verdict == compare::Verdict::differs)
-      failures.push_back({c.channel.name, c.channel.group, c.largest, c.peak});
+  const auto add = [&](const compare::Comparison& comparison, const auto& group_of) {
+    for (const auto& c : comparison.channels)
+      if (c.judged && c.verdict == compare::Verdict::differs)
+        failures.push_back({c.channel.name, group_of(c.channel), c.largest, c.peak});
+  };
+  add(r.comparison, [](const Channel& channel) { return channel.group; });
   if (r.budget)
-    for (const auto& c : r.budget->comparison.channels)
-      if (c.judged && c.verdict == compare::Verdict::differs)
-        failures.push_back({c.channel.name, whole_of(c.channel.name), c.largest, c.peak});
-  if (r.teeth && !r.split)
-    for (const auto& c : r.teeth->comparison.channels)
-      if (c.judged && c.verdict == compare::Verdict::differs)
-        failures.push_back({c.channel.name, "teeth", c.largest, c.peak});
+    add(r.budget->comparison, [](const Channel& channel) { return whole_of(channel.name); });
+  if (r.teeth && !r.split) add(r.teeth->comparison, [](const Channel&) { return "teeth"; });
   for (const auto& check : r.checks)
     if (!check.holds())
       failures.push_back({of_table(check), check.group, check.worst, check.scale});

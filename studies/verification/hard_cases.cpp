@@ -247,11 +247,9 @@ LongRun run_long(const std::filesystem::path& catalogue, int turns, double accur
   const Samples samples = sample_case(the_case, pressure, turns);
   const ResultTable analytic = analytic::run(the_case, the_case.analytic, samples);
   const compare::ZeroScales scales = zero_scales(the_case, samples);
-  multibody::IntegrationOptions options;
-  options.accuracy = accuracy;
-  const auto run =
-      multibody::run_integrated(the_case, the_case.multibody, samples, pressure, options,
-                                progress_of(std::to_string(turns) + " turns"));
+  const auto run = multibody::run_integrated(the_case, the_case.multibody, samples, pressure,
+                                             {.accuracy = accuracy},
+                                             progress_of(std::to_string(turns) + " turns"));
   const std::vector<double> errors =
       errors_of_turns(analytic, run.table, scales, the_case.operation.samples_per_revolution);
   LongRun result;

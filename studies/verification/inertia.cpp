@@ -339,8 +339,7 @@ SpinRun spin_run(const Case& the_case, double speed_rpm, double spin_rpm,
   spinning.operation.revolutions = 1;
   const PressureTrace pressure(spinning.pressure);
   const Samples samples = sample_case(spinning, pressure, 1, speed_rpm < 0);
-  multibody::IntegrationOptions options;
-  options.accuracy = kSpinAccuracy;
+  const multibody::IntegrationOptions options{.accuracy = kSpinAccuracy};
   const auto run = multibody::run_integrated(spinning, with(spinning.analytic, PistonInertia::real),
                                              samples, pressure, options, progress);
   return {spin_rpm, run.record.whole.spin_error, options.accuracy};

@@ -39,9 +39,7 @@ void compare_models_and_scenes(InertiaStudy& s) {
     if (least == 0) least = round_off * s.one_piston[i - i % 2 + 1].analytic_real.peak("Rs");
     const auto differ = [&](const ResultTable& first, const ResultTable& second,
                             multibody::Scene scene) {
-      RunOptions options;
-      options.model = Model::multibody;
-      options.scene.scene = scene;
+      const RunOptions options{.model = Model::multibody, .scene = {scene, {}}};
       const auto computed = [&](const Channel& channel) {
         return computes(options, s.the_case.analytic, channel);
       };

@@ -67,9 +67,7 @@ std::optional<PrintedNumbers> printed_numbers_of(const std::filesystem::path& fo
 
 compare::PublishedRun VariantRuns::operator()(const compare::PublishedVariant& variant) {
   Case the_case = *input_.the_case;
-  RunOptions options;
-  options.model = model_;
-  options.assumptions = input_.assumptions;
+  RunOptions options{.model = model_, .assumptions = input_.assumptions};
   apply_variant(variant, the_case, *options.assumptions);
   compare::PublishedRun run{input_.table, facts_of(the_case, *options.assumptions)};
   if (variant.set.empty()) return run;

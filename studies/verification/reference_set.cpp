@@ -68,9 +68,8 @@ ReferenceCases::ReferenceCases(const compare::ReferenceDescription& description,
 ReferenceRun run_for_reference(const PreparedCase& ready, Model model,
                                const PartProgress& progress_of) {
   const Samples samples = ready.samples(Way::driven);
-  RunOptions options;
-  options.model = model;
-  return {run(ready, samples, options, progress_of).table, zero_scales(ready.the_case, samples)};
+  return {run(ready, samples, {.model = model}, progress_of).table,
+          zero_scales(ready.the_case, samples)};
 }
 
 }  // namespace bentaxis::study

@@ -57,16 +57,16 @@ struct ErrorTarget {
 
 struct RunOptions {
   Model model = Model::analytic;
-  std::optional<Assumptions> assumptions;  ///< instead of the case's
+  std::optional<Assumptions> assumptions = {};  ///< instead of the case's
   bool budget = false;  ///< torque by cause too; of a driven run of the full pump
   bool teeth = false;   ///< what the teeth do, too; likewise, where the contact is that of teeth
   bool loads = false;   ///< all loads on the bodies too: those of the driven full pump at the
                         ///< samples also of a run that is integrated or of a smaller scene
   // Of the multibody model:
   Way way = Way::driven;
-  multibody::SceneChoice scene;               ///< driven; an integrated run is of the full pump
-  multibody::IntegrationOptions integration;  ///< integrated, without a target
-  std::optional<ErrorTarget> target;          ///< integrated: chooses the integration instead
+  multibody::SceneChoice scene = {};  ///< driven; an integrated run is of the full pump
+  multibody::IntegrationOptions integration = {};  ///< integrated, without a target
+  std::optional<ErrorTarget> target = {};          ///< integrated: chooses the integration instead
 };
 
 struct ModelRun {
