@@ -114,6 +114,9 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
                                 "another tolerance; work balance of each model"}
           : report::CommonInput{"rigid teeth", "psi = theta (1:1), no play",
                                 "nothing here: a rig, or compliant teeth"});
+  inputs.push_back({"instants of events between steps",
+                    "one bisection, of the events that each model finds in its own steps",
+                    "stored trajectories; roots of known functions in the tests"});
   return inputs;
 }
 
