@@ -13,7 +13,6 @@
 #include "bentaxis/numerics/object_pool.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/numerics/stiff_integrator.h"
-#include "bentaxis/study/in_threads.h"
 
 namespace bentaxis::numerics {
 namespace {
@@ -55,16 +54,6 @@ TEST(ParallelFor, AnExceptionReachesTheCallerAndTheNextCallWorks) {
   parallel_for(2, 20, [&](std::size_t) { ++calls; });
   EXPECT_EQ(calls, 20);
 }
-
-// The name of version 1.0.0.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
-TEST(ParallelFor, HasItsOldName) {
-  std::atomic<int> calls{0};
-  study::in_threads(2, 20, [&](std::size_t) { ++calls; });
-  EXPECT_EQ(calls, 20);
-}
-#pragma GCC diagnostic pop
 
 TEST(ObjectPool, GivesBackWhatIsUnusedAndMakesWhatLacks) {
   ObjectPool<int> pool;

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -21,6 +22,7 @@
 #include "bentaxis/study/friction_calibration.h"
 #include "bentaxis/study/hard_cases.h"
 #include "bentaxis/study/hard_cases_document.h"
+#include "bentaxis/study/in_threads.h"
 #include "bentaxis/study/inertia.h"
 #include "bentaxis/study/inertia_document.h"
 #include "bentaxis/study/inertia_study.h"
@@ -1025,6 +1027,16 @@ TEST(Tradeoff, AnOrderOutsideThatOfItsMethodIsMarked) {
   EXPECT_EQ(study::outside_theory({"any", 1, {}, {}}, {4, 4}), "") << "nothing was found";
   EXPECT_EQ(study::outside_theory({"any", 2, 7.0, 4.0}, {4, 4}), "last pair above");
 }
+
+// The name of version 1.0.0.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+TEST(ParallelFor, HasItsOldName) {
+  std::atomic<int> calls{0};
+  study::in_threads(2, 20, [&](std::size_t) { ++calls; });
+  EXPECT_EQ(calls, 20);
+}
+#pragma GCC diagnostic pop
 
 }  // namespace
 }  // namespace bentaxis::test

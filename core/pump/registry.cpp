@@ -99,9 +99,9 @@ void check_tables(const Case& the_case, const Registry& registry) {
 
 }  // namespace
 
-std::vector<const Access<double>*> numbers_of(const Field& field) {
-  if (const auto* number = std::get_if<NumberField>(&field)) return {&number->place};
-  if (const auto* pair = std::get_if<PairField>(&field)) return {&pair->first, &pair->second};
+FieldNumbers numbers_of(const Field& field) {
+  if (const auto* number = std::get_if<NumberField>(&field)) return {{&number->place}, 1};
+  if (const auto* pair = std::get_if<PairField>(&field)) return {{&pair->first, &pair->second}, 2};
   return {};
 }
 
@@ -268,10 +268,9 @@ std::vector<PumpInput> continuous_inputs(PumpParameters& pump, const Registry& r
     for (const Parameter& parameter : table.parameters) {
       if (parameter.path.empty() || !is_there(parameter, the_case)) continue;
       auto& list = parameter.within == nullptr ? always : in_parts;
-      const auto numbers = numbers_of(parameter.field);
-      for (std::size_t i = 0; i < numbers.size(); ++i)
-        list.push_back(
-            {parameter.path[i], numbers[i]->in_pump(pump), si_range(parameter, the_case)});
+      auto path = parameter.path.begin();
+      for (const Access<double>* place : numbers_of(parameter.field))
+        list.push_back({*path++, place->in_pump(pump), si_range(parameter, the_case)});
     }
   always.insert(always.end(), in_parts.begin(), in_parts.end());
   return always;

@@ -62,8 +62,15 @@ struct CurveField {
 using Field = std::variant<NumberField, IntegerField, FlagField, TextField, ChoiceField, PairField,
                            CurveField>;
 
-/// The numbers of a field, which may be one, two or none.
-std::vector<const Access<double>*> numbers_of(const Field& field);
+/// The numbers of a field, which may be one, two or none. Allocates nothing: validation of a design
+/// asks for them.
+struct FieldNumbers {
+  std::array<const Access<double>*, 2> places{};
+  std::size_t count = 0;
+  auto begin() const { return places.begin(); }
+  auto end() const { return places.begin() + count; }
+};
+FieldNumbers numbers_of(const Field& field);
 
 /// A value as a case file has it, in the file's unit; a choice as its word.
 using Value = std::variant<double, int, bool, std::string, std::array<double, 2>>;
