@@ -536,7 +536,7 @@ TEST(HardOutcome, WorstRatioIsTheFarthestFromOneOfNoticeableLosses) {
 // Where the ring touches off B there are no multipliers: refused as input, by that way alone.
 TEST(HardCases, ARefusalCountsAsOneWhereItIsExpected) {
   const Scratch scratch;
-  const std::filesystem::path folder = scratch.path();
+  const std::filesystem::path& folder = scratch.path();
   std::ifstream shipped(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml");
   std::string text((std::istreambuf_iterator<char>(shipped)), {});
   text.replace(text.find("[piston]\n"), 9, "[piston]\ncontact_mm = 41.5\n");
