@@ -160,7 +160,7 @@ std::vector<Order2> orders2(const Resources& r) {
   const Functions& f = library();
   const auto exchange = fmi2ModelExchange;
   const auto simulation = fmi2CoSimulation;
-  constexpr std::size_t states = 1, indicators = 2;
+  constexpr std::size_t kStates = 1, kIndicators = 2;
   static double x[8];
   static fmi2EventInfo info;
   static fmi2Boolean flag, other;
@@ -207,15 +207,15 @@ std::vector<Order2> orders2(const Resources& r) {
        [&f](Unit2& u) { return f.fmi2CompletedIntegratorStep(u.it, 1, &flag, &other); }},
       {"SetTime", exchange, "ec", [&f](Unit2& u) { return f.fmi2SetTime(u.it, 0.1); }},
       {"SetContinuousStates", exchange, "c",
-       [&f](Unit2& u) { return f.fmi2SetContinuousStates(u.it, x, states); }},
+       [&f](Unit2& u) { return f.fmi2SetContinuousStates(u.it, x, kStates); }},
       {"GetDerivatives", exchange, "iect",
-       [&f](Unit2& u) { return f.fmi2GetDerivatives(u.it, x, states); }},
+       [&f](Unit2& u) { return f.fmi2GetDerivatives(u.it, x, kStates); }},
       {"GetContinuousStates", exchange, "iect",
-       [&f](Unit2& u) { return f.fmi2GetContinuousStates(u.it, x, states); }},
+       [&f](Unit2& u) { return f.fmi2GetContinuousStates(u.it, x, kStates); }},
       {"GetEventIndicators", exchange, "iect",
-       [&f](Unit2& u) { return f.fmi2GetEventIndicators(u.it, x, indicators); }},
+       [&f](Unit2& u) { return f.fmi2GetEventIndicators(u.it, x, kIndicators); }},
       {"GetNominals", exchange, "niect",
-       [&f](Unit2& u) { return f.fmi2GetNominalsOfContinuousStates(u.it, x, states); }},
+       [&f](Unit2& u) { return f.fmi2GetNominalsOfContinuousStates(u.it, x, kStates); }},
       {"DoStep", simulation, "s", [&f](Unit2& u) { return f.fmi2DoStep(u.it, 0, 1e-3, 1); }},
       {"DoStep", exchange, "", [&f](Unit2& u) { return f.fmi2DoStep(u.it, 0, 1e-3, 1); }},
       {"CancelStep", simulation, "", [&f](Unit2& u) { return f.fmi2CancelStep(u.it); }},

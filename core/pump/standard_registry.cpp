@@ -41,8 +41,9 @@ Parameter number(std::string key, std::string symbol, Field field, Unit unit, Nu
 Parameter choice(std::string key, Field field, std::vector<std::string> words, Default fallback,
                  std::string meaning, Parameter more) {
   more.words = std::move(words);
-  return number(std::move(key), more.symbol, std::move(field), kNoUnit, kAny, std::move(fallback),
-                std::move(meaning), std::move(more));
+  std::string symbol = more.symbol;
+  return number(std::move(key), std::move(symbol), std::move(field), kNoUnit, kAny,
+                std::move(fallback), std::move(meaning), std::move(more));
 }
 
 Parameter choice(std::string key, Field field, std::vector<std::string> words, const char* fallback,

@@ -13,6 +13,7 @@
 namespace bentaxis::python {
 
 // Arguments that may be of several types.
+// NOLINTBEGIN(bugprone-macro-parentheses): the name of a class
 #define BENTAXIS_ARGUMENT(name)                          \
   class name : public pybind11::object {                 \
     static bool any(PyObject*) { return true; }          \
@@ -29,6 +30,7 @@ BENTAXIS_ARGUMENT(Variations);  ///< values by parameter
 BENTAXIS_ARGUMENT(Bounds);      ///< lowest and highest by parameter, or None
 BENTAXIS_ARGUMENT(DataFrame);
 #undef BENTAXIS_ARGUMENT
+// NOLINTEND(bugprone-macro-parentheses)
 
 /// A text alone is a list of one, None an empty list. @throws InputError
 std::vector<std::string> texts_of(const pybind11::handle& texts, const std::string& what);

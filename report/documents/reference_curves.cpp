@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bentaxis/pump/number.h"
+#include "bentaxis/report/document.h"
 
 namespace bentaxis::study {
 

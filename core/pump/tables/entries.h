@@ -72,6 +72,7 @@ const T* address_of(const std::optional<T>& place) {
 }
 
 // A place in the case `c` as a function of cases and pumps, and its text.
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a place is a path of members
 #define PLACE(place) \
   [](auto& c) -> decltype(address_of(place)) { return address_of(place); }, #place
 
@@ -79,6 +80,7 @@ const T* address_of(const std::optional<T>& place) {
 /// that of the place. What is optional on the way there must be so by the Part of the entry.
 #define FIELD(place) kept_at(PLACE(place))
 /// Both ends of a place with from_deg and to_deg.
+// NOLINTNEXTLINE(bugprone-macro-parentheses): as above
 #define ARC(place) pair_at(PLACE(place.from_deg), PLACE(place.to_deg))
 
 /// Of "c.pump.gear.teeth->shaft.runout" its path in PumpParameters, gear.teeth.shaft.runout.
@@ -166,7 +168,8 @@ Part part_at(Place, When needed = {}) {
             return part != nullptr && part->has_value();
           },
           [](Case& c) {
-            if (auto* const part = Place{}(c); part != nullptr) part->emplace();
+            if (auto* const part = Place{}(c); part != nullptr)
+              *part = typename std::remove_reference_t<decltype(*part)>::value_type{};
           }};
 }
 

@@ -22,7 +22,7 @@ const Part kGiving{kGivingWay,
 
 // What both kinds of teeth that give way have.
 template <auto kOfLaw, auto kOfTeeth>
-constexpr auto of_either = [](auto& c) -> decltype(&(*c.pump.gear.teeth.*kOfTeeth)) {
+constexpr auto kOfEither = [](auto& c) -> decltype(&(*c.pump.gear.teeth.*kOfTeeth)) {
   auto& gear = c.pump.gear;
   return gear.contact == ToothContact::teeth ? &(*gear.teeth.*kOfTeeth)
                                              : &(*gear.compliance.*kOfLaw);
@@ -70,12 +70,12 @@ Table gear_table() {
                   {1, 3}, {1.0}, "power of the approach with which the force grows",
                   {.practice = "lines 1, points 1.5, ADAMS' default 2.2", .part = &kCompliance}),
            number("dissipation_s_per_m", "c",
-                  kept_at(of_either<&ToothCompliance::dissipation, &ToothData::dissipation>,
+                  kept_at(kOfEither<&ToothCompliance::dissipation, &ToothData::dissipation>,
                           "c.pump.gear.dissipation"),
                   {"s/m"}, kNotNegative, {0.0}, "growth of the force with the speed of approach",
                   {.part = &kGiving}),
            number("backlash_um", "j",
-                  kept_at(of_either<&ToothCompliance::backlash, &ToothData::backlash>,
+                  kept_at(kOfEither<&ToothCompliance::backlash, &ToothData::backlash>,
                           "c.pump.gear.backlash"),
                   kMicrometres, kNotNegative, {0.0},
                   "along the line of action; rigid teeth have none", {.part = &kGiving}),

@@ -188,7 +188,7 @@ struct FurtherUnknown {
 /// best first; those whose fitted values are implausible after all others. All continuous
 /// parameters that are active in the case are compared by their derivatives; those that promise
 /// most are fitted with all unknowns.
-std::vector<FurtherUnknown> further_unknowns(const DataModel& model, const LeastSquaresFit& fit,
+std::vector<FurtherUnknown> further_unknowns(const DataModel& of_fit, const LeastSquaresFit& fit,
                                              int threads, const Progress& progress = {});
 
 /// A datum or a prior, and how far the fit is from it.
