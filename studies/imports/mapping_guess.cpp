@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 
+#include "bentaxis/numerics/minimum.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/periodic_spline.h"
@@ -276,7 +277,8 @@ class Guesser {
         };
         Found found;
         found.sign = sign;
-        found.phase = least_of(at, start - 3, start + 3);
+        found.phase =
+            start + numerics::smallest_at([&](double moved) { return at(start + moved); }, -3, 3);
         found.cost = at(found.phase) / static_cast<double>(features.size());
         if (found.cost < kNoChannel) result.push_back(found);
       }
@@ -786,7 +788,8 @@ MappingGuess Guesser::finish(const Found& found) {
       if (const auto square = square_difference(pairing, at)) sum += std::log(kRoundOff + *square);
     return sum / static_cast<double>(pairings.size());
   };
-  std::vector<double> round_phase = {least_of(cost, phase - 0.5, phase + 0.5)};
+  std::vector<double> round_phase = {
+      phase + numerics::smallest_at([&](double moved) { return cost(phase + moved); }, -0.5, 0.5)};
   roundest([&](const std::vector<double>& at) { return cost(at.front()); }, round_phase);
   phase = round_phase.front();
   for (const Pairing& pairing : pairings) {

@@ -81,28 +81,6 @@ double shifted_product(const Series& ours, const Series& theirs, std::size_t shi
   return r;
 }
 
-double least_of(const std::function<double(double)>& f, double low, double high) {
-  const double ratio = (std::sqrt(5.0) - 1) / 2;
-  double a = high - ratio * (high - low), b = low + ratio * (high - low);
-  double fa = f(a), fb = f(b);
-  for (int i = 0; i < 36; ++i) {
-    if (fa < fb) {
-      high = b;
-      b = a;
-      fb = fa;
-      a = high - ratio * (high - low);
-      fa = f(a);
-    } else {
-      low = a;
-      a = b;
-      fa = fb;
-      b = low + ratio * (high - low);
-      fb = f(b);
-    }
-  }
-  return (low + high) / 2;
-}
-
 double roundest(const std::function<double(const std::vector<double>&)>& cost,
                 std::vector<double>& angles) {
   constexpr double kAsGood = 0.2;  // of the logarithm of the mean square difference

@@ -42,8 +42,6 @@ Series length_of(const std::array<Series, 3>& vector);
 Series coarse(const Series& fine);
 // Sum of ours(i) x theirs(i - shift) over the turn; both have kCoarse angles.
 double shifted_product(const Series& ours, const Series& theirs, std::size_t shift);
-// By the golden section.
-double least_of(const std::function<double(double)>& f, double low, double high);
 // Rounds angles in degrees to a common step, the roundest at which they cost as little.
 // @returns  the step; 0 where the angles stay as they are
 double roundest(const std::function<double(const std::vector<double>&)>& cost,

@@ -1,15 +1,14 @@
 #include "bentaxis/study/inertia.h"
 
 #include <algorithm>
-#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <ctime>
-#include <limits>
 #include <utility>
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/multibody/integrated.h"
 #include "bentaxis/multibody/model.h"
+#include "bentaxis/numerics/minimum.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -71,13 +70,6 @@ Lumping error_of(const std::string& name, const Case& the_case, PistonInertia in
       name,
       inertia == PistonInertia::lumped ? the_case.pump.piston.joint_mass_fraction : not_computed(),
       peak_difference(lumped, real, "Rs"), peak_difference(lumped, real, "Rc")};
-}
-
-// Where a convex function is smallest on [0, 1].
-double smallest_at(const std::function<double(double)>& value) {
-  // Half of a double's digits: nearer to its minimum a function is flat to round-off.
-  constexpr int kBits = std::numeric_limits<double>::digits / 2;
-  return boost::math::tools::brent_find_minima(value, 0.0, 1.0, kBits).first;
 }
 
 // A case with few pistons and samples: every piston has the same curve, so one is enough.
@@ -220,12 +212,12 @@ std::vector<Lumping> lumpings(const Case& the_case, double speed_rpm) {
       1 - bare.pump.piston.real->centre_of_mass / bare.pump.geometry.piston_length;
   if (keeps_centre >= 0 && keeps_centre <= 1)
     result.push_back(with_fraction("keeps the centre of mass, chi = 1 - s_G/b1", keeps_centre));
-  result.push_back(with_fraction("least error of Rs", smallest_at([&](double chi) {
-                                   return with_fraction("", chi).error_rs;
-                                 })));
-  result.push_back(with_fraction("least error of Rc", smallest_at([&](double chi) {
-                                   return with_fraction("", chi).error_rc;
-                                 })));
+  result.push_back(with_fraction(
+      "least error of Rs",
+      numerics::smallest_at([&](double chi) { return with_fraction("", chi).error_rs; }, 0, 1)));
+  result.push_back(with_fraction(
+      "least error of Rc",
+      numerics::smallest_at([&](double chi) { return with_fraction("", chi).error_rc; }, 0, 1)));
   if (three_masses(bare.pump).exists)
     result.push_back(error_of("three point masses (dynamically_equivalent)", bare,
                               PistonInertia::dynamically_equivalent, real));
