@@ -629,7 +629,9 @@ std::vector<std::string> assumptions_of(const CurveDescription& curve) {
 
 std::vector<fs::path> find_references(const fs::path& root) {
   if (!fs::is_directory(root))
-    throw InputError(root.string() + ": is not a folder with reference data");
+    throw InputError(root.string() +
+                     ": is not a folder with reference data; bentaxis reference new makes one of a "
+                     "file of curves");
   std::vector<fs::path> found;
   const std::function<void(const fs::path&)> visit = [&](const fs::path& folder) {
     if (fs::is_regular_file(folder / kDescriptionName)) {

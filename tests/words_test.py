@@ -74,6 +74,45 @@ class MessagesTest(WordsTest):
         # Nothing is like it: what there is.
         self.assertIn("; there are: run, compare, regress,", self.refused("frobnicate"))
 
+    def test_words_and_places_of_others(self):
+        """What a key of another table or another program's word for it is called here."""
+        for key, meant in (("pump.speed_rpm", '[operation] "speed_rpm"'), ("operation.tilt_deg", '[pump] "tilt_deg"'),
+                           ("pump.swash_angle_deg", '"tilt_deg"'), ("pump.Piston_Diameter_mm", '"bore_diameter_mm"'),
+                           ("pump.alpha", '"tilt_deg"'), ("pressure.outlet_bar", '"delivery_bar"'),
+                           ("pump.kind", '[drive] "kind"')):
+            with self.subTest(key):
+                self.assertTrue(self.refused("show", self.case, "--set", f"{key}=1").endswith(f"; did you mean {meant}?"))
+        sweep = ["sweep", self.case, "--output", "max:Rb1_z1", "--vary"]
+        self.assertEqual(self.refused(*sweep, "operation.shaft_speed=1:2:1"),
+                         'operation.shaft_speed: no such parameter; did you mean "operation.speed_rpm"?')
+        line = self.refused("show", self.changed_case("tilt_deg =", "swash_angle ="))
+        self.assertRegex(line, r'tilt_deg is missing: must be in \[0, 90\); is "swash_angle" in line \d+ meant\?$')
+        line = self.refused("show", self.changed_case("tilt_deg = 40.0", "tilt_deg = 40.0\nspeed_rpm = 1500"))
+        self.assertRegex(line, r'case.toml:\d+: unknown key "speed_rpm" in \[pump\]; did you mean \[operation\] "speed_rpm"\?$')
+
+    def test_only_near_names_are_suggested(self):
+        sweep = ["sweep", self.case, "--vary", "pump.tilt_deg=30:40:5", "--output"]
+        self.assertTrue(self.refused(*sweep, "efficiency.total").endswith("of this name; allowed: efficiency.mechanical"))
+        self.assertTrue(self.refused(*sweep, "validity.flak").endswith('; did you mean "validity.flank"?'))
+        self.assertTrue(self.refused(*sweep, "frobnicate").endswith(" more, listed by bentaxis outputs"))
+
+    def test_slips(self):
+        self.assertRegex(self.refused("show", self.changed_case('kind = "ideal"', "kind = ideal")),
+                         r'case.toml:\d+: kind = ideal; words stand in quotes: "ideal"$')
+        for values in ("30-40", "30..40", "-40..-30"):
+            self.assertTrue(self.refused("sweep", self.case, "--vary", f"pump.tilt_deg={values}", "--output", "max:Rb1_z1")
+                            .endswith("must be a number; a range is FROM:TO:STEP or FROM:TO:#NUMBER"))
+        (self.folder / "curve.csv").write_text("theta_deg,Td_z1_Nm\n0,1\n")
+        self.assertIn("bentaxis reference new", self.refused("compare", self.case, "--with", "curve.csv"))
+
+    def test_a_case_that_lacks_something_is_told_one_that_has_it(self):
+        for command in (["simulate"], ["pressure"], ["life"]):
+            with self.subTest(command):
+                example = re.search(r"as in (cases/\S+\.toml)$", self.refused(*command, self.case))
+                self.assertIsNotNone(example)
+                self.run_program(*command, REPO / example[1], "--help")
+                self.assertTrue((REPO / example[1]).exists())
+
     def test_enumerations_are_their_names(self):
         for arguments, line in (
             (["run", self.case, "--model", "magic"], "--model: magic: must be analytic or multibody"),
@@ -129,6 +168,73 @@ class MessagesTest(WordsTest):
                             "operation.revolutions=100000000")
         self.assertIn("revolutions = 100000000", line)
         self.assertIn("GB of disk", self.refused("run", self.case, "--model", "analytic", *many))
+
+
+class OutputsTest(WordsTest):
+    def test_every_name_that_is_listed_can_be_asked_for(self):
+        for name in ("bap63_rated", "bap63_rated_hydraulic", "bap63_bearing_life"):
+            case = REPO / "cases" / f"{name}.toml"
+            lines = self.run_program("outputs", case).stdout.split("\n\n", 1)[1].splitlines()
+            names = [line.split()[0] for line in lines]
+            self.assertEqual(len(names), len(set(names)))
+            self.assertEqual("hydraulics.flow_l_per_min" in names, "rated" != name[6:])
+            self.assertEqual("life.system_h" in names, "life" in name)
+            self.assertIn("max:Rb1_z1_N", names)
+            for line in lines:  # a meaning, and a unit where there is one
+                self.assertRegex(line, r"^\S+  +(\S+  +)?\S.*\w")
+                self.assertNotIn("at about", line)
+        few = ["--set", "operation.samples_per_revolution=12"]
+        self.run_program("sweep", self.case, *few, "--vary", "pump.tilt_deg=39:40:1", "--out", "out", "--output", ",".join(
+            line.split()[0] for line in self.run_program("outputs", self.case).stdout.split("\n\n", 1)[1].splitlines()))
+        heading = next((self.folder / "out").glob("*.csv")).read_text().splitlines()[0]
+        self.assertIn("efficiency.mechanical", heading)
+
+
+class DialectTest(WordsTest):
+    """Every table that is read may be separated by semicolons or tabs, with decimal commas, and in UTF-16."""
+
+    def dialects(self, text):
+        comma = text.replace(",", ";").replace(".", ",")
+        yield "semicolons.csv", comma.encode()
+        yield "tabs.txt", text.replace(",", "\t").encode()
+        yield "blanks.txt", text.replace(",", "  ").encode()
+        yield "utf16.csv", comma.encode("utf-16")
+
+    def same(self, table, arguments, result):
+        """The result of the table in each dialect is that of the one with commas."""
+        (self.folder / "commas.csv").write_text(table)
+        self.run_program(*arguments("commas.csv"), "--out", "commas")
+        expected = (self.folder / "commas" / result).read_bytes()
+        for name, content in self.dialects(table):
+            with self.subTest(name):
+                (self.folder / name).write_bytes(content)
+                self.run_program(*arguments(name), "--out", f"out_{name}")
+                self.assertEqual((self.folder / f"out_{name}" / result).read_bytes(), expected)
+
+    def test_duty_cycle(self):
+        case = REPO / "cases" / "bap63_bearing_life.toml"
+        self.same((REPO / "cases" / "curves" / "duty_cycle.csv").read_text(),
+                  lambda file: ["life", case, "--duty", file], "life.csv")
+
+    def test_drive_curve(self):
+        case = REPO / "cases" / "bap63_tooth_rattle.toml"
+        text = case.read_text()
+        self.assertNotIn("flow = ", text)
+        drive = ["simulate", case, "--model", "analytic", "--set", "drive.duration_s=0.002", "--set", "drive.samples=10",
+                 "--set", 'drive.kind="speed"']
+        self.same("time_s,speed_rpm\n0,1500.5\n0.001,1501\n0.002,1502\n0.01,1500\n",
+                  lambda file: [*drive, "--set", f'drive.file="{self.folder / file}"'], "simulation_analytic.csv")
+
+    def test_states(self):
+        table = ("theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n"
+                 "10,9.5,1500,1490.25,100,-200\n11,10.5,1500,1490,100,-200\n")
+        self.same(table, lambda file: ["run", self.case, "--model", "analytic", "--states", file], "analytic.csv")
+
+    def test_what_is_wrong_is_named_with_its_place(self):
+        (self.folder / "duty.csv").write_text("share;speed_rpm;delivery_bar\n0,5;1500;200\n0,5;fast;200\n")
+        line = self.refused("life", REPO / "cases" / "bap63_bearing_life.toml", "--duty", "duty.csv")
+        self.assertIn("duty.csv:3", line)
+        self.assertIn("fast", line)
 
 
 class InertiaWordsTest(WordsTest):

@@ -74,7 +74,7 @@ class CaseReader {
         table.presence == Presence::required ? parent->table(key) : parent->optional_table(key);
     if (table.part != nullptr) table.part->create(result_);
     read_keys(in, table);
-    in.finish();
+    in.finish([&](const std::string& word) { return key_suggestion(registry_, table.name, word); });
     check_rules(in, table, "");
     if (table.part != nullptr && table.part->remove != nullptr && !holds(table.part->needed))
       table.part->remove(result_);
@@ -132,7 +132,10 @@ class CaseReader {
 
   void read_key(TableReader& in, const Table& table, const Parameter& parameter) {
     const bool active = is_active(table, parameter, registry_, result_);
-    if (!in.has(parameter.key) && !active) return;
+    if (!in.has(parameter.key)) {
+      if (!active) return;
+      if (!default_of(parameter, result_)) look_for_other_word(in, table, parameter);
+    }
     if (const auto* curve = std::get_if<CurveField>(&parameter.field)) {
       std::optional<std::string> fallback;
       if (const auto value = default_of(parameter, result_))
@@ -142,6 +145,13 @@ class CaseReader {
       return;
     }
     store(parameter, result_, value_in(in, parameter));
+  }
+
+  // Where a required key is missing, another word for it may be there.
+  void look_for_other_word(TableReader& in, const Table& table, const Parameter& parameter) const {
+    for (const std::string& key : in.keys())
+      if (meant_key(registry_, table.name, key) == table.name + "." + parameter.key)
+        in.may_mean(key, parameter.key);
   }
 
   Value value_in(TableReader& in, const Parameter& p) const {
@@ -231,7 +241,7 @@ void apply_change(TomlFile& file, const std::string& change, const Registry& reg
   if (keys.empty()) fail("unknown table [" + table + "]" + suggestion(table, tables));
   if (keys.count(key) == 0)
     fail("unknown key \"" + key + "\"" + (table.empty() ? "" : " in [" + table + "]") +
-         suggestion(key, keys));
+         key_suggestion(registry, table, key));
   file.change(table, key, trimmed(change.substr(equals + 1)));
 }
 

@@ -41,8 +41,34 @@ std::vector<std::string_view> split(std::string_view line) {
 
 }  // namespace
 
+namespace {
+
+// Whether a table is not separated by commas: by semicolons, tabs or blanks, or is no plain text.
+// Judged by its first line alone, so that a file of ours is held to its format line by line.
+bool is_foreign(std::string_view content) {
+  for (const std::string_view start : {"PK\x03\x04", "MATLAB", "\x89HDF", "\xFF\xFE", "\xFE\xFF"})
+    if (content.starts_with(start)) return true;
+  const auto from = content.find_first_not_of(" \t\r\n");
+  if (from == std::string_view::npos) return false;
+  std::string_view line = content.substr(from);
+  line = trimmed(line.substr(0, line.find('\n')));
+  if (line.find('\0') != std::string_view::npos) return false;
+  return line.find_first_of(";\t") != std::string_view::npos ||
+         (line.find(',') == std::string_view::npos && line.find(' ') != std::string_view::npos);
+}
+
+}  // namespace
+
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty) {
-  return numeric_csv_of(read_input_file(file, {"a CSV file", kLargestTable}), file, allow_empty);
+  const std::string content = read_input_file(file, {"a table", kLargestTable});
+  if (!is_foreign(content)) return numeric_csv_of(content, file, allow_empty);
+  const ForeignTable table = table_of(content, file);
+  for (std::size_t i = 0; i < table.rows.size() && !allow_empty; ++i)
+    for (std::size_t c = 0; c < table.rows[i].size(); ++c)
+      if (!is_computed(table.rows[i][c]))
+        throw InputError(table.place(i) + ": " + table.header[c] +
+                         " = \"\": must be a finite number");
+  return table;
 }
 
 NumericTable numeric_csv_of(const std::string& content, const std::filesystem::path& file,

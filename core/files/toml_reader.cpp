@@ -182,8 +182,9 @@ toml::table* table_at(toml::table& root, const std::string& name) {
 
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
 
-// What is wrong with a line that TOML refuses, where it is a decimal comma.
-std::string decimal_comma_in(const std::string& text, std::size_t line) {
+// What is wrong with a line that TOML refuses, where it is a decimal comma or a word without
+// quotes.
+std::string slip_in(const std::string& text, std::size_t line) {
   std::istringstream lines(text);
   std::string found;
   for (std::size_t i = 0; i < line; ++i) std::getline(lines, found);
@@ -191,7 +192,12 @@ std::string decimal_comma_in(const std::string& text, std::size_t line) {
   if (found.find('=') == std::string::npos || start == std::string::npos) return "";
   const std::string value = found.substr(start, found.find_first_of(" \t\r#", start) - start);
   const std::string hint = decimal_point_hint(value);
-  return hint.empty() ? "" : one_line(found.substr(0, start) + value) + hint;
+  if (!hint.empty()) return one_line(found.substr(0, start) + value) + hint;
+  const auto in_a_word = [](unsigned char letter) { return std::isalnum(letter) || letter == '_'; };
+  if (value.empty() || !std::isalpha(static_cast<unsigned char>(value.front())) ||
+      !std::all_of(value.begin(), value.end(), in_a_word))
+    return "";
+  return one_line(found.substr(0, start) + value) + "; words stand in quotes: \"" + value + "\"";
 }
 
 }  // namespace
@@ -420,7 +426,7 @@ std::vector<std::string> TableReader::keys() const {
   return names;
 }
 
-void TableReader::finish() const {
+void TableReader::finish(const std::function<std::string(const std::string&)>& meant) const {
   if (table_ == nullptr) return;
   for (const auto& [key, node] : *table_->table()) {
     const std::string word(key.str());
@@ -429,7 +435,7 @@ void TableReader::finish() const {
         node.is_table() && name_.empty()
             ? "unknown table [" + word + "]"
             : "unknown key \"" + word + "\"" + (name_.empty() ? "" : " in [" + name_ + "]");
-    message += suggestion(word, known_);
+    message += meant ? meant(word) : suggestion(word, known_);
     if (change_of(word) != nullptr)
       throw InputError(place_of({table_->file, &node}, word) + message);
     throw InputError(place(line_of(node) > 0 ? line_of(node) : line_) + message);
@@ -445,11 +451,13 @@ void TableReader::fail(const std::string& key, const std::string& why) const {
 std::string TableReader::misspelt(const std::string& key) const {
   constexpr double kAlike = 0.7;  // the key that is there may also be one that is asked for later
   if (table_ == nullptr) return "";
+  std::optional<std::string> word;
+  if (const auto other = other_words_.find(key); other != other_words_.end()) word = other->second;
   std::set<std::string> unknown;
   for (const auto& [found, node] : *table_->table())
-    if (const std::string word(found.str()); known_.count(word) + expected_.count(word) == 0)
-      unknown.insert(word);
-  const auto word = meant(key, unknown, kAlike);
+    if (const std::string name(found.str()); known_.count(name) + expected_.count(name) == 0)
+      unknown.insert(name);
+  if (!word) word = meant(key, unknown, kAlike);
   if (!word) return "";
   return "; is \"" + *word + "\" in line " + std::to_string(line_of(*table_->table()->get(*word))) +
          " meant?";
@@ -549,7 +557,7 @@ TomlFile::TomlFile(const std::string& text, std::filesystem::path file) : file_(
     root_ =
         std::make_shared<const TableReader::Node>(TableReader::Node{document, &document->table});
   } catch (const toml::parse_error& error) {
-    std::string what = decimal_comma_in(text, error.source().begin.line);
+    std::string what = slip_in(text, error.source().begin.line);
     if (what.empty()) what = error.description();
     std::replace(what.begin(), what.end(), '\n', ' ');
     throw InputError(file_.string() + ":" + std::to_string(error.source().begin.line) + ": " +

@@ -1,6 +1,7 @@
 #include "bentaxis/pump/registry.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/inputs.h"
 #include "bentaxis/pump/validate.h"
+#include "bentaxis/pump/words.h"
 
 namespace bentaxis {
 namespace {
@@ -103,6 +105,55 @@ FieldNumbers numbers_of(const Field& field) {
   if (const auto* number = std::get_if<NumberField>(&field)) return {{&number->place}, 1};
   if (const auto* pair = std::get_if<PairField>(&field)) return {{&pair->first, &pair->second}, 2};
   return {};
+}
+
+namespace {
+
+// A key in small letters and without its unit: "Swash_Angle_deg" -> "swash_angle".
+std::string without_unit(std::string key) {
+  for (char& letter : key)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  for (const char* const unit : {"_deg", "_rad", "_mm", "_m", "_bar", "_pa", "_mpa", "_rpm", "_kg"})
+    if (key.ends_with(unit)) return key.substr(0, key.size() - std::string(unit).size());
+  return key;
+}
+
+bool is_also(const Parameter& parameter, const std::string& key) {
+  const std::string word = without_unit(key);
+  return parameter.symbol == key || without_unit(parameter.key) == word ||
+         std::find(parameter.also.begin(), parameter.also.end(), word) != parameter.also.end();
+}
+
+}  // namespace
+
+std::optional<std::string> meant_key(const Registry& registry, const std::string& table,
+                                     const std::string& key) {
+  // The table itself comes first, then the others in their order.
+  for (const bool here : {true, false})
+    for (const bool exactly : {true, false})
+      for (const Table& one : registry.tables)
+        for (const Parameter& parameter : one.parameters)
+          if ((one.name == table) == here &&
+              (exactly ? parameter.key == key : is_also(parameter, key)))
+            return (one.name.empty() ? "" : one.name + ".") + parameter.key;
+  return std::nullopt;
+}
+
+std::string key_suggestion(const Registry& registry, const std::string& table,
+                           const std::string& key) {
+  if (const auto meant = meant_key(registry, table, key)) {
+    const auto point = meant->rfind('.');
+    const std::string its_table = point == std::string::npos ? "" : meant->substr(0, point);
+    const std::string its_key = meant->substr(point + 1);  // npos + 1 is 0
+    return "; did you mean " +
+           (its_table.empty() || its_table == table ? "" : "[" + its_table + "] ") + "\"" +
+           its_key + "\"?";
+  }
+  std::set<std::string> keys;
+  for (const Table& one : registry.tables)
+    if (one.name == table)
+      for (const Parameter& parameter : one.parameters) keys.insert(parameter.key);
+  return suggestion(key, keys);
 }
 
 const Table& table_of(const Registry& registry, const std::string& name) {

@@ -30,6 +30,20 @@ std::size_t digits_from(const std::string& text, std::size_t from) {
   return std::min(end, text.size()) - from;
 }
 
+std::string allowed(const std::set<std::string>& known, const std::string& more) {
+  constexpr std::size_t kMaxShown = 40;  // more are no line that anybody reads
+  std::string names;
+  std::size_t shown = 0;
+  for (const auto& name : known) {
+    if (known.size() > kMaxShown && shown == kMaxShown / 4) break;
+    names += (names.empty() ? "" : ", ") + name;
+    ++shown;
+  }
+  if (shown < known.size())
+    names += " and " + std::to_string(known.size() - shown) + " more, " + more;
+  return "; allowed: " + names;
+}
+
 }  // namespace
 
 std::optional<std::string> meant(const std::string& word, const std::set<std::string>& known,
@@ -41,20 +55,22 @@ std::optional<std::string> meant(const std::string& word, const std::set<std::st
   return *nearest;
 }
 
-std::string suggestion(const std::string& word, const std::set<std::string>& known) {
+std::string suggestion(const std::string& word, const std::set<std::string>& known,
+                       const std::string& more) {
   if (known.empty()) return "";
-  if (const auto nearest = meant(word, known)) return "; did you mean \"" + *nearest + "\"?";
-  constexpr std::size_t kMaxShown = 40;  // more are no line that anybody reads
-  std::string allowed;
-  std::size_t shown = 0;
-  for (const auto& name : known) {
-    if (known.size() > kMaxShown && shown == kMaxShown / 4) break;
-    allowed += (allowed.empty() ? "" : ", ") + name;
-    ++shown;
+  const std::string beginning = word.substr(0, word.rfind('.') + 1);  // npos + 1 is 0
+  std::set<std::string> alike, ends;
+  for (const auto& name : known)
+    if (!beginning.empty() && name.starts_with(beginning)) {
+      alike.insert(name);
+      ends.insert(name.substr(beginning.size()));
+    }
+  if (!alike.empty()) {
+    const auto nearest = meant(word.substr(beginning.size()), ends);
+    return nearest ? "; did you mean \"" + beginning + *nearest + "\"?" : allowed(alike, more);
   }
-  if (shown < known.size())
-    allowed += " and " + std::to_string(known.size() - shown) + " more, in docs/";
-  return "; allowed: " + allowed;
+  if (const auto nearest = meant(word, known)) return "; did you mean \"" + *nearest + "\"?";
+  return allowed(known, more);
 }
 
 std::string decimal_point_hint(const std::string& text) {

@@ -67,7 +67,9 @@ const DriveSpec& drive_of(const Case& the_case) {
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") + why);
   };
   if (!the_case.drive)
-    refuse("table [drive] is missing: a simulation needs what turns the shaft, and duration_s");
+    refuse(
+        "table [drive] is missing: a simulation needs what turns the shaft, and duration_s, "
+        "as in cases/bap63_start_up.toml");
   const DriveSpec& drive = *the_case.drive;
   if (drive.start_speed && drive.kind == DriveKind::speed)
     refuse(

@@ -44,7 +44,9 @@ std::string meaning_of(const Channel& c, bool vector) {
   std::string text = c.meaning;
   if (!c.on_body.empty()) text += " on " + c.on_body;
   if (!c.by_body.empty()) text += " by " + c.by_body;
-  if (!c.point.empty()) text += ", at " + c.point;
+  if (!c.point.empty())
+    text +=
+        (c.point.starts_with("about ") || c.point.starts_with("from ") ? ", " : ", at ") + c.point;
   if (!c.frame.empty()) text += vector ? ", magnitude" : ", along " + c.axis;
   return text;
 }
@@ -118,10 +120,19 @@ bool has_ratings(const Case& the_case) {
   return the_case.ratings.tapered && the_case.ratings.cylindrical;
 }
 
-// Keys of the limits of validity, and the units of their worst values.
-constexpr std::pair<const char*, const char*> kValidity[] = {
-    {"flank", "N"},  {"turned", "N"},   {"film", "N"}, {"point", "mm"},
-    {"thrust", "N"}, {"friction", "W"}, {"ring", "W"}, {"reach", "um"}};
+// Keys of the limits of validity, and units and meanings of what is held to them.
+struct ValidityEntry {
+  const char *key, *unit, *meaning;
+};
+constexpr ValidityEntry kValidity[] = {
+    {"flank", "N", "tooth force on the driving flank (limit: Rcs >= 0)"},
+    {"turned", "N", "tooth force at negative speed with one line of action (limit: Rcs <= 0)"},
+    {"film", "N", "film force (limit: Fh <= 0)"},
+    {"point", "mm", "distance of the film force from z2 (limit: r4 of the port plate)"},
+    {"thrust", "N", "axial force of the tapered bearing (limit: Rb1_z1 >= 0)"},
+    {"friction", "W", "power that friction feeds in (limit: 0)"},
+    {"ring", "W", "power of the bore forces on the play (limit: 0)"},
+    {"reach", "um", "approach of the teeth (limit: where a further pair would touch)"}};
 
 std::vector<Channel> budget_channels(const Case& the_case) {
   return budget_table("", the_case.pump.piston.contact.has_value(),
@@ -144,10 +155,10 @@ std::vector<Output> single_outputs(const Case& base) {
                    .share = share});
   };
   for (const DerivedEntry& d : kDerived) add(Source::derived, "", d.name, d.unit, d.meaning);
-  for (const auto& [key, unit] : kValidity) {
-    add(Source::validity, "validity.", key, unit, "worst value against the limit");
-    add(Source::validity, "validity.", key, "", "share of the turn in which the limit is violated",
-        true);
+  for (const auto& [key, unit, meaning] : kValidity) {
+    add(Source::validity, "validity.", key, unit, std::string("worst value of the ") + meaning);
+    add(Source::validity, "validity.", key, "",
+        std::string("share of the turn in which the limit is violated: ") + meaning, true);
   }
   for (const bool mechanical : {true, false})
     for (const study::EfficiencyLine& e : study::efficiency_lines())
@@ -180,7 +191,7 @@ std::string lacking(const std::string& name, const Case& base) {
 [[noreturn]] void unknown(const std::string& name, const Case& base) {
   const auto names = output_names(base);
   throw InputError("output " + name + ": there is none of this name" +
-                   suggestion(name, {names.begin(), names.end()}));
+                   suggestion(name, {names.begin(), names.end()}, "listed by bentaxis outputs"));
 }
 
 }  // namespace

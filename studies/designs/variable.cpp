@@ -41,6 +41,25 @@ std::set<std::string> known() {
   return names;
 }
 
+// What is probably meant by a name that is none, as the end of a message.
+std::string meant_by(const std::string& name) {
+  if (const auto point = name.rfind('.'); point != std::string::npos) {
+    const auto meant =
+        meant_key(standard_registry(), name.substr(0, point), name.substr(point + 1));
+    if (meant) return "; did you mean \"" + *meant + "\"?";
+  }
+  return suggestion(name, known());
+}
+
+// Of "30-40" or "30..40": how a range is written.
+std::string range_hint(const std::string& text) {
+  const auto between = text.find_first_of("-.~", 1);
+  if (between == std::string::npos || !number_in(text.substr(0, between))) return "";
+  const auto second = text.find_first_not_of("-.~", between);
+  if (second == std::string::npos || !number_in(text.substr(second))) return "";
+  return "; a range is FROM:TO:STEP or FROM:TO:#NUMBER";
+}
+
 // Of the texts "1" and "2" the place in a pair.
 int end_of(const std::string& name) {
   if (name.ends_with(".1")) return 0;
@@ -55,7 +74,7 @@ Variable::Variable(const std::string& name, const Case& base) : name_(name) {
     end_ = end_of(name);
     if (end_ >= 0) parameter_ = find(name.substr(0, name.size() - 2), table_);
     if (parameter_ == nullptr || !std::holds_alternative<PairField>(parameter_->field))
-      throw InputError(name + ": no such parameter" + suggestion(name, known()));
+      throw InputError(name + ": no such parameter" + meant_by(name));
   } else if (std::holds_alternative<PairField>(parameter_->field)) {
     throw InputError(name + ": is a pair: " + name + ".1 or " + name + ".2 can vary");
   }
@@ -139,7 +158,8 @@ double Variable::value_of(const std::string& text) const {
   }
   const auto value = number_in(text);
   if (!value)
-    throw InputError(name_ + " = " + text + ": must be a number" + decimal_point_hint(text));
+    throw InputError(name_ + " = " + text + ": must be a number" + decimal_point_hint(text) +
+                     range_hint(text));
   if (integer_ && *value != std::round(*value))
     throw InputError(name_ + " = " + text + ": must be a whole number");
   return *value;

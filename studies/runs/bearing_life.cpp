@@ -19,7 +19,8 @@ const BearingRatings& rated(const Case& the_case) {
                      (b.tapered
                           ? "cylindrical_dynamic_rating_kN, cylindrical_static_rating_kN"
                           : "tapered_dynamic_rating_kN, tapered_static_rating_kN, tapered_Y") +
-                     ": must all be given: the life of the bearings follows from their ratings");
+                     ": must all be given: the life of the bearings follows from their ratings, "
+                     "as in cases/bap63_bearing_life.toml");
   return b;
 }
 

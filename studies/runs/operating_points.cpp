@@ -36,7 +36,8 @@ void require_pressure_asked_for(const Case& the_case) {
 void require_hydraulic(const Case& the_case) {
   if (the_case.pressure.kind != PressureKind::hydraulic)
     throw InputError(the_case.file.string() +
-                     ": [pressure] kind must be \"hydraulic\" for this command");
+                     ": [pressure] kind must be \"hydraulic\" for this command, "
+                     "as in cases/bap63_rated_hydraulic.toml");
 }
 
 OperatingPoint run_point(Case the_case, const PartProgress& progress_of) {

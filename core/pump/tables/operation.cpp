@@ -10,7 +10,8 @@ Table operation_table() {
       .parameters = {
           number("speed_rpm", "omega", FIELD(c.operation.speed_rpm), kSpeed, kAny, kRequired,
                  "speed of shaft and block, positive about +z1, +z2; the sign gives the direction",
-                 {.differentiable = always}),
+                 {.also = {"rpm", "n", "shaft_speed", "rotational_speed", "drive_speed", "omega"},
+                  .differentiable = always}),
           number("gravity_m_per_s2", "g", FIELD(c.pump.gravity), {"m/s2"}, kAny, {9.80665},
                  "along -y1",
                  {.differentiable = always,
@@ -29,7 +30,8 @@ Table operation_table() {
                  "of an integrated run", {.plausible = {0, 1e4, "every turn is alike"}}),
           number("samples_per_revolution", "", FIELD(c.operation.samples_per_revolution), kNoUnit,
                  kCount, {720}, "angles of a turn, equally far apart",
-                 {.plausible = {6, 1e6,
+                 {.also = {"samples", "steps_per_revolution", "angles", "points_per_turn"},
+                  .plausible = {6, 1e6,
                                 "a turn is seen from 6 angles on; 1e6 are every second of arc"}})}};
 }
 

@@ -31,14 +31,18 @@ Table pressure_table() {
            number("suction_bar", "p_s", FIELD(c.pressure.ports.suction), kBar, kAny, kRequired,
                   "suction pressure; ideal: in the chambers; always: in the port, where it loads "
                   "the lands",
-                  {.differentiable = always,
+                  {.also = {"inlet", "inlet_pressure", "low_pressure", "p_low", "p1", "tank",
+                            "intake"},
+                   .differentiable = always,
                    .plausible = {-1.014,
                                  100,
                                  "absolute vacuum is at -1.013, charged circuits reach 30",
                                  {slips::kPascals, slips::kKilopascals, slips::kTenth}}}),
            number("delivery_bar", "p_d", FIELD(c.pressure.ports.delivery), kBar, kAny, kRequired,
                   "delivery pressure, likewise; hydraulic: the mean asked for, 0 is an open line",
-                  {.range_here = [](const Case& c) -> std::optional<NumberRange> {
+                  {.also = {"outlet", "outlet_pressure", "discharge", "discharge_pressure",
+                            "high_pressure", "p_high", "p2", "load_pressure"},
+                   .range_here = [](const Case& c) -> std::optional<NumberRange> {
                      if (c.pressure.kind != PressureKind::hydraulic) return std::nullopt;
                      return NumberRange{0, 10000};
                    },

@@ -23,7 +23,8 @@ struct NumericTable {
 };
 
 /// Reads a file of numbers, comma separated, one header line. Numbers are converted exactly
-/// (std::from_chars); text, NaN and infinities are refused.
+/// (std::from_chars); text, NaN and infinities are refused. A file whose first line is separated by
+/// semicolons, tabs or blanks, and a workbook or MATLAB file, is read by foreign_table.h.
 /// @param allow_empty  an empty field is "not computed" rather than an error
 /// @throws InputError naming file, line, column and text.
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty = false);

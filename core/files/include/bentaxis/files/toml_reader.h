@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -27,6 +29,8 @@ class TableReader {
   bool has(const std::string& key);
   /// A key that will be asked for: it is none that was misspelt.
   void expect(const std::string& key) { expected_.insert(key); }
+  /// A key of the file that may be another word for `key`, which is said where that is missing.
+  void may_mean(const std::string& word, const std::string& key) { other_words_[key] = word; }
   /// Line of the table's heading, or of a key of it; 0 where unknown.
   int line() const { return line_; }
 
@@ -64,7 +68,9 @@ class TableReader {
   std::vector<std::string> keys() const;
 
   /// Every key that is there must have been asked for.
-  void finish() const;
+  /// @param meant  what is probably meant by a key that was not, as the end of a message; by
+  ///               default the nearest of those that were
+  void finish(const std::function<std::string(const std::string&)>& meant = {}) const;
   /// Refuses the value of a key.
   [[noreturn]] void fail(const std::string& key, const std::string& why) const;
   /// "; is "..." meant?" where a key of the table was probably meant to be `key`.
@@ -94,6 +100,7 @@ class TableReader {
   int line_ = 0;
   std::vector<InputEntry>* entries_ = nullptr;
   std::set<std::string> known_, expected_;
+  std::map<std::string, std::string> other_words_;
 };
 
 /// A parsed TOML file.

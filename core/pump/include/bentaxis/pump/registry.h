@@ -118,6 +118,8 @@ struct Parameter {
   /// standard_registry() from the field.
   std::vector<std::string> path = {};
   std::string symbol = {};  ///< in the paper or in docs/
+  /// Other words for it, in small letters and without a unit: suggested when one is met as a key.
+  std::vector<std::string> also = {};
   Unit unit = {};
   NumberRange range = {};  ///< in the file's unit
   /// The range where it depends on other parameters, in the file's unit; nothing: `range` holds.
@@ -179,6 +181,15 @@ struct Registry {
 const Table& table_of(const Registry& registry, const std::string& name);
 const Parameter& parameter_of(const Registry& registry, const std::string& table,
                               const std::string& key);
+
+/// The parameter that is probably meant by a key that `table` does not have, as table.key: one of
+/// another table with this key, or one for which this is another word or the symbol.
+std::optional<std::string> meant_key(const Registry& registry, const std::string& table,
+                                     const std::string& key);
+/// The end of a message: that parameter, or else a key of the table with nearly the same letters,
+/// or all of them.
+std::string key_suggestion(const Registry& registry, const std::string& table,
+                           const std::string& key);
 
 /// Whether what the parameter belongs to is in the case.
 inline bool is_there(const Parameter& parameter, const Case& the_case) {

@@ -14,8 +14,11 @@ std::optional<std::string> meant(const std::string& word, const std::set<std::st
                                  double alike = 0.6);
 
 /// "; did you mean ...?" for a word that is like one of those known, or else a list of them, of
-/// very many the first.
-std::string suggestion(const std::string& word, const std::set<std::string>& known);
+/// very many the first. Where some have the word's own beginning up to its last point, as
+/// efficiency.mechanical has that of efficiency.total, only they are considered.
+/// @param more  where the others are listed
+std::string suggestion(const std::string& word, const std::set<std::string>& known,
+                       const std::string& more = "in docs/");
 
 /// "; decimals follow a point: 40.0" for text such as 40,0; "" for any other.
 std::string decimal_point_hint(const std::string& text);
