@@ -730,7 +730,10 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
   const auto fail = [&](const std::string& why) { throw InputError(file + ": " + why); };
   const bool foreign = description.kind == ReferenceKind::external;
   const ForeignTable whole = foreign ? read_table(curve.file, curve.sheet) : ForeignTable{};
-  const NumericTable data = foreign ? NumericTable(whole) : read_numeric_csv(curve.file, true);
+  const NumericTable data =
+      foreign ? NumericTable(whole)
+              : numeric_csv_of(read_input_file(curve.file, {"a curve", kLargestTable}), curve.file,
+                               true);
   const auto place = [&](std::size_t row) {
     return foreign ? whole.place(row) : file + ":" + std::to_string(data.lines[row]);
   };

@@ -350,6 +350,7 @@ BENTAXIS_JSON(HardCaseRow, name, group, hard, changes, models)
 
 inline void to_json(Json& json, const Verdict& verdict) {
   json = {{"agrees", verdict.agrees}, {"headline", verdict.headline}};
+  put(json, "answers", verdict.answers);
   put(json, "word", verdict.word);
   put(json, "tolerance", verdict.tolerance);
   if (verdict.compared) {

@@ -10,6 +10,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/unit_of_measure.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/motion_answers.h"
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
 #include "bentaxis/study/state_doubts.h"
@@ -319,6 +320,79 @@ TEST(SimulationDocument, SaysWhereTheShaftRunsAway) {
   EXPECT_THAT(said(1500, -4600), testing::ElementsAre("course-overspeed"));
   EXPECT_THAT(said(-0.5, 1.6), testing::ElementsAre("course-overspeed"));
   EXPECT_THAT(said(0, 1.6), testing::IsEmpty());  // from rest nothing is usual
+}
+
+// A run of which only the shaft's speed, the drive torque, the delivery pressure and the point of
+// the film force are set, by row at 0, 0.1, .. s.
+struct Row {
+  double rpm, torque, delivery_bar, xh_mm;
+};
+Trajectory run_of(const Case& the_case, const std::vector<Row>& rows) {
+  const ChannelLayout layout(the_case.pump.geometry.pistons);
+  Trajectory run;
+  run.table = trajectory_table("analytic", layout, *the_case.drive);
+  run.oil.emplace();
+  run.oil->columns.push_back({"p_delivery_bar", "pressure"});
+  for (const Row& row : rows) {
+    std::vector<double> state(run.table.state_names.size(), 0);
+    state[static_cast<std::size_t>(StateColumn::time)] = 0.1 * static_cast<double>(run.lag.size());
+    state[static_cast<std::size_t>(StateColumn::shaft_speed)] = row.rpm;
+    std::vector<double> values(layout.size(), 0);
+    values[layout.Td()] = row.torque;
+    values[layout.xh()] = row.xh_mm / 1e3;
+    append_trajectory_row(run.table, state, values, {});
+    run.lag.push_back(0);
+    run.oil->values.push_back(row.delivery_bar);
+  }
+  run.record.work_of_drives = 1234;
+  return run;
+}
+
+TEST(MotionAnswers, AreThoseOfTheRows) {
+  const Case the_case = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_start_up.toml");
+  const double plate = the_case.pump.port_plate->r4 * 1e3;
+  // 95 % of 1000 rpm is passed on the way up, lost again, and made for good after 0.3 s.
+  const MotionAnswers a = motion_answers(run_of(the_case, {{0, 5, 0, 0},
+                                                           {960, -80, 120, plate + 1},
+                                                           {900, 20, 300, plate + 3},
+                                                           {940, 20, 250, plate - 1},
+                                                           {1040, 20, 210, 0},
+                                                           {1000, 20, 200, -plate - 2}}),
+                                         the_case);
+  EXPECT_EQ(a.first_rpm, 0);
+  EXPECT_EQ(a.last_rpm, 1000);
+  ASSERT_TRUE(a.reached_s.has_value());
+  EXPECT_NEAR(*a.reached_s, 0.31, 1e-12);
+  EXPECT_NEAR(a.largest_torque, -80, 1e-12);
+  EXPECT_NEAR(a.largest_torque_s, 0.1, 1e-15);
+  EXPECT_EQ(a.drive_work, 1234);
+  ASSERT_TRUE(a.delivery.has_value());
+  EXPECT_EQ(a.delivery->highest_bar, 300);
+  EXPECT_NEAR(a.delivery->highest_s, 0.2, 1e-15);
+  EXPECT_EQ(a.delivery->end_bar, 200);
+  ASSERT_TRUE(a.beyond_plate.has_value());
+  EXPECT_EQ(a.beyond_plate->share, 0.5);
+  EXPECT_NEAR(a.beyond_plate->largest_mm, plate + 3, 1e-9);
+  EXPECT_NEAR(a.beyond_plate->largest_s, 0.2, 1e-15);
+  EXPECT_NEAR(a.beyond_plate->plate_mm, plate, 1e-12);
+}
+
+TEST(MotionAnswers, SayNothingOfWhatIsNotThere) {
+  Case the_case = read_case(std::string(BENTAXIS_SOURCE_DIR) + "/cases/bap63_start_up.toml");
+  const double plate = the_case.pump.port_plate->r4 * 1e3;
+  Trajectory run = run_of(the_case, {{1500, 1, 0, plate}, {1460, 1, 0, 0}, {1490, 1, 0, 0}});
+  EXPECT_FALSE(motion_answers(run, the_case).reached_s.has_value());  // 0.7 % of its speed
+  EXPECT_FALSE(motion_answers(run, the_case).beyond_plate.has_value());
+  run.oil.reset();
+  EXPECT_FALSE(motion_answers(run, the_case).delivery.has_value());
+  // What slows down makes a change too; it may begin where it has made it.
+  const auto falling =
+      motion_answers(run_of(the_case, {{1500, 0, 0, 0}, {500, 0, 0, 0}}), the_case);
+  EXPECT_NEAR(falling.reached_s.value(), 0.095, 1e-12);
+  run = run_of(the_case, {{1500, 1, 0, plate + 1}, {500, 1, 0, plate + 1}});
+  EXPECT_EQ(motion_answers(run, the_case).beyond_plate.value().share, 1);
+  the_case.pump.port_plate.reset();
+  EXPECT_FALSE(motion_answers(run, the_case).beyond_plate.has_value());
 }
 
 TEST(SimulationDocument, ShowsContactAndEffort) {

@@ -134,8 +134,10 @@ int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,
   const designs::SweepResult result = designs::write_sweep(sweep, parts, formats, folders.tables(),
                                                            threads, progress_of("writing"));
   const auto paths = folders.write("report", designs::sweep_document(result, versions()), {}, {});
-  std::printf("%s\n%s", designs::headline(result).c_str(),
-              designs::disagreements_text(result).c_str());
+  std::printf("%s\n", designs::headline(result).c_str());
+  for (const std::string& answer : designs::sweep_answers(result))
+    std::printf("%s\n", answer.c_str());
+  std::printf("%s", designs::disagreements_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return result.agrees() ? kDone : kOutOfTolerance;
 }

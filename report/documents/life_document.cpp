@@ -130,6 +130,35 @@ std::string limit_name(const study::LifeLimit& limit) {
   return to_string(limit.bearing) + " bearing: " + limit.limit;
 }
 
+// Which bearing sets the life, and which row of the duty cycle uses up most of it.
+std::vector<std::string> answers_of(const LifeStudy& s) {
+  const PumpLife& life = s.analytic.life;
+  if (life.mean_speed_rpm == 0) return {};
+  const Bearing first = life.of(Bearing::tapered).hours <= life.of(Bearing::cylindrical).hours
+                            ? Bearing::tapered
+                            : Bearing::cylindrical;
+  if (!is_computed(life.of(first).hours)) return {};
+  std::vector<std::string> answers = {
+      fmt::format("The {} bearing sets the life ({}; both together {}).",
+                  first == Bearing::tapered ? "tapered" : "cylindrical",
+                  hours_text(life.of(first).hours), hours_text(life.hours))};
+  const std::vector<double>& shares = life.of(first).life_share;
+  if (s.duty.rows.size() > 1 && shares.size() == s.duty.rows.size()) {
+    const auto row =
+        static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
+    const study::DutyShares duty = study::duty_shares(s.analytic.points);
+    answers.push_back(
+        fmt::format("Most of it goes to {}: {:.3g} % of its life in {:.3g} % of the "
+                    "time.",
+                    s.duty.name_of(row), 100 * shares[row], 100 * duty.time[row]));
+  }
+  for (const study::LifeLimit& l : life.limits)
+    if (l.violated_share > 0)
+      answers.push_back(fmt::format("Limit not kept over {:.3g} % of the revolutions: {}.",
+                                    100 * l.violated_share, limit_name(l)));
+  return answers;
+}
+
 std::vector<report::ValidityRow> validity_of(const LifeStudy& s) {
   std::vector<report::ValidityRow> rows;
   for (const study::LifeLimit& l : s.analytic.life.limits)
@@ -218,6 +247,7 @@ report::Document life_document(const LifeStudy& s, const report::Lines& program)
   report::Document document =
       study::case_document(s.the_case, s.the_case.name + ": life of the bearings", program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
+  document.verdict->answers = answers_of(s);
   document.meaning =
       agreement_text(s) +
       " The rating life counts fatigue of the rolling contacts under these loads and nothing else; "
@@ -273,7 +303,9 @@ std::string life_loads_csv(const LifeStudy& s) {
 }
 
 std::string life_text(const LifeStudy& s) {
-  std::string text = s.the_case.name + "\n" + headline(s) + "\n" + agreement_text(s) + "\n\n";
+  std::string text = s.the_case.name + "\n" + headline(s) + "\n" + agreement_text(s) + "\n";
+  for (const std::string& answer : answers_of(s)) text += answer + "\n";
+  text += "\n";
   text += fmt::format("{:<28} {:>8} {:>8} {:>8} {:>10} {:>9} {:>7}\n", "bearing", "C kN", "C0 kN",
                       "P_m kN", "L10 1e6", "L10h h", "C0/P0");
   for (const Bearing bearing : study::kBearings) {

@@ -27,6 +27,28 @@ double bar(const OperatingPoint& point) {
 
 }  // namespace
 
+// What the pump delivers, and what is wrong with its timing.
+std::vector<std::string> pressure_answers(const OperatingPoint& point,
+                                          const std::vector<report::TimingRow>& timing) {
+  const hydraulics::Summary& s = point.state().summary;
+  std::vector<std::string> answers = {fmt::format(
+      "Delivers {:.4g} l/min at a mean of {:.4g} bar and {:.5g} rpm: volumetric efficiency {:.4g} "
+      "%, ripple {:.3g} bar peak to peak.",
+      s.flow / kLitrePerMinute, s.delivery_mean / kPascalPerBar,
+      point.the_case().operation.speed_rpm, 100 * s.volumetric_efficiency,
+      (s.delivery_greatest - s.delivery_least) / kPascalPerBar)};
+  const auto flagged = std::count_if(timing.begin(), timing.end(),
+                                     [](const report::TimingRow& row) { return row.flagged; });
+  std::string names;
+  for (const report::TimingRow& row : timing)
+    if (row.flagged) names += (names.empty() ? "" : ", ") + row.quantity;
+  answers.push_back(flagged == 0 ? std::string("Port timing: within all limits.")
+                                 : fmt::format("Port timing: {} of {} quantities beyond their "
+                                               "limits: {}.",
+                                               flagged, timing.size(), names));
+  return answers;
+}
+
 report::Document pressure_document(const OperatingPoint& point,
                                    const hydraulics::PowerBudget& power,
                                    const report::Lines& program) {
@@ -45,6 +67,7 @@ report::Document pressure_document(const OperatingPoint& point,
                   "model, at {:.4g} bar.",
                   mean(point.analytic, "Td_z1_Nm"), mean(point.multibody, "Td_z1_Nm"), bar(point)),
       "Pressure"};
+  document.verdict->answers = pressure_answers(point, *document.timing);
   document.figures = hydraulic_figures(the_case, point.state());
   append(document.figures, result_figures(the_case, point.state(), power));
   document.figures->push_back(
@@ -217,7 +240,9 @@ void add_suction_speed(report::Document& document, const OperatingPoint& point,
 
 std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power,
                           const report::Document& document) {
-  std::string text = point.the_case().name + "\n\n";
+  std::string text = point.the_case().name + "\n";
+  for (const std::string& answer : document.verdict->answers) text += answer + "\n";
+  text += "\n";
   const auto add = [&](const std::string& name, double value, const std::string& unit) {
     text += fmt::format("{:<42} {:>12.6g} {}\n", name, value, unit);
   };

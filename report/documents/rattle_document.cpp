@@ -59,6 +59,37 @@ std::string headline(const RattleMap& map) {
   return text;
 }
 
+// Speeds to avoid at the pressure of the map that is nearest to the case's own: "300 to 900 rpm".
+std::vector<std::string> answers_of(const RattleMap& map) {
+  const double rated = map.the_case.pressure.ports.delivery / kPascalPerBar;
+  const RattleRow* nearest = nullptr;
+  for (const RattleRow& row : map.rows)
+    if (nearest == nullptr ||
+        std::abs(row.delivery_bar - rated) < std::abs(nearest->delivery_bar - rated))
+      nearest = &row;
+  if (nearest == nullptr) return {};
+  const std::vector<double>& speeds = map.options.speed_rpm;
+  const auto avoided = [&](std::size_t j) {
+    return nearest->up[j].kind != RattleClass::carries ||
+           nearest->down[j].kind != RattleClass::carries;
+  };
+  std::string text;
+  for (std::size_t j = 0; j < nearest->up.size(); ++j) {
+    if (!avoided(j)) continue;
+    const std::size_t from = j;
+    while (j + 1 < nearest->up.size() && avoided(j + 1)) ++j;
+    text += fmt::format("{}{:.4g}", text.empty() ? "" : ", ", speeds[from]);
+    if (j > from) text += fmt::format(" to {:.4g}", speeds[j]);
+  }
+  const std::string at = fmt::format(
+      "At {:.4g} bar, of the pressures of the map the nearest to the case's {:.4g} bar: ",
+      nearest->delivery_bar, rated);
+  return {at + (text.empty() ? "the teeth carry at all speeds of the map."
+                             : "avoid " + text +
+                                   " rpm: the teeth do not carry all through the "
+                                   "turn (speeds of the map).")};
+}
+
 std::string against(RattleClass analytic, RattleClass multibody) {
   return analytic == multibody ? to_string(analytic)
                                : to_string(analytic) + " against " + to_string(multibody);
@@ -332,6 +363,7 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
   report::Document document =
       case_document(map.the_case, map.the_case.name + ": where the gear rattles", program);
   document.verdict = report::Verdict{map.agrees(), headline(map)};
+  document.verdict->answers = answers_of(map);
   if (map.checks.empty()) {
     document.verdict->agrees.reset();
     document.verdict->word = "Map";
@@ -355,7 +387,9 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
 }
 
 std::string rattle_text(const RattleMap& map) {
-  std::string text = map.the_case.name + "\n" + headline(map) + "\n\n";
+  std::string text = map.the_case.name + "\n" + headline(map) + "\n";
+  for (const std::string& answer : answers_of(map)) text += answer + "\n";
+  text += "\n";
   const auto up = counts_of(map, &RattleRow::up), down = counts_of(map, &RattleRow::down);
   text += fmt::format("{:<18} {:>8} {:>8}\n", "class", "up", "down");
   for (std::size_t k = 0; k < up.size(); ++k)

@@ -153,6 +153,37 @@ std::string headline(const Sensitivities& s, const std::optional<SensitivityChec
       SensitivityCheck::kTolerance);
 }
 
+// By how many percent each output changes per percent of a parameter.
+std::vector<std::string> answers_of(const Sensitivities& s) {
+  constexpr double kSmall = 0.1;  // %/%
+  constexpr std::size_t kNamed = 4;
+  std::vector<std::string> answers;
+  for (std::size_t o = 0; o < s.outputs.size(); ++o) {
+    std::string largest;
+    std::size_t named = 0, more = 0, small = 0;
+    for (const std::size_t v : by_effect(s, o)) {
+      const double share = no_influence(s, o, v) ? 0 : s.elasticity(o, v);
+      if (!is_computed(share)) continue;
+      if (std::abs(share) < kSmall) {
+        ++small;
+      } else if (named == kNamed) {
+        ++more;
+      } else {
+        largest += fmt::format("{}{:+.3g} % {} {}", named == 0 ? " " : ", ", share,
+                               named == 0 ? "per % of" : "of", s.variables[v].name());
+        ++named;
+      }
+    }
+    if (named + small == 0) continue;
+    answers.push_back(s.outputs[o].name + ":" + largest +
+                      (more > 0 ? fmt::format(", {} more", more) : "") +
+                      (named == 0 ? fmt::format(" no parameter changes it by {:g} % per %", kSmall)
+                                  : fmt::format("; {} others below {:g} %", small, kSmall)) +
+                      ".");
+  }
+  return answers;
+}
+
 Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
   Section section{
       "Against " + other_model(check),
@@ -182,6 +213,7 @@ report::Document sensitivity_document(const Sensitivities& found,
       study::case_document(found.base, "Sensitivities: " + found.base.name, program);
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
                                      headline(found, check), check ? "" : "Sensitivities"};
+  document.verdict->answers = answers_of(found);
   document.meaning =
       "A derivative holds for small changes of one parameter, the others staying. An exact one is "
       "right to round-off; one by differences has the error beside it. A largest or least value "
@@ -223,6 +255,7 @@ std::string sensitivity_csv(const Sensitivities& found,
 std::string sensitivity_text(const Sensitivities& found,
                              const std::optional<SensitivityCheck>& check) {
   std::string text = found.base.name + "\n" + headline(found, check) + "\n";
+  for (const std::string& answer : answers_of(found)) text += answer + "\n";
   for (std::size_t o = 0; o < found.outputs.size(); ++o) {
     text += fmt::format("\n{} = {:.7g} {}\n{:<34} {:>12} {:>13} {:>12}  {}\n",
                         found.outputs[o].name, found.values[o], found.outputs[o].unit, "parameter",

@@ -13,6 +13,7 @@
 #include "bentaxis/study/case_sections.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/force_figures.h"
+#include "bentaxis/study/motion_answers.h"
 #include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth_section.h"
@@ -517,10 +518,48 @@ std::vector<report::Figure> diagrams_of(const SimulationResult& r) {
   return force_figures(shown);
 }
 
+std::string milliseconds(double seconds) {
+  return fmt::format("{:.4g} ms", seconds * kMilliseconds);
+}
+
+// Of the first model: where both agree, those of the other are the same.
+std::vector<std::string> answers_of(const SimulationResult& r) {
+  const MotionAnswers a = motion_answers(*runs_of(r).front().second, r.ready.the_case);
+  std::vector<std::string> answers;
+  if (a.reached_s)
+    answers.push_back(fmt::format(
+        "Speed: {:g} % of {:.5g} rpm{} after {}.", 100 * MotionAnswers::kReached,
+        a.first_rpm == 0 ? a.last_rpm : a.last_rpm - a.first_rpm,
+        a.first_rpm == 0
+            ? ""
+            : fmt::format(", the change from {:.5g} to {:.5g} rpm,", a.first_rpm, a.last_rpm),
+        milliseconds(*a.reached_s)));
+  answers.push_back(
+      fmt::format("Drive torque: at most {:.4g} Nm at {}; work of the drive {:.4g} kJ.",
+                  a.largest_torque, milliseconds(a.largest_torque_s), a.drive_work / 1e3));
+  if (a.delivery)
+    answers.push_back(
+        fmt::format("Delivery pressure: at most {:.4g} bar at {}, {:.3g} bar above its mean over "
+                    "the last tenth "
+                    "of the time, {:.4g} bar.",
+                    a.delivery->highest_bar, milliseconds(a.delivery->highest_s),
+                    a.delivery->highest_bar - a.delivery->end_bar, a.delivery->end_bar));
+  if (a.beyond_plate)
+    answers.push_back(fmt::format(
+        "Not a motion of a pump in {:.3g} % of the rows: the film force acts up to {:.3g} mm from "
+        "the block's axis (at {}), beyond the plate's {:.3g} mm. The block would tilt there: Fh, "
+        "Th "
+        "and Rcn do not hold.",
+        100 * a.beyond_plate->share, a.beyond_plate->largest_mm,
+        milliseconds(a.beyond_plate->largest_s), a.beyond_plate->plate_mm));
+  return answers;
+}
+
 report::Verdict verdict_of(const SimulationResult& r) {
   report::Verdict verdict{r.agrees(), r.headline()};
   if (r.choice.only) verdict.word = r.agrees() ? "Balanced" : "Not balanced";
   if (!r.choice.only) verdict.tolerance = r.choice.error;
+  verdict.answers = answers_of(r);
   return verdict;
 }
 
@@ -626,7 +665,9 @@ report::Curves simulation_curves(const SimulationResult& r) {
 }
 
 std::string simulation_text(const SimulationResult& r) {
-  std::string text = r.ready.the_case.name + "\n" + r.headline() + "\n\n";
+  std::string text = r.ready.the_case.name + "\n" + r.headline() + "\n";
+  for (const std::string& answer : answers_of(r)) text += answer + "\n";
+  text += "\n";
   if (!r.groups.empty()) {
     text += fmt::format("{:<13} {:<17} {:>13} {:>16} {:>12}\n", "group", "       peak",
                         r.choice.steady ? "of peak" : "of peak, time",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "bentaxis/pump/number.h"
 #include "document_parts.h"
@@ -274,11 +275,52 @@ std::string headline(const SweepResult& result) {
   return text;
 }
 
+std::vector<std::string> sweep_answers(const SweepResult& result) {
+  const SweepView view(result);
+  std::vector<std::string> answers;
+  const auto design_text = [&](std::size_t d) {
+    return fmt::format("design {}, {}", view.number(d), view.text(d));
+  };
+  for (std::size_t k = 0; k < view.outputs(); ++k) {
+    std::optional<std::size_t> lowest, highest;
+    for (std::size_t d = 0; d < view.designs(); ++d) {
+      const double value = view.result(d, k);
+      if (!is_computed(value)) continue;
+      if (!lowest || value < view.result(*lowest, k)) lowest = d;
+      if (!highest || value > view.result(*highest, k)) highest = d;
+    }
+    const Output& output = view.output(k);
+    if (!lowest) {
+      answers.push_back(output.name + ": no design has a value.");
+      continue;
+    }
+    const std::string unit = output.unit.empty() ? "" : " " + output.unit;
+    const auto end = [&](const char* word, std::size_t d) {
+      return fmt::format("{} {:.5g}{} ({})", word, view.result(d, k), unit, design_text(d));
+    };
+    const int direction = view.direction(k);
+    answers.push_back(output.name + ": " +
+                      (direction < 0   ? end("best, lowest", *lowest)
+                       : direction > 0 ? end("best, highest", *highest)
+                                       : end("lowest", *lowest) + "; " + end("highest", *highest)) +
+                      ".");
+  }
+  if (view.sought() > 1)
+    answers.push_back(fmt::format(
+        "Trade-off: {} designs of {} are not beaten in all {} outputs sought (Pareto front).",
+        view.front().size(), view.designs(), view.sought()));
+  if (result.every > 1)
+    answers.push_back(
+        fmt::format("Of every {}th design alone; the result files have all.", result.every));
+  return answers;
+}
+
 report::Document sweep_document(const SweepResult& result, const report::Lines& program) {
   const SweepView view(result);
   report::Document document =
       study::case_document(result.base, result.base.name + ": a sweep", program);
   document.verdict = report::Verdict{result.agrees(), headline(result)};
+  document.verdict->answers = sweep_answers(result);
   if (result.checks.empty()) {
     document.verdict->agrees.reset();
     document.verdict->word = "Sweep";

@@ -44,6 +44,43 @@ std::string headline(const UncertaintyResult& result) {
   return text;
 }
 
+// The parameters that make most of an output's variance, to first order: "pump.tilt_deg 78 %".
+std::string largest_shares(const UncertaintyResult& result, std::size_t o) {
+  constexpr std::size_t kNamed = 2;
+  const std::size_t n = result.variables.size();
+  std::vector<std::pair<double, std::size_t>> squares;
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double part = result.first_order.derivatives[o * n + i] *
+                        result.variables.distributions[i].standard_deviation();
+    if (!is_computed(part)) return "";
+    squares.emplace_back(part * part, i);
+    sum += part * part;
+  }
+  if (!(sum > 0) || !result.variables.independent()) return "";
+  std::stable_sort(squares.begin(), squares.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kNamed, n); ++i)
+    text += fmt::format("{}{} {:.2g} %", i == 0 ? "" : ", ",
+                        result.variables.variables[squares[i].second].name(),
+                        100 * squares[i].first / sum);
+  return text;
+}
+
+// What each output may be, and what makes most of it.
+std::vector<std::string> answers_of(const UncertaintyResult& result) {
+  std::vector<std::string> answers;
+  for (std::size_t o = 0; o < result.outputs.size(); ++o) {
+    std::string text = in_words(result.outputs[o], result.options.level);
+    if (result.options.first_order)
+      if (const std::string shares = largest_shares(result, o); !shares.empty())
+        text += "; of its variance " + shares;
+    answers.push_back(text + ".");
+  }
+  return answers;
+}
+
 // To the digits that its interval leaves: two more than the interval has.
 std::string digits(double value, double interval) {
   if (!(interval > 0) || value == 0) return fmt::format("{:.6g}", value);
@@ -331,6 +368,7 @@ report::Document uncertainty_document(const UncertaintyResult& result,
   report::Document document = study::case_document(
       result.the_case, result.the_case.name + ": what is not known exactly", program);
   document.verdict = report::Verdict{std::nullopt, headline(result), "Uncertainty"};
+  document.verdict->answers = answers_of(result);
   document.meaning =
       "What the stated distributions of parameters do to the results of the " +
       study::to_string(result.options.model) +
@@ -365,8 +403,11 @@ std::string uncertainty_text(const UncertaintyResult& result) {
   std::string text = result.the_case.name + "\n";
   for (std::size_t o = 0; o < result.outputs.size(); ++o) {
     text += in_words(result.outputs[o], result.options.level);
-    if (result.options.first_order)
+    if (result.options.first_order) {
       text += fmt::format(", to first order {:.3g}", result.first_order.deviations[o]);
+      if (const std::string shares = largest_shares(result, o); !shares.empty())
+        text += "; of its variance " + shares;
+    }
     text += "\n";
   }
   const std::size_t n = result.variables.size();

@@ -25,11 +25,18 @@ function verdictBanner({ verdict, meaning, plausibility }, data) {
     el("div.banner." + tone, { role: "status" },
       el("p.word", {}, verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
       el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
+      answers(verdict && verdict.answers),
       facts(tiles, ".tiles")),
     reference ? el("div.banner." + (reference.agrees ? "good" : "bad"), {},
       el("p.word", {}, `${reference.name}: ${reference.agrees ? "agrees" : "differs"}`),
       el("p.headline", {}, reference.headline)) : null,
     meaning ? el("p.meaning", {}, meaning) : null);
+}
+
+// What the command was asked, before everything else that it found.
+function answers(sentences) {
+  if (!list(sentences).length) return null;
+  return el("ul.answers", {}, ...sentences.map((sentence) => el("li", {}, sentence)));
 }
 
 // What is doubtful about the pump, and its picture, which is in the page as SVG.

@@ -316,6 +316,8 @@ struct Verdict {
     double round_off_over_peak, over_peak;  ///< estimated, and found
   };
   std::optional<Cause> cause = std::nullopt;
+  /// What the command was asked, answered in sentences, the most important first.
+  std::vector<std::string> answers = {};
 };
 
 /// Values that are possible but hardly meant.

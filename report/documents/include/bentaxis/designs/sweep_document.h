@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "bentaxis/designs/sweep.h"
 #include "bentaxis/report/document.h"
@@ -10,6 +11,10 @@ namespace bentaxis::designs {
 
 /// What came out, in one line.
 std::string headline(const SweepResult& result);
+
+/// The lowest and the highest value of each output and its design, or the best where a direction is
+/// sought, and how many designs are on the Pareto front.
+std::vector<std::string> sweep_answers(const SweepResult& result);
 
 /// Maps, slices, designs over parallel axes, outputs against each other with the Pareto front;
 /// tables of ranges, best designs, reasons of infeasible ones and what the other model says. Where

@@ -1,0 +1,45 @@
+// What is asked first of a motion in time: how fast, how much, and where it is no motion of a pump.
+#pragma once
+
+#include <optional>
+
+#include "bentaxis/pump/case.h"
+#include "bentaxis/results/trajectory.h"
+
+namespace bentaxis::study {
+
+/// Times in s from the start of the simulation, in the unit of time of its rows.
+struct MotionAnswers {
+  /// Share of the change of the speed that counts as its end.
+  static constexpr double kReached = 0.95;
+  /// A change of the shaft's speed that is asked about, of its largest.
+  static constexpr double kLeastChange = 0.05;
+
+  double first_rpm = 0, last_rpm = 0;  ///< of the shaft
+  /// From when on the shaft has made kReached of the change of its speed, for good; between two
+  /// rows interpolated. Nothing where the change is below kLeastChange.
+  std::optional<double> reached_s;
+
+  double largest_torque = 0;    ///< Nm, drive torque Td, by magnitude, with its sign
+  double largest_torque_s = 0;  ///< when
+  double drive_work = 0;        ///< J, of what drives the shaft
+
+  /// Of the delivery pressure, where the oil is simulated.
+  struct Delivery {
+    double highest_bar = 0, highest_s = 0;
+    double end_bar = 0;  ///< mean over the last tenth of the rows
+  };
+  std::optional<Delivery> delivery;
+
+  /// Where the film force acts beyond the port plate, of which the plate of a case is known.
+  struct BeyondPlate {
+    double share = 0;  ///< of the rows
+    double largest_mm = 0, largest_s = 0;
+    double plate_mm = 0;  ///< outer radius r4
+  };
+  std::optional<BeyondPlate> beyond_plate;
+};
+
+MotionAnswers motion_answers(const Trajectory& run, const Case& the_case);
+
+}  // namespace bentaxis::study

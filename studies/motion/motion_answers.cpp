@@ -1,0 +1,94 @@
+#include "bentaxis/study/motion_answers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bentaxis/pump/number.h"
+
+namespace bentaxis::study {
+namespace {
+
+std::size_t rows_of(const Trajectory& run) { return run.lag.size(); }
+double time_of(const Trajectory& run, std::size_t row) { return run.state(row, StateColumn::time); }
+
+// From when on the speed has made its change, for good.
+std::optional<double> reached(const Trajectory& run, double first, double last) {
+  double fastest = 0;
+  const auto speed = [&](std::size_t row) { return run.state(row, StateColumn::shaft_speed); };
+  for (std::size_t row = 0; row < rows_of(run); ++row)
+    fastest = std::max(fastest, std::abs(speed(row)));
+  if (!(std::abs(last - first) >= MotionAnswers::kLeastChange * fastest) || last == first)
+    return std::nullopt;
+  const auto made = [&](std::size_t row) { return (speed(row) - first) / (last - first); };
+  std::size_t row = rows_of(run) - 1;  // which has made all of it
+  while (row > 0 && made(row - 1) >= MotionAnswers::kReached) --row;
+  if (row == 0) return time_of(run, 0);
+  const double part = (MotionAnswers::kReached - made(row - 1)) / (made(row) - made(row - 1));
+  return time_of(run, row - 1) + part * (time_of(run, row) - time_of(run, row - 1));
+}
+
+std::optional<MotionAnswers::Delivery> delivery_of(const Trajectory& run) {
+  if (!run.oil) return std::nullopt;
+  const auto& columns = run.oil->columns;
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [](const OilColumn& c) { return c.name == "p_delivery_bar"; });
+  if (found == columns.end()) return std::nullopt;
+  const auto column = static_cast<std::size_t>(found - columns.begin());
+  MotionAnswers::Delivery delivery;
+  const std::size_t rows = rows_of(run), tail = std::max<std::size_t>(1, rows / 10);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double pressure = run.oil->value(row, column);
+    if (row == 0 || pressure > delivery.highest_bar) {
+      delivery.highest_bar = pressure;
+      delivery.highest_s = time_of(run, row);
+    }
+    if (row >= rows - tail) delivery.end_bar += pressure / static_cast<double>(tail);
+  }
+  return delivery;
+}
+
+std::optional<MotionAnswers::BeyondPlate> beyond_plate(const Trajectory& run,
+                                                       const Case& the_case) {
+  const ResultTable& results = run.table.results;
+  const std::size_t x = results.find("xh_x2_mm"), y = results.find("yh_y2_mm");
+  if (!the_case.pump.port_plate || x == results.columns() || y == results.columns())
+    return std::nullopt;
+  MotionAnswers::BeyondPlate beyond;
+  beyond.plate_mm = the_case.pump.port_plate->r4 * 1e3;
+  std::size_t count = 0;
+  for (std::size_t row = 0; row < rows_of(run); ++row) {
+    const double radius = std::hypot(results.at(row, x), results.at(row, y));
+    if (!(radius > beyond.plate_mm)) continue;  // not where no film force has a point either
+    ++count;
+    if (radius <= beyond.largest_mm) continue;
+    beyond.largest_mm = radius;
+    beyond.largest_s = time_of(run, row);
+  }
+  if (count == 0) return std::nullopt;
+  beyond.share = static_cast<double>(count) / static_cast<double>(rows_of(run));
+  return beyond;
+}
+
+}  // namespace
+
+MotionAnswers motion_answers(const Trajectory& run, const Case& the_case) {
+  MotionAnswers answers;
+  if (rows_of(run) == 0) return answers;
+  answers.first_rpm = run.state(0, StateColumn::shaft_speed);
+  answers.last_rpm = run.state(rows_of(run) - 1, StateColumn::shaft_speed);
+  answers.reached_s = reached(run, answers.first_rpm, answers.last_rpm);
+  const ResultTable& results = run.table.results;
+  if (const std::size_t torque = results.find("Td_z1_Nm"); torque < results.columns())
+    for (std::size_t row = 0; row < rows_of(run); ++row)
+      if (const double here = results.at(row, torque);
+          is_computed(here) && std::abs(here) > std::abs(answers.largest_torque)) {
+        answers.largest_torque = here;
+        answers.largest_torque_s = time_of(run, row);
+      }
+  answers.drive_work = run.record.work_of_drives;
+  answers.delivery = delivery_of(run);
+  answers.beyond_plate = beyond_plate(run, the_case);
+  return answers;
+}
+
+}  // namespace bentaxis::study

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Answers: what a study is asked is said first, on the console and in the report alike, and is what its files hold.
+
+usage: answers_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = REPO = None  # set in main
+
+
+class AnswersTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bentaxis_test_")))
+
+    def answers(self, *arguments, report="report.json"):
+        """Those of the report, which the console has too, after the name of the case and the headline."""
+        result = subprocess.run([PROGRAM, *map(str, arguments), "--out", "out"], cwd=self.folder, capture_output=True,
+                                text=True, timeout=300)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        verdict = json.loads((self.folder / "out" / report).read_text())["verdict"]
+        lines = result.stdout.splitlines()[:12]
+        for answer in verdict["answers"]:
+            # uncertainty says more of each output on the console
+            self.assertTrue(any(line.startswith(answer[:60]) for line in lines), (answer, lines))
+        return verdict["answers"]
+
+    def rows(self, name):
+        with open(self.folder / "out" / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def case(self, name):
+        return REPO / "cases" / f"{name}.toml"
+
+    def test_sensitivity(self):
+        (answer,) = self.answers("sensitivity", self.case("bap63_rated"), "--output", "peak:Rb1", report="sensitivity.json")
+        rows = {row["parameter"]: row["elasticity"] for row in self.rows("sensitivity.csv")}
+        named = re.findall(r"([+-][\d.e-]+) % (?:per % )?of ([\w.]+)", answer)
+        self.assertGreaterEqual(len(named), 2)
+        sizes = [abs(float(share)) for share, _ in named]
+        self.assertEqual(sizes, sorted(sizes, reverse=True))
+        for share, parameter in named:
+            self.assertAlmostEqual(float(share), float(rows[parameter]), delta=5e-3 * abs(float(share)))
+        largest = max((abs(float(value)), name) for name, value in rows.items() if value)
+        self.assertEqual(largest[1], named[0][1])
+
+    def test_sweep(self):
+        sweep = ["sweep", self.case("bap63_rated"), "--set", "operation.samples_per_revolution=36", "--vary",
+                 "pump.tilt_deg=20:40:10", "--vary", "pressure.delivery_bar=50:350:#3", "--output", "max:Rb1_z1,mean:Td"]
+        answers = self.answers(*sweep)
+        for answer, output in zip(answers, ("max:Rb1_z1_N", "mean:Td")):
+            values = [float(row[next(name for name in row if name.startswith(output))]) for row in self.rows("sweep.csv")]
+            low, where, high, there = re.search(
+                r"lowest ([\d.]+) Nm? \(design (\d+), .*; highest ([\d.]+) Nm? \(design (\d+), ", answer).groups()
+            self.assertAlmostEqual(float(low), min(values), delta=1e-3 * min(values))
+            self.assertAlmostEqual(float(high), max(values), delta=1e-3 * max(values))
+            self.assertEqual([int(where), int(there)], [values.index(min(values)), values.index(max(values))])
+        answers = self.answers(*sweep, "--minimise", "max:Rb1_z1", "--maximise", "displacement_cm3")
+        self.assertRegex(answers[-1], r"^Trade-off: [1-9] designs of 9 ")
+        self.assertTrue(any(answer.startswith("max:Rb1_z1_N: best, lowest ") for answer in answers))
+        self.assertTrue(any(answer.startswith("displacement_cm3: best, highest ") for answer in answers))
+
+    def test_uncertainty(self):
+        (answer,) = self.answers("uncertainty", self.case("bap63_rated"), "--set", "operation.samples_per_revolution=36",
+                                 "--output", "mean:Td", "--vary", "pump.tilt_deg=normal(40,0.1)", "--vary",
+                                 "pressure.delivery_bar=uniform(270,280)", "--samples", "200")
+        shares = dict(re.findall(r"([\w.]+) ([\d.]+) %(?:[,.]|$)", answer.split("of its variance ")[1]))
+        self.assertEqual(list(shares), ["pressure.delivery_bar", "pump.tilt_deg"])
+        self.assertAlmostEqual(sum(map(float, shares.values())), 100, delta=1)
+
+    def test_life(self):
+        answers = self.answers("life", self.case("bap63_bearing_life"), "--set", "operation.samples_per_revolution=60",
+                               "--duty", REPO / "cases" / "curves" / "duty_cycle.csv", report="life.json")
+        self.assertRegex(answers[0], r"^The tapered bearing sets the life \(\d+ h; both together \d+ h\)\.$")
+        self.assertRegex(answers[1], r"^Most of it goes to row 2: .*: 44\.\d % of its life in 30 % of the time\.$")
+
+    def test_rattle(self):
+        answers = self.answers("rattle", self.case("bap63_tooth_rattle"), "--speeds", "300:900:#2", "--delivery-bar",
+                               "10:350:#2", "--turns", "6", "--discard", "3")
+        self.assertRegex(answers[0], r"^At 350 bar, .* the case's 275 bar: avoid 300 to 900 rpm: ")
+
+    def test_start_up(self):
+        answers = self.answers("simulate", self.case("bap63_start_up"), "--model", "analytic", "--set",
+                               "drive.duration_s=0.2", "--set", "drive.samples=100")
+        rows = self.rows("simulation_analytic.csv")
+        last = float(rows[-1]["shaft_rpm"])
+        speed, after = map(float, re.search(r"95 % of ([\d.]+) rpm after ([\d.]+) ms", answers[0]).groups())
+        self.assertAlmostEqual(speed, last, delta=0.1)
+        before = max(float(row["time_s"]) for row in rows if float(row["shaft_rpm"]) < 0.95 * last)  # for good
+        self.assertTrue(before <= after / 1e3 <= before + 0.002 + 1e-6, (before, after))
+        torque = max((abs(float(row["Td_z1_Nm"])) for row in rows))
+        self.assertAlmostEqual(float(re.search(r"at most ([\d.]+) Nm", answers[1])[1]), torque, delta=1e-3 * torque)
+        # The film cannot push beyond the plate: that is said where the numbers are.
+        self.assertRegex(answers[-1], r"^Not a motion of a pump in [\d.]+ % of the rows: .* beyond the plate's 27 mm")
+
+    def test_pressure(self):
+        answers = self.answers("pressure", self.case("bap63_rated_hydraulic"), "--set", "operation.samples_per_revolution=60",
+                               report="pressure.json")
+        self.assertRegex(answers[0], r"^Delivers 90\.5\d l/min at a mean of 275 bar and 1500 rpm: volumetric efficiency 94\.7")
+        report = json.loads((self.folder / "out" / "pressure.json").read_text())
+        flagged = [row for row in report["timing"] if row["flagged"]]
+        self.assertTrue(answers[1].startswith(f"Port timing: {len(flagged)} of {len(report['timing'])} "))
+
+
+if __name__ == "__main__":
+    PROGRAM, REPO = sys.argv[1], pathlib.Path(sys.argv[2])
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
