@@ -263,13 +263,17 @@ Case shipped_case(const std::string& name) {
   return read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / (name + ".toml"));
 }
 
+std::optional<report::Scene> alone(const Case& the_case) {
+  return study::scene_of(study::describe(the_case));
+}
+
 void expect_scene_of(Case the_case) {
   SCOPED_TRACE(the_case.name);
   the_case.operation.samples_per_revolution = 45;
   study::ComparisonOptions options;
   options.loads = true;
   const study::ComparisonResult r = study::compare_models(std::move(the_case), {}, options);
-  const report::Document document = study::comparison_document(r, {});
+  const report::Document document = study::comparison_document(r, {}, study::describe(r));
   ASSERT_TRUE(document.scene);
   const std::vector<const ResultTable*> tables = {&r.analytic, &r.multibody};
   const Reader scene(*document.scene, tables, r.analytic.theta_deg);
@@ -307,7 +311,7 @@ TEST(PumpScene, LoadLeftOutShowsInTheSums) {
 
 // One that keeps its curves, whatever the document's are.
 TEST(PumpScene, AloneBringsItsCurves) {
-  const auto scene = study::analytic_scene(shipped_case("bap63_rated"));
+  const auto scene = alone(shipped_case("bap63_rated"));
   ASSERT_TRUE(scene);
   ASSERT_TRUE(scene->curves);
   EXPECT_EQ(scene->rows, 120u);
@@ -329,7 +333,7 @@ TEST(PumpScene, AloneBringsItsCurves) {
 TEST(PumpScene, FilmPathIsDenseAndHasEveryRow) {
   for (const char* name : {"bap63_rated", "bap63_as_compared_in_the_paper"}) {
     const Case the_case = shipped_case(name);
-    const auto scene = study::analytic_scene(the_case);
+    const auto scene = alone(the_case);
     ASSERT_TRUE(scene) << name;
     const Reader reader(*scene, {}, scene->curves->theta_deg);
     const auto& columns = scene->curves->tables.at(0).columns;
@@ -356,14 +360,14 @@ TEST(PumpScene, FilmPathIsDenseAndHasEveryRow) {
 
 TEST(PumpScene, ComputesThePressureThatItNeeds) {
   const Case hydraulic = shipped_case("bap63_rated_hydraulic");
-  const auto scene = study::analytic_scene(hydraulic);
-  const auto prepared = study::analytic_scene(study::prepare(hydraulic).the_case);
+  const auto scene = alone(hydraulic);
+  const auto prepared = alone(study::prepare(hydraulic).the_case);
   ASSERT_TRUE(scene && prepared);
   EXPECT_EQ(report::compact_json(*scene), report::compact_json(*prepared));
   // Without a periodic state there is none.
   Case standing = hydraulic;
   standing.operation.speed_rpm = 0;
-  EXPECT_FALSE(study::analytic_scene(standing));
+  EXPECT_FALSE(alone(standing));
 }
 
 TEST(PumpScene, ShaftAndBlockStandAsSimulated) {
@@ -373,7 +377,7 @@ TEST(PumpScene, ShaftAndBlockStandAsSimulated) {
   choice.only = study::Model::analytic;
   const study::SimulationResult r =
       study::simulate(study::prepare_simulation(the_case, choice), choice);
-  const report::Document document = study::simulation_document(r, {});
+  const report::Document document = study::simulation_document(r, {}, {});
   ASSERT_TRUE(document.scene);
   ASSERT_FALSE(document.scene->curves) << "choose a shorter case: this one is thinned";
   const ResultTable& table = r.analytic->table.results;
@@ -415,7 +419,7 @@ TEST(PumpScene, ManyRowsAreThinned) {
 // pistons are at theta = 0; ports between their radii and angles.
 TEST(PumpScene, SeatsBoresAndPortsAreWhereTheCaseSays) {
   const Case the_case = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml");
-  const auto scene = study::analytic_scene(the_case);
+  const auto scene = alone(the_case);
   ASSERT_TRUE(scene);
   const auto prisms = [&](const std::string& body) {
     std::vector<report::Prism> found;
@@ -481,7 +485,7 @@ TEST(PumpScene, ShapesOfOddPumps) {
     SCOPED_TRACE(name);
     const Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
                                     "hard" / name / "case.toml");
-    const auto scene = study::analytic_scene(the_case);
+    const auto scene = alone(the_case);
     ASSERT_TRUE(scene);
     const std::string text = report::compact_json(*scene);
     const Json json = Json::parse(text);

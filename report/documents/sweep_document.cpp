@@ -274,10 +274,11 @@ std::string headline(const SweepResult& result) {
   return text;
 }
 
-report::Document sweep_document(const SweepResult& result, const report::Lines& program) {
+report::Document sweep_document(const SweepResult& result, const report::Lines& program,
+                                const study::CaseDescription& description) {
   const SweepView view(result);
   report::Document document =
-      study::case_document(result.base, result.base.name + ": a sweep", program);
+      study::case_document(description, result.base.name + ": a sweep", program);
   document.verdict = report::Verdict{result.agrees(), headline(result)};
   if (result.checks.empty()) {
     document.verdict->agrees.reset();

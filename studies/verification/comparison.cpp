@@ -653,4 +653,10 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
   return Maker(std::move(first), std::move(second), options, progress_of).make();
 }
 
+CaseDescription describe(const ComparisonResult& result, const PartProgress& progress_of) {
+  const bool all_loads = result.multibody_loads.rows() > 0;
+  return describe(result.first.the_case, progress_of,
+                  all_loads ? Described::without_turn : Described::all);
+}
+
 }  // namespace bentaxis::study
