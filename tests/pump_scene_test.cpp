@@ -2,6 +2,7 @@
 // read back from the page's own block.
 #include "bentaxis/study/pump_scene.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -15,8 +16,10 @@
 #include <vector>
 
 #include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
+#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
 #include "support.h"
@@ -368,6 +371,46 @@ TEST(PumpScene, ComputesThePressureThatItNeeds) {
   Case standing = hydraulic;
   standing.operation.speed_rpm = 0;
   EXPECT_FALSE(alone(standing));
+}
+
+TEST(CaseDescription, FailureIsAWarningOfTheReport) {
+  Case standing = shipped_case("bap63_rated_hydraulic");
+  standing.operation.speed_rpm = 0;
+  const study::CaseDescription description = study::describe(standing);
+  report::Document document;
+  study::put_description(document, description);
+  EXPECT_FALSE(document.scene);
+  ASSERT_EQ(document.warnings.value().size(), 1U);
+  EXPECT_EQ(document.warnings->front().name, "description-incomplete");
+  EXPECT_THAT(document.warnings->front().text,
+              testing::AllOf(testing::HasSubstr("the chamber pressure of the pump in space"),
+                             testing::HasSubstr(description.failed.at(0).reason)));
+  document = {};
+  study::put_description(document, study::describe(shipped_case("bap63_rated")));
+  EXPECT_TRUE(document.scene);
+  EXPECT_FALSE(document.warnings);
+}
+
+// Where the oil is to be solved a user who stops waits no longer than elsewhere.
+TEST(CaseDescription, EndsWhenInterrupted) {
+  const study::PartProgress stop = [](const std::string&) {
+    return Progress([](double) { throw Interrupted(); });
+  };
+  EXPECT_THROW(study::describe(shipped_case("bap63_rated_hydraulic"), stop), Interrupted);
+}
+
+TEST(CaseDescription, HasWhatTheStudyDoesNotCompute) {
+  const Case rated = shipped_case("bap63_rated");
+  const auto parts = [&](const Case& the_case, study::Described what) {
+    const study::CaseDescription found = study::describe(the_case, study::silent(), what);
+    EXPECT_TRUE(found.failed.empty());
+    EXPECT_GT(found.plausibility.displacement, 0);
+    return std::pair(found.turn.has_value(), found.film_path.has_value());
+  };
+  EXPECT_EQ(parts(rated, study::Described::all), std::pair(true, true));
+  EXPECT_EQ(parts(rated, study::Described::without_turn), std::pair(false, true));
+  EXPECT_EQ(parts(rated, study::Described::inputs), std::pair(false, false));
+  EXPECT_EQ(parts(shipped_case("bap63_teeth"), study::Described::all), std::pair(true, false));
 }
 
 TEST(PumpScene, ShaftAndBlockStandAsSimulated) {
