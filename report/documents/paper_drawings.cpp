@@ -205,7 +205,9 @@ DrawingFigure piston_in_two_planes(const PumpParameters& pump, const ResultTable
 }
 
 std::vector<report::Figure> paper_drawings(const PaperTurn& turn) {
-  const auto& [figure, pump, table] = turn;
+  const PaperFigure& figure = turn.figure;
+  const PumpParameters& pump = turn.pump;
+  const ResultTable& table = turn.table;
   std::vector<report::Figure> drawings;
   const auto add = [&](DrawingFigure content) {
     drawings.push_back({figure.id(), figure.name() + ": " + figure.shows, figure.name(),
