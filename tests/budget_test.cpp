@@ -417,7 +417,7 @@ TEST(BudgetSection, PowerAndEfficiencyOfAHydraulicCase) {
   const auto source = std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases";
   const auto result =
       study::compare_models(read_case(source / "bap63_rated_hydraulic.toml"), {}, {});
-  const report::Budget budget = *study::comparison_document(result, {}).budget;
+  const report::Budget budget = *study::comparison_document(result, {}, {}).budget;
   for (const std::size_t model : {0, 1}) {
     const auto power = [&](const std::string& name) {
       return named(budget.power, name).values[model];
@@ -451,7 +451,7 @@ TEST(BudgetSection, SaysWhatIsNotModelled) {
   Case the_case = rated();
   the_case.pump.port_plate.reset();
   const auto of = [](const Case& one) {
-    return *study::comparison_document(study::compare_models(one, {}, {}), {}).budget;
+    return *study::comparison_document(study::compare_models(one, {}, {}), {}, {}).budget;
   };
   report::Budget budget = of(the_case);
   for (const char* name : {"volumetric", "total", "mass-based hydraulic-mechanical",

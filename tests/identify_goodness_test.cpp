@@ -160,7 +160,7 @@ TEST_F(Goodness, FrictionThatIsLeftOutRefutesTheFitAndIsNamed) {
   EXPECT_TRUE(found.candidates.empty());
   EXPECT_EQ(found.posterior.count, 0U);
   const std::string text = identify_text(model, found);
-  const report::Document document = identify_document(model, found, {});
+  const report::Document document = identify_document(model, found, {}, {});
   for (const std::string& words : {text, document.verdict->headline}) {
     EXPECT_THAT(words, HasSubstr("the model does not fit the data: chi-square"));
     EXPECT_THAT(words, HasSubstr("with 79 degrees of freedom, p "));
@@ -206,7 +206,7 @@ TEST_F(Goodness, FrictionThatIsFittedIsNotRefuted) {
   EXPECT_FALSE(found.goodness.refuted());
   EXPECT_TRUE(found.further.empty());
   EXPECT_THAT(identify_text(model, found), HasSubstr("not refuted"));
-  EXPECT_EQ(identify_document(model, found, {}).verdict->agrees, true);
+  EXPECT_EQ(identify_document(model, found, {}, {}).verdict->agrees, true);
   EXPECT_THAT(identified_case_text(model, found), Not(HasSubstr("refuted)")));
 }
 
@@ -239,7 +239,7 @@ TEST_F(Goodness, NoiseStatedTooLargeIsSaid) {
   EXPECT_GT(*found.goodness.p_value, 0.999);
   EXPECT_TRUE(found.goodness.uncertainties_too_large());
   EXPECT_FALSE(found.goodness.refuted());
-  EXPECT_EQ(identify_document(model, found, {}).warnings.value().at(0).name,
+  EXPECT_EQ(identify_document(model, found, {}, {}).warnings.value().at(0).name,
             "Stated uncertainties too large");
   EXPECT_THAT(identify_text(model, found), HasSubstr("smaller than the stated uncertainties"));
 }
@@ -280,7 +280,7 @@ TEST_F(Goodness, AsManyUnknownsAsDataAreNoTest) {
   EXPECT_EQ(found.goodness.degrees_of_freedom(), 0U);
   EXPECT_FALSE(found.goodness.p_value);
   EXPECT_FALSE(found.goodness.refuted());
-  const report::Verdict verdict = *identify_document(model, found, {}).verdict;
+  const report::Verdict verdict = *identify_document(model, found, {}, {}).verdict;
   EXPECT_EQ(verdict.agrees, std::nullopt);
   EXPECT_EQ(verdict.word, "Not tested");
   EXPECT_THAT(verdict.headline, HasSubstr("no test of the fit"));

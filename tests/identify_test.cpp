@@ -281,11 +281,11 @@ TEST_F(Identify, ThePosteriorIsThatOfALineAndDoesNotDependOnThreads) {
   EXPECT_NEAR(axial->half_width, 1.96 * deviation / 275, 3 * 0.15 / std::sqrt(2) * deviation / 275);
 
   // Walkers that have not settled are said.
-  EXPECT_FALSE(identify_document(model, one, {}).warnings);
+  EXPECT_FALSE(identify_document(model, one, {}, {}).warnings);
   EXPECT_THAT(identify_text(model, one), testing::Not(HasSubstr("not settled")));
   Identification unsettled = one;
   unsettled.posterior.rhat.back() = 1.2;
-  EXPECT_EQ(identify_document(model, unsettled, {}).warnings.value().at(0).name,
+  EXPECT_EQ(identify_document(model, unsettled, {}, {}).warnings.value().at(0).name,
             "Posterior not settled");
   EXPECT_THAT(identify_text(model, unsettled), HasSubstr("R-hat 1.2"));
 }

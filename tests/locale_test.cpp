@@ -80,15 +80,15 @@ TEST(Locale, LeavesReports) {
   expect_same([] {
     Case both = rated();
     both.pump.piston.contact = 0.9 * both.pump.geometry.piston_length;
-    report::Document document =
-        study::comparison_document(study::compare_models(both, both, {}), {});
+    report::Document document = study::comparison_document(study::compare_models(both, both, {}),
+                                                           {}, study::describe(both));
     for (report::ModelSection& model : *document.models) model.seconds = not_computed();
     return report::compact_json(document);
   });
 }
 
 TEST(Locale, LeavesShapesOfTheScene) {
-  expect_same([] { return report::compact_json(*study::analytic_scene(rated())); });
+  expect_same([] { return report::compact_json(*study::scene_of(study::describe(rated()))); });
 }
 
 TEST(Locale, LeavesCalibratedFriction) {

@@ -238,7 +238,7 @@ TEST(Efficiency, IsConservedForAnySoftOil) {
 
 std::map<std::string, double> stated_by_compare(const Case& the_case) {
   const report::Budget budget =
-      *study::comparison_document(study::compare_models(the_case, {}, {}), {}).budget;
+      *study::comparison_document(study::compare_models(the_case, {}, {}), {}, {}).budget;
   std::map<std::string, double> stated;
   for (const char* name :
        {"drive", "flow to the load", "in the oil", "pistons on the oil, by the hydraulic model"})
@@ -251,7 +251,7 @@ std::map<std::string, double> stated_by_compare(const Case& the_case) {
 std::map<std::string, double> stated_by_pressure(const Case& the_case) {
   const study::OperatingPoint point = study::run_point(the_case);
   const report::Document document =
-      study::pressure_document(point, hydraulics::power_by_place(point.state()), {});
+      study::pressure_document(point, hydraulics::power_by_place(point.state()), {}, {});
   std::map<std::string, double> stated;
   for (const report::Section& section : *document.runs)
     if (section.title == "Power and efficiency of the pump")

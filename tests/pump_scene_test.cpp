@@ -2,6 +2,7 @@
 // read back from the page's own block.
 #include "bentaxis/study/pump_scene.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -15,8 +16,10 @@
 #include <vector>
 
 #include "bentaxis/analytic/body_loads.h"
+#include "bentaxis/pump/error.h"
 #include "bentaxis/study/comparison.h"
 #include "bentaxis/study/comparison_document.h"
+#include "bentaxis/study/plausibility_section.h"
 #include "bentaxis/study/simulation.h"
 #include "bentaxis/study/simulation_document.h"
 #include "support.h"
@@ -263,13 +266,17 @@ Case shipped_case(const std::string& name) {
   return read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "cases" / (name + ".toml"));
 }
 
+std::optional<report::Scene> alone(const Case& the_case) {
+  return study::scene_of(study::describe(the_case));
+}
+
 void expect_scene_of(Case the_case) {
   SCOPED_TRACE(the_case.name);
   the_case.operation.samples_per_revolution = 45;
   study::ComparisonOptions options;
   options.loads = true;
   const study::ComparisonResult r = study::compare_models(std::move(the_case), {}, options);
-  const report::Document document = study::comparison_document(r, {});
+  const report::Document document = study::comparison_document(r, {}, study::describe(r));
   ASSERT_TRUE(document.scene);
   const std::vector<const ResultTable*> tables = {&r.analytic, &r.multibody};
   const Reader scene(*document.scene, tables, r.analytic.theta_deg);
@@ -307,7 +314,7 @@ TEST(PumpScene, LoadLeftOutShowsInTheSums) {
 
 // One that keeps its curves, whatever the document's are.
 TEST(PumpScene, AloneBringsItsCurves) {
-  const auto scene = study::analytic_scene(shipped_case("bap63_rated"));
+  const auto scene = alone(shipped_case("bap63_rated"));
   ASSERT_TRUE(scene);
   ASSERT_TRUE(scene->curves);
   EXPECT_EQ(scene->rows, 120u);
@@ -329,7 +336,7 @@ TEST(PumpScene, AloneBringsItsCurves) {
 TEST(PumpScene, FilmPathIsDenseAndHasEveryRow) {
   for (const char* name : {"bap63_rated", "bap63_as_compared_in_the_paper"}) {
     const Case the_case = shipped_case(name);
-    const auto scene = study::analytic_scene(the_case);
+    const auto scene = alone(the_case);
     ASSERT_TRUE(scene) << name;
     const Reader reader(*scene, {}, scene->curves->theta_deg);
     const auto& columns = scene->curves->tables.at(0).columns;
@@ -356,14 +363,54 @@ TEST(PumpScene, FilmPathIsDenseAndHasEveryRow) {
 
 TEST(PumpScene, ComputesThePressureThatItNeeds) {
   const Case hydraulic = shipped_case("bap63_rated_hydraulic");
-  const auto scene = study::analytic_scene(hydraulic);
-  const auto prepared = study::analytic_scene(study::prepare(hydraulic).the_case);
+  const auto scene = alone(hydraulic);
+  const auto prepared = alone(study::prepare(hydraulic).the_case);
   ASSERT_TRUE(scene && prepared);
   EXPECT_EQ(report::compact_json(*scene), report::compact_json(*prepared));
   // Without a periodic state there is none.
   Case standing = hydraulic;
   standing.operation.speed_rpm = 0;
-  EXPECT_FALSE(study::analytic_scene(standing));
+  EXPECT_FALSE(alone(standing));
+}
+
+TEST(CaseDescription, FailureIsAWarningOfTheReport) {
+  Case standing = shipped_case("bap63_rated_hydraulic");
+  standing.operation.speed_rpm = 0;
+  const study::CaseDescription description = study::describe(standing);
+  report::Document document;
+  study::put_description(document, description);
+  EXPECT_FALSE(document.scene);
+  ASSERT_EQ(document.warnings.value().size(), 1U);
+  EXPECT_EQ(document.warnings->front().name, "description-incomplete");
+  EXPECT_THAT(document.warnings->front().text,
+              testing::AllOf(testing::HasSubstr("the chamber pressure of the pump in space"),
+                             testing::HasSubstr(description.failed.at(0).reason)));
+  document = {};
+  study::put_description(document, study::describe(shipped_case("bap63_rated")));
+  EXPECT_TRUE(document.scene);
+  EXPECT_FALSE(document.warnings);
+}
+
+// Where the oil is to be solved a user who stops waits no longer than elsewhere.
+TEST(CaseDescription, EndsWhenInterrupted) {
+  const study::PartProgress stop = [](const std::string&) {
+    return Progress([](double) { throw Interrupted(); });
+  };
+  EXPECT_THROW(study::describe(shipped_case("bap63_rated_hydraulic"), stop), Interrupted);
+}
+
+TEST(CaseDescription, HasWhatTheStudyDoesNotCompute) {
+  const Case rated = shipped_case("bap63_rated");
+  const auto parts = [&](const Case& the_case, study::Described what) {
+    const study::CaseDescription found = study::describe(the_case, study::silent(), what);
+    EXPECT_TRUE(found.failed.empty());
+    EXPECT_GT(found.plausibility.displacement, 0);
+    return std::pair(found.turn.has_value(), found.film_path.has_value());
+  };
+  EXPECT_EQ(parts(rated, study::Described::all), std::pair(true, true));
+  EXPECT_EQ(parts(rated, study::Described::without_turn), std::pair(false, true));
+  EXPECT_EQ(parts(rated, study::Described::inputs), std::pair(false, false));
+  EXPECT_EQ(parts(shipped_case("bap63_teeth"), study::Described::all), std::pair(true, false));
 }
 
 TEST(PumpScene, ShaftAndBlockStandAsSimulated) {
@@ -373,7 +420,7 @@ TEST(PumpScene, ShaftAndBlockStandAsSimulated) {
   choice.only = study::Model::analytic;
   const study::SimulationResult r =
       study::simulate(study::prepare_simulation(the_case, choice), choice);
-  const report::Document document = study::simulation_document(r, {});
+  const report::Document document = study::simulation_document(r, {}, {});
   ASSERT_TRUE(document.scene);
   ASSERT_FALSE(document.scene->curves) << "choose a shorter case: this one is thinned";
   const ResultTable& table = r.analytic->table.results;
@@ -415,7 +462,7 @@ TEST(PumpScene, ManyRowsAreThinned) {
 // pistons are at theta = 0; ports between their radii and angles.
 TEST(PumpScene, SeatsBoresAndPortsAreWhereTheCaseSays) {
   const Case the_case = read_case(BENTAXIS_SOURCE_DIR "/cases/bap63_rated.toml");
-  const auto scene = study::analytic_scene(the_case);
+  const auto scene = alone(the_case);
   ASSERT_TRUE(scene);
   const auto prisms = [&](const std::string& body) {
     std::vector<report::Prism> found;
@@ -481,7 +528,7 @@ TEST(PumpScene, ShapesOfOddPumps) {
     SCOPED_TRACE(name);
     const Case the_case = read_case(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
                                     "hard" / name / "case.toml");
-    const auto scene = study::analytic_scene(the_case);
+    const auto scene = alone(the_case);
     ASSERT_TRUE(scene);
     const std::string text = report::compact_json(*scene);
     const Json json = Json::parse(text);

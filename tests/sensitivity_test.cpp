@@ -266,7 +266,7 @@ TEST(Sensitivity, TablesHaveEveryDerivative) {
   const std::string csv = sensitivity_csv(found, {});
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_THAT(csv, testing::HasSubstr("mean:Td,Nm,"));
-  const report::Document document = sensitivity_document(found, {}, {});
+  const report::Document document = sensitivity_document(found, {}, {}, {});
   ASSERT_EQ(document.figures->size(), 2U);
   const auto& bars = std::get<report::BarsFigure>(document.figures->front().content).bars;
   ASSERT_EQ(bars.size(), 1U);  // a piston's mass takes no mean torque

@@ -312,7 +312,7 @@ SimulationResult written(double speed_rpm, double fastest_rpm) {
 TEST(SimulationDocument, SaysWhereTheShaftRunsAway) {
   const auto said = [](double speed_rpm, double fastest_rpm) {
     std::vector<std::string> names;
-    const report::Document document = simulation_document(written(speed_rpm, fastest_rpm), {});
+    const report::Document document = simulation_document(written(speed_rpm, fastest_rpm), {}, {});
     for (const auto& warning : *document.warnings) names.push_back(warning.name);
     return names;
   };
@@ -398,7 +398,7 @@ TEST(MotionAnswers, SayNothingOfWhatIsNotThere) {
 TEST(SimulationDocument, ShowsContactAndEffort) {
   SimulationResult r = written(1500, 1500);
   r.effort = {{Model::analytic, "steps", 1e-6, 1e-7, 2, 10, 20}};
-  const std::string text = report::compact_json(simulation_document(r, {}));
+  const std::string text = report::compact_json(simulation_document(r, {}, {}));
   EXPECT_THAT(text, HasSubstr("share of the time out of contact"));
   EXPECT_THAT(text, HasSubstr("\"12.5 %\""));
   const auto at = text.find("\"label\":\"time of the run\"");

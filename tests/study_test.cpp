@@ -320,7 +320,8 @@ TEST(InertiaStudy, ReportIsOfTheRunsThatItNames) {
   const auto published =
       compare::read_published(std::filesystem::path(BENTAXIS_SOURCE_DIR) / "reference_data" /
                               "published" / "bap63" / "numbers.toml");
-  const study::InertiaReport report = study::inertia_report(study, &published, {});
+  const study::InertiaReport report =
+      study::inertia_report(study, study::judge_inertia(study, published), {}, {});
 
   std::map<std::string, report::Values> analytic, multibody;
   for (const auto& [name, values] : report.curves.tables[0].columns) analytic[name] = values;
@@ -639,7 +640,7 @@ TEST(CompareModels, TheLawOfFrictionIsSaid) {
     Case the_case = case_named("bap63_rated.toml", 10);
     the_case.pump.friction.regularization = regularization;
     const auto document =
-        study::comparison_document(study::compare_models(the_case, the_case, {}), {});
+        study::comparison_document(study::compare_models(the_case, the_case, {}), {}, {});
     std::vector<std::string> laws;
     for (const auto& common : document.common.value())
       if (common.input == "law of piston friction") laws.push_back(common.value);
@@ -903,7 +904,7 @@ TEST(Tradeoff, FiguresHoldTheRunsThatAreDone) {
   driven.method = "driven";
   driven.variant = "full";
   runs.push_back(driven);
-  const auto document = study::tradeoff_document(study, {});
+  const auto document = study::tradeoff_document(study, {}, {});
   const auto series = [&](std::size_t figure) {
     std::map<std::string, std::size_t> points;
     for (const auto& s :

@@ -83,7 +83,9 @@ class SweepDocument : public testing::Test {
     ++result_.all_infeasible;
   }
 
-  report::Document document() const { return sweep_document(result_, {{"bentaxis", "test"}}); }
+  report::Document document() const {
+    return sweep_document(result_, {{"bentaxis", "test"}}, study::describe(result_.base));
+  }
   static const report::Section* section(const report::Document& document,
                                         const std::string& title) {
     for (const auto& one : *document.runs)

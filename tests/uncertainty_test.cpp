@@ -508,7 +508,7 @@ TEST(Uncertainty, SaysWhatLeavingSamplesOutDoes) {
   const Spread& kept = found.kept_parameters[0];
   EXPECT_NEAR(kept.mean, 189.3 + 0.5 * r, 4 * kept.mean_error);
   EXPECT_NEAR(kept.deviation, 0.5 * std::sqrt(1 - 0.6 * r - r * r), 4 * kept.deviation_error);
-  const report::Document document = uncertainty_document(found, {});
+  const report::Document document = uncertainty_document(found, {}, {});
   EXPECT_EQ(document.warnings.value().at(0).name, "Samples left out");
   EXPECT_THAT(document.verdict->headline, testing::HasSubstr("are left out ("));
   EXPECT_EQ(document.runs->back().title, "Parameters of the samples that are left");

@@ -70,7 +70,8 @@ int compare(const Options& options) {
   if (!options.multibody_case.empty()) refuse(result.second);
 
   std::vector<TextFile> curves = comparison_files(result);
-  report::Document document = study::comparison_document(result, versions());
+  report::Document document =
+      study::comparison_document(result, versions(), study::describe(result, progress_of));
   std::string known;  // how well
   if (samples > 0) {
     const designs::Validation validation = designs::validation(given, result, samples, progress_of);

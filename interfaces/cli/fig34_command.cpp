@@ -46,9 +46,11 @@ int run(Options& options) {
   const Case as_read = options.the_case.read();
   ReportFolders folders(options.place);
   const study::Fig34Study result = study::run_fig34_study(as_read, study, progress_of);
-  const auto paths = folders.write("fig34", study::fig34_document(result, versions()), {},
-                                   {{"fig34.csv", study::fig34_csv(result)},
-                                    {"fig34_curves.csv", study::fig34_curves_csv(result)}});
+  const auto paths = folders.write(
+      "fig34",
+      study::fig34_document(result, versions(), study::describe(result.the_case, progress_of)), {},
+      {{"fig34.csv", study::fig34_csv(result)},
+       {"fig34_curves.csv", study::fig34_curves_csv(result)}});
   print_result(study::fig34_text(result), paths);
   return kDone;
 }

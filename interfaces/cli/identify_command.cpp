@@ -46,7 +46,10 @@ int identify(const Options& options, const CommandParser& command) {
   if (const std::string bands = designs::bands_csv(model, result); !bands.empty())
     files.emplace_back("bands.csv", bands);
   const auto paths =
-      folders.write("report", designs::identify_document(model, result, versions()), {}, files);
+      folders.write("report",
+                    designs::identify_document(model, result, versions(),
+                                               study::describe(model.base(), progress_of)),
+                    {}, files);
   print_result(designs::identify_text(model, result), paths);
   return result.goodness.refuted() ? kOutOfTolerance : kDone;
 }

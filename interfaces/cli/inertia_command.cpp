@@ -1,5 +1,7 @@
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/failed_points.h"
@@ -36,8 +38,10 @@ int run(const Options& options) {
   const auto published =
       study::printed_numbers_of(data ? *data / "published" : "",
                                 {study::facts_of(result.the_case, result.the_case.analytic)});
-  study::InertiaReport report =
-      study::inertia_report(result, published ? &published->numbers : nullptr, versions());
+  std::optional<compare::PublishedSection> judged;
+  if (published) judged = study::judge_inertia(result, published->numbers);
+  study::InertiaReport report = study::inertia_report(
+      result, std::move(judged), versions(), study::describe(result.the_case, progress_of));
   study::add_warnings(report.document, result.failed);
   const auto paths = folders.write("inertia", report.document, report.curves,
                                    {{"inertia.csv", study::inertia_curves_csv(result)},

@@ -25,9 +25,11 @@ int life(const Options& options) {
   study::require_ratings(the_case);
   ReportFolders folders(options.place);
   const designs::LifeStudy result = designs::life_study(the_case, duty, progress_of);
-  const auto paths = folders.write("life", designs::life_document(result, versions()), {},
-                                   {{"life.csv", designs::life_csv(result)},
-                                    {"life_loads.csv", designs::life_loads_csv(result)}});
+  const auto paths = folders.write(
+      "life",
+      designs::life_document(result, versions(), study::describe(result.the_case, progress_of)), {},
+      {{"life.csv", designs::life_csv(result)},
+       {"life_loads.csv", designs::life_loads_csv(result)}});
   print_result(designs::life_text(result), paths);
   return status_of_series(result.agrees() ? kDone : kOutOfTolerance, result.failed,
                           duty.rows.size());

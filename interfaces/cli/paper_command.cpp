@@ -27,8 +27,10 @@ int paper(const Options& options) {
   ReportFolders folders(options.place);
   const study::PaperStudy result =
       study::run_paper_study(list, data->parent_path() / "cases", progress_of);
-  const auto paths = folders.write("paper", study::paper_document(result, versions()), {},
-                                   {{"paper.csv", study::paper_csv(result)}});
+  const auto paths = folders.write(
+      "paper",
+      study::paper_document(result, versions(), study::describe(result.cases.front(), progress_of)),
+      {}, {{"paper.csv", study::paper_csv(result)}});
   std::printf("%s\n", study::paper_text(result).c_str());
   for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return kDone;

@@ -61,7 +61,8 @@ int pressure(const Options& options) {
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
   const auto power = hydraulics::power_by_place(point.state(), progress_of("power by place"));
-  report::Document document = study::pressure_document(point, power, versions());
+  report::Document document = study::pressure_document(
+      point, power, versions(), study::describe(point.the_case(), progress_of));
   // A limit on the pressure alone does not say whether the chambers fill.
   if (options.suction_speed == kFilling || (limit && point.state().timing.filled))
     study::add_suction_speed(document, point,
@@ -70,8 +71,8 @@ int pressure(const Options& options) {
     study::add_suction_speed(
         document, point,
         study::suction_speed(point.the_case(), *limit, progress_of("suction speed")));
-  options.the_case.refuse_timing(*document.warnings);
-  if (published) study::add_published(document, *published, point, progress_of);
+  options.the_case.refuse_timing(study::timing_warnings(*document.timing));
+  if (published) study::add_published(document, study::judge_point(*published, point, progress_of));
   if (second)
     study::add_overlay(document, point, study::run_point(std::move(*second), progress_of));
   std::vector<TextFile> curves = study::pressure_csv(point, power);

@@ -72,8 +72,10 @@ int rattle(const Options& options) {
   std::vector<std::filesystem::path> paths;
   try {
     map = study::rattle_map(the_case, rattle, keeping, progress_of);
-    paths = folders.write("report", study::rattle_document(map, versions()), {},
-                          {{"rattle.csv", study::rattle_csv(map)}});
+    paths = folders.write(
+        "report",
+        study::rattle_document(map, versions(), study::describe(map.the_case, progress_of)), {},
+        {{"rattle.csv", study::rattle_csv(map)}});
   } catch (const Interrupted&) {
     if (file.rows() > 0) {
       say_kept("interrupted; ");

@@ -42,8 +42,10 @@ int sensitivity(const Options& options) {
   std::optional<designs::SensitivityCheck> check;
   if (options.check) check = designs::check(found, progress_of);
   const auto paths =
-      folders.write("sensitivity", designs::sensitivity_document(found, check, versions()), {},
-                    {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
+      folders.write("sensitivity",
+                    designs::sensitivity_document(found, check, versions(),
+                                                  study::describe(found.base, progress_of)),
+                    {}, {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
   print_result(designs::sensitivity_text(found, check), paths);
   return !check || check->agrees() ? kDone : kOutOfTolerance;
 }

@@ -51,8 +51,12 @@ int simulate(const Options& options, const CommandParser& command) {
   ReportFolders folders(options.place);
   const study::SimulationResult result = study::simulate(
       study::prepare_simulation(std::move(read), choice, progress_of), choice, progress_of);
-  const auto paths = folders.write("report", study::simulation_document(result, versions()),
-                                   study::simulation_curves(result), simulation_files(result));
+  const auto paths = folders.write(
+      "report",
+      study::simulation_document(
+          result, versions(),
+          study::describe(result.ready.the_case, progress_of, study::Described::inputs)),
+      study::simulation_curves(result), simulation_files(result));
   print_result(study::simulation_text(result), paths);
   return result.agrees() ? kDone : kOutOfTolerance;
 }

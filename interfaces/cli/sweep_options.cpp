@@ -133,7 +133,10 @@ int write_results(const designs::Sweep& sweep, const designs::SweepParts& parts,
                   const designs::SweepFormats& formats, int threads, ReportFolders& folders) {
   const designs::SweepResult result = designs::write_sweep(sweep, parts, formats, folders.tables(),
                                                            threads, progress_of("writing"));
-  const auto paths = folders.write("report", designs::sweep_document(result, versions()), {}, {});
+  const auto paths = folders.write(
+      "report",
+      designs::sweep_document(result, versions(), study::describe(result.base, progress_of)), {},
+      {});
   std::printf("%s\n", designs::headline(result).c_str());
   for (const std::string& answer : designs::sweep_answers(result))
     std::printf("%s\n", answer.c_str());

@@ -23,8 +23,10 @@ int tradeoff(const Options& options) {
   ReportFolders folders(options.place);
   const study::TradeoffStudy result =
       study::run_tradeoff_study(the_case, options.tradeoff, progress_of("tradeoff"));
-  const auto paths = folders.write("tradeoff", study::tradeoff_document(result, versions()), {},
-                                   {{"tradeoff.csv", study::tradeoff_csv(result)}});
+  const auto paths = folders.write(
+      "tradeoff",
+      study::tradeoff_document(result, versions(), study::describe(result.the_case, progress_of)),
+      {}, {{"tradeoff.csv", study::tradeoff_csv(result)}});
   print_result(study::tradeoff_text(result), paths);
   return kDone;
 }

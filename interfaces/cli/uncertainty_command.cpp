@@ -61,7 +61,10 @@ int uncertainty(const Options& options) {
                                  {"samples.csv", designs::samples_csv(result)}};
   if (!result.bands.empty()) files.emplace_back("bands.csv", designs::bands_csv(result));
   const auto paths =
-      folders.write("report", designs::uncertainty_document(result, versions()), {}, files);
+      folders.write("report",
+                    designs::uncertainty_document(result, versions(),
+                                                  study::describe(result.the_case, progress_of)),
+                    {}, files);
   print_result(designs::uncertainty_text(result), paths);
   return kDone;
 }

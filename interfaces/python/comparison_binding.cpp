@@ -79,9 +79,10 @@ Comparison compare_cases(const PythonCase& the_case, const CaseValues& multibody
 
 std::vector<std::filesystem::path> report_comparison(const Comparison& self,
                                                      const std::filesystem::path& folder) {
-  return unlocked([&](const study::PartProgress&) {
+  return unlocked([&](const study::PartProgress& progress_of) {
     const study::ComparisonResult& result = *self.result;
-    const report::Document document = study::comparison_document(result, versions());
+    const report::Document document =
+        study::comparison_document(result, versions(), study::describe(result, progress_of));
     return write_report(folder, "bentaxis.compare",
                         {&result.first.the_case, &result.second.the_case}, document,
                         study::comparison_curves(result, document), cli::comparison_files(result));

@@ -165,16 +165,18 @@ std::optional<Table> bands(const Identification& self) {
 }
 
 std::vector<fs::path> report_identification(const Identification& self, const fs::path& folder) {
-  return unlocked([&](const study::PartProgress&) {
+  return unlocked([&](const study::PartProgress& progress_of) {
     const Found& found = *self.found;
     std::vector<cli::TextFile> files = {
         {"identified.toml", identified(found)},
         {"unknowns.csv", designs::unknowns_csv(found.model, found.result)}};
     if (const std::string text = designs::bands_csv(found.model, found.result); !text.empty())
       files.emplace_back("bands.csv", text);
-    return write_report(folder, "bentaxis.identify", {&found.model.base()},
-                        designs::identify_document(found.model, found.result, versions()), {},
-                        files);
+    return write_report(
+        folder, "bentaxis.identify", {&found.model.base()},
+        designs::identify_document(found.model, found.result, versions(),
+                                   study::describe(found.model.base(), progress_of)),
+        {}, files);
   });
 }
 

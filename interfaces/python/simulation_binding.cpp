@@ -46,7 +46,9 @@ Simulation simulate(const PythonCase& the_case, const std::optional<std::string>
     drive_of(copy);
     auto result = std::make_shared<const study::SimulationResult>(study::simulate(
         study::prepare_simulation(std::move(copy), choice, progress_of), choice, progress_of));
-    of_run = study::simulation_document(*result, versions())
+    of_run = study::simulation_document(
+                 *result, versions(),
+                 study::describe(result->ready.the_case, progress_of, study::Described::inputs))
                  .warnings.value_or(std::vector<report::Warning>());
     return result;
   });
@@ -80,11 +82,14 @@ std::optional<Table> teeth(const Simulation& self, Run run) {
 
 std::vector<std::filesystem::path> report_simulation(const Simulation& self,
                                                      const std::filesystem::path& folder) {
-  return unlocked([&](const study::PartProgress&) {
+  return unlocked([&](const study::PartProgress& progress_of) {
     const study::SimulationResult& result = *self.result;
-    return write_report(folder, "bentaxis.simulate", {&result.ready.the_case},
-                        study::simulation_document(result, versions()),
-                        study::simulation_curves(result), cli::simulation_files(result));
+    return write_report(
+        folder, "bentaxis.simulate", {&result.ready.the_case},
+        study::simulation_document(
+            result, versions(),
+            study::describe(result.ready.the_case, progress_of, study::Described::inputs)),
+        study::simulation_curves(result), cli::simulation_files(result));
   });
 }
 

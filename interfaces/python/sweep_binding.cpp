@@ -105,10 +105,11 @@ std::map<std::size_t, std::string> infeasible(const Sweep& self) {
 
 std::vector<std::filesystem::path> report_sweep(const Sweep& self,
                                                 const std::filesystem::path& folder) {
-  return unlocked([&](const study::PartProgress&) {
+  return unlocked([&](const study::PartProgress& progress_of) {
     return write_report(folder, "bentaxis.sweep", {&self.result->base},
-                        designs::sweep_document(*self.result, versions()), {},
-                        {{"sweep.csv", self.csv()}});
+                        designs::sweep_document(*self.result, versions(),
+                                                study::describe(self.result->base, progress_of)),
+                        {}, {{"sweep.csv", self.csv()}});
   });
 }
 

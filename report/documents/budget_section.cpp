@@ -229,13 +229,8 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
 report::Budget budget_section(const BudgetComparison& budgets, const PreparedCase& first,
                               const PreparedCase& second, const ResultTable& analytic,
                               const ResultTable& multibody) {
-  const std::optional<hydraulics::PumpPower> oil = pump_power(first);
-  // Both models get the same oil, unless they are given different cases.
-  const bool same = first.hydraulics && second.hydraulics &&
-                    first.hydraulics->equations == second.hydraulics->equations;
-  const std::optional<hydraulics::PumpPower> other = same ? oil : pump_power(second);
-  const std::vector<Turn> turns = {{first, budgets.analytic, analytic, oil},
-                                   {second, budgets.multibody, multibody, other}};
+  const std::vector<Turn> turns = {{first, budgets.analytic, analytic, budgets.analytic_oil},
+                                   {second, budgets.multibody, multibody, budgets.multibody_oil}};
   report::Budget section;
   section.text =
       "Each line from its own load alone: analytic by the closed form under that load, multibody "

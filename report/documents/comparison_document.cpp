@@ -146,21 +146,22 @@ void add_reference(report::Document& document, const Outcome& outcome) {
 
 }  // namespace
 
-report::Document comparison_document(const ComparisonResult& r, const report::Lines& program) {
+report::Document comparison_document(const ComparisonResult& r, const report::Lines& program,
+                                     const CaseDescription& description) {
   const Case& the_case = r.first.the_case;
   std::optional<report::Scene> scene;
   // Of a run that is integrated or of a smaller scene its reactions have other loads beside them.
   const bool all_loads = r.multibody_loads.rows() > 0;
   if (all_loads)
-    scene =
-        pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}});
-  report::Document document = case_document(the_case, the_case.name, program, std::move(scene));
+    scene = pump_scene(the_case, {{r.analytic, r.analytic_loads}, {r.multibody, r.multibody_loads}},
+                       nullptr, film_path_of(description));
+  report::Document document = case_document(description, the_case.name, program, std::move(scene));
   document.verdict = verdict_of(r);
   document.meaning =
       "Two models that agree have solved the same equations correctly: that is verification. It "
       "says nothing about what both leave out or share (tables below). Whether a real pump behaves "
       "so is validation, and needs measurements.";
-  document.warnings = r.warnings;
+  report::append(document.warnings, r.warnings);
   document.common = common_inputs(the_case, false);
   document.validity = validity_section(r.limits);
   if (r.first.hydraulics) document.timing = timing_rows(r.first.the_case, *r.first.hydraulics);

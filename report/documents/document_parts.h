@@ -16,15 +16,15 @@
 
 namespace bentaxis::study {
 
-/// A report on a case: its head (describe_case) and what follows from its dimensions.
-inline report::Document case_document(const Case& the_case, std::string title,
+/// A report on a case: its head (put_description) and what follows from its dimensions.
+inline report::Document case_document(const CaseDescription& description, std::string title,
                                       const report::Lines& program,
                                       std::optional<report::Scene> scene = std::nullopt) {
   report::Document document;
   document.title = std::move(title);
   document.program = program;
-  describe_case(document, the_case, std::move(scene));
-  document.derived = derived_section(the_case);
+  put_description(document, description, std::move(scene));
+  document.derived = derived_section(description.the_case);
   return document;
 }
 

@@ -351,9 +351,10 @@ report::Figure scatter_figure(const Fig34Study& s) {
 
 }  // namespace
 
-report::Document fig34_document(const Fig34Study& s, const report::Lines& program) {
+report::Document fig34_document(const Fig34Study& s, const report::Lines& program,
+                                const CaseDescription& description) {
   report::Document document =
-      case_document(s.the_case, "What Fig. 34 can mean: " + s.the_case.name, program);
+      case_document(description, "What Fig. 34 can mean: " + s.the_case.name, program);
   document.verdict = report::Verdict{std::nullopt, headline(s),
                                      s.as_expected() ? "As expected" : "Not all as expected"};
   document.summary = summary_of(s);

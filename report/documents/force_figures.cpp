@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bentaxis/analytic/body_loads.h"
-#include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/results/channels.h"
-#include "bentaxis/study/run.h"
 #include "force_figures_pieces.h"
 
 namespace bentaxis::study {
@@ -167,13 +164,6 @@ std::vector<Figure> force_figures(const DiagramRun& run) {
   if (has(at.Tc(0))) figures.push_back(moment_shares(run, at));
   if (has(at.zB(0)) && has(at.pressure(0))) figures.push_back(chamber(run, at));
   return figures;
-}
-
-std::vector<Figure> analytic_force_figures(const Case& the_case) {
-  const Samples samples = sample_case(the_case, PressureTrace(the_case.pressure));
-  const ResultTable table = analytic::run(the_case, the_case.analytic, samples);
-  const BodyLoadTable loads = analytic::run_body_loads(the_case, the_case.analytic, samples);
-  return force_figures({the_case, table, &loads});
 }
 
 }  // namespace bentaxis::study

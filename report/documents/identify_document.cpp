@@ -566,11 +566,12 @@ std::string name_of(const DataModel& model, const WorstResidual& worst) {
 }
 
 report::Document identify_document(const DataModel& model, const Identification& result,
-                                   const report::Lines& program) {
+                                   const report::Lines& program,
+                                   const study::CaseDescription& description) {
   report::Document document;
   document.title = "Identification: " + model.base().name;
   document.program = program;
-  study::describe_case(document, model.base());
+  study::put_description(document, description);
   document.verdict = verdict_of(result, headline_of(model, result));
   document.meaning =
       result.goodness.refuted()
@@ -595,7 +596,7 @@ report::Document identify_document(const DataModel& model, const Identification&
          fmt::format("R-hat {:.3g}, above {:g}: the walkers still are where they began, and bands "
                      "are a rough size only. More --steps, fewer unknowns or narrower bounds help",
                      *rhat, kSettled)});
-  if (!warnings.empty()) document.warnings = std::move(warnings);
+  if (!warnings.empty()) report::append(document.warnings, std::move(warnings));
   document.runs = {goodness_section(result), worst_section(model, result)};
   if (result.goodness.refuted()) document.runs->push_back(further_section(model, result));
   append(document.runs,

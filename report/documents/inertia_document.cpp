@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "bentaxis/pump/number.h"
-#include "bentaxis/study/published_section.h"
 #include "document_parts.h"
 
 namespace bentaxis::study {
@@ -282,43 +282,12 @@ report::Section cost_section(const InertiaStudy& s) {
 
 // ---- Printed numbers
 
-// The unloaded runs of both kinds of piston against the numbers of their speeds.
-report::PublishedTable published_table(const InertiaStudy& s, const compare::Published& published) {
-  compare::PublishedSection all;
-  for (const InertiaRun& run : s.one_piston) {
-    if (run.loaded) continue;
-    const Case bare = without_loads(at_speed(s.the_case, run.speed_rpm));
-    for (const bool real_pistons : {false, true}) {
-      auto section = compare::judge_published(
-          published, {"analytic", "multibody"},
-          [&](const std::string& model, const compare::PublishedVariant& variant) {
-            const auto set = variant.set.find("real_pistons");
-            const bool real = set == variant.set.end() ? real_pistons : set->second != 0;
-            Assumptions assumptions = bare.analytic;
-            assumptions.inertia = real ? PistonInertia::real : PistonInertia::lumped;
-            return compare::PublishedRun{
-                model == "analytic" ? &analytic_of(run, real) : &multibody_of(run, real),
-                facts_of(bare, assumptions)};
-          },
-          "inertia");
-      for (auto& row : section.rows) {
-        // What holds at any condition says nothing of this study; rows that take one kind of piston
-        // from the other are the same for both.
-        if (row.verdict == compare::PublishedVerdict::not_comparable ||
-            row.number.condition.empty() || (real_pistons && !row.number.minus.empty()))
-          continue;
-        if (row.number.minus.empty()) row.at += real_pistons ? "; real pistons" : "; two masses";
-        all.rows.push_back(std::move(row));
-      }
-      all.models = section.models;
-    }
-  }
-  for (const auto& row : all.rows) all.summary.count(row);
+report::PublishedTable published_table(compare::PublishedSection section) {
   return {
       "The paper's figures are of the Casappa BAP 63 at 1500 and 2350 rpm without load. They say "
       "something about this case as far as it is that pump at those speeds; its geometry and "
       "masses are not printed and were inferred.",
-      std::move(all)};
+      std::move(section)};
 }
 
 // Will two masses do? Which reactions they miss by more than the limit, and where; the rest.
@@ -362,14 +331,15 @@ std::string headline(const InertiaStudy& s) {
 
 }  // namespace
 
-InertiaReport inertia_report(const InertiaStudy& s, const compare::Published* published,
-                             const report::Lines& program) {
+InertiaReport inertia_report(const InertiaStudy& s,
+                             std::optional<compare::PublishedSection> published,
+                             const report::Lines& program, const CaseDescription& description) {
   InertiaReport result;
   Curves& curves = result.curves;
   curves.theta_deg = s.one_piston.front().analytic_real.theta_deg;
   curves.tables = {{"analytic", {}}, {"multibody", {}}};
   report::Document& document = result.document;
-  document = case_document(s.the_case, "Lumped or real pistons: " + s.the_case.name, program);
+  document = case_document(description, "Lumped or real pistons: " + s.the_case.name, program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->tolerance = kInertiaModelsAgree;
   document.runs = {
@@ -387,7 +357,7 @@ InertiaReport inertia_report(const InertiaStudy& s, const compare::Published* pu
       lumping_section(s),
       approach_section(s),
       cost_section(s)};
-  if (published != nullptr) document.published = published_table(s, *published);
+  if (published) document.published = published_table(std::move(*published));
   document.figures = all_figures(s, curves);
   return result;
 }

@@ -243,9 +243,10 @@ report::Figure spectrum_figure(const LifeStudy& s) {
 
 }  // namespace
 
-report::Document life_document(const LifeStudy& s, const report::Lines& program) {
+report::Document life_document(const LifeStudy& s, const report::Lines& program,
+                               const study::CaseDescription& description) {
   report::Document document =
-      study::case_document(s.the_case, s.the_case.name + ": life of the bearings", program);
+      study::case_document(description, s.the_case.name + ": life of the bearings", program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->answers = answers_of(s);
   document.meaning =

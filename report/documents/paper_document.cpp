@@ -7,6 +7,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/paper_figures.h"
 #include "document_parts.h"
+#include "paper_drawings.h"
 
 namespace bentaxis::study {
 namespace {
@@ -120,8 +121,8 @@ report::Section figures_section(const PaperStudy& s) {
                             p.panel.y.short_text(), range_text(p), verdict(p),
                             differs.known() ? Cell(differs.share()) : Cell(), remarks});
     }
-    for (const report::Figure& drawing : s.drawings)
-      if (drawing.id == figure.id())
+    for (const PaperTurn& turn : s.turns)
+      if (turn.figure.id() == figure.id())
         table.rows.push_back({figure.name(), figure.shows, figure.condition, "none: a drawing",
                               Cell(), "drawn", Cell(), figure.note});
   }
@@ -199,17 +200,18 @@ report::Figure figure_of(const PaperStudy& s, const DrawnPanel& p) {
 
 }  // namespace
 
-report::Document paper_document(const PaperStudy& s, const report::Lines& program) {
+report::Document paper_document(const PaperStudy& s, const report::Lines& program,
+                                const CaseDescription& description) {
   report::Document document =
-      case_document(s.cases.front(), "The paper's figures: " + s.list.numbers.name, program);
+      case_document(description, "The paper's figures: " + s.list.numbers.name, program);
   document.verdict = report::Verdict{std::nullopt, headline(s)};
   document.runs = {figures_section(s), numbers_section(s)};
   document.figures.emplace();
   for (const PaperFigure& figure : s.list.figures) {
     for (const DrawnPanel& p : s.panels)
       if (p.figure.id() == figure.id()) document.figures->push_back(figure_of(s, p));
-    for (const report::Figure& drawing : s.drawings)
-      if (drawing.paper == figure.name()) document.figures->push_back(drawing);
+    for (const PaperTurn& turn : s.turns)
+      if (turn.figure.id() == figure.id()) append(document.figures, paper_drawings(turn));
   }
   return document;
 }
@@ -231,9 +233,8 @@ std::string paper_text(const PaperStudy& s) {
                         range_text(p), p.panel.y.text());
     if (p.known() && !p.inside()) text += fmt::format("{:<18} {}\n", "", leaving(p));
   }
-  for (const report::Figure& drawing : s.drawings)
-    if (std::holds_alternative<report::DrawingFigure>(drawing.content))
-      text += fmt::format("{:<18} {}\n", drawing.paper, "drawn");
+  for (const PaperTurn& turn : s.turns)
+    text += fmt::format("{:<18} {}\n", turn.figure.name(), "drawn");
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "bentaxis/pump/units.h"
 
@@ -201,6 +202,30 @@ DrawingFigure piston_in_two_planes(const PumpParameters& pump, const ResultTable
   }
   fit(drawing);
   return drawing;
+}
+
+std::vector<report::Figure> paper_drawings(const PaperTurn& turn) {
+  const PaperFigure& figure = turn.figure;
+  const PumpParameters& pump = turn.pump;
+  const ResultTable& table = turn.table;
+  std::vector<report::Figure> drawings;
+  const auto add = [&](DrawingFigure content) {
+    drawings.push_back({figure.id(), figure.name() + ": " + figure.shows, figure.name(),
+                        std::move(content), figure.note});
+  };
+  if (figure.kind == PaperKind::force_triangle) {
+    add(force_triangle(pump, table, figure.angles));
+  } else if (figure.kind == PaperKind::piston_in_two_planes) {
+    add(piston_in_two_planes(pump, table, figure.angles));
+  } else {
+    add(block_from_the_front(pump, table, figure.angles));
+    for (const double angle : figure.angles)
+      drawings.push_back(
+          {fmt::format("{}_shares_at_{:g}_deg", figure.id(), angle),
+           fmt::format("{}: each piston's share of the torque at {:g} deg", figure.name(), angle),
+           figure.name(), pistons_shares(pump, table, angle)});
+  }
+  return drawings;
 }
 
 }  // namespace bentaxis::study

@@ -3,11 +3,13 @@
 
 #include <vector>
 
-#include "bentaxis/pump/case.h"
 #include "bentaxis/report/document.h"
-#include "bentaxis/results/result_table.h"
+#include "bentaxis/study/paper_study.h"
 
 namespace bentaxis::study {
+
+/// The figures that a drawing of the list is shown as.
+std::vector<report::Figure> paper_drawings(const PaperTurn& turn);
 
 /// The block from the front (z2 towards the eye): the pistons' forces on it, with their torque
 /// about z2, at angles (deg) between samples too.

@@ -3,25 +3,30 @@
 #include <utility>
 
 #include "bentaxis/study/case_sections.h"
-#include "bentaxis/study/plausibility.h"
 #include "bentaxis/study/pump_picture.h"
 #include "bentaxis/study/pump_scene.h"
 
 namespace bentaxis::study {
 
-void describe_case(report::Document& document, const Case& the_case,
-                   std::optional<report::Scene> scene) {
-  document.the_case = case_section(the_case);
-  const Plausibility looked = plausibility(the_case);
+void put_description(report::Document& document, const CaseDescription& description,
+                     std::optional<report::Scene> scene) {
+  document.the_case = case_section(description.the_case);
   const auto rows = [](const std::vector<PlausibilityWarning>& doubts) {
     std::vector<report::DoubtRow> list;
     for (const PlausibilityWarning& doubt : doubts)
       list.push_back({doubt.code, doubt.text, doubt.reason});
     return list;
   };
+  const Plausibility& looked = description.plausibility;
   document.plausibility = {looked.summary(), rows(looked.warnings), rows(looked.meant)};
-  document.picture = pump_picture(the_case);
-  document.scene = scene ? std::move(scene) : analytic_scene(the_case);
+  document.picture = pump_picture(description.the_case);
+  document.scene = scene ? std::move(scene) : scene_of(description);
+  for (const FailedPoint& failed : description.failed) {
+    if (!document.warnings) document.warnings.emplace();
+    document.warnings->push_back(
+        {"description-incomplete",
+         failed.point + " could not be computed and is not shown: " + failed.reason});
+  }
 }
 
 }  // namespace bentaxis::study

@@ -51,16 +51,17 @@ std::vector<std::string> pressure_answers(const OperatingPoint& point,
 
 report::Document pressure_document(const OperatingPoint& point,
                                    const hydraulics::PowerBudget& power,
-                                   const report::Lines& program) {
+                                   const report::Lines& program,
+                                   const CaseDescription& description) {
   const Case& the_case = point.the_case();
-  report::Document document = case_document(the_case, the_case.name, program);
+  report::Document document = case_document(description, the_case.name, program);
   document.key_figures = {{"hydraulic model"}, "deg", oil_figures(point.state().summary, 1)};
   document.models = {report::model_of(point.analytic, {}), report::model_of(point.multibody, {})};
   document.runs = {hydraulic_section(the_case, point.state()),
                    power_section(the_case, point.state(), power), efficiency_section(point, power),
                    orders_section(the_case, point.state())};
   document.timing = timing_rows(the_case, point.state());
-  document.warnings = timing_warnings(*document.timing);
+  report::append(document.warnings, timing_warnings(*document.timing));
   document.verdict = report::Verdict{
       std::nullopt,
       fmt::format("Mean drive torque {:.5g} Nm by the analytic model, {:.5g} Nm by the multibody "
@@ -162,32 +163,7 @@ void add_overlay(report::Document& document, const OperatingPoint& first,
   document.runs->push_back(std::move(section));
 }
 
-void add_published(report::Document& document, const compare::Published& published,
-                   const OperatingPoint& point, const PartProgress& progress_of) {
-  const Case& the_case = point.the_case();
-  const std::string mismatch = published.mismatch(facts_of(the_case, the_case.analytic));
-  if (!mismatch.empty())
-    throw InputError(the_case.file.string() + ": the printed numbers are of another pump (" +
-                     published.name + "): " + mismatch);
-  compare::PublishedSection section =
-      judge_case(published, {&the_case, the_case.analytic, &point.analytic},
-                 {&the_case, the_case.multibody, &point.multibody}, progress_of);
-  for (auto& row : section.rows) {
-    const compare::PublishedNumber& number = row.number;
-    if (!number.find_pressure || row.verdict == compare::PublishedVerdict::not_comparable) continue;
-    try {
-      const double pressure = delivery_pressure_for(
-          point, number.quantity, number.low,
-          [&](const ResultTable& table) {
-            return compare::value_of(number, {&table, {}})->low;
-          },
-          progress_of);
-      row.where +=
-          fmt::format("; needs a mean delivery pressure of {:.1f} bar", pressure / kPascalPerBar);
-    } catch (const ComputationError& error) {
-      row.where += fmt::format("; the delivery pressure it needs was not found: {}", error.what());
-    }
-  }
+void add_published(report::Document& document, compare::PublishedSection section) {
   const std::string text =
       section.summary.text() +
       " Used to infer: the number went into the geometry of this case, which is not published. "
@@ -235,7 +211,7 @@ std::vector<std::pair<std::string, std::string>> pressure_csv(
 void add_suction_speed(report::Document& document, const OperatingPoint& point,
                        const SuctionSpeed& found) {
   document.timing->push_back(suction_speed_row(point.the_case(), found));
-  document.warnings = timing_warnings(*document.timing);
+  report::append(document.warnings, timing_warnings({document.timing->back()}));
 }
 
 std::string pressure_text(const OperatingPoint& point, const hydraulics::PowerBudget& power,

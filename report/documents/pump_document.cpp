@@ -1,7 +1,5 @@
 #include "bentaxis/study/pump_document.h"
 
-#include <utility>
-
 #include "bentaxis/study/assumptions.h"
 #include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/pump_scene.h"
@@ -12,23 +10,14 @@
 #include "key_figures.h"
 
 namespace bentaxis::study {
-ShownPump show_pump(Case the_case, const PartProgress& progress_of) {
-  require_memory(the_case, Kept::shown, Way::driven);
-  ShownPump pump{prepare(std::move(the_case), progress_of), {}, {}};
-  RunOptions options;
-  options.loads = true;
-  const Samples samples = pump.ready.samples(Way::driven);
-  pump.run = run(pump.ready, samples, options, progress_of);
-  pump.limits = analytic::check_validity(pump.ready.the_case, pump.ready.the_case.analytic, samples,
-                                         pump.run.table);
-  return pump;
-}
 
 report::Document pump_document(const ShownPump& pump, const report::Lines& program) {
   const Case& the_case = pump.ready.the_case;
   const ResultTable& table = pump.run.table;
-  report::Document document = case_document(the_case, the_case.name, program,
-                                            pump_scene(the_case, {{table, pump.run.loads}}));
+  const CaseDescription& description = pump.description;
+  report::Document document = case_document(
+      description, the_case.name, program,
+      pump_scene(the_case, {{table, pump.run.loads}}, nullptr, film_path_of(description)));
   document.verdict = {std::nullopt, "The analytic model alone: nothing is compared.", "One model"};
   document.key_figures = {{table.name}, "deg", turn_figures({&table})};
   document.validity = validity_section(pump.limits);
@@ -40,7 +29,7 @@ report::Document pump_document(const ShownPump& pump, const report::Lines& progr
     const hydraulics::SteadyState& state = *pump.ready.hydraulics;
     append(document.key_figures->rows, oil_figures(state.summary, 1));
     document.timing = timing_rows(the_case, state);
-    document.warnings = timing_warnings(*document.timing);
+    report::append(document.warnings, timing_warnings(*document.timing));
     document.runs->push_back(hydraulic_section(the_case, state));
     append(document.figures, hydraulic_figures(the_case, state));
   }

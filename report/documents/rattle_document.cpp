@@ -333,35 +333,10 @@ std::vector<report::Figure> map_figures(const RattleMap& map) {
 
 }  // namespace
 
-BoundaryAgreement boundary_agreement(const RattleMap& map) {
-  BoundaryAgreement found;
-  const std::vector<double>& speeds = map.options.speed_rpm;
-  for (const RattleRow& row : map.rows) {
-    const auto carries = [&](std::size_t j) { return row.up[j].kind == RattleClass::carries; };
-    for (std::size_t j = 0; j < row.up.size(); ++j) {
-      ++found.points;
-      if (carries(j) == carries_rigidly(row.least[j], row.greatest[j])) ++found.same;
-    }
-    for (const double criterion : row.boundary_rpm) {
-      BoundaryAgreement::Place place{row.delivery_bar, criterion, not_computed(), not_computed()};
-      for (std::size_t j = 0; j + 1 < row.up.size(); ++j) {
-        if (carries(j) == carries(j + 1)) continue;
-        const double middle = (speeds[j] + speeds[j + 1]) / 2;
-        if (is_computed(place.simulated_rpm) &&
-            std::abs(middle - criterion) >= std::abs(place.simulated_rpm - criterion))
-          continue;
-        place.simulated_rpm = middle;
-        place.spacing_rpm = speeds[j + 1] - speeds[j];
-      }
-      found.places.push_back(place);
-    }
-  }
-  return found;
-}
-
-report::Document rattle_document(const RattleMap& map, const report::Lines& program) {
+report::Document rattle_document(const RattleMap& map, const report::Lines& program,
+                                 const CaseDescription& description) {
   report::Document document =
-      case_document(map.the_case, map.the_case.name + ": where the gear rattles", program);
+      case_document(description, map.the_case.name + ": where the gear rattles", program);
   document.verdict = report::Verdict{map.agrees(), headline(map)};
   document.verdict->answers = answers_of(map);
   if (map.checks.empty()) {

@@ -208,9 +208,10 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
 
 report::Document sensitivity_document(const Sensitivities& found,
                                       const std::optional<SensitivityCheck>& check,
-                                      const report::Lines& program) {
+                                      const report::Lines& program,
+                                      const study::CaseDescription& description) {
   report::Document document =
-      study::case_document(found.base, "Sensitivities: " + found.base.name, program);
+      study::case_document(description, "Sensitivities: " + found.base.name, program);
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
                                      headline(found, check), check ? "" : "Sensitivities"};
   document.verdict->answers = answers_of(found);

@@ -565,12 +565,13 @@ report::Verdict verdict_of(const SimulationResult& r) {
 
 }  // namespace
 
-report::Document simulation_document(const SimulationResult& r, const report::Lines& program) {
+report::Document simulation_document(const SimulationResult& r, const report::Lines& program,
+                                     const CaseDescription& description) {
   const Case& the_case = r.ready.the_case;
   report::Document document;
   document.title = the_case.name;
   document.program = program;
-  describe_case(document, the_case, scene_of(r));
+  put_description(document, description, scene_of(r));
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =
@@ -587,7 +588,7 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
             "in time. Agreement says that both follow the same description; whether a pump does "
             "is another question (docs/limits.md).";
   document.key_figures = key_figures_of(r);
-  document.warnings = warnings_of(r);
+  report::append(document.warnings, warnings_of(r));
   if (!r.choice.only) document.common = common_inputs(the_case, true, r.oil_follows);
   document.checks = r.checks;
   document.models.emplace();

@@ -315,10 +315,11 @@ std::vector<std::string> sweep_answers(const SweepResult& result) {
   return answers;
 }
 
-report::Document sweep_document(const SweepResult& result, const report::Lines& program) {
+report::Document sweep_document(const SweepResult& result, const report::Lines& program,
+                                const study::CaseDescription& description) {
   const SweepView view(result);
   report::Document document =
-      study::case_document(result.base, result.base.name + ": a sweep", program);
+      study::case_document(description, result.base.name + ": a sweep", program);
   document.verdict = report::Verdict{result.agrees(), headline(result)};
   document.verdict->answers = sweep_answers(result);
   if (result.checks.empty()) {

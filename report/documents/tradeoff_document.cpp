@@ -241,11 +241,12 @@ report::Summary summary_of(const TradeoffStudy& study) {
 
 }  // namespace
 
-report::Document tradeoff_document(const TradeoffStudy& study, const report::Lines& program) {
+report::Document tradeoff_document(const TradeoffStudy& study, const report::Lines& program,
+                                   const CaseDescription& description) {
   report::Document document;
   document.title = study.the_case.name + ": speed against error";
   document.program = program;
-  describe_case(document, study.the_case);
+  put_description(document, description);
   document.summary = summary_of(study);
   if (!document.summary->groups.empty() && !document.summary->groups.front().lines.empty())
     document.verdict = report::Verdict{std::nullopt,

@@ -363,10 +363,10 @@ std::vector<report::Figure> band_figures(const UncertaintyResult& result) {
   return figures;
 }
 
-report::Document uncertainty_document(const UncertaintyResult& result,
-                                      const report::Lines& program) {
+report::Document uncertainty_document(const UncertaintyResult& result, const report::Lines& program,
+                                      const study::CaseDescription& description) {
   report::Document document = study::case_document(
-      result.the_case, result.the_case.name + ": what is not known exactly", program);
+      description, result.the_case.name + ": what is not known exactly", program);
   document.verdict = report::Verdict{std::nullopt, headline(result), "Uncertainty"};
   document.verdict->answers = answers_of(result);
   document.meaning =

@@ -12,15 +12,11 @@
 #include <string>
 #include <utility>
 
-#include "bentaxis/analytic/body_loads.h"
-#include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/report/document.h"
 #include "bentaxis/results/channels.h"
-#include "bentaxis/results/samples.h"
-#include "bentaxis/study/run.h"
 #include "pump_shapes.h"
 
 namespace bentaxis::study {
@@ -477,23 +473,17 @@ BodyLoadTable every(std::size_t step, const BodyLoadTable& table) {
   return thin;
 }
 
-// A path of at least so many points per turn is a curve to the eye, however few rows a run has.
-constexpr int kPathPerTurn = 1440, kPathPerPitch = 60;
 // Between neighbours of a path of continuous pressure lies a hundredth of it; more is a jump.
 constexpr double kPathJump = 0.1;
 
 /// Fh's point in the plate's x and y over one N-th of a turn, which all others repeat.
-std::vector<std::vector<std::array<double, 2>>> film_path(Case turn) {
-  const int pistons = turn.pump.geometry.pistons;
-  const int pitch = std::max(kPathPerPitch, kPathPerTurn / pistons);
-  turn.operation.samples_per_revolution = pistons * pitch;
-  const Samples samples = sample_case(turn, PressureTrace(turn.pressure));
-  const ResultTable table = analytic::run(turn, turn.analytic, samples);
+std::vector<std::vector<std::array<double, 2>>> film_path(int pistons, const ResultTable& table) {
+  const std::size_t pitch = table.rows() / static_cast<std::size_t>(pistons);
   const ChannelLayout layout(pistons);
   std::vector<std::array<double, 2>> points;
   double reach = 0;
-  for (int i = 0; i <= pitch; ++i) {
-    const auto row = static_cast<std::size_t>(i) % table.rows();
+  for (std::size_t i = 0; i <= pitch; ++i) {
+    const std::size_t row = i % table.rows();
     const double x = table.at(row, layout.xh()), y = table.at(row, layout.yh());
     if (!is_computed(x) || !is_computed(y)) return {};
     // To the nanometre: more cannot be seen, and the page is smaller.
@@ -512,29 +502,23 @@ std::vector<std::vector<std::array<double, 2>>> film_path(Case turn) {
   return pieces;
 }
 
-/// None where turns do not repeat by N-ths (teeth with errors of their own), or costs too much.
-void add_film_path(report::Scene& scene, const Case& the_case, const SceneMotion* motion) {
-  if (motion != nullptr || the_case.pump.gear.contact == ToothContact::teeth) return;
-  try {
-    scene.film_path = film_path(the_case);
-  } catch (const ComputationError&) {  // between the rows: their path is shown
-  }
-}
-
 }  // namespace
 
 report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs,
-                         const SceneMotion* motion) {
+                         const SceneMotion* motion, const ResultTable* path) {
   const std::size_t rows = runs.at(0).table.rows();
   for (const SceneRun& run : runs)
     if (run.table.rows() != rows || run.loads.rows() != rows)
       throw ComputationError("the pump in space: runs of different rows");
   std::vector<report::SceneSum> sums = sums_of(runs);
+  const auto add_film_path = [&](report::Scene& scene) {
+    if (path != nullptr) scene.film_path = film_path(the_case.pump.geometry.pistons, *path);
+  };
   const std::size_t step = (rows + kMaxSceneRows - 1) / kMaxSceneRows;
   if (step <= 1) {
     report::Scene scene = SceneMaker(the_case, runs).scene(motion);
     scene.sums = std::move(sums);
-    add_film_path(scene, the_case, motion);
+    add_film_path(scene);
     return scene;
   }
   std::deque<std::pair<ResultTable, BodyLoadTable>> thin;
@@ -550,33 +534,22 @@ report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs
   report::Scene scene = SceneMaker(the_case, thinned).scene(of_some);
   scene.curves = curves_of(thinned, of_some);
   scene.sums = std::move(sums);
-  add_film_path(scene, the_case, motion);
+  add_film_path(scene);
   scene.note += fmt::format(" Shown: one of {} rows.", step);
   return scene;
 }
 
-std::optional<report::Scene> analytic_scene(const Case& the_case) {
-  constexpr int kMaxSamples = 120;
-  try {
-    // Of a study of other cases the pressure of this one may not have been computed.
-    const PressureSpec& given = the_case.pressure;
-    const bool missing =
-        given.kind == PressureKind::hydraulic && !given.computed && given.curve.theta_deg.empty();
-    Case turn = missing ? prepare(the_case).the_case : the_case;
-    turn.operation.samples_per_revolution =
-        std::min(turn.operation.samples_per_revolution, kMaxSamples);
-    const Samples samples = sample_case(turn, PressureTrace(turn.pressure));
-    const ResultTable table = analytic::run(turn, turn.analytic, samples);
-    const BodyLoadTable loads = analytic::run_body_loads(turn, turn.analytic, samples);
-    const std::vector<SceneRun> runs = {{table, loads}};
-    report::Scene scene = pump_scene(turn, runs);
-    if (!scene.curves) scene.curves = curves_of(runs, nullptr);
-    return scene;
-  } catch (const ComputationError&) {
-    return std::nullopt;
-  } catch (const InputError&) {  // a pump whose base case is refused, of a study of others
-    return std::nullopt;
-  }
+const ResultTable* film_path_of(const CaseDescription& description) {
+  return description.film_path ? &*description.film_path : nullptr;
+}
+
+std::optional<report::Scene> scene_of(const CaseDescription& description) {
+  if (!description.turn) return std::nullopt;
+  const auto& [the_case, table, loads] = *description.turn;
+  const std::vector<SceneRun> runs = {{table, loads}};
+  report::Scene scene = pump_scene(the_case, runs, nullptr, film_path_of(description));
+  if (!scene.curves) scene.curves = curves_of(runs, nullptr);
+  return scene;
 }
 
 }  // namespace bentaxis::study

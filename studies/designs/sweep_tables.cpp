@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "bentaxis/files/csv.h"
+#include "bentaxis/files/csv_rows.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -32,36 +32,29 @@ std::string csv_head(const SweepPlan& plan) {
 
 std::string csv_rows(const SweepBlock& block, const SweepPlan& plan) {
   const std::size_t n = plan.varied.size(), m = plan.outputs.size();
-  std::string text;
+  CsvRows csv;
+  std::vector<std::string> values(n);
+  std::vector<double> results(m);
   for (std::size_t i = 0; i < block.designs; ++i) {
-    text += std::to_string(block.first + i);
     for (std::size_t k = 0; k < n; ++k)
-      text += "," + plan.varied[k].variable.text(block.values[i * n + k]);
-    for (std::size_t k = 0; k < m; ++k) {
-      text += ',';
-      append_number(text, block.results[i * m + k]);
-    }
-    text += "," + csv_text(block.reasons[i]) + "\n";
+      values[k] = plan.varied[k].variable.text(block.values[i * n + k]);
+    for (std::size_t k = 0; k < m; ++k) results[k] = block.results[i * m + k];
+    csv.row(block.first + i, values, results, block.reasons[i]);
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string checks_csv(const std::vector<SweepCheck>& checks, const SweepPlan& plan) {
-  std::string text = "design,output,own,other,scale,error,agrees,own_reason,other_reason\n";
+  CsvRows csv("design,output,own,other,scale,error,agrees,own_reason,other_reason");
   for (const SweepCheck& c : checks)
     for (std::size_t k = 0; k < plan.outputs.size(); ++k) {
-      text += std::to_string(c.design) + "," + csv_text(plan.outputs[k].name);
       const bool compared = c.scales[k] != 0;
-      for (const double value : {c.own[k], c.values[k], compared ? c.scales[k] : not_computed(),
-                                 compared ? c.error(k) : not_computed()}) {
-        text += ',';
-        append_number(text, value);
-      }
       const bool agrees = c.own_reason.empty() == c.reason.empty() && c.error(k) <= kCheckTolerance;
-      text +=
-          fmt::format(",{},{},{}\n", agrees ? 1 : 0, csv_text(c.own_reason), csv_text(c.reason));
+      csv.row(c.design, plan.outputs[k].name, c.own[k], c.values[k],
+              compared ? c.scales[k] : not_computed(), compared ? c.error(k) : not_computed(),
+              agrees ? 1 : 0, c.own_reason, c.reason);
     }
-  return text;
+  return std::move(csv).text();
 }
 
 struct ReadBlock {

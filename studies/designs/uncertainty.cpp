@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bentaxis/designs/points.h"
+#include "bentaxis/files/csv_rows.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/failed_point.h"
@@ -145,11 +146,6 @@ SampledOutputs without_curves(const SampledOutputs& sampled, std::size_t outputs
   return few;
 }
 
-void append_field(std::string& text, double value) {
-  text += ",";
-  append_number(text, value);
-}
-
 // Refuses what leaves too little to speak of.
 void check(const SampledOutputs& sampled, const UncertaintyOptions& options) {
   const std::size_t without = sampled.infeasible.size();
@@ -252,9 +248,9 @@ UncertaintyResult uncertainty(const Case& the_case, const UncertaintyOptions& op
 }
 
 std::string outputs_csv(const UncertaintyResult& result) {
-  std::string text =
+  CsvRows csv(
       "output,unit,nominal,mean,mean_error,deviation,deviation_error,low,low_from,low_to,median,"
-      "median_from,median_to,high,high_from,high_to,first_order_value,first_order_deviation\n";
+      "median_from,median_to,high,high_from,high_to,first_order_value,first_order_deviation");
   const FirstOrder& first = result.first_order;
   for (std::size_t o = 0; o < result.outputs.size(); ++o) {
     const auto& [output, nominal, s] = result.outputs[o];
@@ -264,46 +260,42 @@ std::string outputs_csv(const UncertaintyResult& result) {
     const bool is_there = !first.values.empty();
     numbers.push_back(is_there ? first.values[o] : not_computed());
     numbers.push_back(is_there ? first.deviations[o] : not_computed());
-    text += output.name + "," + output.unit;
-    for (const double number : numbers) append_field(text, number);
-    text += "\n";
+    csv.row(output.name, output.unit, numbers);
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string bands_csv(const UncertaintyResult& result) {
   if (result.bands.empty()) return "";
-  std::string text = "theta_deg";
+  std::string header = "theta_deg";
   for (const CurveBand& band : result.bands)
     for (const char* what : {"_nominal", "_low", "_median", "_high"})
-      text += "," + band.channel.name + what;
-  text += "\n";
+      header += "," + band.channel.name + what;
+  CsvRows csv(header);
   for (std::size_t row = 0; row < result.theta_deg.size(); ++row) {
-    append_number(text, result.theta_deg[row]);
+    std::vector<double> numbers = {result.theta_deg[row]};
     for (const CurveBand& band : result.bands)
       for (const auto* curve : {&band.nominal, &band.low, &band.median, &band.high})
-        append_field(text, (*curve)[row]);
-    text += "\n";
+        numbers.push_back((*curve)[row]);
+    csv.row(numbers);
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string samples_csv(const UncertaintyResult& result) {
   const UncertainVariables& variables = result.variables;
-  std::string text = "sample";
-  for (const Variable& v : variables.variables) text += "," + v.name();
-  for (const UncertainOutput& o : result.outputs) text += "," + o.output.name;
-  text += "\n";
+  std::string header = "sample";
+  for (const Variable& v : variables.variables) header += "," + v.name();
+  for (const UncertainOutput& o : result.outputs) header += "," + o.output.name;
+  CsvRows csv(header);
+  const auto outputs = static_cast<std::ptrdiff_t>(result.outputs.size());
   auto value = result.sampled.results.begin();
   for_each_kept(variables, result.options, result.sampled,
                 [&](std::size_t sample, const std::vector<double>& values) {
-                  text += std::to_string(sample);
-                  for (const double v : values) append_field(text, v);
-                  for (std::size_t o = 0; o < result.outputs.size(); ++o)
-                    append_field(text, *value++);
-                  text += "\n";
+                  csv.row(sample, values, std::vector<double>(value, value + outputs));
+                  value += outputs;
                 });
-  return text;
+  return std::move(csv).text();
 }
 
 }  // namespace bentaxis::designs

@@ -6,6 +6,7 @@
 
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/rattle.h"
 #include "rattle_pieces.h"
 
 namespace bentaxis::study {
@@ -51,6 +52,32 @@ std::pair<double, double> rigid_extremes(const PreparedCase& ready) {
   refine(at.first, 1, extremes.first);
   refine(at.second, -1, extremes.second);
   return extremes;
+}
+
+BoundaryAgreement boundary_agreement(const RattleMap& map) {
+  BoundaryAgreement found;
+  const std::vector<double>& speeds = map.options.speed_rpm;
+  for (const RattleRow& row : map.rows) {
+    const auto carries = [&](std::size_t j) { return row.up[j].kind == RattleClass::carries; };
+    for (std::size_t j = 0; j < row.up.size(); ++j) {
+      ++found.points;
+      if (carries(j) == carries_rigidly(row.least[j], row.greatest[j])) ++found.same;
+    }
+    for (const double criterion : row.boundary_rpm) {
+      BoundaryAgreement::Place place{row.delivery_bar, criterion, not_computed(), not_computed()};
+      for (std::size_t j = 0; j + 1 < row.up.size(); ++j) {
+        if (carries(j) == carries(j + 1)) continue;
+        const double middle = (speeds[j] + speeds[j + 1]) / 2;
+        if (is_computed(place.simulated_rpm) &&
+            std::abs(middle - criterion) >= std::abs(place.simulated_rpm - criterion))
+          continue;
+        place.simulated_rpm = middle;
+        place.spacing_rpm = speeds[j + 1] - speeds[j];
+      }
+      found.places.push_back(place);
+    }
+  }
+  return found;
 }
 
 }  // namespace bentaxis::study

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "bentaxis/files/csv.h"
+#include "bentaxis/files/csv_rows.h"
 #include "bentaxis/files/input_file.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/whole_file.h"
@@ -137,27 +137,23 @@ bool read_row(std::istream& in, const std::string& from, RattleRow& row) {
 
 std::string rattle_csv(const RattleMap& map) {
   constexpr std::size_t kColumns = 22;
-  std::string text =
+  CsvRows csv(
       "delivery_bar,speed_rpm,sweep,class,share_apart,share_plus,share_minus,largest_N,mean_N,"
       "largest_over_mean,least_of_turns_N,impacts_per_turn,largest_impulse_Ns,turns_observed,"
       "turns_before,period_turns,lag_rad,lag_rate_rad_per_s,rigid_least_N,rigid_greatest_N,"
-      "two_states,reason\n";
+      "two_states,reason");
   for (const RattleRow& row : map.rows)
     for (std::size_t j = 0; j < row.up.size(); ++j)
       for (const auto& [name, points] : {std::pair{"up", &row.up}, {"down", &row.down}}) {
         const RattlePoint& p = (*points)[j];
-        text += number_text(row.delivery_bar) + "," + number_text(map.options.speed_rpm[j]) + "," +
-                name + "," + to_string(p.kind);
-        append(text,
-               {p.apart, p.plus, p.minus, p.largest, p.mean, p.over_mean(), p.least_turn, p.impacts,
-                p.largest_impulse, static_cast<double>(p.observed), static_cast<double>(p.passed),
-                static_cast<double>(p.period), p.lag, p.lag_rate, row.least[j], row.greatest[j]});
-        text += two_states(row.up[j], row.down[j]) ? ",1,\n" : ",0,\n";
+        csv.row(row.delivery_bar, map.options.speed_rpm[j], name, to_string(p.kind), p.apart,
+                p.plus, p.minus, p.largest, p.mean, p.over_mean(), p.least_turn, p.impacts,
+                p.largest_impulse, p.observed, p.passed, p.period, p.lag, p.lag_rate, row.least[j],
+                row.greatest[j], two_states(row.up[j], row.down[j]) ? 1 : 0, "");
       }
   for (const FailedPoint& failed : map.failed)
-    text +=
-        number_text(failed.value) + std::string(kColumns - 1, ',') + csv_text(failed.reason) + "\n";
-  return text;
+    csv.row(failed.value, std::vector<std::string>(kColumns - 2), failed.reason);
+  return std::move(csv).text();
 }
 
 RattleFile::RattleFile(std::filesystem::path file, std::string from)

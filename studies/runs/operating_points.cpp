@@ -7,7 +7,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "bentaxis/files/csv.h"
+#include "bentaxis/files/csv_rows.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -101,28 +101,20 @@ TorqueCurve torque_curve(const Case& the_case, const std::vector<double>& delive
 }
 
 std::string to_csv(const TorqueCurve& curve) {
-  std::string text =
+  CsvRows csv(
       "delivery_bar,mean_Td_analytic_Nm,mean_Td_multibody_Nm,ideal_Td_Nm,flow_l_per_min,"
-      "volumetric_efficiency_percent,flow_at_delivery_l_per_min,reason\n";
-  const auto add = [&](std::initializer_list<double> row, const std::string& reason) {
-    for (const double value : row) {
-      append_number(text, value);
-      text += ',';
-    }
-    text += csv_text(reason) + '\n';
-  };
+      "volumetric_efficiency_percent,flow_at_delivery_l_per_min,reason");
   const double none = not_computed();
   auto failed = curve.failed.begin();
   for (std::size_t i = 0; i <= curve.bar.size(); ++i) {
     for (; failed != curve.failed.end() && (i == curve.bar.size() || failed->value < curve.bar[i]);
          ++failed)
-      add({failed->value, none, none, none, none, none, none}, failed->reason);
+      csv.row(failed->value, none, none, none, none, none, none, failed->reason);
     if (i < curve.bar.size())
-      add({curve.bar[i], curve.analytic[i], curve.multibody[i], curve.ideal[i], curve.flow[i],
-           curve.efficiency[i], curve.flow_at_delivery[i]},
-          "");
+      csv.row(curve.bar[i], curve.analytic[i], curve.multibody[i], curve.ideal[i], curve.flow[i],
+              curve.efficiency[i], curve.flow_at_delivery[i], "");
   }
-  return text;
+  return std::move(csv).text();
 }
 
 std::string torque_curve_text(const TorqueCurve& curve) {

@@ -11,6 +11,7 @@
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/achieved_error.h"
+#include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/published_section.h"
 #include "bentaxis/study/rounding_spread.h"
 #include "bentaxis/study/timing.h"
@@ -271,6 +272,12 @@ void Maker::compare_tables() {
   r.budget = compare_budgets(std::move(*analytic_budget_), std::move(*multibody_budget_),
                              r.tolerance, zero_scales_);
   r.checks.insert(r.checks.end(), r.budget->checks.begin(), r.budget->checks.end());
+  r.budget->analytic_oil = pump_power(r.first, progress_of_("power of the oil"));
+  // Both models get the same oil, unless they are given different cases.
+  const bool same = r.first.hydraulics && r.second.hydraulics &&
+                    r.first.hydraulics->equations == r.second.hydraulics->equations;
+  r.budget->multibody_oil =
+      same ? r.budget->analytic_oil : pump_power(r.second, progress_of_("power of the other oil"));
 }
 
 // Takes the difference apart where the models' assumptions differ.
@@ -651,6 +658,12 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
                                        : PreparedCase{first.the_case, first.hydraulics,
                                                       PressureTrace(first.the_case.pressure)};
   return Maker(std::move(first), std::move(second), options, progress_of).make();
+}
+
+CaseDescription describe(const ComparisonResult& result, const PartProgress& progress_of) {
+  const bool all_loads = result.multibody_loads.rows() > 0;
+  return describe(result.first.the_case, progress_of,
+                  all_loads ? Described::without_turn : Described::all);
 }
 
 }  // namespace bentaxis::study

@@ -8,6 +8,7 @@
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/published_section.h"
 #include "bentaxis/study/run.h"
 
 namespace bentaxis::study {
@@ -118,6 +119,42 @@ InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& option
                       progress_of("integrated, spinning pistons"));
   s.costs = scene_costs(the_case);
   return s;
+}
+
+compare::PublishedSection judge_inertia(const InertiaStudy& s,
+                                        const compare::Published& published) {
+  compare::PublishedSection all;
+  for (const InertiaRun& run : s.one_piston) {
+    if (run.loaded) continue;
+    const Case bare = without_loads(at_speed(s.the_case, run.speed_rpm));
+    for (const bool real_pistons : {false, true}) {
+      auto section = compare::judge_published(
+          published, {"analytic", "multibody"},
+          [&](const std::string& model, const compare::PublishedVariant& variant) {
+            const auto set = variant.set.find("real_pistons");
+            const bool real = set == variant.set.end() ? real_pistons : set->second != 0;
+            Assumptions assumptions = bare.analytic;
+            assumptions.inertia = real ? PistonInertia::real : PistonInertia::lumped;
+            return compare::PublishedRun{model == "analytic"
+                                             ? (real ? &run.analytic_real : &run.analytic_lumped)
+                                             : (real ? &run.multibody_real : &run.multibody_lumped),
+                                         facts_of(bare, assumptions)};
+          },
+          "inertia");
+      for (auto& row : section.rows) {
+        // What holds at any condition says nothing of this study; rows that take one kind of piston
+        // from the other are the same for both.
+        if (row.verdict == compare::PublishedVerdict::not_comparable ||
+            row.number.condition.empty() || (real_pistons && !row.number.minus.empty()))
+          continue;
+        if (row.number.minus.empty()) row.at += real_pistons ? "; real pistons" : "; two masses";
+        all.rows.push_back(std::move(row));
+      }
+      all.models = section.models;
+    }
+  }
+  for (const auto& row : all.rows) all.summary.count(row);
+  return all;
 }
 
 }  // namespace bentaxis::study

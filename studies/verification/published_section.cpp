@@ -1,5 +1,7 @@
 #include "bentaxis/study/published_section.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -109,6 +111,36 @@ std::optional<compare::PublishedTable> published_section(const std::filesystem::
                            " A window is the range of a figure's axis, which the curve must not "
                            "leave; it is not the curve.";
   return compare::PublishedTable{text, std::move(section)};
+}
+
+compare::PublishedSection judge_point(const compare::Published& published,
+                                      const OperatingPoint& point,
+                                      const PartProgress& progress_of) {
+  const Case& the_case = point.the_case();
+  const std::string mismatch = published.mismatch(facts_of(the_case, the_case.analytic));
+  if (!mismatch.empty())
+    throw InputError(the_case.file.string() + ": the printed numbers are of another pump (" +
+                     published.name + "): " + mismatch);
+  compare::PublishedSection section =
+      judge_case(published, {&the_case, the_case.analytic, &point.analytic},
+                 {&the_case, the_case.multibody, &point.multibody}, progress_of);
+  for (auto& row : section.rows) {
+    const compare::PublishedNumber& number = row.number;
+    if (!number.find_pressure || row.verdict == compare::PublishedVerdict::not_comparable) continue;
+    try {
+      const double pressure = delivery_pressure_for(
+          point, number.quantity, number.low,
+          [&](const ResultTable& table) {
+            return compare::value_of(number, {&table, {}})->low;
+          },
+          progress_of);
+      row.where +=
+          fmt::format("; needs a mean delivery pressure of {:.1f} bar", pressure / kPascalPerBar);
+    } catch (const ComputationError& error) {
+      row.where += fmt::format("; the delivery pressure it needs was not found: {}", error.what());
+    }
+  }
+  return section;
 }
 
 }  // namespace bentaxis::study

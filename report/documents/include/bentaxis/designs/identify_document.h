@@ -5,11 +5,17 @@
 
 #include "bentaxis/designs/identify.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/case_description.h"
 
 namespace bentaxis::designs {
 
 report::Document identify_document(const DataModel& model, const Identification& result,
-                                   const report::Lines& program);
+                                   const report::Lines& program,
+                                   const study::CaseDescription& description);
+[[deprecated("pass describe(..)")]] inline report::Document identify_document(
+    const DataModel& model, const Identification& result, const report::Lines& program) {
+  return identify_document(model, result, program, study::describe(model.base()));
+}
 /// "mean:Td (low)", "Rb1_x1_N over the turn at 30 deg", "prior of pump.tilt_deg".
 std::string name_of(const DataModel& model, const WorstResidual& worst);
 /// For the terminal.

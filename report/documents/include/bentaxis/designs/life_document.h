@@ -5,11 +5,17 @@
 
 #include "bentaxis/designs/duty_cycle.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/case_description.h"
 
 namespace bentaxis::designs {
 
 /// @param program  names and versions
-report::Document life_document(const LifeStudy& study, const report::Lines& program);
+report::Document life_document(const LifeStudy& study, const report::Lines& program,
+                               const study::CaseDescription& description);
+[[deprecated("pass describe(..)")]] inline report::Document life_document(
+    const LifeStudy& study, const report::Lines& program) {
+  return life_document(study, program, bentaxis::study::describe(study.the_case));
+}
 
 /// One row of the duty cycle a line: shares, loads, the life each uses up.
 std::string life_csv(const LifeStudy& study);

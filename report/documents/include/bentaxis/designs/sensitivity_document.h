@@ -6,13 +6,20 @@
 
 #include "bentaxis/designs/sensitivity.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/case_description.h"
 
 namespace bentaxis::designs {
 
 /// What has no influence is named in a line, not in the tables.
 report::Document sensitivity_document(const Sensitivities& found,
                                       const std::optional<SensitivityCheck>& check,
-                                      const report::Lines& program);
+                                      const report::Lines& program,
+                                      const study::CaseDescription& description);
+[[deprecated("pass describe(..)")]] inline report::Document sensitivity_document(
+    const Sensitivities& found, const std::optional<SensitivityCheck>& check,
+    const report::Lines& program) {
+  return sensitivity_document(found, check, program, study::describe(found.base));
+}
 /// One row per output and parameter.
 std::string sensitivity_csv(const Sensitivities& found,
                             const std::optional<SensitivityCheck>& check);

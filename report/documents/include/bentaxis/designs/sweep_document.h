@@ -6,6 +6,7 @@
 
 #include "bentaxis/designs/sweep.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/case_description.h"
 
 namespace bentaxis::designs {
 
@@ -20,6 +21,11 @@ std::vector<std::string> sweep_answers(const SweepResult& result);
 /// tables of ranges, best designs, reasons of infeasible ones and what the other model says. Where
 /// there are more designs than a picture shows, evenly chosen ones are drawn, and a note says so.
 /// @param program  what computed it: names and versions
-report::Document sweep_document(const SweepResult& result, const report::Lines& program);
+report::Document sweep_document(const SweepResult& result, const report::Lines& program,
+                                const study::CaseDescription& description);
+[[deprecated("pass describe(..)")]] inline report::Document sweep_document(
+    const SweepResult& result, const report::Lines& program) {
+  return sweep_document(result, program, study::describe(result.base));
+}
 
 }  // namespace bentaxis::designs

@@ -6,12 +6,17 @@
 
 #include "bentaxis/designs/uncertainty.h"
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/case_description.h"
 
 namespace bentaxis::designs {
 
 /// @param program  what computed it: names and versions
-report::Document uncertainty_document(const UncertaintyResult& result,
-                                      const report::Lines& program);
+report::Document uncertainty_document(const UncertaintyResult& result, const report::Lines& program,
+                                      const study::CaseDescription& description);
+[[deprecated("pass describe(..)")]] inline report::Document uncertainty_document(
+    const UncertaintyResult& result, const report::Lines& program) {
+  return uncertainty_document(result, program, study::describe(result.the_case));
+}
 
 /// In words, for a terminal.
 std::string uncertainty_text(const UncertaintyResult& result);

@@ -4,12 +4,18 @@
 #include <string>
 
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/case_description.h"
 #include "bentaxis/study/comparison.h"
 
 namespace bentaxis::study {
 
 /// @param program  what computed it: names and versions
-report::Document comparison_document(const ComparisonResult& result, const report::Lines& program);
+report::Document comparison_document(const ComparisonResult& result, const report::Lines& program,
+                                     const CaseDescription& description);
+[[deprecated("pass describe(..)")]] inline report::Document comparison_document(
+    const ComparisonResult& result, const report::Lines& program) {
+  return comparison_document(result, program, study::describe(result));
+}
 
 /// The curves that its figures name: of both models, their budgets, and the reference they are held
 /// to.

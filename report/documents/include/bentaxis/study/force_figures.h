@@ -9,6 +9,7 @@
 #include "bentaxis/report/document.h"
 #include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/study/shown_pump.h"
 
 namespace bentaxis::study {
 
@@ -28,10 +29,11 @@ struct DiagramRun {
 /// the table lacks is left out.
 std::vector<report::Figure> force_figures(const DiagramRun& run);
 
-/// Those of one turn by the analytic model alone.
-/// @param the_case  whose chamber pressure is there (study::prepare)
-/// @throws InputError, ComputationError
-std::vector<report::Figure> analytic_force_figures(const Case& the_case);
+[[deprecated("use show_pump and force_figures")]] inline std::vector<report::Figure>
+analytic_force_figures(const Case& the_case) {
+  const ShownPump pump = show_pump(the_case);
+  return force_figures({pump.ready.the_case, pump.run.table, &pump.run.loads});
+}
 
 /// The force polygon of a body, tip to tail in two or three planes of S2, at angles over the run.
 /// Applied loads come first and reactions last, so that the reactions close it; loads of one name

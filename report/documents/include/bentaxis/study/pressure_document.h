@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "bentaxis/report/document.h"
+#include "bentaxis/study/case_description.h"
 #include "bentaxis/study/operating_points.h"
+#include "bentaxis/study/published_section.h"
 #include "bentaxis/study/timing.h"
 
 namespace bentaxis::study {
@@ -17,7 +19,13 @@ namespace bentaxis::study {
 /// @param program  what computed it: names and versions
 report::Document pressure_document(const OperatingPoint& point,
                                    const hydraulics::PowerBudget& power,
-                                   const report::Lines& program);
+                                   const report::Lines& program,
+                                   const CaseDescription& description);
+[[deprecated("pass describe(..)")]] inline report::Document pressure_document(
+    const OperatingPoint& point, const hydraulics::PowerBudget& power,
+    const report::Lines& program) {
+  return pressure_document(point, power, program, describe(point.the_case()));
+}
 
 /// Adds torque and flow against delivery pressure (Fig. 18).
 void add_curve(report::Document& document, const TorqueCurve& curve);
@@ -25,11 +33,13 @@ void add_curve(report::Document& document, const TorqueCurve& curve);
 /// @throws InputError where their samples differ
 void add_overlay(report::Document& document, const OperatingPoint& first,
                  const OperatingPoint& second);
-/// Adds how the operating point stands against printed numbers, with the delivery pressure that a
-/// number needs where the file asks for it.
-/// @throws InputError where the numbers are of another pump
-void add_published(report::Document& document, const compare::Published& published,
-                   const OperatingPoint& point, const PartProgress& progress_of = silent());
+/// Adds how the operating point stands against printed numbers (judge_point).
+void add_published(report::Document& document, compare::PublishedSection section);
+[[deprecated("use judge_point")]] inline void add_published(
+    report::Document& document, const compare::Published& published, const OperatingPoint& point,
+    const PartProgress& progress_of = silent()) {
+  add_published(document, judge_point(published, point, progress_of));
+}
 /// Its rows that the case can be held to, for a terminal.
 std::string text_of(const compare::PublishedSection& section);
 /// Adds pressures from rest (hydraulics::transient_from_rest).

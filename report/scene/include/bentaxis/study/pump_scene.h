@@ -8,6 +8,7 @@
 #include "bentaxis/report/scene.h"
 #include "bentaxis/results/body_loads.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/study/case_description.h"
 
 namespace bentaxis::study {
 
@@ -31,12 +32,21 @@ inline constexpr std::size_t kMostSceneRows [[deprecated("use kMaxSceneRows")]] 
 ///                the channels of these
 /// @param motion  of a simulation; otherwise shaft and block turn by the tables' angle, which is
 ///                the axis of the curves
+/// @param path    a turn in small steps, whose first N-th is the path of the film force's point
 /// @throws ComputationError where runs differ in their rows
 report::Scene pump_scene(const Case& the_case, const std::vector<SceneRun>& runs,
-                         const SceneMotion* motion = nullptr);
+                         const SceneMotion* motion = nullptr, const ResultTable* path = nullptr);
 
-/// By the analytic model alone, over one turn of at most 120 samples, with curves of its own; a
-/// hydraulic pressure that has not been computed is. None where the case has no answer.
-std::optional<report::Scene> analytic_scene(const Case& the_case);
+/// Of a description: the film force's path for pump_scene, nullptr where there is none.
+const ResultTable* film_path_of(const CaseDescription& description);
+
+/// By the analytic model alone, of the description's turn, with curves of its own. None where the
+/// description has no turn.
+std::optional<report::Scene> scene_of(const CaseDescription& description);
+
+[[deprecated("use describe and scene_of")]] inline std::optional<report::Scene> analytic_scene(
+    const Case& the_case) {
+  return scene_of(describe(the_case));
+}
 
 }  // namespace bentaxis::study

@@ -1,6 +1,7 @@
 // Where the gear rattles: what its teeth do over speed and delivery pressure.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -112,5 +113,17 @@ Case rattle_case(Case the_case, double speed_rpm, double delivery_bar);
 /// `progress` throws, when rows under way are given up
 RattleMap rattle_map(const Case& the_case, const RattleOptions& options,
                      const RattleKeeping& keeping = {}, const PartProgress& progress_of = silent());
+
+/// How the simulated boundary stands to the criterion of rigid teeth, of the upward sweep.
+struct BoundaryAgreement {
+  std::size_t points = 0, same = 0;  ///< of those, the criterion says the same whether teeth carry
+  /// Per row and boundary of the criterion: where the simulated class changes, half way between two
+  /// speeds; not_computed() where it does not.
+  struct Place {
+    double delivery_bar, criterion_rpm, simulated_rpm, spacing_rpm;
+  };
+  std::vector<Place> places;
+};
+BoundaryAgreement boundary_agreement(const RattleMap& map);
 
 }  // namespace bentaxis::study

@@ -1,10 +1,13 @@
 // What the drive's torque and power go into, over a turn, by both models.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "bentaxis/compare/comparison.h"
 #include "bentaxis/compare/split.h"
+#include "bentaxis/hydraulics/power.h"
 #include "bentaxis/results/result_table.h"
 #include "bentaxis/study/run.h"
 
@@ -16,6 +19,9 @@ struct BudgetComparison {
   ResultTable analytic, multibody;
   compare::Comparison comparison;
   std::vector<compare::Check> checks;  ///< each model's parts against its own Td, Tcs and Fh
+  /// The oil's energy balance, with the hydraulic model: of the analytic and of the multibody
+  /// model's case.
+  std::optional<hydraulics::PumpPower> analytic_oil = {}, multibody_oil = {};
 };
 
 /// Compares each line with its own peak; what is round-off of the case's loads counts as nothing.

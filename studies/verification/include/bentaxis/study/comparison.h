@@ -14,6 +14,7 @@
 #include "bentaxis/results/remarks.h"
 #include "bentaxis/study/achieved_error.h"
 #include "bentaxis/study/budget.h"
+#include "bentaxis/study/case_description.h"
 #include "bentaxis/study/channel_choice.h"
 #include "bentaxis/study/lost_digits.h"
 #include "bentaxis/study/regression.h"
@@ -109,5 +110,9 @@ ComparisonResult compare_models(Case analytic_case, std::optional<Case> multibod
 
 /// @throws InputError where two cases cannot be compared angle by angle
 void check_same_run(const Case& first, const Case& second);
+
+/// What a report of it says of the case: its own runs have the turn where they have all loads.
+CaseDescription describe(const ComparisonResult& result,
+                         const PartProgress& progress_of = silent());
 
 }  // namespace bentaxis::study

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bentaxis/compare/published.h"
 #include "bentaxis/study/failed_point.h"
 #include "bentaxis/study/inertia.h"
 
@@ -55,5 +56,9 @@ inline constexpr double kTwoMassesDo = 0.01;
 ///         ComputationError
 InertiaStudy run_inertia_study(const Case& as_read, const InertiaOptions& options,
                                const PartProgress& progress_of);
+
+/// Holds the unloaded runs of both kinds of piston to the printed numbers of their speeds.
+compare::PublishedSection judge_inertia(const InertiaStudy& study,
+                                        const compare::Published& published);
 
 }  // namespace bentaxis::study

@@ -11,6 +11,7 @@
 #include "bentaxis/compare/published.h"
 #include "bentaxis/pump/case.h"
 #include "bentaxis/results/result_table.h"
+#include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/progress.h"
 #include "bentaxis/study/run.h"
 
@@ -62,6 +63,13 @@ compare::PublishedSection judge_case(const compare::Published& published,
                                      const PublishedInput& analytic,
                                      const PublishedInput& multibody,
                                      const PartProgress& progress_of = silent());
+
+/// Holds both models at an operating point to printed numbers, with the delivery pressure that a
+/// number needs where the file asks for it.
+/// @throws InputError where the numbers are of another pump
+compare::PublishedSection judge_point(const compare::Published& published,
+                                      const OperatingPoint& point,
+                                      const PartProgress& progress_of = silent());
 
 /// The section for the first pump of a folder of published data that both cases are one of, by
 /// their facts; nothing where there is none or no folder.

@@ -1,4 +1,4 @@
-#include "bentaxis/study/paper_figures.h"
+#include "bentaxis/study/paper_study.h"
 
 #include <fmt/format.h>
 
@@ -14,10 +14,16 @@
 #include "bentaxis/study/inertia.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/published_section.h"
-#include "paper_drawings.h"
 
 namespace bentaxis::study {
 namespace {
+
+std::vector<double> values_of(const ResultTable& table, const std::string& name) {
+  std::vector<double> values;
+  const std::size_t column = table.find(name);
+  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.at(row, column));
+  return values;
+}
 
 Model the_other(Model model) {
   return model == Model::analytic ? Model::multibody : Model::analytic;
@@ -66,11 +72,11 @@ class AtCondition {
 
   /// A column of the model's turn, else of the hydraulic one's. @throws InputError
   std::vector<double> column(const compare::PublishedRun& run, const std::string& name) const {
-    if (run.table->find(name) < run.table->columns()) return report::values_of(*run.table, name);
+    if (run.table->find(name) < run.table->columns()) return values_of(*run.table, name);
     if (ready_.hydraulics) {
       const ResultTable& oil = ready_.hydraulics->table;
       if (oil.find(name) < oil.columns() && oil.rows() == run.table->rows())
-        return report::values_of(oil, name);
+        return values_of(oil, name);
     }
     throw InputError(list_.file.string() + ": no channel \"" + name + "\" in " +
                      as_read_.file.string());
@@ -142,19 +148,11 @@ class PaperRun {
         break;
       }
       case PaperKind::block_from_the_front:
-        add_drawing(figure, block_from_the_front(pump(figure), *turn(figure).table, figure.angles));
-        for (const double angle : figure.angles)
-          s_.drawings.push_back({fmt::format("{}_shares_at_{:g}_deg", figure.id(), angle),
-                                 fmt::format("{}: each piston's share of the torque at {:g} deg",
-                                             figure.name(), angle),
-                                 figure.name(),
-                                 pistons_shares(pump(figure), *turn(figure).table, angle)});
+      case PaperKind::piston_in_two_planes:
+        s_.turns.push_back({figure, pump(figure), *turn(figure).table});
         break;
       case PaperKind::force_triangle:
-        add_drawing(figure, force_triangle(pump(figure), massless(figure), figure.angles));
-        break;
-      case PaperKind::piston_in_two_planes:
-        add_drawing(figure, piston_in_two_planes(pump(figure), *turn(figure).table, figure.angles));
+        s_.turns.push_back({figure, pump(figure), massless(figure)});
         break;
     }
   }
@@ -274,11 +272,6 @@ class PaperRun {
       }
     }
     s_.panels.push_back(std::move(drawn));
-  }
-
-  void add_drawing(const PaperFigure& figure, report::DrawingFigure content) {
-    s_.drawings.push_back({figure.id(), figure.name() + ": " + figure.shows, figure.name(),
-                           std::move(content), figure.note});
   }
 
   // Those figures of the list that a place in the paper names: "Fig. 14, 27".

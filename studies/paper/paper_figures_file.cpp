@@ -6,7 +6,7 @@
 
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/pump/error.h"
-#include "bentaxis/study/paper_figures.h"
+#include "bentaxis/study/paper_study.h"
 
 namespace bentaxis::study {
 namespace {
