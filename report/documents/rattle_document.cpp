@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "bentaxis/pump/units.h"
 #include "bentaxis/study/failed_points.h"
 #include "document_parts.h"
 

@@ -247,10 +247,9 @@ std::vector<double> UncertainVariables::covariances() const {
 UncertainVariables uncertain_variables(const Case& the_case) {
   const UncertaintyData& data = the_case.uncertainty;
   if (data.parameters.empty())
-    throw InputError(
-        the_case.file.string() +
-        ": needs [uncertainty]: what is not known exactly, "
-        "\"pump.tilt_deg\" = \"normal(40, 0.1)\"; or give it by --vary");
+    throw InputError(the_case.file.string() +
+                     ": needs [uncertainty]: what is not known exactly, "
+                     "\"pump.tilt_deg\" = \"normal(40, 0.1)\"; or give it by --vary");
   UncertainVariables all;
   const auto place_of = [&](const std::string& name) {
     const auto found = std::find_if(all.variables.begin(), all.variables.end(),
