@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -30,6 +31,7 @@
 #include "bentaxis/files/new_folder.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/files/run_lock.h"
+#include "bentaxis/files/staging_folder.h"
 #include "bentaxis/files/toml_reader.h"
 #include "bentaxis/files/whole_file.h"
 #include "bentaxis/pump/characters.h"
@@ -137,6 +139,24 @@ TEST_F(OutputFolderTest, TwoWritersOfOneProcessDoNotMix) {
   EXPECT_EQ(text("a"), "of the first");
   EXPECT_EQ(text("b"), "of the first");
   EXPECT_THAT(contents(), UnorderedElementsAre("a", "b"));
+}
+
+// Those who clean up may meet a folder that was made and is not locked yet.
+TEST_F(OutputFolderTest, AStagingFolderIsThereThoughOthersCleanUp) {
+  std::atomic<bool> done = false;
+  std::vector<std::thread> others;
+  for (int i = 0; i < 3; ++i)
+    others.emplace_back([&] {
+      while (!done) StagingFolder::remove_abandoned(folder_, ".part-");
+    });
+  int missing = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const StagingFolder staging(folder_, ".part-");
+    missing += fs::is_directory(staging.path()) ? 0 : 1;
+  }
+  done = true;
+  for (std::thread& other : others) other.join();
+  EXPECT_EQ(missing, 0);
 }
 
 TEST_F(OutputFolderTest, WhatAnEarlierSetHasLeftIsRemoved) {

@@ -100,7 +100,10 @@ void OutputFolder::Stream::expect(double bytes) const {
 
 fs::path OutputFolder::reserve(const std::string& name) {
   try {
-    if (!staging_) staging_.emplace(folder_, kStaging);
+    if (!staging_) {
+      fs::create_directories(folder_);  // a run that failed meanwhile may have taken it along
+      staging_.emplace(folder_, kStaging);
+    }
   } catch (const fs::filesystem_error& error) {
     fail(folder_, error.code().message());
   }

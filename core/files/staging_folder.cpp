@@ -30,9 +30,10 @@ StagingFolder::StagingFolder(const fs::path& parent, const std::string& prefix) 
   for (;;) {
     path_ = parent / (prefix + std::to_string(getpid()) + "-" + std::to_string(count++));
     if (!fs::create_directory(path_)) continue;  // of another machine's process of this number
+    // Another run may take it for abandoned before it is opened or locked: then a new one is made.
     handle_ = open_folder(path_);
+    if (handle_ < 0 && errno == ENOENT) continue;
     if (handle_ < 0) break;
-    // Another run may have taken it for abandoned before it was locked: then a new one is made.
     const bool locked = flock(handle_, LOCK_EX | LOCK_NB) == 0;
     const bool lost = locked ? is_removed(handle_) : errno == EWOULDBLOCK;
     if (!lost) break;
