@@ -18,6 +18,7 @@
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/teeth_section.h"
 #include "bentaxis/study/timing.h"
+#include "document_parts.h"
 #include "fmu_section.h"
 #include "key_figures.h"
 
