@@ -16,6 +16,8 @@
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/bearing_life.h"
 #include "bentaxis/study/efficiency.h"
+#include "bentaxis/study/plausibility.h"
+#include "bentaxis/study/timing.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -171,6 +173,21 @@ std::vector<Output> single_outputs(const Case& base) {
     for (const hydraulics::Line& line : hydraulics::lines(empty))
       add(Source::hydraulics, "hydraulics.", line.key, line.unit, line.name);
   }
+  add(Source::plausibility, "plausibility.", "warnings", "",
+      "number of plausibility warnings without a stated reason");
+  if (is_hydraulic(base)) {
+    for (const study::TimingQuantity& q : study::timing_quantities()) {
+      if (q.searched) continue;
+      add(Source::timing, "timing.", q.code, q.unit, q.quantity);
+      if (q.code == "connected-area") continue;  // has no limit
+      add(Source::timing, "timing.", q.code, q.unit, q.quantity + ", above its limit");
+      all.back().name += ".excess";
+      all.back().excess = true;
+    }
+    add(Source::timing, "timing.", "warnings", "",
+        "number of verdicts on the timing of the ports beyond their limits, without a stated "
+        "reason");
+  }
   if (has_ratings(base))
     for (const LifeEntry& e : kLives) add(Source::life, "life.", e.name, e.unit, e.meaning);
   return all;
@@ -181,7 +198,7 @@ std::string lacking(const std::string& name, const Case& base) {
   if (name.starts_with("life.") && !has_ratings(base))
     return "needs ratings of both bearings in [bearings]";
   const auto& lines = study::efficiency_lines();
-  const bool of_oil = name.starts_with("hydraulics.") ||
+  const bool of_oil = name.starts_with("hydraulics.") || name.starts_with("timing.") ||
                       std::any_of(lines.begin(), lines.end(), [&](const auto& e) {
                         return name == std::string("efficiency.") + e.key;
                       });
@@ -322,6 +339,8 @@ class Turn {
         return life(o);
       case Source::derived:
       case Source::hydraulics:
+      case Source::timing:
+      case Source::plausibility:
         break;
     }
     return not_computed();
@@ -374,9 +393,21 @@ double derived_value(const Output& output, const Geometry& geometry) {
   return not_computed();
 }
 
+namespace {
+
+double timing_value(const Output& o, const std::vector<TimingRow>& rows) {
+  if (o.item == "warnings") return static_cast<double>(study::timing_warnings(rows).size());
+  for (const TimingRow& r : rows)
+    if (r.code == o.item) return o.excess ? r.value - r.limit.value_or(not_computed()) : r.value;
+  return not_computed();
+}
+
+}  // namespace
+
 std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::PreparedCase& ready,
                                study::Model model) {
   std::optional<Turn> turn;
+  std::vector<TimingRow> timing;
   std::vector<double> values;
   const auto is = [](Source source) {
     return [source](const Output& o) { return o.source == source; };
@@ -389,6 +420,11 @@ std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::
       values.push_back(not_computed());
       for (const hydraulics::Line& line : hydraulics::lines(*ready.hydraulics))
         if (line.key == o.item) values.back() = line.value;
+    } else if (o.source == Source::timing) {
+      if (timing.empty()) timing = study::timing_rows(ready.the_case, *ready.hydraulics);
+      values.push_back(timing_value(o, timing));
+    } else if (o.source == Source::plausibility) {
+      values.push_back(static_cast<double>(study::plausibility(ready.the_case).warnings.size()));
     } else {
       if (!turn) turn.emplace(ready, model, budget);
       values.push_back(turn->value(o));

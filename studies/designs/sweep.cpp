@@ -105,6 +105,8 @@ Scale scale_of(const Output& o, const Case& base) {
       return {ScaleKind::own};
     case Source::derived:
     case Source::hydraulics:
+    case Source::timing:
+    case Source::plausibility:
       break;
   }
   return {};

@@ -35,13 +35,15 @@ constexpr double kSpeedCurveError = 1e-5;  // of peak; a hundredth of what the t
 double bar(double pascals) { return pascals / kPascalPerBar; }
 double cm3(double volume) { return volume * 1e6; }
 
-TimingRow row(const std::string& code, const std::string& quantity, double value,
-              const std::string& unit) {
+TimingRow row(const std::string& code, double value) {
   TimingRow r;
+  for (const TimingQuantity& q : timing_quantities())
+    if (q.code == code) {
+      r.quantity = q.quantity;
+      r.unit = q.unit;
+    }
   r.code = code;
-  r.quantity = quantity;
   r.value = value;
-  r.unit = unit;
   return r;
 }
 
@@ -67,10 +69,9 @@ std::vector<hydraulics::Stretch> where_of(const Parts& parts) {
   return all;
 }
 
-TimingRow below(const std::string& code, const std::string& quantity,
-                const std::vector<hydraulics::Stretch>& where, double pressure,
-                const hydraulics::Summary& s) {
-  TimingRow r = row(code, quantity, extent(where), "deg per turn");
+TimingRow below(const std::string& code, const std::vector<hydraulics::Stretch>& where,
+                double pressure, const hydraulics::Summary& s) {
+  TimingRow r = row(code, extent(where));
   add_angles(r, where);
   hold(r, 0);
   r.text = fmt::format("{:.3g} % of the turn below {:.4g} bar", r.value / 3.6, bar(pressure));
@@ -84,20 +85,17 @@ TimingRow below(const std::string& code, const std::string& quantity,
 
 void add_connections(const hydraulics::Timing& t, double stroke, std::vector<TimingRow>& rows) {
   const auto where = where_of(t.connected);
-  TimingRow open =
-      row("ports-connected", "chamber open to both ports", extent(where), "deg per turn");
+  TimingRow open = row("ports-connected", extent(where));
   add_angles(open, where);
   hold(open, 0);
   open.text = where.empty() ? "never" : fmt::format("{:.3g} % of the turn", open.value / 3.6);
   const hydraulics::Timing::Connection* widest = nullptr;
   for (const auto& c : t.connected)
     if (widest == nullptr || c.largest_area > widest->largest_area) widest = &c;
-  TimingRow area = row("connected-area", "largest opening from port to port through a chamber",
-                       widest == nullptr ? 0 : widest->largest_area * 1e6, "mm2");
+  TimingRow area = row("connected-area", widest == nullptr ? 0 : widest->largest_area * 1e6);
   if (widest != nullptr) area.theta_deg = widest->largest_area_deg;
   area.text = "both openings in series";
-  TimingRow volume = row("short-circuit", "oil from the delivery to the suction port",
-                         cm3(t.through()), "cm3 per chamber and turn");
+  TimingRow volume = row("short-circuit", cm3(t.through()));
   for (const auto& c : t.connected)
     if (c.through > 0) volume.angles.emplace_back(c.where.from_deg, c.where.to_deg);
   hold(volume, kShortCircuit * cm3(stroke));
@@ -106,8 +104,7 @@ void add_connections(const hydraulics::Timing& t, double stroke, std::vector<Tim
 }
 
 TimingRow backflow(const hydraulics::Timing& t, double stroke) {
-  TimingRow r = row("backflow", "oil from the delivery port into a chamber", cm3(t.backflow),
-                    "cm3 per chamber and turn");
+  TimingRow r = row("backflow", cm3(t.backflow));
   add_angles(r, t.backflow_where);
   hold(r, cm3(std::max(kBackflow * t.filling, kMinBackflow * stroke)));
   if (t.backflow > 0) r.theta_deg = t.largest_backflow_deg;
@@ -123,8 +120,7 @@ double overshoot_limit(const hydraulics::Summary& s) {
 }
 
 TimingRow trapped(const hydraulics::Timing& t, const hydraulics::Summary& s) {
-  TimingRow r =
-      row("trapped-oil", "chamber closed to both ports: pressure above mean delivery", 0, "bar");
+  TimingRow r = row("trapped-oil", 0);
   add_angles(r, where_of(t.trapped));
   for (const auto& one : t.trapped) {
     const double over = bar(one.greatest - s.delivery_mean);
@@ -144,8 +140,7 @@ TimingRow trapped(const hydraulics::Timing& t, const hydraulics::Summary& s) {
 }
 
 TimingRow filling(const hydraulics::Timing::Filled& filled) {
-  TimingRow r =
-      row("filling", "stroke lost by incomplete filling", 100 * filled.loss, "% of a stroke");
+  TimingRow r = row("filling", 100 * filled.loss);
   r.theta_deg = filled.at_deg;
   hold(r, 100 * kLargestFillingLoss);
   r.text =
@@ -169,26 +164,40 @@ std::string angles_text(const TimingRow& r) {
 
 }  // namespace
 
+const std::vector<TimingQuantity>& timing_quantities() {
+  static const std::vector<TimingQuantity> all = {
+      {"below-saturation", "chamber below saturation pressure: air comes out", "deg per turn"},
+      {"below-vapour", "chamber below vapour pressure: oil boils", "deg per turn"},
+      {"ports-connected", "chamber open to both ports", "deg per turn"},
+      {"connected-area", "largest opening from port to port through a chamber", "mm2"},
+      {"short-circuit", "oil from the delivery to the suction port", "cm3 per chamber and turn"},
+      {"backflow", "oil from the delivery port into a chamber", "cm3 per chamber and turn"},
+      {"trapped-oil", "chamber closed to both ports: pressure above mean delivery", "bar"},
+      {"overshoot", "greatest chamber pressure above mean delivery", "bar"},
+      {"filling", "stroke lost by incomplete filling", "% of a stroke"},
+      {"suction-speed", "largest speed at which no chamber falls below a pressure", "rpm", true},
+      {"filling-speed", "largest speed at which the chambers fill", "rpm", true}};
+  return all;
+}
+
 std::vector<std::string> timing_codes() {
-  return {"below-saturation", "below-vapour", "ports-connected", "short-circuit", "backflow",
-          "trapped-oil",      "overshoot",    "filling",         "suction-speed", "filling-speed"};
+  std::vector<std::string> codes;
+  for (const TimingQuantity& q : timing_quantities())
+    if (q.code != "connected-area") codes.push_back(q.code);  // never beyond a limit
+  return codes;
 }
 
 std::vector<TimingRow> timing_rows(const Case& the_case, const hydraulics::SteadyState& state) {
   const hydraulics::Summary& s = state.summary;
   const hydraulics::Timing& t = state.timing;
   const double stroke = s.displacement / the_case.pump.geometry.pistons;
-  std::vector<TimingRow> rows = {
-      below("below-saturation", "chamber below saturation pressure: air comes out",
-            t.below_saturation, s.saturation, s),
-      below("below-vapour", "chamber below vapour pressure: oil boils", t.below_vapour, s.vapour,
-            s)};
+  std::vector<TimingRow> rows = {below("below-saturation", t.below_saturation, s.saturation, s),
+                                 below("below-vapour", t.below_vapour, s.vapour, s)};
   add_connections(t, stroke, rows);
   // Backwards oil comes out of the delivery port: that is no backflow.
   if (the_case.operation.speed_rpm > 0) rows.push_back(backflow(t, stroke));
   rows.push_back(trapped(t, s));
-  TimingRow over =
-      row("overshoot", "greatest chamber pressure above mean delivery", bar(s.overshoot), "bar");
+  TimingRow over = row("overshoot", bar(s.overshoot));
   over.theta_deg = s.chamber_greatest_deg;
   hold(over, overshoot_limit(s));
   over.text = fmt::format("{:.4g} bar", bar(s.chamber_greatest));
@@ -358,10 +367,7 @@ SuctionSpeed filling_speed(const Case& the_case, const Progress& progress) {
 
 TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found) {
   TimingRow r =
-      found.filling
-          ? row("filling-speed", "largest speed at which the chambers fill", not_computed(), "rpm")
-          : row("suction-speed", "largest speed at which no chamber falls below a pressure",
-                not_computed(), "rpm");
+      found.filling ? row("filling-speed", not_computed()) : row("suction-speed", not_computed());
   r.value = found.rpm.value_or(not_computed());
   if (!found.rpm)
     r.bound = found.searched_from < the_case.operation.speed_rpm

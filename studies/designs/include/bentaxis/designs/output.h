@@ -25,14 +25,16 @@ std::string to_string(Statistic statistic);
 
 /// Where the number is taken from.
 enum class Source {
-  curve,       ///< statistic of a reaction or derived channel; of a vector its magnitude
-  budget,      ///< statistic of a column of the torque budget (results/budget.h)
-  derived,     ///< displacement, stroke, ..: follows from the geometry
-  validity,    ///< a limit of validity (analytic/validity.h): its worst value, or how long it is
-               ///< violated
-  hydraulics,  ///< a line of the hydraulic model's summary
-  efficiency,  ///< study::Efficiencies, %
-  life,        ///< of the bearings, h (study/bearing_life.h)
+  curve,         ///< statistic of a reaction or derived channel; of a vector its magnitude
+  budget,        ///< statistic of a column of the torque budget (results/budget.h)
+  derived,       ///< displacement, stroke, ..: follows from the geometry
+  validity,      ///< a limit of validity (analytic/validity.h): its worst value, or how long it is
+                 ///< violated
+  hydraulics,    ///< a line of the hydraulic model's summary
+  efficiency,    ///< study::Efficiencies, %
+  life,          ///< of the bearings, h (study/bearing_life.h)
+  timing,        ///< a verdict on the timing of the ports (study/timing.h)
+  plausibility,  ///< number of plausibility warnings
 };
 
 /// A number asked for. Names:
@@ -45,6 +47,10 @@ enum class Source {
 ///   hydraulics.NAME        of the summary: "hydraulics.flow_l_per_min"
 ///   efficiency.NAME        overall, volumetric, mechanical_mass by energy and mass; overall_iso,
 ///                          volumetric_iso, mechanical of ISO 4409
+///   timing.CODE            value of a verdict on the timing of the ports: "timing.backflow";
+///   timing.CODE.excess     the same above its limit, <= 0 where the limit holds
+///   timing.warnings        number of these verdicts beyond their limits, without a stated reason
+///   plausibility.warnings  number of plausibility warnings without a stated reason
 ///   life.NAME              of the bearings: life.system_h, life.tapered_P_N, ..
 struct Output {
   std::string name;  ///< as asked for, complete: "max:Rb1_z1_N"
@@ -55,6 +61,7 @@ struct Output {
   std::vector<std::size_t> columns = {};  ///< of a curve: of the row of a ChannelLayout
   std::string item = {};                  ///< of the others: what of it
   bool share = false;                     ///< of validity: of the turn, instead of the worst
+  bool excess = false;                    ///< of timing: above its limit, instead of the value
 
   bool operator==(const Output& other) const { return name == other.name; }
 };

@@ -19,6 +19,13 @@ namespace bentaxis::study {
 /// @throws InputError where `[plausibility] meant` is wrong
 std::vector<TimingRow> timing_rows(const Case& the_case, const hydraulics::SteadyState& state);
 
+/// What the rows are about, in their order.
+struct TimingQuantity {
+  std::string code, quantity, unit;
+  bool searched = false;  ///< found by a search over the speed, not from one state
+};
+const std::vector<TimingQuantity>& timing_quantities();
+
 /// Those beyond their limits without a reason.
 std::vector<Warning> timing_warnings(const std::vector<TimingRow>& rows);
 
