@@ -3,6 +3,7 @@
 
 #include "bentaxis/designs/least_squares.h"
 #include "bentaxis/designs/propagation.h"
+#include "bentaxis/designs/search.h"
 #include "bentaxis/designs/sweep_tables.h"
 #include "ranks.h"
 #include "versions.h"
@@ -19,9 +20,10 @@ std::vector<std::pair<std::string, std::string>> versions() {
 
 std::string optional_parts() {
   const std::string ceres = designs::least_squares_library();
+  const std::string search = designs::search_libraries();
   return (ceres.empty() ? "Ceres none" : ceres) + ", HDF5 " + designs::hdf5_version() + ", MPI " +
-         mpi_library() + ", OpenTURNS " + designs::openturns_version() +
-         ", Python module " BENTAXIS_PYTHON;
+         mpi_library() + ", OpenTURNS " + designs::openturns_version() + ", search " +
+         (search.empty() ? "none" : search) + ", Python module " BENTAXIS_PYTHON;
 }
 
 }  // namespace bentaxis::cli

@@ -37,6 +37,7 @@ Command add_inertia_command(CommandParser program);
 Command add_life_command(CommandParser program);
 Command add_manual_command(CommandParser program);
 Command add_merge_command(CommandParser program);
+Command add_optimise_command(CommandParser program);
 Command add_outputs_command(CommandParser program);
 Command add_paper_command(CommandParser program);
 Command add_pressure_command(CommandParser program);

@@ -98,11 +98,12 @@ int run_program(int argc, char** argv) {
       add_manual_command(program),      add_show_command(program),
       add_simulate_command(program),    add_rattle_command(program),
       add_fig34_command(program),       add_sweep_command(program),
-      add_merge_command(program),       add_uncertainty_command(program),
-      add_sensitivity_command(program), add_life_command(program),
-      add_identify_command(program),    add_index_command(program),
-      add_paper_command(program),       add_fmu_command(program),
-      add_init_command(program),        add_outputs_command(program)};
+      add_optimise_command(program),    add_merge_command(program),
+      add_uncertainty_command(program), add_sensitivity_command(program),
+      add_life_command(program),        add_identify_command(program),
+      add_index_command(program),       add_paper_command(program),
+      add_fmu_command(program),         add_init_command(program),
+      add_outputs_command(program)};
   return guarded([&]() -> int {
     refuse_control_characters(argc, argv);
     if (!parser.parse(argc, argv)) return kDone;

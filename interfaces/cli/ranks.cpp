@@ -43,6 +43,12 @@ void Ranks::wait() const {
   if (size_ > 1) MPI_Barrier(MPI_COMM_WORLD);
 }
 
+void Ranks::add_up(std::span<double> numbers) const {
+  if (size_ > 1)
+    MPI_Allreduce(MPI_IN_PLACE, numbers.data(), static_cast<int>(numbers.size()), MPI_DOUBLE,
+                  MPI_SUM, MPI_COMM_WORLD);
+}
+
 void Ranks::must_be_same(const std::string& text, const std::string& what) const {
   if (size_ == 1) return;
   std::string first = text;
@@ -84,6 +90,7 @@ std::string mpi_library() {
 #else
 
 void Ranks::wait() const {}
+void Ranks::add_up(std::span<double>) const {}
 void Ranks::must_be_same(const std::string&, const std::string&) const {}
 
 int in_ranks(const std::function<int(const Ranks&)>& job) {

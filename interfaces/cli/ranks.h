@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 
 namespace bentaxis::cli {
@@ -13,6 +14,8 @@ class Ranks {
   int size() const { return size_; }
   /// Waits for all.
   void wait() const;
+  /// Adds up, number by number, what all have.
+  void add_up(std::span<double> numbers) const;
   /// @param what  of the inputs, for the message
   /// @throws InputError where this rank's text is another than that of rank 0
   void must_be_same(const std::string& text, const std::string& what) const;

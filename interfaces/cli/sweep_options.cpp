@@ -54,18 +54,24 @@ void add_plan(CommandParser command, PlanOptions& options) {
       .text("SHARE [0%]");
 }
 
-designs::SweepRequest request_of(const PlanOptions& options, const CommandParser& command) {
-  designs::SweepRequest request;
-  if (!options.study.empty()) request = designs::read_sweep_request(options.study);
-  const designs::SweepRequest& given = options.request;
-  decltype(request.vary) varied;
-  for (const std::string& text : options.vary) {
+std::vector<std::pair<std::string, std::string>> varied_of(const std::vector<std::string>& texts) {
+  std::vector<std::pair<std::string, std::string>> varied;
+  for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
       throw InputError("--vary " + text + ": must be NAME=VALUES, as in pump.tilt_deg=20:40:5");
     varied.emplace_back(text.substr(0, equals), text.substr(equals + 1));
-    std::erase_if(request.vary, [&](const auto& old) { return old.first == varied.back().first; });
   }
+  return varied;
+}
+
+designs::SweepRequest request_of(const PlanOptions& options, const CommandParser& command) {
+  designs::SweepRequest request;
+  if (!options.study.empty()) request = designs::read_sweep_request(options.study);
+  const designs::SweepRequest& given = options.request;
+  const auto varied = varied_of(options.vary);
+  for (const auto& one : varied)
+    std::erase_if(request.vary, [&](const auto& old) { return old.first == one.first; });
   // After those of the file are gone, so that an option given twice is refused as it is there.
   request.vary.insert(request.vary.end(), varied.begin(), varied.end());
   const auto append = [](std::vector<std::string>& to, const std::vector<std::string>& more) {

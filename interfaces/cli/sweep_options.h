@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bentaxis/designs/sweep_tables.h"
@@ -22,6 +23,8 @@ struct PlanOptions {
 /// --vary, --output, --minimise, --maximise, --study, --sampling, --samples, --seed, --model,
 /// --check.
 void add_plan(CommandParser command, PlanOptions& options);
+/// NAME=VALUES apart. @throws InputError
+std::vector<std::pair<std::string, std::string>> varied_of(const std::vector<std::string>& texts);
 /// What the study file says, and the options that were given. @throws InputError
 designs::SweepRequest request_of(const PlanOptions& options, const CommandParser& command);
 

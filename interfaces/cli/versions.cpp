@@ -7,6 +7,7 @@
 
 #include "bentaxis/designs/least_squares.h"
 #include "bentaxis/designs/propagation.h"
+#include "bentaxis/designs/search.h"
 #include "bentaxis/designs/sweep_tables.h"
 #include "bentaxis/hydraulics/versions.h"
 #include "bentaxis/multibody/versions.h"
@@ -43,6 +44,7 @@ std::vector<std::pair<std::string, std::string>> shared_versions() {
       {"OpenTURNS", designs::openturns_version()},
       {"Ceres",
        designs::least_squares_library().empty() ? "none" : designs::least_squares_library()},
+      {"search", designs::search_libraries().empty() ? "none" : designs::search_libraries()},
       {"processor", processor()}};
 }
 

@@ -9,13 +9,15 @@
 
 #include "bentaxis/pump/number.h"
 #include "document_parts.h"
+#include "sweep_sections.h"
 #include "sweep_view.h"
 
 namespace bentaxis::designs {
-namespace {
 
 using report::Cell;
 using report::Section;
+
+namespace {
 
 constexpr std::size_t kAllRows = 60;  // designs of a sweep that is printed whole
 constexpr std::size_t kBestRows = 20;
@@ -49,6 +51,8 @@ std::string values_text(const Varied& varied) {
     text += (text.empty() ? "" : ", ") + value_text(variable, level);
   return text;
 }
+
+}  // namespace
 
 Section plan_section(const SweepResult& result, const SweepView& view) {
   const SweepPlan& plan = result.plan;
@@ -102,6 +106,8 @@ Section outputs_section(const SweepView& view) {
   return section;
 }
 
+namespace {
+
 // Reasons that differ in their numbers only are one.
 std::string kind_of(const std::string& reason) {
   std::string kind;
@@ -114,6 +120,8 @@ std::string kind_of(const std::string& reason) {
   }
   return kind;
 }
+
+}  // namespace
 
 Section infeasible_section(const SweepResult& result, const SweepView& view) {
   struct Group {
@@ -150,10 +158,14 @@ Section infeasible_section(const SweepResult& result, const SweepView& view) {
   return section;
 }
 
+namespace {
+
 // Name and unit of an axis.
 std::string heading(const report::Axis& axis) {
   return axis.unit.empty() ? axis.label : axis.label + ", " + axis.unit;
 }
+
+}  // namespace
 
 // Rows of designs: their values and results.
 void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
@@ -176,6 +188,8 @@ void put_designs(const SweepView& view, const std::vector<std::size_t>& designs,
   }
 }
 
+namespace {
+
 std::vector<std::size_t> by_output(const SweepView& view, std::vector<std::size_t> designs,
                                    std::size_t output) {
   const double sign = view.direction(output);
@@ -185,6 +199,8 @@ std::vector<std::size_t> by_output(const SweepView& view, std::vector<std::size_
   });
   return designs;
 }
+
+}  // namespace
 
 // The front, or where one output alone is sought the best by it.
 Section best_section(const SweepView& view) {
@@ -210,6 +226,8 @@ Section best_section(const SweepView& view) {
   put_designs(view, designs, section.table);
   return section;
 }
+
+namespace {
 
 Section checks_section(const SweepResult& result) {
   Section section{

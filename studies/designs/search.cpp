@@ -252,7 +252,16 @@ class Descent {
         best_x_ = x_;
       }
     }
-    if (slopes && jacobian_.empty()) differentiate();
+    if (!slopes || !jacobian_.empty()) return;
+    differentiate();
+    // What does not change nearby can keep no margin: a count that is allowed at 0.
+    if (margin_.empty())
+      for (std::size_t i = problem_.objectives; i < problem_.numbers(); ++i)
+        margin_.push_back(
+            std::any_of(slope(i), slope(i + 1), [](double s) { return s != 0; }) ? kMargin : 0);
+  }
+  std::vector<double>::const_iterator slope(std::size_t i) const {
+    return jacobian_.begin() + static_cast<std::ptrdiff_t>(i * free_.size());
   }
 
   void differentiate() {
@@ -321,17 +330,16 @@ class Descent {
     Descent& it = *static_cast<Descent*>(self);
     it.guarded([&] { it.look(n, share, gradient != nullptr); });
     const std::size_t first = it.problem_.objectives;
-    for (std::size_t i = 0; i < count; ++i) result[i] = it.results_[first + i] + kMargin;
-    if (gradient != nullptr)
-      std::copy_n(it.jacobian_.begin() + static_cast<std::ptrdiff_t>(first * n), count * n,
-                  gradient);
+    for (std::size_t i = 0; i < count; ++i)
+      result[i] = it.results_[first + i] + (it.margin_.empty() ? 0 : it.margin_[i]);
+    if (gradient != nullptr) std::copy_n(it.slope(first), count * n, gradient);
   }
 
   const SearchProblem& problem_;
   std::size_t objective_;
   std::vector<double> x_;
   std::vector<std::size_t> free_;  // variables that are no whole numbers
-  std::vector<double> at_, results_, jacobian_, best_x_;
+  std::vector<double> at_, results_, jacobian_, margin_, best_x_;
   double best_ = 0, scale_ = 1;
   bool exact_ = true;
   std::size_t evaluations_ = 0;

@@ -36,6 +36,7 @@ struct SearchProblem {
 /// infinite where it has no values.
 double violation(const SearchProblem& problem, std::span<const double> results);
 
+inline constexpr int kMaxPopulation = 100000, kMaxGenerations = 100000, kMaxRestarts = 1000;
 struct SearchOptions {
   std::size_t population = 64;   ///< points evaluated at once; a multiple of 4, at least 8
   std::size_t generations = 50;  ///< after the first

@@ -1,0 +1,279 @@
+#include "bentaxis/designs/optimise_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "bentaxis/files/case_writer.h"
+#include "bentaxis/pump/number.h"
+#include "document_parts.h"
+#include "sweep_sections.h"
+#include "sweep_view.h"
+
+namespace bentaxis::designs {
+namespace {
+
+// What is so near to its end is at it: of the range of a parameter, of the scale of a constraint.
+constexpr double kAtEnd = 1e-3;
+
+std::string with_unit(double value, const Output& output) {
+  return fmt::format("{:.5g}{}{}", value, output.unit.empty() ? "" : " ", output.unit);
+}
+
+double measured(const Optimisation& found, std::size_t design, std::size_t output) {
+  return found.measured[design * found.plan.designs.outputs.size() + output];
+}
+
+// "70.2 N (the case: 76.7 N, -8.5 %)"
+std::string against_case(const Optimisation& found, std::size_t design, std::size_t output) {
+  const Output& o = found.plan.designs.outputs[output];
+  const double now = measured(found, design, output), own = found.own.values[output];
+  if (!is_computed(own)) return with_unit(now, o);
+  const std::string change =
+      own == 0 ? "" : fmt::format(", {:+.2g} %", 100 * (now - own) / std::abs(own));
+  return fmt::format("{} (the case: {}{})", with_unit(now, o), with_unit(own, o), change);
+}
+
+// Constraints that a design lies on, and parameters at an end of their range.
+std::vector<std::string> bindings(const Optimisation& found, std::size_t design) {
+  const SweepPlan& plan = found.plan.designs;
+  std::vector<std::string> all;
+  for (const Constraint& c : found.plan.constraints) {
+    const double value = plan.direction[c.output] == 0 ? measured(found, design, c.output) : NAN;
+    const double own = std::abs(found.own.values[c.output]);
+    const double scale = std::max(std::abs(c.limit), std::isfinite(own) ? own : 0);
+    if (std::abs(value - c.limit) <= kAtEnd * scale) all.push_back(found.plan.text(c));
+  }
+  for (std::size_t k = 0; k < plan.varied.size(); ++k) {
+    const Varied& varied = plan.varied[k];
+    if (!varied.variable.words().empty()) continue;
+    double low = 0, high = 0;
+    if (varied.levels.empty()) {
+      low = varied.distribution.numbers[0];
+      high = varied.distribution.numbers[1];
+      if (varied.variable.discrete()) {
+        low = std::ceil(low);
+        high = std::floor(high);
+      }
+    } else {
+      const auto [least, most] = std::minmax_element(varied.levels.begin(), varied.levels.end());
+      low = *least;
+      high = *most;
+    }
+    const double value = found.designs.values[design * plan.varied.size() + k];
+    for (const auto& [end, word] : {std::pair{low, "lower"}, {high, "upper"}})
+      if (std::abs(value - end) <= kAtEnd * (high - low))
+        all.push_back(fmt::format("{} at its {} end {}", varied.variable.name(), word,
+                                  value_text(varied.variable, end)));
+  }
+  return all;
+}
+
+std::vector<std::size_t> objectives(const Optimisation& found) {
+  std::vector<std::size_t> all;
+  for (std::size_t k = 0; k < found.plan.designs.direction.size(); ++k)
+    if (found.plan.designs.direction[k] != 0) all.push_back(k);
+  return all;
+}
+
+// Of infeasible designs the one that misses the constraints least.
+std::optional<std::size_t> nearest_miss(const Optimisation& found) {
+  std::optional<std::size_t> nearest;
+  for (std::size_t i = 0; i < found.evaluated(); ++i)
+    if (std::isfinite(found.violations[i]) &&
+        (!nearest || found.violations[i] < found.violations[*nearest]))
+      nearest = i;
+  return nearest;
+}
+
+// By how much a refinement improved an objective, of its value.
+double improvement(const Refinement& r) {
+  const double scale = std::max(std::abs(r.before), std::abs(r.after));
+  return scale > 0 ? (r.before - r.after) / scale : 0;
+}
+
+report::Section chosen_section(const Optimisation& found) {
+  const SweepPlan& plan = found.plan.designs;
+  report::Section section;
+  section.title = "Chosen designs";
+  section.text =
+      "The best design for each objective, and of several objectives the one nearest to all of "
+      "these at once, each objective over its range on the front (\"balanced\"). Each is a case "
+      "file of its own.";
+  section.table.columns = {"", "chosen for", "design"};
+  for (const Varied& varied : plan.varied) section.table.columns.push_back(varied.variable.name());
+  for (const Output& o : plan.outputs)
+    section.table.columns.push_back(o.name + (o.unit.empty() ? "" : ", " + o.unit));
+  section.table.columns.emplace_back("at its limit");
+  std::vector<report::Cell> own = {"the case", "", ""};
+  for (const Varied& varied : plan.varied)
+    own.emplace_back(value_text(varied.variable, varied.variable.value(found.designs.base)));
+  for (const double value : found.own.values) own.emplace_back(value);
+  own.emplace_back(found.own.reason);
+  section.table.rows.push_back(std::move(own));
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+    const auto& [why, design] = found.chosen[i];
+    std::vector<report::Cell> row = {fmt::format("chosen_{}.toml", i + 1), why,
+                                     static_cast<long>(design)};
+    for (std::size_t k = 0; k < plan.varied.size(); ++k)
+      row.emplace_back(value_text(plan.varied[k].variable,
+                                  found.designs.values[design * plan.varied.size() + k]));
+    for (std::size_t k = 0; k < plan.outputs.size(); ++k)
+      row.emplace_back(measured(found, design, k));
+    row.emplace_back(fmt::format("{}", fmt::join(bindings(found, design), "; ")));
+    section.table.rows.push_back(std::move(row));
+  }
+  return section;
+}
+
+report::Section sureness_section(const Optimisation& found) {
+  const SearchOptions& options = found.plan.search;
+  report::Section section;
+  section.title = "How sure this is";
+  section.text =
+      "Searches from different points that end at the same front, and gradients that find no "
+      "better design nearby, are good signs; no search proves that there is no better design.";
+  section.facts = {
+      {"search", search_libraries() + (objectives(found).size() > 1
+                                           ? "; NSGA-II, then SLSQP from the best designs"
+                                           : "; GACO, then SLSQP from the best designs")},
+      {"population", fmt::format("{}", options.population)},
+      {"generations", fmt::format("{}", options.generations)},
+      {"seed", fmt::format("{}", options.seed)},
+      {"time", fmt::format("{:.3g} s", found.designs.seconds)}};
+  section.table.columns = {"stage", "designs", "result"};
+  for (std::size_t i = 0; i < options.restarts; ++i)
+    section.table.rows.push_back(
+        {fmt::format("search {}", i + 1), static_cast<long>(found.search.evaluations[i]),
+         i < found.shares_of_front.size()
+             ? fmt::format("{:.4g} % of the volume of the front", 100 * found.shares_of_front[i])
+             : "no feasible design"});
+  const auto sought = objectives(found);
+  for (const Refinement& r : found.search.refinements) {
+    const Output& o = found.plan.designs.outputs[sought[r.objective]];
+    const double sign = -found.plan.designs.direction[sought[r.objective]];
+    section.table.rows.push_back(
+        {"gradients, " + o.name, static_cast<long>(r.evaluations),
+         !is_computed(r.after) ? "no feasible design; " + r.message
+         : !is_computed(r.before)
+             ? "to " + with_unit(sign * r.after, o) + "; " + r.message
+             : fmt::format("from {} to {}, better by {:.2g} %; {} derivatives; {}",
+                           with_unit(sign * r.before, o), with_unit(sign * r.after, o),
+                           100 * improvement(r), r.exact ? "exact" : "difference", r.message)});
+  }
+  return section;
+}
+
+}  // namespace
+
+std::string headline(const Optimisation& found) {
+  if (found.chosen.empty())
+    return fmt::format("none of {} designs keeps all constraints", found.evaluated());
+  return fmt::format("{} designs evaluated, {} keep all constraints", found.evaluated(),
+                     found.feasible());
+}
+
+std::vector<std::string> optimise_answers(const Optimisation& found) {
+  const SweepPlan& plan = found.plan.designs;
+  std::vector<std::string> answers;
+  const SweepView view(found.designs);
+  if (found.chosen.empty()) {
+    if (const auto nearest = nearest_miss(found)) {
+      std::string reason;
+      for (const auto& [design, why] : found.designs.infeasible)
+        if (design == *nearest) reason = why;
+      answers.push_back(fmt::format("The nearest miss is design {}, {}: {}.", *nearest,
+                                    view.text(*nearest), reason));
+    }
+    answers.emplace_back("Widen a range of --vary, or ease a --subject-to.");
+    return answers;
+  }
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+    const auto& [why, design] = found.chosen[i];
+    std::string values;
+    for (const std::size_t k : objectives(found))
+      values += (values.empty() ? "" : ", ") + plan.outputs[k].name + " " +
+                against_case(found, design, k);
+    const auto limits = bindings(found, design);
+    answers.push_back(fmt::format(
+        "{} (chosen_{}.toml): {}; with {}{}.", why, i + 1, values, view.text(design),
+        limits.empty() ? "" : fmt::format("; at its limit: {}", fmt::join(limits, ", "))));
+  }
+  if (!found.own.reason.empty())
+    answers.push_back("The case itself is no feasible design: " + found.own.reason + ".");
+  std::string sure;
+  if (found.shares_of_front.size() > 1) {
+    const double least =
+        *std::min_element(found.shares_of_front.begin(), found.shares_of_front.end());
+    sure = fmt::format("each of {} searches finds at least {:.3g} % of the front alone",
+                       found.shares_of_front.size(), 100 * least);
+  }
+  double most = 0;
+  for (const Refinement& r : found.search.refinements)
+    if (is_computed(r.before)) most = std::max(most, improvement(r));
+  if (!found.search.refinements.empty())
+    sure += fmt::format("{}gradients improve an objective by {:.2g} % at most",
+                        sure.empty() ? "" : ", and ", 100 * most);
+  if (!sure.empty()) answers.push_back("How sure: " + sure + ".");
+  return answers;
+}
+
+std::vector<std::pair<std::string, std::string>> chosen_cases(const Optimisation& found) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+    const auto& [why, design] = found.chosen[i];
+    Case chosen = case_of(found, design);
+    chosen.name += ", " + why;
+    std::string head = fmt::format("# Chosen by bentaxis optimise: {}, design {}.\n", why, design);
+    for (const std::size_t k : objectives(found))
+      head += fmt::format("# {}: {}\n", found.plan.designs.outputs[k].name,
+                          against_case(found, design, k));
+    for (const Constraint& c : found.plan.constraints)
+      head += "# Keeps " + found.plan.text(c) + ".\n";
+    files.emplace_back(fmt::format("chosen_{}.toml", i + 1), head + case_text(chosen));
+  }
+  return files;
+}
+
+report::Document optimise_document(const Optimisation& found, const report::Lines& program,
+                                   const study::CaseDescription& description) {
+  const SweepView view(found.designs);
+  report::Document document =
+      study::case_document(description, found.designs.base.name + ": the best designs", program);
+  document.verdict = report::Verdict{std::nullopt, headline(found)};
+  document.verdict->word = "Optimised";
+  if (found.chosen.empty()) {
+    document.verdict->agrees = false;
+    document.verdict->word = "No design";
+  }
+  document.verdict->answers = optimise_answers(found);
+  document.meaning =
+      "Designs by one model, the best that a search found. Nothing was compared: run compare on a "
+      "chosen design before it is built.";
+  document.runs.emplace();
+  document.runs->push_back(chosen_section(found));
+  if (!found.chosen.empty()) document.runs->push_back(best_section(view));
+  report::Section varied = plan_section(found.designs, view);
+  varied.facts = {{"model", study::to_string(found.plan.designs.model)}};
+  for (const Constraint& c : found.plan.constraints)
+    varied.facts.emplace_back("constraint", found.plan.text(c));
+  if (!found.plan.conditions.file.empty()) {
+    varied.facts.emplace_back("operating points",
+                              fmt::format("{} of {}", found.plan.conditions.rows.size(),
+                                          found.plan.conditions.file.filename().string()));
+    varied.text =
+        "Outputs are means over the operating points, weighted by their shares of the time; every "
+        "constraint holds at each of them.";
+  }
+  document.runs->push_back(std::move(varied));
+  document.runs->push_back(outputs_section(view));
+  document.runs->push_back(sureness_section(found));
+  if (!found.designs.infeasible.empty())
+    document.runs->push_back(infeasible_section(found.designs, view));
+  document.figures = sweep_figures(view);
+  return document;
+}
+
+}  // namespace bentaxis::designs
