@@ -239,6 +239,24 @@ TEST(OptimiseTest, ConditionsAreWeighedAndConstraintsHoldAtEach) {
     EXPECT_DOUBLE_EQ(found.measured[2 * design], (3 * first[0] + second[0]) / 4);
     EXPECT_DOUBLE_EQ(found.measured[2 * design + 1], std::max(first[1], second[1]));
   }
+  // One operating point alone.
+  request.minimise = {"peak:Rb1@2"};
+  request.subject_to = {"max:Td@1 <= 300"};
+  const Optimisation second_row = run(base, request);
+  EXPECT_EQ(second_row.plan.designs.outputs[0].name, "peak:Rb1@2");
+  for (const std::size_t design : {std::size_t{0}, std::size_t{7}}) {
+    const double tilt = value(second_row, design, 0);
+    EXPECT_EQ(second_row.measured[2 * design],
+              single.outputs_at(std::vector<double>{tilt, 2500, 100})[0]);
+    EXPECT_EQ(second_row.measured[2 * design + 1],
+              single.outputs_at(std::vector<double>{tilt, 1500, 275})[1]);
+    EXPECT_EQ(second_row.violations[design] > 0, second_row.measured[2 * design + 1] > 300);
+  }
+  for (const char* row : {"0", "3", "1.5", "x", ""}) {
+    request.minimise = {std::string("peak:Rb1@") + row};
+    EXPECT_THAT(refusal([&] { optimise_plan(request, base); }), HasSubstr("1 to 2")) << row;
+  }
+  request.minimise = {"peak:Rb1"};
   request.vary = {{"operation.speed_rpm", "1000:2000"}};
   EXPECT_THAT(refusal([&] { optimise_plan(request, base); }),
               HasSubstr("--vary operation.speed_rpm"));
@@ -257,6 +275,7 @@ TEST(OptimiseTest, RefusesWhatCannotBeMeant) {
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rb1 < 3"}; }), HasSubstr("peak:Rb1 < 3"));
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rb1 <= much"}; }), HasSubstr("much"));
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rb1 <= inf"}; }), HasSubstr("inf"));
+  EXPECT_THAT(plan([](auto& r) { r.minimise = {"peak:Rb1@1"}; }), HasSubstr("there are none"));
   EXPECT_THAT(plan([](auto& r) { r.subject_to = {"peak:Rbx <= 1"}; }), HasSubstr("Rbx"));
   EXPECT_THAT(plan([](auto& r) {
                 r.vary = {{"pump.tilt_deg", "normal(40,1)"}};

@@ -79,6 +79,33 @@ SearchVariable search_variable(const Varied& varied) {
   return {std::ceil(from), std::floor(to), true};
 }
 
+// An output with the row that "@N" behind its name asks for; what is computed for it is added to
+// the plan.
+std::pair<Output, OptimisePlan::Taken> taken_of(const std::string& text, OptimisePlan& plan,
+                                                const Case& base) {
+  const std::size_t at = text.rfind('@');
+  Output wanted = output(text.substr(0, at), base);
+  OptimisePlan::Taken taken;
+  const auto found = std::find(plan.computed.begin(), plan.computed.end(), wanted);
+  taken.from = static_cast<std::size_t>(found - plan.computed.begin());
+  if (found == plan.computed.end()) plan.computed.push_back(wanted);
+  if (at != std::string::npos) {
+    const auto row = number_in(text.substr(at + 1));
+    const std::size_t rows = plan.conditions.rows.size();
+    if (plan.conditions.file.empty() || !row || *row != std::floor(*row) || !(*row >= 1) ||
+        !(*row <= static_cast<double>(rows)))
+      throw InputError("output " + text + ": " + text.substr(at) +
+                       (plan.conditions.file.empty()
+                            ? " names a row of --conditions, and there are none"
+                            : " must be a row of " + plan.conditions.file.string() + ", 1 to " +
+                                  std::to_string(rows)));
+    taken.row = static_cast<std::size_t>(*row) - 1;
+    wanted.name += "@" + std::to_string(*taken.row + 1);
+    wanted.meaning += ", at " + plan.conditions.name_of(*taken.row);
+  }
+  return {wanted, taken};
+}
+
 }  // namespace
 
 std::string OptimisePlan::text(const Constraint& constraint) const {
@@ -132,40 +159,47 @@ OptimisePlan optimise_plan(const OptimiseRequest& request, const Case& base) {
       static_cast<double>(kMaxEvaluations))
     throw InputError("optimise: more than " + std::to_string(kMaxEvaluations) +
                      " designs; lower --population, --generations or --restarts");
+  if (!request.conditions.empty()) plan.conditions = read_duty_cycle(request.conditions, base);
+  std::vector<Output> outputs;
+  std::vector<int> directions;
+  const auto add = [&](const std::string& text, int direction) {
+    const auto [wanted, taken] = taken_of(text, plan, base);
+    auto found = std::find(outputs.begin(), outputs.end(), wanted);
+    if (found == outputs.end()) {
+      outputs.push_back(wanted);
+      directions.push_back(0);
+      plan.taken.push_back(taken);
+      found = outputs.end() - 1;
+    }
+    const auto place = static_cast<std::size_t>(found - outputs.begin());
+    if (directions[place] * direction < 0)
+      throw InputError("output " + wanted.name + ": cannot be both minimised and maximised");
+    if (direction != 0) directions[place] = direction;
+    return place;
+  };
+  for (const std::string& name : request.minimise) add(name, -1);
+  for (const std::string& name : request.maximise) add(name, +1);
+  for (const std::string& name : request.outputs) add(name, 0);
+  for (const std::string& text : request.subject_to) {
+    const ConstraintText limit = parsed(text);
+    plan.constraints.push_back({add(limit.output, 0), limit.at_most, limit.limit});
+  }
   SweepRequest designs;
   designs.sampling = Sampling::sobol;
   designs.samples = plan.evaluations();
   designs.seed = search.seed;
   designs.vary = request.vary;
-  // Objectives first.
-  for (const auto* names : {&request.minimise, &request.maximise, &request.outputs})
-    designs.outputs.insert(designs.outputs.end(), names->begin(), names->end());
-  designs.minimise = request.minimise;
-  designs.maximise = request.maximise;
+  designs.outputs = {plan.computed.front().name};
   designs.model = request.model;
-  std::vector<ConstraintText> limits;
-  for (const std::string& text : request.subject_to) {
-    limits.push_back(parsed(text));
-    designs.outputs.push_back(limits.back().output);
-  }
   plan.designs = sweep_plan(designs, base);
+  plan.designs.outputs = std::move(outputs);
+  plan.designs.direction = std::move(directions);
   for (const Varied& varied : plan.designs.varied) search_variable(varied);
-  for (const ConstraintText& limit : limits) {
-    const Output wanted = output(limit.output, base);
-    const auto& outputs = plan.designs.outputs;
-    plan.constraints.push_back(
-        {static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), wanted) -
-                                  outputs.begin()),
-         limit.at_most, limit.limit});
-  }
-  if (!request.conditions.empty()) {
-    plan.conditions = read_duty_cycle(request.conditions, base);
-    for (const Variable& condition : plan.conditions.variables)
-      for (const Varied& varied : plan.designs.varied)
-        if (varied.variable.name() == condition.name())
-          throw InputError("--vary " + condition.name() + ": " + request.conditions.string() +
-                           " gives it for every operating point");
-  }
+  for (const Variable& condition : plan.conditions.variables)
+    for (const Varied& varied : plan.designs.varied)
+      if (varied.variable.name() == condition.name())
+        throw InputError("--vary " + condition.name() + ": " + request.conditions.string() +
+                         " gives it for every operating point");
   return plan;
 }
 
@@ -189,7 +223,7 @@ struct Optimiser::Implementation {
   Implementation(Case the_case, OptimisePlan the_plan)
       : base(std::move(the_case)),
         plan(std::move(the_plan)),
-        evaluator(family_of(base, plan), plan.designs.outputs, plan.designs.model) {
+        evaluator(family_of(base, plan), plan.computed, plan.designs.model) {
     for (const Varied& varied : plan.designs.varied) variables.push_back(search_variable(varied));
     for (std::size_t k = 0; k < plan.designs.direction.size(); ++k)
       if (plan.designs.direction[k] != 0) objectives.push_back(k);
@@ -202,7 +236,7 @@ struct Optimiser::Implementation {
         "lower --population, --generations or --restarts");
     std::vector<double> values;
     for (const Varied& varied : plan.designs.varied) values.push_back(varied.variable.value(base));
-    std::vector<double> raw(rows() * outputs());
+    std::vector<double> raw(rows() * computed());
     own.reason = compute(values, raw);
     own.values = outputs_in(raw);
     for (const Constraint& c : plan.constraints) {
@@ -214,6 +248,7 @@ struct Optimiser::Implementation {
   }
 
   std::size_t outputs() const { return plan.designs.outputs.size(); }
+  std::size_t computed() const { return plan.computed.size(); }  // of each row
   std::size_t rows() const { return plan.conditions.rows.size(); }
 
   // Values of the parameters at a point of the search.
@@ -248,7 +283,7 @@ struct Optimiser::Implementation {
       std::vector<double> all(values.begin(), values.end());
       const auto& condition = plan.conditions.rows[row];
       all.insert(all.end(), condition.values.begin(), condition.values.end());
-      const auto here = raw.subspan(row * outputs(), outputs());
+      const auto here = raw.subspan(row * computed(), computed());
       std::string why;
       evaluator.evaluate(1, all, here, {&why, 1});
       if (!why.empty() && reason.empty())
@@ -258,15 +293,16 @@ struct Optimiser::Implementation {
     return reason;
   }
 
-  bool is_constrained(std::size_t output) const {
-    return std::any_of(plan.constraints.begin(), plan.constraints.end(),
-                       [&](const Constraint& c) { return c.output == output; });
+  double value_at(std::size_t output, std::size_t row, std::span<const double> raw) const {
+    return raw[row * computed() + plan.taken[output].from];
   }
   // How far a design is beyond a constraint at its worst operating point, in the output's unit.
   double beyond(const Constraint& c, std::span<const double> raw) const {
     double worst = -std::numeric_limits<double>::infinity();
+    const auto& only = plan.taken[c.output].row;
     for (std::size_t row = 0; row < rows(); ++row) {
-      const double value = raw[row * outputs() + c.output];
+      if (only && row != *only) continue;
+      const double value = value_at(c.output, row, raw);
       const double over = c.at_most ? value - c.limit : c.limit - value;
       if (!(over <= worst)) worst = over;  // NaN stays
       if (std::isnan(worst)) break;
@@ -274,10 +310,11 @@ struct Optimiser::Implementation {
     return worst;
   }
   double mean(std::size_t output, std::span<const double> raw) const {
-    if (rows() == 1) return raw[output];
+    if (const auto& only = plan.taken[output].row) return value_at(output, *only, raw);
+    if (rows() == 1) return value_at(output, 0, raw);
     double sum = 0, shares = 0;
     for (std::size_t row = 0; row < rows(); ++row) {
-      sum += plan.conditions.rows[row].share * raw[row * outputs() + output];
+      sum += plan.conditions.rows[row].share * value_at(output, row, raw);
       shares += plan.conditions.rows[row].share;
     }
     return sum / shares;
@@ -454,9 +491,10 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
       values.insert(values.end(), one.begin(), one.end());
     }
     const bool keep = count == plan.search.population && designs.designs < all;
-    SweepBlock block = batches.make(std::move(values), count, rows() * m, keep, tell);
+    SweepBlock block = batches.make(std::move(values), count, rows() * computed(), keep, tell);
     for (std::size_t i = 0; i < count; ++i) {
-      const auto raw = std::span<const double>(block.results).subspan(i * rows() * m, rows() * m);
+      const auto raw = std::span<const double>(block.results)
+                           .subspan(i * rows() * computed(), rows() * computed());
       const auto row = results.subspan(i * problem.numbers(), problem.numbers());
       numbers_of(raw, row);
       const std::vector<double> measured = outputs_in(raw);
@@ -573,7 +611,7 @@ SweepRecord Optimiser::record(const std::string& program) const {
   record.plan.replace(record.plan.find(record.identity), record.identity.size(), identity);
   record.identity = identity;
   record.layout = {it.plan.evaluations(), it.plan.search.population, it.variables.size(),
-                   it.rows() * it.outputs()};
+                   it.rows() * it.computed()};
   return record;
 }
 

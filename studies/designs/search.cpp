@@ -44,6 +44,7 @@ constexpr double kForbidden = 1e30;
 constexpr double kNoValues = 1e60;
 // Of a refinement.
 constexpr int kMaxSteps = 100;
+constexpr std::size_t kMinEvaluations = 30;
 constexpr double kStepTolerance = 1e-8;        // of the range of a variable
 constexpr double kConstraintTolerance = 1e-9;  // of its scale
 // Kept from every constraint, of its scale: what ends on one is allowed for all that.
@@ -171,8 +172,9 @@ void explore(const SearchProblem& problem, std::span<const double> start,
 // One objective by gradients, in the variables that are no whole numbers.
 class Descent {
  public:
-  Descent(const SearchProblem& problem, std::size_t objective, std::vector<double> x)
-      : problem_(problem), objective_(objective), x_(std::move(x)) {
+  Descent(const SearchProblem& problem, std::size_t objective, std::vector<double> x,
+          std::size_t most)
+      : problem_(problem), objective_(objective), most_(most), x_(std::move(x)) {
     for (std::size_t k = 0; k < problem.variables(); ++k)
       if (!problem.whole[k]) free_.push_back(k);
   }
@@ -212,7 +214,8 @@ class Descent {
       const nlopt::result why = method.optimize(share, least);
       result.message = why == nlopt::MAXEVAL_REACHED ? "most steps reached" : "converged";
     } catch (const nlopt::forced_stop&) {
-      result.message = "no values at a point on its way";
+      result.message =
+          evaluations_ >= most_ ? "most evaluations reached" : "no values at a point on its way";
     } catch (const nlopt::roundoff_limited&) {
       result.message = "ended by round-off";
     } catch (const std::runtime_error&) {
@@ -240,6 +243,7 @@ class Descent {
   void look(unsigned n, const double* share, bool slopes) {
     const std::vector<double> at(share, share + n);
     if (at != at_) {
+      if (evaluations_ >= most_) throw nlopt::forced_stop();
       at_ = at;
       jacobian_.clear();
       for (std::size_t j = 0; j < free_.size(); ++j)
@@ -336,7 +340,7 @@ class Descent {
   }
 
   const SearchProblem& problem_;
-  std::size_t objective_;
+  std::size_t objective_, most_;  // of evaluations
   std::vector<double> x_;
   std::vector<std::size_t> free_;  // variables that are no whole numbers
   std::vector<double> at_, results_, jacobian_, margin_, best_x_;
@@ -418,9 +422,20 @@ SearchResult search(const SearchProblem& problem, std::span<const double> start,
   if (!options.refine) return result;
   result.evaluations.push_back(0);
   const bool one = problem.objectives == 1;
+  std::vector<std::pair<std::size_t, std::vector<double>>> starts;
   for (std::size_t k = 0; k < problem.objectives; ++k)
     for (const std::vector<double>& x : starts_of(problem, best[k], one ? first : Founds()))
-      result.refinements.push_back(Descent(watched, k, x).run());
+      starts.emplace_back(k, x);
+  // Together they may cost half as much as the searches, but some evaluations each.
+  std::size_t left = 0;
+  for (const std::size_t count : result.evaluations) left += count / 2;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const auto& [objective, x] = starts[i];
+    result.refinements.push_back(
+        Descent(watched, objective, x, std::max(kMinEvaluations, left / (starts.size() - i)))
+            .run());
+    left -= std::min(left, result.refinements.back().evaluations);
+  }
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,7 +19,8 @@
 
 namespace bentaxis::designs {
 
-/// What a command line says of an optimisation.
+/// What a command line says of an optimisation. Outputs by name; with "@N" behind it, "peak:Rb1@2",
+/// at the operating point of row N of the conditions alone.
 struct OptimiseRequest {
   std::vector<std::pair<std::string, std::string>> vary;  ///< name; FROM:TO or a list
   std::vector<std::string> minimise, maximise, outputs;
@@ -44,6 +46,14 @@ struct OptimisePlan {
   /// What varies and the outputs: ranges as uniform distributions, lists as levels. An output that
   /// has a direction is an objective.
   SweepPlan designs;
+  /// What is computed at every operating point, and of each output of the designs where it is taken
+  /// from: which of these, at which row; without a row all of them count.
+  std::vector<Output> computed;
+  struct Taken {
+    std::size_t from = 0;
+    std::optional<std::size_t> row = std::nullopt;
+  };
+  std::vector<Taken> taken;
   std::vector<Constraint> constraints;
   DutyCycle conditions;
   SearchOptions search;
