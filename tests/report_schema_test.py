@@ -68,6 +68,8 @@ class SchemaTest(unittest.TestCase):
                                  "350", "--turns", "2", "--check", "1"),
             "sweep": cls.report("report.json", "sweep", rated, "--vary", "pump.piston_length_mm=6:46:10", "--vary",
                                 "pump.joint_circle_radius_mm=20:35:5", "--maximise", "mean:Td", "--minimise", "max:Rb2", "--check", "10%"),
+            "optimise": cls.report("report.json", "optimise", rated, "--vary", "pump.tilt_deg=20:42", "--maximise", "mean:Td", "--minimise",
+                                   "peak:Rb1", "--subject-to", "peak:Rb1 <= 50000", "--population", "8", "--generations", "2"),
         }
         cls.reports["regress"] = cls.page_of_a_regression()
         (folder / "data.toml").write_text('schema = 1\n[[unknown]]\nparameter = "pump.bore_diameter_mm"\nbetween = [20, 25]\n' + "".join(

@@ -44,10 +44,10 @@ int outputs(const CaseOption& option) {
 
 Command add_outputs_command(CommandParser program) {
   auto the_case = std::make_shared<CaseOption>();
-  CommandParser command = program.subcommand(
-      "outputs",
-      "List the numbers that sweep, sensitivity and uncertainty can be asked for (--output), with "
-      "units and meanings");
+  CommandParser command = program.subcommand("outputs",
+                                             "List the numbers that sweep, optimise, sensitivity "
+                                             "and uncertainty can be asked for (--output), with "
+                                             "units and meanings");
   add_case(command, *the_case);
   return {command, [the_case] { return outputs(*the_case); }};
 }

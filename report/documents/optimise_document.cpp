@@ -88,10 +88,26 @@ std::optional<std::size_t> nearest_miss(const Optimisation& found) {
   return nearest;
 }
 
-// By how much a refinement improved an objective, of its value.
-double improvement(const Refinement& r) {
-  const double scale = std::max(std::abs(r.before), std::abs(r.after));
-  return scale > 0 ? (r.before - r.after) / scale : 0;
+double improvement(double before, double after) {
+  const double scale = std::max(std::abs(before), std::abs(after));
+  return scale > 0 ? (before - after) / scale : 0;
+}
+
+// By how much gradients improved the best value of an objective, of that value: the largest of all
+// objectives. Nothing where the searches found no feasible design.
+std::optional<double> largest_improvement(const Optimisation& found) {
+  std::optional<double> largest;
+  for (std::size_t k = 0; k < objectives(found).size(); ++k) {
+    double before = INFINITY, after = INFINITY;
+    for (const Refinement& r : found.search.refinements)
+      if (r.objective == k) {
+        before = std::fmin(before, r.before);  // which leaves out what is not there
+        after = std::fmin(after, r.after);
+      }
+    if (std::isfinite(before))
+      largest = std::max(largest.value_or(0), improvement(before, std::min(before, after)));
+  }
+  return largest;
 }
 
 report::Section chosen_section(const Optimisation& found) {
@@ -142,14 +158,17 @@ report::Section sureness_section(const Optimisation& found) {
       {"population", fmt::format("{}", options.population)},
       {"generations", fmt::format("{}", options.generations)},
       {"seed", fmt::format("{}", options.seed)},
-      {"time", fmt::format("{:.3g} s", found.designs.seconds)}};
+      {"time", fmt::format("{:.3g} s, {:.3g} s of it evaluations ({:.3g} designs a second)",
+                           found.designs.seconds, found.evaluation_seconds,
+                           static_cast<double>(found.evaluated()) / found.evaluation_seconds)}};
   section.table.columns = {"stage", "designs", "result"};
   for (std::size_t i = 0; i < options.restarts; ++i)
     section.table.rows.push_back(
         {fmt::format("search {}", i + 1), static_cast<long>(found.search.evaluations[i]),
          i < found.shares_of_front.size()
              ? fmt::format("{:.4g} % of the volume of the front", 100 * found.shares_of_front[i])
-             : "no feasible design"});
+         : found.chosen.empty() ? "no feasible design"
+                                : ""});
   const auto sought = objectives(found);
   for (const Refinement& r : found.search.refinements) {
     const Output& o = found.plan.designs.outputs[sought[r.objective]];
@@ -161,7 +180,8 @@ report::Section sureness_section(const Optimisation& found) {
              ? "to " + with_unit(sign * r.after, o) + "; " + r.message
              : fmt::format("from {} to {}, better by {:.2g} %; {} derivatives; {}",
                            with_unit(sign * r.before, o), with_unit(sign * r.after, o),
-                           100 * improvement(r), r.exact ? "exact" : "difference", r.message)});
+                           100 * improvement(r.before, r.after), r.exact ? "exact" : "difference",
+                           r.message)});
   }
   return section;
 }
@@ -210,12 +230,9 @@ std::vector<std::string> optimise_answers(const Optimisation& found) {
     sure = fmt::format("each of {} searches finds at least {:.3g} % of the front alone",
                        found.shares_of_front.size(), 100 * least);
   }
-  double most = 0;
-  for (const Refinement& r : found.search.refinements)
-    if (is_computed(r.before)) most = std::max(most, improvement(r));
-  if (!found.search.refinements.empty())
-    sure += fmt::format("{}gradients improve an objective by {:.2g} % at most",
-                        sure.empty() ? "" : ", and ", 100 * most);
+  if (const auto most = largest_improvement(found))
+    sure += fmt::format("{}gradients improve the best value of an objective by {:.2g} % at most",
+                        sure.empty() ? "" : ", and ", 100 * *most);
   if (!sure.empty()) answers.push_back("How sure: " + sure + ".");
   return answers;
 }

@@ -25,7 +25,8 @@
 namespace bentaxis::designs {
 namespace {
 
-constexpr std::size_t kFastPiece = 64;  // designs computed at a time; of slow ones one
+constexpr std::size_t kFastPiece = 64;  // designs computed at a time, at most; of slow ones one
+constexpr std::size_t kPieces = 8;      // that a batch is cut in, at least
 constexpr std::size_t kMaxEvaluations = 100000000;
 // Steps of differences, as a part of a range: of the closed form, and of pressures that an
 // integrator computes to a tolerance.
@@ -293,6 +294,16 @@ struct Optimiser::Implementation {
     return reason;
   }
 
+  // The same of several designs.
+  void compute(std::span<const double> values, std::span<double> raw,
+               std::span<std::string> reasons) const {
+    if (rows() == 1 && plan.conditions.variables.empty())
+      return evaluator.evaluate(reasons.size(), values, raw, reasons);
+    const std::size_t n = variables.size(), m = rows() * computed();
+    for (std::size_t i = 0; i < reasons.size(); ++i)
+      reasons[i] = compute(values.subspan(i * n, n), raw.subspan(i * m, m));
+  }
+
   double value_at(std::size_t output, std::size_t row, std::span<const double> raw) const {
     return raw[row * computed() + plan.taken[output].from];
   }
@@ -386,7 +397,8 @@ namespace {
 // Batches of designs: computed by threads and processes, kept in a folder, taken from there.
 class Batches {
  public:
-  using Compute = std::function<std::string(std::span<const double> values, std::span<double> raw)>;
+  using Compute = std::function<void(std::span<const double> values, std::span<double> raw,
+                                     std::span<std::string> reasons)>;
   Batches(const OptimiseWork& work, std::size_t piece, Compute compute)
       : work_(work), piece_(piece), compute_(std::move(compute)) {}
 
@@ -426,15 +438,17 @@ class Batches {
     const std::size_t width = block.values.size() / block.designs;
     block.results.assign(block.designs * numbers, 0);
     block.reasons.assign(block.designs, "");
-    const std::size_t pieces = (block.designs + piece_ - 1) / piece_;
+    const std::size_t size = std::clamp<std::size_t>(block.designs / kPieces, 1, piece_);
+    const std::size_t pieces = (block.designs + size - 1) / size;
     // One by one where it is all there is: threads cost more than a design.
     study::Reporting reporting(1, [&](double) { tick(); });
     const auto piece = [&](std::size_t p) {
       if (p % work_.ranks != work_.rank) return;
       reporting.tick();
-      for (std::size_t i = p * piece_; i < std::min(block.designs, (p + 1) * piece_); ++i)
-        block.reasons[i] = compute_(std::span<const double>(block.values).subspan(i * width, width),
-                                    std::span(block.results).subspan(i * numbers, numbers));
+      const std::size_t first = p * size, count = std::min(size, block.designs - first);
+      compute_(std::span<const double>(block.values).subspan(first * width, count * width),
+               std::span(block.results).subspan(first * numbers, count * numbers),
+               std::span(block.reasons).subspan(first, count));
     };
     if (pieces == 1)
       piece(0);
@@ -466,7 +480,7 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
   const std::size_t n = variables.size(), m = outputs();
   const std::size_t all = plan.evaluations();
   Batches batches(work, evaluator.fast() ? kFastPiece : 1,
-                  [this](auto values, auto raw) { return compute(values, raw); });
+                  [this](auto values, auto raw, auto reasons) { compute(values, raw, reasons); });
 
   SearchProblem problem;
   for (const SearchVariable& v : variables) {
@@ -491,7 +505,9 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
       values.insert(values.end(), one.begin(), one.end());
     }
     const bool keep = count == plan.search.population && designs.designs < all;
+    const Stopwatch evaluation;
     SweepBlock block = batches.make(std::move(values), count, rows() * computed(), keep, tell);
+    found.evaluation_seconds += evaluation.seconds();
     for (std::size_t i = 0; i < count; ++i) {
       const auto raw = std::span<const double>(block.results)
                            .subspan(i * rows() * computed(), rows() * computed());
@@ -556,7 +572,8 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
         {"balanced", *std::min_element(front.begin(), front.end(),
                                        [&](auto a, auto b) { return distance(a) < distance(b); })});
   }
-  if (!front.empty()) {
+  constexpr std::size_t kMaxVolume = 3;
+  if (!front.empty() && problem.objectives <= kMaxVolume) {
     const auto volume_of = [&](std::size_t from, std::size_t to) {
       std::vector<double> costs;
       for (std::size_t i = from; i < to; ++i) {

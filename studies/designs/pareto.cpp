@@ -35,11 +35,17 @@ std::vector<std::size_t> pareto_front(std::span<const double> results,
     return better;
   };
   std::vector<Competitor> front;
-  for (Competitor& candidate : candidates)
+  for (Competitor& candidate : candidates) {
+    // Of two outputs only who was best in the second so far can beat: who was found last.
+    if (candidate.costs.size() == 2 && !front.empty()) {
+      if (!beats(front.back(), candidate)) front.push_back(std::move(candidate));
+      continue;
+    }
     // Who was found last is the likeliest to beat.
     if (std::none_of(front.rbegin(), front.rend(),
                      [&](const Competitor& other) { return beats(other, candidate); }))
       front.push_back(std::move(candidate));
+  }
   std::vector<std::size_t> designs;
   for (const Competitor& candidate : front) designs.push_back(candidate.design);
   std::sort(designs.begin(), designs.end());

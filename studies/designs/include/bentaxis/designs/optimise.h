@@ -85,12 +85,14 @@ struct Optimisation {
   Evaluation own;                    ///< outputs of the case as it is, and why it is infeasible
   std::vector<ChosenDesign> chosen;  ///< of the front; empty where no design is feasible
   SearchResult search;
-  std::size_t kept = 0;  ///< batches that an earlier run had computed
+  double evaluation_seconds = 0;  ///< of designs.seconds, without what the search itself takes
+  std::size_t kept = 0;           ///< batches that an earlier run had computed
 
   std::size_t evaluated() const { return designs.designs; }
   std::size_t feasible() const { return designs.designs - designs.infeasible.size(); }
   /// Front of each search on its own over that of all designs, as volumes that they dominate below
-  /// the worst point of the front of all: 1 where a search finds everything alone.
+  /// the worst point of the front of all: 1 where a search finds everything alone. Of up to three
+  /// objectives: of more a volume would take longer than the search.
   std::vector<double> shares_of_front;
 };
 

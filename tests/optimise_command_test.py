@@ -1,0 +1,192 @@
+#!/usr/bin/env python3
+"""`bentaxis optimise` from outside: files, answers, refusals, interruption, processes.
+
+usage: optimise_command_test.py BENTAXIS REPO_ROOT [options of unittest]
+"""
+
+import csv
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = REPO = None  # set in main
+DONE, NONE_FOUND, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+SECONDS = 300
+FRONT = ["--vary", "pump.tilt_deg=25:42", "--vary", "pump.bore_diameter_mm=20:26", "--minimise", "peak:Rb1",
+         "--maximise", "displacement_cm3", "--population", "16", "--generations", "8"]
+
+
+def rows_of(path):
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+class Optimise(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="bentaxis_test_")))
+        self.out = self.folder / "out"
+        self.case = REPO / "cases" / "bap63_rated.toml"
+
+    def command(self, *options, case=None, out=None):
+        return [PROGRAM, "optimise", str(case or self.case), "--out", str(out or self.out),
+                "--set", "operation.samples_per_revolution=36", *map(str, options)]
+
+    def run_program(self, *options, status=DONE, **places):
+        done = subprocess.run(self.command(*options, **places), cwd=self.folder, capture_output=True, text=True, timeout=SECONDS)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done
+
+    def refused(self, *options):
+        done = self.run_program(*options, status=BAD_INPUT)
+        said = [line for line in done.stderr.splitlines() if not line.startswith("pump: ")]
+        self.assertEqual((done.stdout, len(said)), ("", 1), done.stderr)
+        self.assertFalse(self.out.exists())
+        return said[0]
+
+    def test_chosen_cases_are_what_the_table_says(self):
+        done = self.run_program(*FRONT, "--subject-to", "peak:Rb1 <= 60000", "--output", "mean:Td")
+        report = json.loads((self.out / "report.json").read_text())
+        self.assertEqual(report["verdict"]["word"], "Optimised")
+        for answer in report["verdict"]["answers"]:
+            self.assertIn(answer, done.stdout)
+        front = rows_of(self.out / "front.csv")
+        everything = rows_of(self.out / "evaluations.csv")
+        allowed = [row for row in everything if row["reason"] == ""]
+        # No design beats one of the front, and each of the front is there.
+        self.assertEqual([row for row in everything if row["design"] in {r["design"] for r in front}], front)
+        for one in front:
+            self.assertFalse([o for o in allowed
+                              if float(o["peak:Rb1"]) < float(one["peak:Rb1"]) and float(o["displacement_cm3"]) > float(one["displacement_cm3"])])
+        for row in everything:
+            self.assertEqual(float(row["peak:Rb1"]) > 60000, "peak:Rb1 <= 60000 N: beyond by" in row["reason"])
+        # Each chosen case, run by itself, has the numbers of its design; the same command and another one agree.
+        table = next(s for s in report["runs"] if s["title"] == "Chosen designs")["table"]
+        columns = table["columns"]
+        self.assertEqual([row[1] for row in table["rows"]][1:], ["least peak:Rb1", "largest displacement_cm3", "balanced"])
+        for row in table["rows"][1:]:
+            sweep = self.folder / row[0]
+            subprocess.run([PROGRAM, "sweep", self.out / row[0], "--set", "operation.samples_per_revolution=36",
+                            "--vary", "piston.inertia=lumped", "--output", "peak:Rb1,displacement_cm3,mean:Td", "--out", sweep],
+                           check=True, capture_output=True, timeout=SECONDS)
+            found = rows_of(sweep / "sweep.csv")[0]
+            for name in ("peak:Rb1", "displacement_cm3", "mean:Td"):
+                shown = next(row[i] for i, column in enumerate(columns) if column.startswith(name))
+                value = next(v for column, v in found.items() if column.startswith(name))
+                self.assertTrue(math.isclose(float(value), shown, rel_tol=1e-12), (name, value, shown))
+        self.assertFalse((self.out / "sweep.parts").exists())
+
+    def test_no_design_is_a_clear_no(self):
+        done = self.run_program(*FRONT, "--subject-to", "displacement_cm3 >= 900", status=NONE_FOUND)
+        self.assertTrue(done.stdout.startswith("none of "), done.stdout)
+        self.assertIn("The nearest miss is design", done.stdout)
+        verdict = json.loads((self.out / "report.json").read_text())["verdict"]
+        self.assertEqual((verdict["agrees"], verdict["word"]), (False, "No design"))
+        self.assertFalse(list(self.out.glob("chosen_*")))
+
+    def test_refusals_name_option_and_value(self):
+        vary = ["--vary", "pump.tilt_deg=25:42"]
+        for options, words in (
+                ([*vary], "--minimise"),
+                (["--minimise", "peak:Rb1"], "--vary"),
+                ([*vary, "--minimise", "peak:Rb1", "--subject-to", "peak:Rb1 < 3"], "peak:Rb1 < 3"),
+                ([*vary, "--minimise", "peak:Rb1", "--population", "10"], "--population 10"),
+                ([*vary, "--minimise", "timing.backflow"], "timing.backflow"),
+                (["--vary", "pump.tilt_deg=40", "--minimise", "peak:Rb1"], "pump.tilt_deg"),
+                (["--vary", "pump.tilt_deg", "--minimise", "peak:Rb1"], "--vary pump.tilt_deg"),
+                ([*vary, "--minimise", "peak:Rb1@1"], "--conditions"),
+                ([*vary, "--study", "missing.toml"], "missing.toml"),
+                ([*vary, "--minimise", "peak:Rb1", "--conditions", "missing.csv"], "missing.csv")):
+            with self.subTest(options=options):
+                self.assertIn(words, self.refused(*options))
+        study = self.folder / "study.toml"
+        study.write_text("minimise = [\"peak:Rb1\"]\npopulatoin = 12\n")
+        said = self.refused(*vary, "--study", study)
+        self.assertIn("study.toml:2", said)
+        self.assertIn("population", said)
+
+    def test_a_study_file_is_the_same_as_options(self):
+        study = self.folder / "study.toml"
+        study.write_text("""minimise = ["peak:Rb1"]
+maximise = ["displacement_cm3"]
+population = 16
+generations = 8
+[[vary]]
+parameter = "pump.tilt_deg"
+values = "25:42"
+[[vary]]
+parameter = "pump.bore_diameter_mm"
+values = "20:26"
+""")
+        self.run_program("--study", study)
+        self.run_program(*FRONT, out=self.folder / "options")
+        for name in ("evaluations.csv", "front.csv", "chosen_3.toml"):
+            self.assertEqual((self.out / name).read_bytes(), (self.folder / "options" / name).read_bytes(), name)
+
+    def test_timing_and_plausibility_are_constraints(self):
+        # Of one plate: the same numbers as pressure states.
+        case = REPO / "cases" / "bap63_rated_hydraulic.toml"
+        self.run_program("--vary", "hydraulics.delivery_notch_deg=16:20", "--minimise", "timing.backflow", "--output",
+                         "timing.warnings,plausibility.warnings", "--subject-to", "timing.overshoot.excess <= 100", "--population",
+                         "8", "--generations", "0", "--restarts", "1", "--no-refinement", case=case)
+        first = rows_of(self.out / "evaluations.csv")[0]
+        self.assertEqual(float(first["hydraulics.delivery_notch_deg"]), 18)
+        out = self.folder / "pressure"
+        subprocess.run([PROGRAM, "pressure", case, "--set", "operation.samples_per_revolution=36", "--out", out],
+                       check=True, capture_output=True, timeout=SECONDS)
+        report = json.loads((out / "pressure.json").read_text())
+        rows = {row["code"]: row for row in report["timing"]}
+        self.assertTrue(math.isclose(float(first["timing.backflow"]), rows["backflow"]["value"], rel_tol=1e-9))
+        self.assertTrue(math.isclose(float(first["timing.overshoot.excess"]), rows["overshoot"]["value"] - rows["overshoot"]["limit"],
+                                     rel_tol=1e-9))
+        self.assertEqual(float(first["timing.warnings"]), sum(row["flagged"] and not row.get("meant") for row in report["timing"]))
+        self.assertEqual(float(first["plausibility.warnings"]), len(report["plausibility"]["warnings"]))
+
+    def test_an_interrupted_run_goes_on(self):
+        options = ["--vary", "hydraulics.delivery_notch_deg=10:20", "--minimise", "timing.backflow", "--population", "8",
+                   "--generations", "3", "--restarts", "1", "--no-refinement"]
+        case = REPO / "cases" / "bap63_rated_hydraulic.toml"
+        running = subprocess.Popen(self.command(*options, case=case), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        parts = self.out / "sweep.parts"
+        end = time.monotonic() + SECONDS
+        while not list(parts.glob("block-*")) and running.poll() is None and time.monotonic() < end:
+            time.sleep(0.01)
+        running.send_signal(signal.SIGINT)
+        _, said = running.communicate(timeout=SECONDS)
+        if running.returncode != DONE:  # it may have ended before
+            self.assertEqual(running.returncode, INTERRUPTED, said)
+            self.assertIn("--resume goes on from them", said)
+            refused = self.run_program(*options, "--seed", "2", "--resume", case=case, status=BAD_INPUT)
+            self.assertIn("another case or plan", refused.stderr)
+            done = self.run_program(*options, "--resume", case=case)
+            self.assertIn("batches were there already", done.stderr)
+        self.run_program(*options, case=case, out=self.folder / "whole")
+        self.assertEqual((self.out / "evaluations.csv").read_bytes(), (self.folder / "whole" / "evaluations.csv").read_bytes())
+
+    def test_two_processes_find_what_one_finds(self):
+        mpirun = shutil.which("mpirun")
+        if mpirun is None or "MPI none" in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout:
+            self.skipTest("no MPI")
+        environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        options = [*FRONT[:-4], "--population", "160", "--generations", "3"]
+        done = subprocess.run([mpirun, "--oversubscribe", "-n", "2", *self.command(*options)],
+                              cwd=self.folder, env=environment, capture_output=True, text=True, timeout=SECONDS)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.run_program(*options, out=self.folder / "one")
+        self.assertEqual((self.out / "front.csv").read_bytes(), (self.folder / "one" / "front.csv").read_bytes())
+
+
+if __name__ == "__main__":
+    PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
+    REPO = pathlib.Path(sys.argv[2]).resolve()
+    if "search none" in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout:
+        print("built without pagmo and NLopt: skipped")
+        sys.exit(0)
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
