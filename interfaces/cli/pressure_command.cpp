@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "bentaxis/designs/spaced_values.h"
+#include "bentaxis/designs/timing_advice_section.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/error.h"
@@ -25,6 +26,7 @@ struct Options {
   ReportPlace place;
   std::string overlay, published, delivery, suction_speed;
   int transient = 0;
+  bool advise = false;
 };
 
 constexpr const char* kFilling = "filling";  // of --suction-speed
@@ -71,6 +73,9 @@ int pressure(const Options& options) {
     study::add_suction_speed(
         document, point,
         study::suction_speed(point.the_case(), *limit, progress_of("suction speed")));
+  if (options.advise)
+    designs::add_advice(
+        document, designs::timing_advice(point.the_case(), point.state(), progress_of("advice")));
   options.the_case.refuse_timing(study::timing_warnings(*document.timing));
   if (published) study::add_published(document, study::judge_point(*published, point, progress_of));
   if (second)
@@ -127,6 +132,10 @@ Command add_pressure_command(CommandParser program) {
               "and the one at which no chamber falls below the pressure at which air comes out or "
               "oil boils, or below one in bar: 10 to 30 operating points each")
       .text("filling|saturation|vapour|BAR");
+  command.flag(
+      "--advise", options->advise,
+      "also which key to change, and by how much, for each timing verdict beyond its limit: "
+      "some 70 operating points");
   command
       .option("--transient", options->transient, "also the transient from rest over so many turns")
       .integer_in(1, 1000)

@@ -44,7 +44,7 @@ std::vector<std::string> pressure_answers(const OperatingPoint& point,
     if (row.flagged) names += (names.empty() ? "" : ", ") + row.quantity;
   answers.push_back(flagged == 0 ? std::string("Port timing: within all limits.")
                                  : fmt::format("Port timing: {} of {} quantities beyond their "
-                                               "limits: {}.",
+                                               "limits: {} (pressure --advise: what to change).",
                                                flagged, timing.size(), names));
   return answers;
 }
