@@ -273,6 +273,12 @@ report::Document optimise_document(const Optimisation& found, const report::Line
   document.runs->push_back(chosen_section(found));
   if (!found.chosen.empty()) document.runs->push_back(best_section(view));
   report::Section varied = plan_section(found.designs, view);
+  for (std::size_t k = 0; k < found.plan.designs.varied.size(); ++k) {
+    const Varied& one = found.plan.designs.varied[k];
+    if (one.levels.empty() && !one.variable.discrete())
+      varied.table.rows[k][2] =
+          fmt::format("{} to {}", one.distribution.numbers[0], one.distribution.numbers[1]);
+  }
   varied.facts = {{"model", study::to_string(found.plan.designs.model)}};
   for (const Constraint& c : found.plan.constraints)
     varied.facts.emplace_back("constraint", found.plan.text(c));

@@ -70,6 +70,17 @@ const SECTIONS = [
   ["models", "How each model was obtained", models], ["versions", "Origin and versions", versions],
 ];
 
+// Of many pumps there are no curves of one: their tables come first, the pump they all come from last.
+function sectionsOf(data) {
+  if (data.theta.length > 0) return SECTIONS;
+  const of = (...ids) => SECTIONS.filter(([id]) => ids.includes(id));
+  const first = of("verdict", "warnings"), pump = of("pump", "space"), tables = of("runs");
+  const rest = SECTIONS.filter(s => ![...first, ...pump, ...tables].includes(s));
+  const place = rest.findIndex(([id]) => id === "figures");
+  const end = rest.findIndex(([id]) => id === "case");
+  return [...first, ...rest.slice(0, place), ...tables, ...rest.slice(place, end), ...pump, ...rest.slice(end)];
+}
+
 function header(report, data) {
   const { theta, tables } = data, n = theta.length;
   const angles = n === 0 ? null : !data.axis.angle ? `${n} rows, ${data.axis.label} ${number(theta[0])} to ${number(theta[n - 1])}` : n === 1 ? "1 angle, " + degrees(theta[0])
@@ -129,7 +140,7 @@ function render() {
   main.replaceChildren();
   startDrawing();
   const shown = [];
-  for (const [id, title, build] of SECTIONS) {
+  for (const [id, title, build] of sectionsOf(data)) {
     const body = build(report, data);
     if (!body) continue;
     main.append(el("section", { id, "aria-labelledby": id + "-title" },
