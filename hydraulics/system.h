@@ -107,6 +107,7 @@ class System {
     set(t, fluid.state(y[at]), y[at]);
     nodes_[t].at = at;
     nodes_[t].states = 1;
+    nodes_[t].potential = std::numeric_limits<double>::quiet_NaN();
   }
   /// Pressure potential, J/kg.
   double potential(Terminal t) {
