@@ -282,7 +282,8 @@ TEST(Elements, ChambersWithGapsAndLateAir) {
       bench.states += air;
       y.resize(bench.states, 0.5);
       EXPECT_EQ(air > 0, changes == kinds[2]);
-      for (int k = 0; k < chambers.count(); ++k) y[k] += 0.2 * k - 0.5;
+      for (int k = 0; k < chambers.count(); ++k)
+        y[k] += 0.2 * k - 0.53;  // no flow is just 0, where air comes or goes
       expect_jacobian(bench, y, "chambers");
       // A port of its own takes nothing from the tank.
       if (!suction) {
