@@ -286,8 +286,14 @@ void Network::flows(const Moment& now, const double* y, double load_size, Flows&
 }
 
 double Network::load_flow(double x, const double* y, double load_size) const {
+  const Moment now = at(x);
   Flows flows;
-  this->flows(x, y, load_size, flows);
+  System sys(fluid_, now, y, load_size);
+  sys.flows = &flows;
+  connect(sys);
+  // What the chambers bring passes no load at once but where the port is held.
+  for (const auto& element : elements_)
+    if (fixed_ || element.get() != chambers_) element->stamp(sys);
   return flows.load;
 }
 
