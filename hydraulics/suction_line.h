@@ -16,18 +16,16 @@ class SuctionLine {
  public:
   /// @param viscosity  m2/s, kinematic; 0: no laminar loss
   SuctionLine(const SuctionLineData& data, const Fluid::State& tank, double viscosity)
-      : tank_(tank.pressure),
-        density_(tank.density),
+      : density_(tank.density),
         area_per_length_(area(data) / data.length),
         loss_(data.loss / (2 * tank.density * area(data) * area(data))),
         laminar_(32 * viscosity * data.length / (area(data) * data.diameter * data.diameter)) {}
 
-  /// Another pressure in the tank; the oil in the pipe stays what it is.
-  void set_tank(const Fluid::State& tank) { tank_ = tank.pressure; }
-
-  /// dm/dt, kg/s2, of the mass flow m into the port, kg/s, and its derivatives.
-  double rate(double port, double m) const {
-    return area_per_length_ * (tank_ - port - loss_ * m * std::abs(m) - laminar_ * m);
+  double density() const { return density_; }
+  /// dm/dt, kg/s2, of the mass flow m into the port, kg/s, between pressures in Pa, and its
+  /// derivatives.
+  double rate(double tank, double port, double m) const {
+    return area_per_length_ * (tank - port - loss_ * m * std::abs(m) - laminar_ * m);
   }
   /// Power that the flow m loses in the pipe, W.
   double lost(double m) const { return m * (loss_ * m * std::abs(m) + laminar_ * m) / density_; }
@@ -42,7 +40,7 @@ class SuctionLine {
   static double area(const SuctionLineData& data) {
     return kPi / 4 * data.diameter * data.diameter;
   }
-  double tank_, density_, area_per_length_, loss_, laminar_;
+  double density_, area_per_length_, loss_, laminar_;
 };
 
 }  // namespace bentaxis::hydraulics

@@ -17,6 +17,7 @@
 #include "leakage.h"
 #include "load.h"
 #include "network.h"
+#include "suction_line.h"
 #include "support.h"
 #include "transmission_line.h"
 #include "viscosity.h"
@@ -889,12 +890,13 @@ TEST(SuctionLine, AcceleratesByItsInertance) {
   const double area = kPi / 4 * 0.04 * 0.04;
   const SuctionLine plain({2, 0.04, 0, 1e-3}, tank, 0), lossy({2, 0.04, 3, 1e-3}, tank, 0);
   // dp = rho L/A dq/dt, with m = rho q.
-  EXPECT_NEAR(plain.rate(101325 - 5000, 1.2) * (2 / area), 5000, scaled(1e-9));
+  EXPECT_NEAR(plain.rate(101325, 101325 - 5000, 1.2) * (2 / area), 5000, scaled(1e-9));
   // Steady: dp = zeta rho v^2/2.
   const double v = 1.2 / (850 * area);
-  EXPECT_NEAR(lossy.rate(101325 - 3 * 850 * v * v / 2, 1.2), 0, scaled(1e-9));
+  EXPECT_NEAR(lossy.rate(101325, 101325 - 3 * 850 * v * v / 2, 1.2), 0, scaled(1e-9));
   const SuctionLine thick({2, 0.04, 0, 1e-3}, tank, 1e-3);
-  EXPECT_NEAR(thick.rate(101325 - 32 * 1e-3 * 850 * 2 * v / (0.04 * 0.04), 1.2), 0, scaled(1e-9));
+  EXPECT_NEAR(thick.rate(101325, 101325 - 32 * 1e-3 * 850 * 2 * v / (0.04 * 0.04), 1.2), 0,
+              scaled(1e-9));
 }
 
 TEST(SuctionLine, OscillatesAtItsFrequency) {
