@@ -286,13 +286,20 @@ class Search {
     return change;
   }
 
+  static bool is_small(const ExplainingChange& change) {
+    return std::all_of(change.parameters.begin(), change.parameters.end(), [](const auto& p) {
+      return p.from == 0 || std::abs(p.to - p.from) <= Explanation::kLargest * std::abs(p.from);
+    });
+  }
+
   std::vector<ExplainingChange> refine(const std::vector<Choice>& choices,
                                        const Progress& progress) const {
     std::vector<ExplainingChange> changes;
+    std::size_t done = 0;
     for (const Choice& choice : choices) {
-      changes.push_back(fit(choice));
-      if (progress)
-        progress(static_cast<double>(changes.size()) / static_cast<double>(choices.size()));
+      ExplainingChange change = fit(choice);
+      if (is_small(change)) changes.push_back(std::move(change));
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(choices.size()));
     }
     std::stable_sort(changes.begin(), changes.end(),
                      [](const auto& a, const auto& b) { return a.share > b.share; });

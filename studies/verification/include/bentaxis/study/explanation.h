@@ -26,6 +26,8 @@ struct Explanation {
   static constexpr double kSingle = 0.95;    ///< a share from which one parameter explains
   static constexpr double kPair = 0.99;      ///< and from which two do, where no single one does
   static constexpr double kMentioned = 0.4;  ///< other parameters are named above this
+  static constexpr double kLargest =
+      0.5;  ///< change over the value beyond which it is no wrong number
   static constexpr double kLookSame =
       0.999;  ///< correlation of derivatives that cannot be told apart
 
