@@ -1,6 +1,7 @@
 #include <memory>
 #include <optional>
 
+#include "bentaxis/designs/explain.h"
 #include "bentaxis/designs/validation_section.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/study/assumptions.h"
@@ -58,8 +59,9 @@ int compare(const Options& options) {
   how.with = options.with;
   how.loads = true;
   if (const auto data = shipped_reference_data()) how.published = *data / "published";
-  const study::ComparisonResult result =
+  study::ComparisonResult result =
       study::compare_models(std::move(first), std::move(second), how, progress_of);
+  if (result.with) designs::explain(*result.with, given, progress_of);
 
   const auto refuse = [&](const study::PreparedCase& ready) {
     if (ready.hydraulics)

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "bentaxis/designs/explain.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/report/page.h"
@@ -63,7 +64,8 @@ int regress(const Options& options) {
   int status = kDone;
   for (const auto& place : places) {
     outcomes.push_back(study::hold(place, progress_of));
-    const study::Outcome& outcome = outcomes.back();
+    study::Outcome& outcome = outcomes.back();
+    designs::explain(outcome, place, progress_of);
     status = std::max<int>(status, status_of(outcome.state));
     if (!outcome.error.empty())
       std::fprintf(stderr, "bentaxis: %s: %s\n", outcome.name.c_str(), outcome.error.c_str());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "bentaxis/designs/explain.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/report/junit.h"
 #include "bentaxis/study/regression.h"
@@ -58,7 +59,10 @@ Regression regress(const std::optional<fs::path>& folder, const std::string& fil
     if (places.empty())
       throw InputError("filter \"" + filter + "\" leaves none of the cases below " + root.string());
     std::vector<Outcome> outcomes;
-    for (const auto& place : places) outcomes.push_back(study::hold(place, progress_of));
+    for (const auto& place : places) {
+      outcomes.push_back(study::hold(place, progress_of));
+      designs::explain(outcomes.back(), place, progress_of);
+    }
     return std::make_shared<const std::vector<Outcome>>(std::move(outcomes));
   })};
 }
@@ -115,6 +119,12 @@ void add_regression_pieces(py::module_& module) {
       .def_property_readonly(
           "groups", [](const Held& self) { return self.outcome->lines; },
           "What was found of each group of channels of each model.")
+      .def_property_readonly(
+          "explanation",
+          [](const Held& self) {
+            return self.outcome->explanation ? self.outcome->explanation->text() : std::string();
+          },
+          "Where it differs: which parameters of the case would explain it, in words.")
       .def_property_readonly(
           "notes", [](const Held& self) { return self.outcome->notes; },
           "What else there is to know.")

@@ -126,6 +126,10 @@ void add_reference(report::Document& document, const Outcome& outcome) {
   report::Section section = source_section(outcome);
   section.table = lines_table({outcome});
   document.runs->insert(document.runs->begin(), std::move(section));
+  if (outcome.explanation) {
+    document.verdict->answers.push_back(outcome.name + ": " + outcome.explanation->text());
+    document.runs->insert(document.runs->begin() + 1, *explanation_section({outcome}));
+  }
   for (report::Figure& figure : *document.figures) {
     const auto* content = std::get_if<report::ChannelFigure>(&figure.content);
     if (content == nullptr) continue;

@@ -1,6 +1,7 @@
 #include "bentaxis/study/regression_document.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -115,6 +116,34 @@ report::Section source_section(const Outcome& outcome) {
   return section;
 }
 
+std::optional<report::Section> explanation_section(const std::vector<Outcome>& outcomes) {
+  report::Section section;
+  section.title = "What would explain the difference";
+  section.text =
+      "Parameters of the case, each changed alone or two together, until the analytic results are "
+      "nearest to the reference; computed again with them. Share: of the sum of squared "
+      "differences, each over the peak of its reaction.";
+  section.table.columns = {
+      "case",  "parameter",    "in the case", "nearest",  "unit",
+      "share", "rest of peak", "rest in",     "explains", "not to be told apart"};
+  bool any = false;
+  for (const Outcome& outcome : outcomes) {
+    if (!outcome.explanation) continue;
+    any = true;
+    const Explanation& found = *outcome.explanation;
+    section.facts.emplace_back(outcome.name, found.text());
+    for (const auto* list : {&found.singles, &found.pairs})
+      for (const ExplainingChange& change : *list)
+        for (const auto& p : change.parameters)
+          section.table.rows.push_back({outcome.name, p.name, p.from, p.to, p.unit, change.share,
+                                        change.rest_over_peak, change.rest_channel,
+                                        &change == found.cause() ? "yes" : "no",
+                                        fmt::format("{}", fmt::join(p.look_same, ", "))});
+  }
+  if (!any) return std::nullopt;
+  return section;
+}
+
 report::Table lines_table(const std::vector<Outcome>& outcomes) {
   report::Table table;
   table.columns = {"case",    "kind",    "model",  "group",    "verdict", "peak",
@@ -204,6 +233,10 @@ report::Document regression_document(const std::vector<Outcome>& outcomes, const
                     "Of peak: largest difference over the reaction's peak in the reference.",
                     {},
                     lines_table(outcomes)}};
+  for (const auto& outcome : outcomes)
+    if (outcome.explanation)
+      document.verdict->answers.push_back(outcome.name + ": " + outcome.explanation->text());
+  if (auto section = explanation_section(outcomes)) document.runs->push_back(std::move(*section));
   if (auto notes = notes_section(outcomes); !notes.table.rows.empty())
     document.runs->push_back(std::move(notes));
   for (const auto& outcome : outcomes)

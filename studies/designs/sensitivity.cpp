@@ -231,21 +231,21 @@ struct Turn {
 };
 
 // Takes from `variables` those that the hydraulic pressure has no derivatives by.
-Turn turn_of(const Sensitivities& s, std::vector<std::size_t>& variables,
-             const study::PartProgress& progress_of) {
-  study::PreparedCase ready = study::prepare(s.base, progress_of);
+Turn turn_of(const Case& base, const std::vector<Variable>& all, bool with_errors,
+             std::vector<std::size_t>& variables, const study::PartProgress& progress_of) {
+  study::PreparedCase ready = study::prepare(base, progress_of);
   Turn turn{ready.the_case, ready.samples(study::Way::driven), {}, {}};
   if (!ready.hydraulics) return turn;
   std::vector<hydraulics::Neighbours> parameters;
   std::vector<std::size_t> kept;
   for (const std::size_t v : variables) {
-    auto two = neighbours(s.variables[v], s.base);
+    auto two = neighbours(all[v], base);
     if (!two || !hydraulics::has_rates(*ready.hydraulics, *two)) continue;
     parameters.push_back(std::move(*two));
     kept.push_back(v);
   }
   variables = kept;
-  const int n = s.base.pump.geometry.pistons;
+  const int n = base.pump.geometry.pistons;
   std::vector<double> angles;
   for (const double theta : turn.samples.theta_deg)
     for (int k = 1; k <= n; ++k) angles.push_back(piston_angle_deg(theta, k, n));
@@ -253,18 +253,19 @@ Turn turn_of(const Sensitivities& s, std::vector<std::size_t>& variables,
     auto found = hydraulics::pressure_rates(*ready.hydraulics, parameters, angles, tolerance,
                                             progress_of("derivatives of the pressure"));
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const double size = size_of(s.at[variables[i]]);
+      const double size = size_of(all[variables[i]].value(base));
       for (double& rate : found[i].chamber) rate /= size;
       found[i].delivery_mean /= size;
     }
     return found;
   };
   try {
-    turn.fine = rates(kFine);
+    if (with_errors) turn.fine = rates(kFine);
     turn.coarse = rates(kCoarse);
   } catch (const ComputationError&) {
     variables.clear();  // differences may get through
   }
+  if (!with_errors) turn.fine = turn.coarse;
   return turn;
 }
 
@@ -274,61 +275,95 @@ bool load_sets_pressure(const Case& base) {
          base.hydraulics->load->sets_pressure() && base.pressure.ports.delivery > 0;
 }
 
+// Reactions over a driven turn with their exact derivatives by those of some variables that have
+// them.
+class TurnDerivatives {
+ public:
+  // @param with_errors  under hydraulic pressure every direction once more, with coarse rates
+  TurnDerivatives(const Case& base, const std::vector<Variable>& all,
+                  std::vector<std::size_t> wanted, bool with_errors,
+                  const study::PartProgress& progress_of)
+      : base_(base),
+        variables_(std::move(wanted)),
+        turn_(turn_of(base, all, with_errors, variables_, progress_of)),
+        hydraulic_(turn_.the_case.pressure.kind == PressureKind::hydraulic) {
+    const std::size_t directions = (hydraulic_ && with_errors ? 2 : 1) * variables_.size();
+    for (std::size_t d = 0; d < directions; ++d)
+      rates_.push_back(rates_of(all[variables_[d % variables_.size()]], base));
+  }
+
+  const std::vector<std::size_t>& variables() const { return variables_; }
+  bool hydraulic() const { return hydraulic_; }
+  std::size_t directions() const { return rates_.size(); }
+
+  // Calls visit(row, values, derivatives), derivatives as of DerivativeModel.
+  template <class Visit>
+  void for_each_row(const Visit& visit) const {
+    const Case& prepared = turn_.the_case;
+    const std::size_t count = variables_.size(), directions = rates_.size();
+    std::vector<PumpParameters> pumps;
+    pumps.reserve(directions);
+    for (const Rates& rates : rates_) pumps.push_back(rates.pump);
+    const analytic::DerivativeModel model(prepared.pump, prepared.analytic, pumps);
+    const std::size_t reactions = model.layout().reactions();
+    const auto n = static_cast<std::size_t>(model.layout().pistons());
+    const IdealPressure ideal(base_.pressure);
+    const auto of_pressure = [&](std::size_t d) -> const hydraulics::PressureRates& {
+      return d < count ? turn_.fine[d] : turn_.coarse[d - count];
+    };
+    Instant instant;
+    std::vector<Instant> along(directions);
+    for (std::size_t d = 0; d < directions; ++d) {
+      along[d].turn(0, rates_[d].speed);
+      along[d].ports = rates_[d].ports;
+      if (load_sets_pressure(base_)) along[d].ports.delivery = of_pressure(d).delivery_mean;
+      if (prepared.pressure.kind != PressureKind::curve) along[d].chamber_pressure.resize(n);
+    }
+    const auto chamber_rate = [&](std::size_t d, std::size_t row, std::size_t k) {
+      if (hydraulic_) return of_pressure(d).chamber[row * n + k];
+      return ideal.rate(piston_angle_deg(turn_.samples.theta_deg[row], static_cast<int>(k) + 1,
+                                         static_cast<int>(n)),
+                        rates_[d]);
+    };
+    std::vector<double> values(reactions), derivatives(reactions * directions);
+    for (std::size_t row = 0; row < turn_.samples.theta_deg.size(); ++row) {
+      turn_.samples.instant(row, instant);
+      for (std::size_t d = 0; d < directions; ++d)
+        for (std::size_t k = 0; k < along[d].chamber_pressure.size(); ++k)
+          along[d].chamber_pressure[k] = chamber_rate(d, row, k);
+      model.reactions(instant, along, values, derivatives);
+      visit(row, values, derivatives);
+    }
+  }
+
+ private:
+  const Case& base_;
+  std::vector<std::size_t> variables_;
+  Turn turn_;
+  bool hydraulic_;
+  std::vector<Rates> rates_;
+};
+
 // @return the variables for which it could be done
 std::vector<std::size_t> find_exact(Sensitivities& s, const std::vector<std::size_t>& outputs,
-                                    std::vector<std::size_t> variables,
+                                    std::vector<std::size_t> wanted,
                                     const study::PartProgress& progress_of) {
-  const Turn turn = turn_of(s, variables, progress_of);
+  const TurnDerivatives turn(s.base, s.variables, std::move(wanted), true, progress_of);
+  const std::vector<std::size_t>& variables = turn.variables();
   if (variables.empty()) return variables;
-  const Case& base = turn.the_case;
-  const std::size_t count = variables.size();
-  const bool hydraulic = base.pressure.kind == PressureKind::hydraulic;
-  // Under hydraulic pressure every direction once more, with the coarse rates.
-  const std::size_t directions = hydraulic ? 2 * count : count;
-  std::vector<Rates> rates;
-  std::vector<PumpParameters> pumps;
-  for (std::size_t d = 0; d < directions; ++d) {
-    rates.push_back(rates_of(s.variables[variables[d % count]], s.base));
-    pumps.push_back(rates.back().pump);
-  }
   std::vector<StatisticRates> statistics;
   for (const std::size_t o : outputs)
-    statistics.emplace_back(s.outputs[o], s.scales[o], directions);
-  const analytic::DerivativeModel model(base.pump, base.analytic, pumps);
-  const std::size_t reactions = model.layout().reactions();
-  const auto n = static_cast<std::size_t>(model.layout().pistons());
-  const IdealPressure ideal(s.base.pressure);
-  const auto of_pressure = [&](std::size_t d) -> const hydraulics::PressureRates& {
-    return d < count ? turn.fine[d] : turn.coarse[d - count];
-  };
-  Instant instant;
-  std::vector<Instant> along(directions);
-  for (std::size_t d = 0; d < directions; ++d) {
-    along[d].turn(0, rates[d].speed);
-    along[d].ports = rates[d].ports;
-    if (load_sets_pressure(s.base)) along[d].ports.delivery = of_pressure(d).delivery_mean;
-    if (base.pressure.kind != PressureKind::curve) along[d].chamber_pressure.resize(n);
-  }
-  const auto chamber_rate = [&](std::size_t d, std::size_t row, std::size_t k) {
-    if (hydraulic) return of_pressure(d).chamber[row * n + k];
-    return ideal.rate(
-        piston_angle_deg(turn.samples.theta_deg[row], static_cast<int>(k) + 1, static_cast<int>(n)),
-        rates[d]);
-  };
-  std::vector<double> values(reactions), derivatives(reactions * directions);
-  for (std::size_t row = 0; row < turn.samples.theta_deg.size(); ++row) {
-    turn.samples.instant(row, instant);
-    for (std::size_t d = 0; d < directions; ++d)
-      for (std::size_t k = 0; k < along[d].chamber_pressure.size(); ++k)
-        along[d].chamber_pressure[k] = chamber_rate(d, row, k);
-    model.reactions(instant, along, values, derivatives);
+    statistics.emplace_back(s.outputs[o], s.scales[o], turn.directions());
+  const std::size_t reactions = ChannelLayout(s.base.pump.geometry.pistons).reactions();
+  turn.for_each_row([&](std::size_t, const auto& values, const auto& derivatives) {
     for (StatisticRates& statistic : statistics) statistic.add(values, derivatives, reactions);
-  }
+  });
+  const std::size_t count = variables.size();
   for (std::size_t i = 0; i < outputs.size(); ++i)
     for (std::size_t d = 0; d < count; ++d) {
       Derivative& found = s.derivatives[outputs[i]][variables[d]];
       found = statistics[i].derivative(d);
-      if (!hydraulic) continue;
+      if (!turn.hydraulic()) continue;
       found.way = Way::forward;
       found.error += std::abs(statistics[i].derivative(count + d).value - found.value);
     }
@@ -508,6 +543,18 @@ std::vector<Variable> continuous_variables(const Case& base) {
     }
   }
   return variables;
+}
+
+std::vector<Variable> differentiate_reactions(const Case& base, const ReactionVisitor& visit,
+                                              const study::PartProgress& progress_of) {
+  const std::vector<Variable> all = continuous_variables(base);
+  const TurnDerivatives turn(
+      base, all, numbers(all.size(), [&](std::size_t v) { return is_exact(all[v], base); }), false,
+      progress_of);
+  std::vector<Variable> found;
+  for (const std::size_t v : turn.variables()) found.push_back(all[v]);
+  if (!found.empty()) turn.for_each_row(visit);
+  return found;
 }
 
 Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,

@@ -469,6 +469,10 @@ class Outcome:
         """What was found of each group of channels of each model."""
 
     @property
+    def explanation(self) -> str:
+        """Where it differs: which parameters of the case would explain it, in words."""
+
+    @property
     def notes(self) -> list[str]:
         """What else there is to know."""
 

@@ -1,6 +1,7 @@
 // A regression for continuous integration and for people.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ report::Table lines_table(const std::vector<Outcome>& outcomes);
 
 /// A reference: its source, how it was made, its tolerance, and what was found.
 report::Section source_section(const Outcome& outcome);
+
+/// Parameters that would explain where results differ; nothing where none was looked for.
+std::optional<report::Section> explanation_section(const std::vector<Outcome>& outcomes);
 
 /// All outcomes as the document of a page, with the curves that fail and every external one.
 /// @param what     what was held: the name of the folder

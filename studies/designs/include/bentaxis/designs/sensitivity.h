@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,6 +50,18 @@ struct Sensitivities {
 
 /// Every number of a case that has something to do in it, but how finely a turn is cut.
 std::vector<Variable> continuous_variables(const Case& base);
+
+/// Takes the reactions at one sample of a turn, and their derivatives by each variable in turn, in
+/// SI over the variable's unit in files.
+using ReactionVisitor = std::function<void(std::size_t row, const std::vector<double>& values,
+                                           const std::vector<double>& derivatives)>;
+/// Exact derivatives of all reactions over a driven turn, by the analytic model, with respect to
+/// every continuous variable that has them.
+/// @return these variables, in the order of the derivatives
+/// @throws InputError, ComputationError
+std::vector<Variable> differentiate_reactions(
+    const Case& base, const ReactionVisitor& visit,
+    const study::PartProgress& progress_of = study::silent());
 
 /// Derivatives at the case itself. Exact are those by the analytic model of statistics of
 /// reactions, without teeth, with respect to what pump, speed and pressure are made of; under

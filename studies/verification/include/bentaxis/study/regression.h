@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bentaxis/compare/reference.h"
+#include "bentaxis/study/explanation.h"
 #include "bentaxis/study/reference_set.h"
 
 namespace bentaxis::study {
@@ -46,6 +47,8 @@ struct Outcome {
     ResultTable resampling;            ///< the reference's error by resampling, estimated
   };
   std::map<std::string, Held> held;  ///< by model
+  /// Of one that differs, where it was looked for (designs/explain.h).
+  std::optional<Explanation> explanation = {};
 
   /// What was found of a channel of a model; nullptr where it was not compared.
   const compare::ReferenceChannel* find(const std::string& model, const std::string& channel) const;

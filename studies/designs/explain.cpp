@@ -1,0 +1,364 @@
+#include "bentaxis/designs/explain.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "bentaxis/designs/sensitivity.h"
+#include "bentaxis/designs/variable.h"
+#include "bentaxis/files/case_file.h"
+#include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
+#include "bentaxis/study/failed_point.h"
+#include "bentaxis/study/run.h"
+
+namespace bentaxis::designs {
+namespace {
+
+using study::ExplainingChange;
+using study::Explanation;
+
+constexpr int kMostAngles = 720;        // that are looked at
+constexpr std::size_t kRefined = 6;     // changes that are computed again, best of the linear fit
+constexpr double kWorthRefining = 0.1;  // share by the linear fit
+constexpr int kSteps = 6, kHalvings = 6;
+constexpr double kDone = 1e-12;  // of the difference, or by which a step still lowers it
+
+// A number that is compared.
+struct Column {
+  std::string name;
+  std::size_t in_layout;
+  double weight;  // 1 / peak
+};
+
+class Search {
+ public:
+  Search(const study::Outcome& outcome, const Case& base, const study::PartProgress& progress_of)
+      : base_(base), progress_of_(progress_of) {
+    const auto held = outcome.held.find("analytic");
+    if (held == outcome.held.end()) throw InputError("the analytic model was not compared.");
+    const ResultTable& result = held->second.result;
+    const ResultTable& reference = held->second.reference;
+    if (result.rows() != static_cast<std::size_t>(base.operation.samples_per_revolution))
+      throw InputError("the results are not those of a driven turn.");
+    choose_columns(outcome, result, reference);
+    choose_angles(reference);
+    collect(result, reference);
+  }
+
+  Explanation find() {
+    Explanation found;
+    if (difference_ <= 0) {
+      found.reason = "the analytic model does not differ at the angles compared.";
+      return found;
+    }
+    differentiate();
+    found.tried = variables_.size();
+    if (variables_.empty()) {
+      found.reason = "no parameter of this case has exact derivatives.";
+      return found;
+    }
+    const Progress progress = progress_of_("what would explain the difference");
+    found.singles = refine(ranked_singles(), progress);
+    if (found.cause() == nullptr) found.pairs = refine(ranked_pairs(), progress);
+    return found;
+  }
+
+ private:
+  using Choice = std::vector<std::size_t>;  // variables
+
+  void choose_columns(const study::Outcome& outcome, const ResultTable& result,
+                      const ResultTable& reference) {
+    const ChannelLayout layout(base_.pump.geometry.pistons);
+    reactions_ = layout.reactions();
+    for (const study::GroupLine& line : outcome.lines)
+      for (const compare::ReferenceChannel& channel : line.channels) {
+        const auto& c = channel.comparison;
+        if (line.model != "analytic" || study::severity(channel) < 0 || !(c.peak > 0)) continue;
+        if (channel.finding == compare::Finding::incomplete) continue;
+        const auto place =
+            std::find_if(layout.channels().begin(), layout.channels().end(),
+                         [&](const Channel& one) { return one.name == c.channel.name; });
+        if (place == layout.channels().end() || result.find(c.channel.name) == result.columns() ||
+            reference.find(c.channel.name) == reference.columns())
+          continue;
+        columns_.push_back({c.channel.name,
+                            static_cast<std::size_t>(place - layout.channels().begin()),
+                            1 / c.peak});
+        si_.push_back(place->unit_in_si);
+      }
+    if (columns_.empty()) throw InputError("no channel of the analytic model was compared.");
+  }
+
+  // Every stride-th of those that the reference has.
+  void choose_angles(const ResultTable& reference) {
+    std::size_t stride = 0;
+    for (std::size_t row = 0; row < reference.rows(); ++row)
+      if (std::any_of(columns_.begin(), columns_.end(), [&](const Column& c) {
+            return is_computed(reference.at(row, reference.find(c.name)));
+          }))
+        stride = std::gcd(stride, row);
+    const std::size_t all = reference.rows();
+    if (stride == 0 || all % stride != 0) stride = 1;
+    const std::size_t least = stride;
+    while (all / stride > kMostAngles && stride < all) {
+      std::size_t next = stride + least;
+      while (next < all && all % next != 0) next += least;
+      stride = next;
+    }
+    if (stride >= all) stride = least;
+    stride_ = stride;
+    base_.operation.samples_per_revolution = static_cast<int>(all / stride);
+  }
+
+  void collect(const ResultTable& result, const ResultTable& reference) {
+    const std::size_t rows = reference.rows() / stride_;
+    wanted_.setZero(static_cast<Eigen::Index>(rows * columns_.size()));
+    known_.assign(rows * columns_.size(), false);
+    here_ = wanted_;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const std::size_t a = result.find(columns_[c].name), b = reference.find(columns_[c].name);
+      for (std::size_t row = 0; row < rows; ++row) {
+        const double ours = result.at(row * stride_, a), theirs = reference.at(row * stride_, b);
+        if (!std::isfinite(ours) || !std::isfinite(theirs)) continue;
+        const std::size_t at = row * columns_.size() + c;
+        known_[at] = true;
+        wanted_[static_cast<Eigen::Index>(at)] = theirs * columns_[c].weight;
+        here_[static_cast<Eigen::Index>(at)] = ours * columns_[c].weight;
+      }
+    }
+    difference_ = (wanted_ - here_).squaredNorm();
+  }
+
+  // Fills the derivatives of what is compared.
+  void differentiate() {
+    variables_ = differentiate_reactions(
+        base_,
+        [&](std::size_t row, const std::vector<double>&, const std::vector<double>& derivatives) {
+          const std::size_t count = derivatives.size() / reactions_;
+          if (jacobian_.size() == 0)
+            jacobian_.setZero(wanted_.size(), static_cast<Eigen::Index>(count));
+          for (std::size_t c = 0; c < columns_.size(); ++c) {
+            const std::size_t at = row * columns_.size() + c;
+            if (columns_[c].in_layout >= reactions_ || !known_[at]) continue;
+            for (std::size_t d = 0; d < count; ++d) {
+              const double slope = derivatives[d * reactions_ + columns_[c].in_layout];
+              if (std::isfinite(slope))
+                jacobian_(static_cast<Eigen::Index>(at), static_cast<Eigen::Index>(d)) =
+                    slope * columns_[c].weight / si_[c];
+            }
+          }
+        },
+        progress_of_);
+    if (variables_.empty()) return;
+    normal_ = jacobian_.transpose() * jacobian_;
+    right_ = jacobian_.transpose() * (wanted_ - here_);
+  }
+
+  double norm(std::size_t v) const { return std::sqrt(normal_(index(v), index(v))); }
+  double correlation(std::size_t a, std::size_t b) const {
+    const double size = norm(a) * norm(b);
+    return size > 0 ? normal_(index(a), index(b)) / size : 0;
+  }
+  static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+  // Share of the difference that some variables explain by the linear fit.
+  double linear_share(const Choice& choice) const {
+    const double a = norm(choice[0]);
+    if (!(a > 0)) return 0;
+    const double first = right_[index(choice[0])] / a;
+    if (choice.size() == 1) return first * first / difference_;
+    const double b = norm(choice[1]), cosine = correlation(choice[0], choice[1]);
+    if (!(b > 0) || std::abs(cosine) >= Explanation::kLookSame) return 0;
+    const double second = (right_[index(choice[1])] / b - cosine * first);
+    return (first * first + second * second / (1 - cosine * cosine)) / difference_;
+  }
+
+  std::vector<Choice> best(std::vector<Choice> choices) const {
+    std::vector<std::pair<double, Choice>> ranked;
+    for (Choice& choice : choices)
+      if (const double share = linear_share(choice); share >= kWorthRefining)
+        ranked.emplace_back(share, std::move(choice));
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [](const auto& x, const auto& y) { return x.first > y.first; });
+    std::vector<Choice> list;
+    for (auto& one : ranked)
+      if (list.size() < kRefined) list.push_back(std::move(one.second));
+    return list;
+  }
+
+  std::vector<Choice> ranked_singles() const {
+    std::vector<Choice> all;
+    for (std::size_t v = 0; v < variables_.size(); ++v) all.push_back({v});
+    return best(std::move(all));
+  }
+
+  std::vector<Choice> ranked_pairs() const {
+    std::vector<Choice> all;
+    for (std::size_t a = 0; a < variables_.size(); ++a)
+      for (std::size_t b = a + 1; b < variables_.size(); ++b) all.push_back({a, b});
+    std::vector<Choice> list = best(std::move(all));
+    if (list.size() > 3) list.resize(3);  // they cost more each
+    return list;
+  }
+
+  // What is compared, of changed variables; nothing where they make no pump that runs.
+  std::optional<Eigen::VectorXd> results(const Family& family, const Eigen::VectorXd& x) const {
+    Eigen::VectorXd found = Eigen::VectorXd::Zero(wanted_.size());
+    const std::string reason = study::reason_of([&] {
+      Case changed = base_;
+      family.make({x.data(), static_cast<std::size_t>(x.size())}, changed);
+      const ResultTable table = study::run_turn(study::prepare(changed), study::Model::analytic);
+      for (std::size_t c = 0; c < columns_.size(); ++c) {
+        const std::size_t column = table.find(columns_[c].name);
+        for (std::size_t row = 0; row < table.rows(); ++row)
+          if (const std::size_t at = row * columns_.size() + c; known_[at])
+            found[index(at)] = table.at(row, column) * columns_[c].weight;
+      }
+    });
+    if (!reason.empty() || !found.allFinite()) return std::nullopt;
+    return found;
+  }
+
+  // Gauss-Newton steps from the case; derivatives follow by Broyden's update.
+  ExplainingChange fit(const Choice& choice) const {
+    std::vector<Variable> variables;
+    Eigen::MatrixXd slopes(wanted_.size(), index(choice.size()));
+    Eigen::VectorXd x(index(choice.size()));
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      variables.push_back(variables_[choice[i]]);
+      slopes.col(index(i)) = jacobian_.col(index(choice[i]));
+      x[index(i)] = variables.back().value(base_);
+    }
+    const Eigen::VectorXd start = x;
+    const Family family(base_, variables);
+    Eigen::VectorXd now = here_;
+    double left = difference_;
+    for (int step = 0; step < kSteps && left > kDone * difference_; ++step) {
+      Eigen::VectorXd scale = slopes.colwise().norm();
+      for (double& size : scale)
+        if (!(size > 0)) size = 1;
+      Eigen::VectorXd change = (slopes * scale.cwiseInverse().asDiagonal())
+                                   .colPivHouseholderQr()
+                                   .solve(wanted_ - now)
+                                   .cwiseQuotient(scale);
+      bool lower = false;
+      for (int half = 0; half <= kHalvings && !lower; ++half, change /= 2) {
+        const auto there = results(family, x + change);
+        if (!there) continue;
+        const double then = (wanted_ - *there).squaredNorm();
+        const Eigen::VectorXd scaled = change.cwiseProduct(scale);
+        const Eigen::VectorXd miss = *there - now - slopes * change;
+        slopes += miss * scaled.cwiseProduct(scale).transpose() / scaled.squaredNorm();
+        if (!(then < left)) continue;
+        lower = true;
+        x += change;
+        now = *there;
+        const bool enough = left - then < 1e-6 * left;
+        left = then;
+        if (enough) step = kSteps;
+      }
+      if (!lower) break;
+    }
+    return change_of(variables, choice, start, x, now);
+  }
+
+  ExplainingChange change_of(const std::vector<Variable>& variables, const Choice& choice,
+                             const Eigen::VectorXd& from, const Eigen::VectorXd& to,
+                             const Eigen::VectorXd& now) const {
+    ExplainingChange change;
+    for (std::size_t i = 0; i < choice.size(); ++i) {
+      change.parameters.push_back(
+          {variables[i].name(), variables[i].unit(), from[index(i)], to[index(i)], {}});
+      for (std::size_t v = 0; v < variables_.size(); ++v)
+        if (v != choice[i] && std::abs(correlation(v, choice[i])) >= Explanation::kLookSame)
+          change.parameters.back().look_same.push_back(variables_[v].name());
+    }
+    const Eigen::VectorXd rest = wanted_ - now;
+    change.share = 1 - rest.squaredNorm() / difference_;
+    Eigen::Index worst = 0;
+    change.rest_over_peak = rest.cwiseAbs().maxCoeff(&worst);
+    change.rest_channel = columns_[static_cast<std::size_t>(worst) % columns_.size()].name;
+    return change;
+  }
+
+  static bool is_small(const ExplainingChange& change) {
+    return std::all_of(change.parameters.begin(), change.parameters.end(), [](const auto& p) {
+      return p.from == 0 || std::abs(p.to - p.from) <= Explanation::kLargest * std::abs(p.from);
+    });
+  }
+
+  std::vector<ExplainingChange> refine(const std::vector<Choice>& choices,
+                                       const Progress& progress) const {
+    std::vector<ExplainingChange> changes;
+    std::size_t done = 0;
+    for (const Choice& choice : choices) {
+      ExplainingChange change = fit(choice);
+      if (is_small(change)) changes.push_back(std::move(change));
+      if (progress) progress(static_cast<double>(++done) / static_cast<double>(choices.size()));
+    }
+    std::stable_sort(changes.begin(), changes.end(),
+                     [](const auto& a, const auto& b) { return a.share > b.share; });
+    return changes;
+  }
+
+  Case base_;
+  const study::PartProgress& progress_of_;
+  std::vector<Column> columns_;
+  std::vector<double> si_;  // unit of each
+  std::size_t reactions_ = 0, stride_ = 1;
+  Eigen::VectorXd wanted_, here_;  // of the reference and of the results, over peak
+  std::vector<bool> known_;
+  double difference_ = 0;
+  std::vector<Variable> variables_;
+  Eigen::MatrixXd jacobian_, normal_;
+  Eigen::VectorXd right_;
+};
+
+template <class CaseOf>
+void explain_by(study::Outcome& outcome, const study::PartProgress& progress_of,
+                const CaseOf& case_of) {
+  const bool analytic_differs =
+      std::any_of(outcome.lines.begin(), outcome.lines.end(), [](const study::GroupLine& line) {
+        return line.model == "analytic" &&
+               std::any_of(line.channels.begin(), line.channels.end(), [](const auto& channel) {
+                 return channel.finding == compare::Finding::differs;
+               });
+      });
+  if (outcome.state != study::Outcome::State::differs || outcome.held.empty()) return;
+  Explanation found;
+  try {
+    if (analytic_differs)
+      found = Search(outcome, case_of(), progress_of).find();
+    else
+      found.reason = "the analytic model agrees wherever it was compared.";
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::exception& error) {
+    found.reason = error.what();
+  }
+  outcome.explanation = std::move(found);
+}
+
+}  // namespace
+
+void explain(study::Outcome& outcome, const Case& base, const study::PartProgress& progress_of) {
+  explain_by(outcome, progress_of, [&]() -> const Case& { return base; });
+}
+
+void explain(study::Outcome& outcome, const study::ReferencePlace& place,
+             const study::PartProgress& progress_of) {
+  explain_by(outcome, progress_of, [&] {
+    const auto description = compare::read_description(place.folder, place.name);
+    Case base = read_case(description.case_file);
+    if (description.samples_per_revolution)
+      base.operation.samples_per_revolution = *description.samples_per_revolution;
+    return base;
+  });
+}
+
+}  // namespace bentaxis::designs

@@ -1,0 +1,68 @@
+#include "bentaxis/study/explanation.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace bentaxis::study {
+namespace {
+
+std::string change_text(const ExplainingChange& change) {
+  std::string text;
+  for (const auto& p : change.parameters) {
+    text += fmt::format("{}{} {:.6g} -> {:.6g}{}{}", text.empty() ? "" : " and ", p.name, p.from,
+                        p.to, p.unit.empty() ? "" : " ", p.unit);
+    if (p.from != 0) text += fmt::format(" ({:+.3g} %)", 100 * (p.to / p.from - 1));
+  }
+  return text;
+}
+
+// Rounded down, so that 99.98 % is no 100 %.
+double percent(double share) { return std::floor(1000 * share) / 10; }
+
+}  // namespace
+
+const ExplainingChange* Explanation::cause() const {
+  if (!singles.empty() && singles.front().share >= kSingle) return &singles.front();
+  if (!pairs.empty() && pairs.front().share >= kPair) return &pairs.front();
+  return nullptr;
+}
+
+std::string Explanation::text() const {
+  if (!reason.empty()) return "No parameter was looked for that explains the difference: " + reason;
+  const ExplainingChange* const found = cause();
+  if (found == nullptr) {
+    std::string text =
+        fmt::format("No parameter of the case explains the difference ({} tried", tried);
+    if (!singles.empty())
+      text += fmt::format("; the best, {}, explains {:g} % of it", change_text(singles.front()),
+                          percent(singles.front().share));
+    if (!pairs.empty())
+      text += fmt::format("; the best pair, {}, {:g} %", change_text(pairs.front()),
+                          percent(pairs.front().share));
+    return text + ").";
+  }
+  std::string text = fmt::format(
+      "{} {} {:g} % of the difference; what stays is at most {:.2g} of peak ({})",
+      change_text(*found), found->parameters.size() == 1 ? "explains" : "together explain",
+      percent(found->share), found->rest_over_peak, found->rest_channel);
+  std::vector<std::string> same, others;
+  for (const auto& p : found->parameters)
+    same.insert(same.end(), p.look_same.begin(), p.look_same.end());
+  for (const ExplainingChange& other : singles) {
+    if (&other == found || other.share <= kMentioned) continue;
+    const std::string& name = other.parameters.front().name;
+    bool known = false;
+    for (const std::string& one : same) known = known || one == name;
+    if (!known) others.push_back(fmt::format("{} {:g} %", name, percent(other.share)));
+  }
+  text += others.empty() ? fmt::format("; nothing else above {:g} %", 100 * kMentioned)
+                         : fmt::format("; alone {}", fmt::join(others, ", "));
+  text += ".";
+  if (!same.empty())
+    text += fmt::format(" Or, not to be told apart from these data: {}.", fmt::join(same, ", "));
+  return text;
+}
+
+}  // namespace bentaxis::study
