@@ -96,7 +96,7 @@ class System {
   Flows* flows = nullptr;
 
   Node& operator[](Terminal t) { return nodes_[t]; }
-  double& entry(int row, int column) { return by_state[column * size + row]; }
+  double& entry(int row, int column) const { return by_state[column * size + row]; }
 
   void hold(Terminal t, const Held& held) {
     set(t, held.oil, held.s);

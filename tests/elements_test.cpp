@@ -86,7 +86,7 @@ struct Bench {
 
 void expect_jacobian(Bench& bench, const std::vector<double>& y, const std::string& name) {
   const int n = bench.states;
-  constexpr double h = 1e-6;
+  constexpr double kStep = 1e-6;
   std::vector<double> by_state(static_cast<std::size_t>(n) * n), by_load(n);
   System sys = bench.connected(y.data());
   sys.want(by_state.data(), by_load.data(), n);
@@ -96,20 +96,20 @@ void expect_jacobian(Bench& bench, const std::vector<double>& y, const std::stri
     double scale = 1;
     for (int row = 0; row < n; ++row) scale = std::max(scale, std::abs(column[row]));
     for (int row = 0; row < n; ++row)
-      EXPECT_NEAR((high[row] - low[row]) / (2 * h), column[row], scaled(kJacobian) * scale)
+      EXPECT_NEAR((high[row] - low[row]) / (2 * kStep), column[row], scaled(kJacobian) * scale)
           << name << " " << row;
   };
   for (int j = 0; j < n; ++j) {
     auto low = y, high = y;
-    low[j] -= h;
-    high[j] += h;
+    low[j] -= kStep;
+    high[j] += kStep;
     expect_column(by_state.data() + static_cast<std::ptrdiff_t>(j) * n, bench.rates(low),
                   bench.rates(high));
   }
   const double size = bench.load_size;
-  bench.load_size = size * std::exp(-h);
+  bench.load_size = size * std::exp(-kStep);
   const auto low = bench.rates(y);
-  bench.load_size = size * std::exp(h);
+  bench.load_size = size * std::exp(kStep);
   expect_column(by_load.data(), low, bench.rates(y));
   bench.load_size = size;
 }
