@@ -271,7 +271,7 @@ class SceneTest(unittest.TestCase):
                        check=True, capture_output=True)
         page = html.unescape(pages.chromium(self.folder, self.folder / "oil" / "pressure.html", (1280, 900), "--dump-dom", *WEBGL))
         self.assertIn('data-ready="true"', page)
-        self.assertRegex(page, r">At 0\sdeg: Rs on piston \d [1-9]\d+\sN;")
+        self.assertRegex(page, r">At 0\sdeg: Rs on piston \d [1-9][\d.]+\skN;")
 
 
 if __name__ == "__main__":

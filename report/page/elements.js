@@ -6,6 +6,9 @@ const DARK = matchMedia("screen and (prefers-color-scheme: dark)");
 const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000",
                  "#7f3b08", "#542788", "#5f6b75"];
 const EXTRA_COLOURS = ["#444c55", "#8a5a00", "#7a3b8f"];
+// Of arrows in space: the first eight differ most, for the colour-blind too.
+const SCENE_COLOURS = ["#0072b2", "#e69f00", "#000000", "#009e73", "#56b4e9", "#d55e00", "#cc79a7", "#542788",
+                       "#7f3b08", "#5f6b75", "#8a5a00", "#7a3b8f", "#444c55"];
 const LIGHTER = { "#0072b2": "#3d9fdc", "#d55e00": "#f5822a", "#009e73": "#1fc498", "#000000": "#f2f4f6", "#7f3b08": "#c98a5c",
                   "#542788": "#a98be0", "#5f6b75": "#98a4af", "#444c55": "#b4bec8", "#8a5a00": "#d0a04a", "#7a3b8f": "#c58ad8" };
 const onGround = colour => (DARK.matches && LIGHTER[colour]) || colour;

@@ -70,9 +70,10 @@ const SECTIONS = [
   ["models", "How each model was obtained", models], ["versions", "Origin and versions", versions],
 ];
 
-// Of many pumps there are no curves of one: their tables come first, the pump they all come from last.
-function sectionsOf(data) {
-  if (data.theta.length > 0) return SECTIONS;
+// Of many pumps there are no curves of one: their tables come first, the pump they all come from last. Of one pump computed
+// in many ways (rows) the figures come first.
+function sectionsOf(report, data) {
+  if (data.theta.length > 0 || report.rows) return SECTIONS;
   const of = (...ids) => SECTIONS.filter(([id]) => ids.includes(id));
   const first = of("verdict", "warnings"), pump = of("pump", "space"), tables = of("runs");
   const rest = SECTIONS.filter(s => ![...first, ...pump, ...tables].includes(s));
@@ -140,7 +141,7 @@ function render() {
   main.replaceChildren();
   startDrawing();
   const shown = [];
-  for (const [id, title, build] of sectionsOf(data)) {
+  for (const [id, title, build] of sectionsOf(report, data)) {
     const body = build(report, data);
     if (!body) continue;
     main.append(el("section", { id, "aria-labelledby": id + "-title" },

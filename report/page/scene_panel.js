@@ -13,12 +13,14 @@ function pumpInSpace(report, data, scene) {
   let tagged = null, length = 1;
 
   // ---- Groups, in the order in which the loads name them
-  const groups = [], colours = [...COLOURS, ...EXTRA_COLOURS];
+  const groups = [];
   for (const load of scene.loads.filter(l => !l.counterpart)) {
     let group = groups.find(g => g.name === load.group);
-    if (!group) groups.push(group = { name: load.group, loads: [], on: load.kind === "reaction", colour: colours[groups.length % colours.length] });
+    if (!group) groups.push(group = { name: load.group, loads: [], on: load.kind === "reaction" });
     group.loads.push(load);
   }
+  // What is shown first takes the colours that differ most.
+  [...groups.filter(g => g.on), ...groups.filter(g => !g.on)].forEach((g, i) => { g.colour = SCENE_COLOURS[i % SCENE_COLOURS.length]; });
   if (!groups.some(g => g.on) && groups.length) groups[0].on = true;
   const groupOf = load => groups.find(g => g.name === load.group) || { colour: "#444c55" };
   const modelsShown = () => (mode === "both" ? [0, 1] : mode === "difference" ? [0] : [Number(mode)]);
@@ -35,7 +37,8 @@ function pumpInSpace(report, data, scene) {
   const peakOf = (load, kind) => {
     const [key, loads] = scaleOf(load);
     const sizes = () => loads.flatMap(l => modelsShown().map(m => state.loadAt(l, row, m)[kind])).filter(Boolean).map(lengthOf);
-    const peak = body ? Math.max(0, ...sizes()) : state.peakOf(key, loads)[kind];
+    const peak = body ? Math.max(0, ...sizes())
+      : common.box.checked ? Math.max(0, ...groups.filter(g => g.on).map(g => state.peakOf(g.name, g.loads)[kind])) : state.peakOf(key, loads)[kind];
     return mode === "difference" ? peak / magnification(key, loads) : peak;
   };
 
@@ -64,7 +67,8 @@ function pumpInSpace(report, data, scene) {
     box.addEventListener("change", () => change(box.checked));
     return { box, node: el("label.check", {}, box, " " + text) };
   };
-  const cutting = check("section", on => view && view.cut(on)), names = check("names", () => update());
+  const cutting = check("section", on => view && view.cut(on)), names = check("names", () => update()), common = check("one scale", () => update());
+  names.box.checked = true;
   const lengths = el("input", { type: "range", min: -1, max: 1.5, step: 0.05, value: 0, "aria-label": "Length of the arrows" });
   lengths.addEventListener("input", () => { length = 10 ** Number(lengths.value); update(); });
   const legend = el("div.legend", { role: "group", "aria-label": "Arrows" });
@@ -107,7 +111,8 @@ function pumpInSpace(report, data, scene) {
       box.disabled = !!body;
     }
     scaleWords.textContent = (body ? "One scale for all forces on this body, one for all moments: the longest arrow is the largest of them at this place."
-      : "The longest arrow of each kind is its peak over all rows, as given beside its name.")
+      : common.box.checked ? "One scale for all forces and one for all moments: the longest arrow is the largest peak of those shown."
+      : "Each kind has a scale of its own: its longest arrow is its peak over all rows, as given beside its name.")
       + (length !== 1 ? ` Times ${number(length, 3)}.` : "") + " Pale and hollow: drawn longer than it is, to be seen. A dot: zero."
       + (mode === "both" ? ` Wide and pale: ${state.models[0]}; narrow: ${state.models[1]}.` : "")
       + (mode === "difference" ? ` ${state.models[1]} minus ${state.models[0]}, magnified ${body ? number(magnification(...scaleOf({}))) + " times" : "as said beside each name"};`
@@ -120,20 +125,26 @@ function pumpInSpace(report, data, scene) {
     if (film) film.show(row, mode === "1" ? 1 : 0);
     if (view) view.show({ loads: loadsShown(), models: modelsShown(), difference: mode === "difference", body, length }, row);
   }
-  // Names at the tips, as far as they do not cover each other.
+  // Names at the tips: first one of each group, the largest first; beside the tip where there is room, else around it.
   function drawTags() {
-    const wanted = view && (names.box.checked || body), taken = [];
-    const shown = !wanted ? [] : view.tips().filter(({ none, at: [x, y] }) => {
-      const free = !none && x > 0 && y > 8 && x < canvas.clientWidth - 34 && y < canvas.clientHeight - 8
-        && taken.every(([a, b]) => Math.abs(a - x) > 34 || Math.abs(b - y) > 15);
-      if (free) taken.push([x, y]);
-      return free;
-    });
-    tags.replaceChildren(...shown.map(({ label, at: [x, y] }) => {
+    if (!view || !(names.box.checked || body)) return tags.replaceChildren();
+    const each = key => { const seen = new Set(); return t => !seen.has(t[key]) && seen.add(t[key]); };
+    const tips = view.tips().filter(t => !t.none).sort((a, b) => b.share - a.share).filter(each("label"));  // of both models one
+    const first = tips.filter(each("group")), later = tips.filter(t => !first.includes(t));
+    const boxes = [], made = [];
+    for (const { label, colour, at: [x, y] } of [...first, ...later]) {
+      const wide = 8 * label.length + 4, high = 15;
+      const places = [[4, -9], [-wide - 4, -9], [4, 8], [-wide - 4, 8], [-wide / 2, -26], [-wide / 2, 14], [10, -26], [-wide - 10, -26], [10, 24], [-wide - 10, 24]];
+      const place = places.map(([dx, dy]) => [x + dx, y + dy]).find(([l, t]) => l > 0 && t > 0 && l + wide < canvas.clientWidth && t + high < canvas.clientHeight
+        && boxes.every(([bl, bt, bw]) => l > bl + bw || bl > l + wide || Math.abs(t - bt) > high));
+      if (!place) continue;
+      boxes.push([...place, wide]);
       const tag = el("span", {}, label);
-      tag.style.transform = `translate(${(x + 4).toFixed(1)}px, ${(y - 9).toFixed(1)}px)`;
-      return tag;
-    }));
+      tag.style.color = colour;
+      tag.style.transform = `translate(${place[0].toFixed(1)}px, ${place[1].toFixed(1)}px)`;
+      made.push(tag);
+    }
+    tags.replaceChildren(...made);
   }
   function setRow(i, from) {
     row = Math.min(Math.max(0, Math.round(i)), state.rows - 1);
@@ -187,13 +198,13 @@ function pumpInSpace(report, data, scene) {
       frame.replaceChildren(el("p.empty", {}, "This browser draws no WebGL here, so the pump stands still; "
         + "slider and tables work all the same."), ...(still ? [el("div.scroll.pump")] : []));
       if (still) frame.lastElementChild.append(still.cloneNode(true));
-      [views.node, cutting.node, names.node, speed, play, lengths.parentElement].forEach(n => n && (n.hidden = true));
+      [views.node, cutting.node, names.node, common.node, speed, play, lengths.parentElement].forEach(n => n && (n.hidden = true));
       return;
     }
     const fit = () => {
       const width = frame.clientWidth;
       if (!width) return;
-      const height = Math.round(Math.min(620, Math.max(280, 0.62 * width)));
+      const height = Math.round(Math.min(700, Math.max(280, 0.85 * width)));
       canvas.style.height = height + "px";
       view.resize(width, height);
     };
@@ -258,7 +269,7 @@ function pumpInSpace(report, data, scene) {
     button("\u2212", () => view && view.zoom(1 / 1.2), { "aria-label": "Further away" }));
   const node = el("div.in-space", {},
     el("div.slide", {}, play, el("label", {}, own.axis.angle ? "Shaft angle " : "", reading), slider, speed),
-    el("div.choices", {}, views.node, zooms, cutting.node, names.node, modelChoice.node),
+    el("div.choices", {}, views.node, zooms, cutting.node, names.node, common.node, modelChoice.node),
     el("div.beside", {}, el("div", {}, frame, stills), el("div", {}, legend,
       el("label.lengths", {}, "Length of the arrows ", lengths), film ? film.node : null)),
     scaleWords, words, bodyChoice.node, sums, numbers,

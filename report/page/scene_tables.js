@@ -57,7 +57,7 @@ function largestWords(state, groups, row, models) {
     if (!best) return null;
     // What is drawn as a dot is zero here too.
     const peak = state.peakOf(["largest", loads.length, loads[0].id].join(), loads)[best.name === "N" ? "force" : "moment"];
-    return `${best.load.label} ${unit(number(best.size < NOTHING * peak ? 0 : best.size, 4), best.name)}`;
+    return `${best.load.label} ${kilo(best.size < NOTHING * peak ? 0 : best.size, best.name)}`;
   }).filter(Boolean).join("; ");
 }
 

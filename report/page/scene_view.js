@@ -40,6 +40,7 @@ function sceneView(state, canvas, look) {
   const arrows = new Map();  // by load, model and part
   let clear = [];  // looks that are seen through beside those that always are: the plate, before the block
   let row = 0, drawn = 0, asked = false, gone = false;
+  let fitted = null, sizes = null;  // of the bodies as a view sees them, and of the canvas in px
   let shown = { loads: [], models: [0], difference: false, body: null, length: 1 };
 
   // ---- Camera
@@ -62,6 +63,13 @@ function sceneView(state, canvas, look) {
     camera.far = 8 * scene.radius;
     camera.updateProjectionMatrix();
     controls.update();
+    fitted = extent();
+    if (sizes) resize(...sizes);
+    // Its middle in the middle.
+    const move = new THREE.Vector3(fitted.middle.x, fitted.middle.y, 0).applyQuaternion(camera.quaternion);
+    controls.target.add(move);
+    camera.position.add(move);
+    controls.update();
     invalidate();
   }
   function orbit(across, down) {
@@ -78,9 +86,24 @@ function sceneView(state, canvas, look) {
     camera.updateProjectionMatrix();
     invalidate();
   }
+  // Half of what the bodies take across and up, as the camera sees them, and where their middle is.
+  function extent() {
+    const box = new THREE.Box3();
+    camera.updateMatrixWorld();
+    const inverse = new THREE.Matrix4().getInverse(camera.matrixWorld);
+    solids.updateMatrixWorld(true);
+    bodies.forEach(b => b.traverse(part => {
+      if (!part.geometry || !part.visible) return;
+      const place = part.geometry.attributes.position;
+      for (let i = 0; i < place.count; ++i) box.expandByPoint(new THREE.Vector3().fromBufferAttribute(place, i).applyMatrix4(part.matrixWorld).applyMatrix4(inverse));
+    }));
+    const size = box.getSize(new THREE.Vector3());
+    return { across: size.x / 2, up: size.y / 2, middle: box.getCenter(new THREE.Vector3()) };
+  }
   function resize(width, height) {
-    const half = 1.02 * scene.radius, wide = width / height;
-    camera.top = half * Math.max(1, 1 / wide);
+    const wide = width / height;
+    camera.top = fitted ? 1.25 * Math.max(fitted.up, fitted.across / wide) : 1.02 * scene.radius * Math.max(1, 1 / wide);
+    sizes = [width, height];
     camera.right = camera.top * wide;
     camera.bottom = -camera.top;
     camera.left = -camera.right;
@@ -194,7 +217,8 @@ function sceneView(state, canvas, look) {
   }
   const tips = () => seen().map(a => {
     const { tail, drawn: v } = arrowAsDrawn(a);
-    return { ...a.userData.of, label: a.userData.now.load.symbol || a.userData.now.load.id, none: a.userData.now.none, at: onCanvas(plus(tail, v)) };
+    return { ...a.userData.of, label: a.userData.now.load.symbol || a.userData.now.load.id, group: a.userData.now.load.group,
+      colour: colourOf(a.userData.now.load), share: lengthOf(v), none: a.userData.now.none, at: onCanvas(plus(tail, v)) };
   });
 
   // What the objects themselves say, for tests.
@@ -216,7 +240,7 @@ function sceneView(state, canvas, look) {
 
   // A still picture of a view, as canvas: for paper.
   function still(view, width, height) {
-    const before = { position: camera.position.clone(), target: controls.target.clone(), zoom: camera.zoom, up: camera.up.clone() };
+    const before = { position: camera.position.clone(), target: controls.target.clone(), zoom: camera.zoom, up: camera.up.clone(), fitted };
     const size = [canvas.clientWidth || width, canvas.clientHeight || height];
     setView(view);
     renderer.setClearColor("#ffffff", 1);
@@ -228,6 +252,7 @@ function sceneView(state, canvas, look) {
     camera.up.copy(before.up);
     controls.target.copy(before.target);
     camera.zoom = before.zoom;
+    fitted = before.fitted;
     renderer.setClearColor("#000000", 0);
     resize(...size);
     controls.update();
@@ -241,6 +266,7 @@ function sceneView(state, canvas, look) {
     renderer.forceContextLoss();
   }
 
+  place();
   setView("free");
   return { show, setView, orbit, zoom, resize, cut, arrowNear, bodyNear, tips, asDrawn, still, dispose, draw, frames: () => drawn };
 }
