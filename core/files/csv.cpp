@@ -62,7 +62,7 @@ bool is_foreign(std::string_view content) {
 NumericTable read_numeric_csv(const std::filesystem::path& file, bool allow_empty) {
   const std::string content = read_input_file(file, {"a table", kLargestTable});
   if (!is_foreign(content)) return numeric_csv_of(content, file, allow_empty);
-  const ForeignTable table = table_of(content, file);
+  ForeignTable table = table_of(content, file);
   for (std::size_t i = 0; i < table.rows.size() && !allow_empty; ++i)
     for (std::size_t c = 0; c < table.rows[i].size(); ++c)
       if (!is_computed(table.rows[i][c]))
