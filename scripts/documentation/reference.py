@@ -1,0 +1,163 @@
+"""The generated pages of the site's reference: commands, case keys, plausibility codes, JSON, Python, C++."""
+import ast
+import json
+import pathlib
+import re
+import subprocess
+
+NOTE = "<!-- made by scripts/build_site -->\n"
+
+
+def output(*command, **options):
+    return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True, **options).stdout
+
+
+# ---------------------------------------------------------------- commands
+
+def subcommands(help_text):
+    """(name, line) of the commands below that a help text lists."""
+    at = help_text.find("Subcommands:")
+    if at < 0:
+        return []
+    return re.findall(r"^  ([a-z0-9]+)\s{2,}(\S.*)$", re.sub(r"\n {10,}", " ", help_text[at:]), re.MULTILINE)
+
+
+def command_pages(program):
+    """{path below docs/reference: text}: a page per command and the index."""
+    pages = {}
+    top = output(program, "--help")
+    rows = []
+    for name, what in subcommands(top):
+        help_text = output(program, name, "--help")
+        text = f"{NOTE}# bentaxis {name}\n\n```text\n{help_text.rstrip()}\n```\n"
+        for below, _ in subcommands(help_text):
+            text += f"\n## bentaxis {name} {below}\n\n```text\n{output(program, name, below, '--help').rstrip()}\n```\n"
+        pages[f"commands/{name}.md"] = text
+        rows.append(f"| [`bentaxis {name}`](commands/{name}.md) | {what.replace('|', chr(92) + '|')} |")
+    if not rows:
+        raise RuntimeError("`bentaxis --help` lists no commands: the form of the help has changed")
+    pages["commands.md"] = (f"{NOTE}# Commands\n\n| command | what it does |\n|---|---|\n" + "\n".join(rows)
+                            + f"\n\n## bentaxis --help\n\n```text\n{top.rstrip()}\n```\n")
+    return pages
+
+
+# ---------------------------------------------------------------- plausibility codes
+
+def plausibility_page(program):
+    return (f"{NOTE}# Plausibility codes\n\nEvery command that reads a case warns of implausible input. Each warning starts with one of these names; "
+            "the names are stable.\nSee [plausibility](../plausibility.md) for `--strict` and for giving a reason.\n\n"
+            + output(program, "schema", "--markdown", "checks"))
+
+
+# ---------------------------------------------------------------- Python
+
+def documented(node):
+    return ast.get_docstring(node) or ""
+
+
+def signature(node, source):
+    text = ast.get_source_segment(source, node)
+    head = text[:text.index(":\n")] if ":\n" in text else text.split("\n")[0].rstrip(":")
+    return re.sub(r"\s+", " ", head)
+
+
+def python_page(root):
+    source = (root / "interfaces/python/bentaxis/__init__.pyi").read_text(encoding="utf-8")
+    tree = ast.parse(source)
+    text = f"{NOTE}# Python reference\n\nSignatures and docstrings of the module `bentaxis`. [From Python](../python.md) shows it at work.\n"
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+    classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
+    text += "\n## Functions\n"
+    for node in functions:
+        text += f"\n### {node.name} {{#{node.name}}}\n\n```python\n{signature(node, source)}\n```\n\n{documented(node)}\n"
+    text += "\n## Classes\n"
+    for node in classes:
+        text += f"\n### {node.name} {{#{node.name}}}\n\n{documented(node)}\n"
+        for member in node.body:
+            if isinstance(member, ast.FunctionDef):
+                kind = " (property)" if any(isinstance(d, ast.Name) and d.id == "property" for d in member.decorator_list) else ""
+                text += (f"\n#### {node.name}.{member.name}{kind} {{#{node.name}.{member.name}}}\n\n"
+                         f"```python\n{signature(member, source)}\n```\n\n{documented(member)}\n")
+    if not functions or not classes:
+        raise RuntimeError("the Python stub holds no functions or no classes")
+    return text
+
+
+# ---------------------------------------------------------------- C++
+
+def cpp_page(headers):
+    text = (f"{NOTE}# C++ reference\n\n[Classes, functions and files of the public headers](../../cpp/index.html), by Doxygen. "
+            "[Structure](../structure.md) shows how to link the library.\n\n")
+    for module, files in headers.items():
+        text += f"\n## bentaxis/{module}\n\n| header | what it is |\n|---|---|\n"
+        for file, brief in files:
+            text += f"| `bentaxis/{module}/{file}` | {brief.replace('|', chr(92) + '|')} |\n"
+    return text
+
+
+def public_headers(root):
+    """{module: [(file, its first comment)]} of the installed headers."""
+    modules = {}
+    for file in sorted(root.glob("*/include/bentaxis/**/*.h")) + sorted(root.glob("*/*/include/bentaxis/**/*.h")) + sorted(
+            root.glob("*/*/*/include/bentaxis/**/*.h")):
+        if file.relative_to(root).parts[0].startswith("build"):
+            continue
+        module, name = file.relative_to(root).as_posix().split("include/bentaxis/")[1].split("/", 1)
+        comment = []
+        for line in file.read_text(encoding="utf-8").splitlines():
+            if not line.startswith("//"):
+                break
+            comment.append(line.lstrip("/ "))
+        brief = re.split(r"(?<=[.:]) ", " ".join(comment))[0]
+        modules.setdefault(module, []).append((name, brief))
+    return {module: sorted(modules[module]) for module in sorted(modules)}
+
+
+def doxygen(root, destination, scratch):
+    """HTML of the public headers; returns Doxygen's warnings."""
+    folders = sorted({file.parents[1] for pattern in ("*/include/bentaxis/*/*.h", "*/*/include/bentaxis/*/*.h", "*/*/*/include/bentaxis/*/*.h")
+                      for file in root.glob(pattern) if not file.relative_to(root).parts[0].startswith("build")})
+    settings = f"""
+PROJECT_NAME = "bentaxis, C++"
+INPUT = {' '.join(f'"{folder}"' for folder in folders)}
+FILE_PATTERNS = *.h
+RECURSIVE = YES
+STRIP_FROM_PATH = {' '.join(f'"{folder.parent}"' for folder in folders)}
+STRIP_FROM_INC_PATH = {' '.join(f'"{folder.parent}"' for folder in folders)}
+OUTPUT_DIRECTORY = "{destination.parent}"
+HTML_OUTPUT = {destination.name}
+GENERATE_LATEX = NO
+EXTRACT_ALL = YES
+JAVADOC_AUTOBRIEF = YES
+MARKDOWN_SUPPORT = YES
+QUIET = YES
+WARN_IF_UNDOCUMENTED = NO
+HAVE_DOT = NO
+CLASS_GRAPH = NO
+VERBATIM_HEADERS = NO
+SHOW_INCLUDE_FILES = NO
+HTML_TIMESTAMP = NO
+SEARCHENGINE = YES
+SERVER_BASED_SEARCH = NO
+DISABLE_INDEX = NO
+GENERATE_TREEVIEW = NO
+BUILTIN_STL_SUPPORT = YES
+"""
+    file = scratch / "Doxyfile"
+    file.write_text(settings)
+    done = subprocess.run(["doxygen", str(file)], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError("doxygen: " + done.stderr)
+    return done.stderr.splitlines()
+
+
+def write(root, program, docs):
+    """Writes all of them below docs/reference."""
+    pages = command_pages(program)
+    pages["plausibility_codes.md"] = plausibility_page(program)
+    pages["python.md"] = python_page(root)
+    pages["cpp.md"] = cpp_page(public_headers(root))
+    for path, text in pages.items():
+        file = docs / "reference" / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
