@@ -29,10 +29,12 @@ for file in doc/bentaxis/{LICENSE,README.md,CHANGELOG.md,docs/command_line.md} m
 done
 usr/bin/bentaxis manual | cmp - $share/man/man1/bentaxis.1
 usr/bin/bentaxis completion bash | cmp - $share/bash-completion/completions/bentaxis
-# What README.md links to is there, but what is for those who build.
-grep -o '](docs/[a-z_]*\.md' $share/doc/bentaxis/README.md | cut -c3- | while read -r page; do
+# Every file that README.md links to is installed beside it.
+grep -o '](\([^)#:]\)*[)#]' $share/doc/bentaxis/README.md | cut -c3- | tr -d ')#' > "$scratch/links"
+test "$(wc -l < "$scratch/links")" -ge 15 || { echo "README.md: too few links found"; exit 1; }
+while read -r page; do
   test -s "$share/doc/bentaxis/$page" || { echo "README.md: $page is not installed"; exit 1; }
-done
+done < "$scratch/links"
 usr/bin/bentaxis compare usr/share/bentaxis/cases/bap63_rated.toml --out out > /dev/null
 usr/bin/bentaxis hardcases --filter tilt_45 --out out > /dev/null
 ls out/report.html out/hardcases.html
