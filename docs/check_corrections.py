@@ -458,6 +458,32 @@ def _():
 
 
 # ---------------------------------------------------------------------------------- identities, closed forms
+@check("C28", "Table 5.1: 41.3 cSt at p*r and 60 deg C, from the defaults of [oil]")
+def _():
+    # Walther's law (ASTM D341) through 46 cSt at 40 deg C and 6.8 cSt at 100 deg C, then Barus' exp(alpha p).
+    points = [(mpf("313.15"), mpf(46)), (mpf("373.15"), mpf("6.8"))]
+    (x1, y1), (x2, y2) = [(mp.log10(T), mp.log10(mp.log10(nu + mpf("0.7")))) for T, nu in points]
+    b = (y1 - y2) / (x2 - x1)
+    nu_60 = 10 ** 10 ** (y1 + b * x1 - b * mp.log10(mpf("333.15"))) - mpf("0.7")
+    p = mpf("275e5")
+    at_default = nu_60 * mp.exp(mpf("20e-9") * p)
+    yield f"nu at 60 deg C and 0 bar: {show(nu_60)} cSt; at 275 bar with alpha = 20/GPa {show(at_default)} cSt, not 41.3", \
+        abs(at_default - mpf("35.7")) < mpf("0.1")
+    alpha = mp.log(mpf("41.3") / nu_60) / p * mpf("1e9")
+    yield f"41.3 cSt needs alpha = {show(alpha)} /GPa, within 15..25 for mineral oil to {show(alpha - 25)}", abs(alpha - 25) < 1
+
+
+@check("C29", "page 65: the forces Rs load the shaft at about 41 deg to its axis")
+def _():
+    rows = [ref.solve_row(CASE, Fraction(10 * i)) for i in range(36)]
+    total = [sum(row[COLUMN[f"Rs_{k}_{axis}2_N"]] for row in rows for k in range(1, CASE.pistons + 1)) for axis in "xyz"]
+    c, s = mp.cos(CASE.tilt), mp.sin(CASE.tilt)
+    x1, y1, z1 = total[0], c * total[1] + s * total[2], -s * total[1] + c * total[2]
+    degrees = mp.degrees(mp.atan2(mp.hypot(x1, y1), z1))
+    yield f"default pump (tilt 40 deg): mean resultant at {show(degrees)} deg; the paper's about 41 deg says that its tilt may be larger", \
+        abs(degrees - 40) < mpf("0.5")
+
+
 @check("I01", "angular acceleration: power balance, whole pump and piston axis close with omega_dot = 500 rad/s^2")
 def _():
     real = ref.Case(ROOT / "high_precision" / "seven_real_spinning" / "case.toml")

@@ -188,6 +188,24 @@ class PaperFiguresTest(ProgramTest):
         cited = {int(n) for r in rows for n in r["figure"].split(", ")}
         self.assertEqual(cited, {12, 13, 14, 17, 23, 30, 31, 32, 33, 36, 37})
 
+    def test_windows_are_the_printed_axes(self):
+        """A window of numbers.toml for one curve of a figure is that figure's axis, where figures.toml has it."""
+        compared = 0
+        for number in self.numbers["number"]:
+            where = re.fullmatch(r"Fig\. (\d+)", number["where"])
+            if not where or number["measure"] != "range" or "window" not in number:
+                continue
+            for figure, panel in self.panels.values():
+                axis = known_range(panel["y"])
+                drawn = [c["channels"] for c in panel.get("curve", []) if "channels" in c]
+                factor = {c.get("factor", 1) for c in panel.get("curve", [])}
+                if figure["number"] != int(where[1]) or axis is None or number["channels"] not in drawn or factor != {1}:
+                    continue
+                with self.subTest(number["where"], channels=number["channels"]):
+                    self.assertEqual(number["window"], axis)
+                compared += 1
+        self.assertGreaterEqual(compared, 8)
+
     # ---- The curves against the commands that make them elsewhere
 
     def test_curves_of_a_turn(self):
