@@ -40,7 +40,7 @@ Table load_table() {
            number("cracking_bar", "p_c", FIELD(c.hydraulics->load->cracking_pressure), kBar,
                   {0, 10000}, {0.0}, "pressure at which the valve begins to open; 0: sought",
                   {.active = kReliefValve}),
-           number("opening_mm2_per_bar", "k", FIELD(c.hydraulics->load->opening), kAreaPerPressure,
+           number("opening_mm2_per_bar", "k_v", FIELD(c.hydraulics->load->opening), kAreaPerPressure,
                   kPositive, {1.0},
                   "area that a relief valve opens per pressure above its cracking pressure",
                   {.practice = "95 l/min at 275 bar take about 9 mm2", .active = kAnyRelief}),

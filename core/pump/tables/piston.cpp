@@ -22,7 +22,7 @@ Table piston_table() {
                "two point masses at A and B; a rigid body; or three point masses at A, centre of "
                "mass and B with the real piston's mass, centre and transverse inertia (no spin)"),
            number("mass_kg", "m_pi", FIELD(c.pump.piston.mass), kKilograms, kNotNegative, kRequired,
-                  "mass of a piston, m in theory.md"),
+                  "mass of a piston"),
            number("joint_mass_fraction", "chi", FIELD(c.pump.piston.joint_mass_fraction), kNoUnit,
                   {0, 1}, {0.5}, "lumped: share of the mass at A; mA = chi m, mB = (1 - chi) m",
                   {.plausible = {0.1,
@@ -50,7 +50,7 @@ Table piston_table() {
                    },
                    .range_words = "[0, 2 It]",
                    .part = &kRealPiston}),
-           number("spin_rpm", "w_s", FIELD(c.pump.piston.real->spin), kRotation, kAny, {0.0},
+           number("spin_rpm", "omega_s", FIELD(c.pump.piston.real->spin), kRotation, kAny, {0.0},
                   "real: axial component of the absolute angular velocity, positive along A to B",
                   {.part = &kRealPiston})},
       .rules = {at_end("inertia", [](const Case& c) {
