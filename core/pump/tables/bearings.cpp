@@ -61,10 +61,10 @@ Table bearings_table() {
           "places of the bearings on the shaft axis, and where their life is asked for their "
           "ratings",
       .differentiable = always,
-      .parameters = {number("tapered_z_mm", "C1", FIELD(c.pump.bearings.tapered_z), kMillimetres,
+      .parameters = {number("tapered_z_mm", "z_C1", FIELD(c.pump.bearings.tapered_z), kMillimetres,
                             kAny, kRequired,
                             "z1 of the tapered roller bearing, which takes x, y and z"),
-                     number("cylindrical_z_mm", "C2", FIELD(c.pump.bearings.cylindrical_z),
+                     number("cylindrical_z_mm", "z_C2", FIELD(c.pump.bearings.cylindrical_z),
                             kMillimetres, kAny, kRequired,
                             "z1 of the cylindrical roller bearing, which takes x and y",
                             {.range_words = "other than `tapered_z_mm`"})},

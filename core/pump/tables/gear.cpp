@@ -43,7 +43,7 @@ Table gear_table() {
       .parameters =
           {number("pitch_diameter_mm", "d = m Z", FIELD(c.pump.gear.pitch_diameter), kMillimetres,
                   kPositive, kRequired, "pitch cone diameter at the contact point O4"),
-           number("pressure_angle_deg", "alpha_p (ap)", FIELD(c.pump.gear.pressure_angle), kAngle,
+           number("pressure_angle_deg", "alpha_p", FIELD(c.pump.gear.pressure_angle), kAngle,
                   {0, 60}, kRequired, "pressure angle; the pitch cone angle is 90 deg - alpha/2",
                   {.scaling = Scaling::cosine,
                    .plausible = {10,

@@ -34,7 +34,7 @@ Table piston_table() {
                   "from A along the piston's axis to C, where the bore force Rc acts (32); "
                   "pressure and friction stay at B",
                   {.part = &kRingContact}),
-           number("centre_of_mass_mm", "s_G (Gpi)", FIELD(c.pump.piston.real->centre_of_mass),
+           number("centre_of_mass_mm", "s_G", FIELD(c.pump.piston.real->centre_of_mass),
                   kMillimetres, kAny, kRequired, "from A along the piston's axis",
                   {.range_words = "dynamically equivalent: strictly between A and B, unless It = 0",
                    .part = &kRealPiston}),
