@@ -125,7 +125,7 @@ class Definitions:
         if name == "O4":
             return 0.0, 0.0
         way = R * math.tan(half) * (1 if "end" in name else -1)
-        return (-1 if "+" in name else 1) * way * cos(ap), way * sin(ap)
+        return (1 if "+" in name else -1) * way * cos(ap), way * sin(ap)
 
     def expected(self, name):
         plane = self.facts["plane"]
