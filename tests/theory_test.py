@@ -8,6 +8,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 
 PAGES = ("theory", "motion", "teeth")
@@ -109,6 +110,25 @@ class TheoryTest(unittest.TestCase):
         for shown, linked in dois:
             self.assertEqual(shown, linked)
             self.assertRegex(shown, r"^10\.\d{4,}/\S+$")
+
+    def test_pdf_has_every_equation_number_and_figure(self):
+        with tempfile.TemporaryDirectory(prefix="bentaxis_theory_") as folder:
+            pdf = pathlib.Path(folder) / "theory.pdf"
+            done = subprocess.run([str(REPO / "scripts" / "build_theory_pdf"), str(pdf)], capture_output=True, text=True)
+            if "ModuleNotFoundError" in done.stderr or "chromium" in done.stderr:
+                self.skipTest("needs the packages of scripts/setup docs, and Chromium")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            text = subprocess.run(["pdftotext", "-layout", str(pdf), "-"], capture_output=True, text=True, check=True).stdout
+            info = subprocess.run(["pdfinfo", str(pdf)], capture_output=True, text=True, check=True).stdout
+        version = re.search(r"project\(bentaxis VERSION ([\d.]+)", (REPO / "CMakeLists.txt").read_text())[1]
+        self.assertIn(f"bentaxis {version}: theory", info)
+        self.assertIn(f"Version {version}", text)
+        missing = [number for number in self.tags if not re.search(rf"\({re.escape(number)}[;)]", text)]
+        self.assertEqual(missing, [])
+        self.assertGreater(int(re.search(r"Pages: +(\d+)", info)[1]), 15)
+        # Text of figures is text: a label of each.
+        for label in ("z3 of piston 1", "delivery_start_deg", "pitch cone", "leading edge", "motor rotor"):
+            self.assertIn(label, text)
 
     def test_one_symbol_one_meaning_and_tables_are_fresh(self):
         if not PROGRAM:
