@@ -42,7 +42,7 @@ std::vector<Parameter> tapered_factors() {
              "Fa / Fr up to which the axial load does not count",
              {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
       number("tapered_X", "X", FIELD(c.ratings.tapered->radial_factor), kNoUnit, {0, 1}, {0.4},
-             "radial load factor beyond that", {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
+             "radial load factor above that", {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
       number("tapered_Y0", "Y0", FIELD(c.ratings.tapered->static_axial_factor), kNoUnit,
              kNotNegative,
              {.computed = [](const Case& c) -> std::optional<Value> {
