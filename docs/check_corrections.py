@@ -682,6 +682,104 @@ def _():
     yield f"largest difference of any reaction {show(off)}", off < ROUND_OFF * 1e5
 
 
+@check("I10", "(10.3)-(10.5): free motion, derivatives of a piston's axis where shaft and block move on their own")
+def _():
+    case, b, b1 = CASE, CASE.b, CASE.b1
+    c, s = mp.cos(case.tilt), mp.sin(case.tilt)
+    def theta(t):
+        return mpf("0.7") + 150 * t + 4000 * t**2
+    def psi(t):
+        return mpf("0.68") + 140 * t - 2500 * t**2
+    def across(t):
+        return [-case.Rd * mp.sin(psi(t)) + case.Ra * mp.sin(theta(t)),
+                case.Rd * mp.cos(psi(t)) - case.Ra * c * mp.cos(theta(t)) - b * s]
+    def length(t):
+        return mp.sqrt(b1**2 - sum(u * u for u in across(t)))
+    th, ps, w, v, dw, dv = theta(0), psi(0), mpf(150), mpf(140), mpf(8000), mpf(-5000)
+    lag, lag1, lag2 = th - ps, w - v, dw - dv
+    S, C = mp.sin(th), mp.cos(th)
+    versine = 2 * mp.sin(lag / 2) ** 2
+    ds, dc = -C * mp.sin(lag) - S * versine, S * mp.sin(lag) - C * versine
+    ds1, dc1 = v * dc - lag1 * C, -v * ds + lag1 * S
+    ds2 = dv * dc - v**2 * ds - lag2 * C + lag1 * (w + v) * S
+    dc2 = -dv * ds - v**2 * dc + lag2 * S + lag1 * (w + v) * C
+    S1, C1, S2, C2 = C * w, -S * w, C * dw - S * w**2, -S * dw - C * w**2
+    u = [[-(case.Rd - case.Ra) * x - case.Rd * dx, (case.Rd - case.Ra * c) * y + case.Rd * dy - off]
+         for x, dx, y, dy, off in ((S, ds, C, dc, b * s), (S1, ds1, C1, dc1, 0), (S2, ds2, C2, dc2, 0))]
+    ell = mp.sqrt(b1**2 - sum(x * x for x in u[0]))
+    ell1 = -sum(x * y for x, y in zip(u[0], u[1])) / ell
+    ell2 = -(sum(x * x for x in u[1]) + sum(x * y for x, y in zip(u[0], u[2])) + ell1**2) / ell
+    for order, found in enumerate((ell, ell1, ell2)):
+        numeric = mp.diff(length, 0, order, h=mpf("1e-14"))
+        error = max([abs(numeric - found) / max(abs(found), 1)] + [
+            abs(mp.diff(lambda t: across(t)[i], 0, order, h=mpf("1e-14")) - u[order][i]) for i in (0, 1)])
+        yield f"derivative {order}: u and l off by {show(error)}", error < mpf("1e-8")
+
+
+@check("I11", "(10.11): a mirrored flank changes no torque, and adds 2 |Ft| sin ap across the pitch plane")
+def _():
+    g = ref.Geometry(CASE)
+    ap, half, Ft = CASE.pressure_angle, CASE.tilt / 2, mpf(-100)
+    side = [-mp.cos(ap), mpf(0), mpf(0)]
+    apart = [mpf(0), mp.sin(ap) * mp.sin(half), mp.sin(ap) * mp.cos(half)]
+    one = add(scale(Ft, side), scale(Ft, apart))
+    two = add(scale(Ft, side), scale(abs(Ft), apart))
+    for name, axis, origin in (("z1", Z1, [mpf(0)] * 3), ("z2", g.z2, g.O2)):
+        torque = [dot(cross(sub(g.O4, origin), f), axis) for f in (one, two)]
+        yield (f"torque about {name}: {show(torque[0])}, {show(torque[1])} Nm",
+               abs(torque[0] - torque[1]) < ROUND_OFF * 1e3)
+    change = sub(two, one)
+    normal = scale(1 / norm(apart), apart)
+    size = 2 * abs(Ft) * mp.sin(ap)
+    yield f"change of the force {show(norm(change))} N = 2 |Ft| sin ap, along the normal of the pitch plane", (
+        norm(sub(change, scale(size, normal))) < ROUND_OFF * 1e3)
+    yield "which is across the line from O4 to O2", abs(dot(change, sub(g.O2, g.O4))) < ROUND_OFF * 1e3
+
+
+@check("I12", "(13.5): a transition of w lowers the mean torque by w^2/40 (z''(180) - z''(0))/(z(0) - z(180))")
+def _():
+    mp.dps = 25
+    for name, changes in (("default", {}), ("b = -40 mm", {"b": mpf(-40) / 1000})):
+        case = bare(**changes)
+        c, s = mp.cos(case.tilt), mp.sin(case.tilt)
+        def z(t):
+            u = [-(case.Rd - case.Ra) * mp.sin(t), (case.Rd - case.Ra * c) * mp.cos(t) - case.b * s]
+            return case.Ra * s * mp.cos(t) - case.b * c + mp.sqrt(case.b1**2 - u[0] ** 2 - u[1] ** 2)
+        def step(x, w):
+            t = (x + w / 2) / w
+            return t * t * (3 - 2 * t)
+        w = mpf(1) / 50
+        def lost(edge, rising):
+            def missing(x):
+                share = step(x, w) if rising else 1 - step(x, w)
+                return ((1 if (x > 0) == rising else 0) - share) * mp.diff(z, edge + x)
+            return mp.quad(missing, [-w / 2, 0]) + mp.quad(missing, [0, w / 2])
+        loss = (lost(mp.pi, True) + lost(2 * mp.pi, False)) / (z(0) - z(mp.pi))
+        factor = (mp.diff(z, mp.pi, 2) - mp.diff(z, 0, 2)) / (z(0) - z(mp.pi))
+        rule = w**2 / 40 * factor
+        yield f"{name}: factor {show(factor)}, lowered by {show(loss)}, rule {show(rule)}", (
+            abs(loss / rule - 1) < mpf("1e-5") and (abs(factor - 1) < mpf("1e-4")) == (name == "default"))
+    mp.dps = 50
+
+
+@check("I13", "(B.9): a force in the plane of action has the moment r F sin(delta_b) about both axes, wherever it acts")
+def _():
+    g = ref.Geometry(CASE)
+    ap, delta = CASE.pressure_angle, mp.pi / 2 - CASE.tilt / 2
+    sin_base = mp.sin(delta) * mp.cos(ap)
+    u0 = scale(1 / norm(sub(g.O4, g.O2)), sub(g.O4, g.O2))
+    n = cross(u0, g.k4)  # normal of the plane of action
+    for axis, cone in ((scale(-1, Z1), "shaft"), (g.z2, "block")):
+        yield (f"the plane touches the base cone of the {cone}: |n.axis| = {show(abs(dot(n, axis)))} = sin delta_b",
+               abs(abs(dot(n, axis)) - sin_base) < ROUND_OFF)
+    for degrees in (-20, 0, 15):
+        u = add(scale(mp.cos(mp.radians(degrees)), u0), scale(mp.sin(mp.radians(degrees)), g.k4))
+        moment = cross(scale(mpf("0.05"), u), scale(100, cross(n, u)))
+        yield (f"{degrees} deg along the path: {show(dot(moment, g.z2))} Nm about z2",
+               abs(dot(moment, g.z2) - mpf(5) * sin_base) < ROUND_OFF * 1e3
+               and abs(dot(moment, Z1) - mpf(5) * sin_base) < ROUND_OFF * 1e3)
+
+
 def main():
     failed = 0
     for tag, title, function in CHECKS:

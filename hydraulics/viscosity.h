@@ -7,7 +7,7 @@ namespace bentaxis::hydraulics {
 
 /// Kinematic viscosity nu in mm2/s over the temperature T in kelvin by Walther's law (ASTM D341),
 /// lg lg(nu + 0.7) = a - b lg T, through the two values given; dynamic viscosity over the gauge
-/// pressure p by Barus' law, mu = mu(0) exp(alpha p).
+/// pressure p by Barus' law, mu = mu(0) exp(alpha_mu p).
 class Viscosity {
  public:
   /// @param density  kg/m3, at the oil's temperature and atmospheric pressure

@@ -42,7 +42,7 @@ std::vector<Parameter> tapered_factors() {
              "Fa / Fr up to which the axial load does not count",
              {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
       number("tapered_X", "X", FIELD(c.ratings.tapered->radial_factor), kNoUnit, {0, 1}, {0.4},
-             "radial load factor beyond that", {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
+             "radial load factor above that", {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
       number("tapered_Y0", "Y0", FIELD(c.ratings.tapered->static_axial_factor), kNoUnit,
              kNotNegative,
              {.computed = [](const Case& c) -> std::optional<Value> {
@@ -61,10 +61,10 @@ Table bearings_table() {
           "places of the bearings on the shaft axis, and where their life is asked for their "
           "ratings",
       .differentiable = always,
-      .parameters = {number("tapered_z_mm", "C1", FIELD(c.pump.bearings.tapered_z), kMillimetres,
+      .parameters = {number("tapered_z_mm", "z_C1", FIELD(c.pump.bearings.tapered_z), kMillimetres,
                             kAny, kRequired,
                             "z1 of the tapered roller bearing, which takes x, y and z"),
-                     number("cylindrical_z_mm", "C2", FIELD(c.pump.bearings.cylindrical_z),
+                     number("cylindrical_z_mm", "z_C2", FIELD(c.pump.bearings.cylindrical_z),
                             kMillimetres, kAny, kRequired,
                             "z1 of the cylindrical roller bearing, which takes x and y",
                             {.range_words = "other than `tapered_z_mm`"})},

@@ -10,9 +10,9 @@ Table block_table() {
           .parameters = {
               number("mass_kg", "mc", FIELD(c.pump.block.mass), kKilograms, kNotNegative, kRequired,
                      "mass"),
-              number("centre_of_mass_z_mm", "Gt", FIELD(c.pump.block.centre_of_mass_z),
+              number("centre_of_mass_z_mm", "z_c", FIELD(c.pump.block.centre_of_mass_z),
                      kMillimetres, kAny, kRequired, "z2 of the centre of mass"),
-              number("pin_z_mm", "Hcn", FIELD(c.pump.block.pin_z), kMillimetres, kAny, kRequired,
+              number("pin_z_mm", "z_pin", FIELD(c.pump.block.pin_z), kMillimetres, kAny, kRequired,
                      "z2 of the mean contact point of the guide pin"),
               number("bottom_area_mm2", "Ac", FIELD(c.pump.block.bottom_area), kSquareMillimetres,
                      kNotNegative, {0.0},

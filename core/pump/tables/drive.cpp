@@ -33,14 +33,14 @@ Table drive_table() {
       .parameters =
           {choice("kind", FIELD(c.drive->kind), {"speed", "torque", "motor"}, "speed",
                   "the shaft's speed is given; a torque turns it; or a rotor turns it through a "
-                  "coupling, Td = K (phi - theta) + D (phi' - theta')"),
+                  "coupling, Td = K_c (phi - theta) + D_c (phi' - theta')"),
            text("file",
                 curve_at(PLACE(c.drive->curve.file), {.drive = [](Case& c) { return &*c.drive; }}),
                 "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case file, at "
                 "least 4 points from a time <= 0 on: the speed or the torque over time instead; of "
                 "a motor `speed_rpm,torque_Nm`, its torque over its speed; empty: none"),
            number(
-               "torque_Nm", "Td, T0", FIELD(c.drive->torque), {"Nm"}, kAny,
+               "torque_Nm", "T0", FIELD(c.drive->torque), {"Nm"}, kAny,
                {.computed = [](const Case& c) -> std::optional<Value> {
                   if (c.drive->curve.time.empty()) return std::nullopt;
                   return 0.0;
@@ -48,15 +48,15 @@ Table drive_table() {
                 .words = "required, but beside a `file`"},
                "of the drive, or of a motor at the speed of `[operation]`; unused beside a `file`",
                {.active = kGivenTorque}),
-           number("torque_slope_Nm_s_per_rad", "s", FIELD(c.drive->motor->torque_slope),
+           number("torque_slope_Nm_s_per_rad", "s_T", FIELD(c.drive->motor->torque_slope),
                   {"Nm s/rad"}, kAny, {0.0},
-                  "the motor's torque is T0 - s (phi' - omega), beside a `file` it is unused",
+                  "the motor's torque is T0 - s_T (phi' - omega), beside a `file` it is unused",
                   {.part = &kMotorData}),
            number("rotor_inertia_kg_m2", "J_m", FIELD(c.drive->motor->rotor_inertia), {"kg m2"},
                   kPositive, kRequired, "of the rotor, at the angle phi", {.part = &kMotorData}),
-           number("coupling_stiffness_Nm_per_rad", "K", FIELD(c.drive->motor->coupling_stiffness),
+           number("coupling_stiffness_Nm_per_rad", "K_c", FIELD(c.drive->motor->coupling_stiffness),
                   {"Nm/rad"}, kPositive, kRequired, "of the coupling", {.part = &kMotorData}),
-           number("coupling_damping_Nm_s_per_rad", "D", FIELD(c.drive->motor->coupling_damping),
+           number("coupling_damping_Nm_s_per_rad", "D_c", FIELD(c.drive->motor->coupling_damping),
                   {"Nm s/rad"}, kNotNegative, {0.0}, "of the coupling", {.part = &kMotorData}),
            number("start_rpm", "", FIELD(c.drive->start_speed), kRotation, kAny,
                   {.words = "`speed_rpm`"},

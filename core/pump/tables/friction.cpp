@@ -18,7 +18,7 @@ Table friction_table() {
           number("regularization_m_per_s", "v_reg", FIELD(c.pump.friction.regularization), {"m/s"},
                  kNotNegative, {0.01}, "the Coulomb part grows as tanh(v/v_reg); 0 means sign(v)",
                  {.in_fmu = InFmu::fixed}),
-          number("block_viscous_Nm_per_rpm", "Cc (also C)", FIELD(c.pump.friction.block_viscous),
+          number("block_viscous_Nm_per_rpm", "Cc", FIELD(c.pump.friction.block_viscous),
                  kTorquePerSpeed, kNotNegative, {0.0}, "viscous torque of the block"),
           number("shaft_viscous_Nm_per_rpm", "Cs", FIELD(c.pump.friction.shaft_viscous),
                  kTorquePerSpeed, kNotNegative, {0.0}, "viscous torque of the shaft"),

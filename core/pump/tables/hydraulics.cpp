@@ -277,7 +277,7 @@ Table hydraulics_table() {
                     .practice = "open tank: 0"})},
            port_parameters<&HydraulicData::delivery, &PortPlate::delivery>("delivery"),
            port_parameters<&HydraulicData::suction, &PortPlate::suction>("suction"),
-           {number("kidney_width_deg", "w", FIELD(c.hydraulics->kidney_width_deg), kDegrees,
+           {number("kidney_width_deg", "w_k", FIELD(c.hydraulics->kidney_width_deg), kDegrees,
                    {0, 180, true}, kRequired, "of a block kidney, seen from the block axis",
                    {.range_words = "(0, 180], with arc and notches of a port at most 360"}),
             number("kidney_height_mm", "", FIELD(c.hydraulics->kidney_height), kMillimetres,

@@ -53,7 +53,7 @@ Table leakage_table() {
                   "a land that moves with the piston, of the same length always; or what of the "
                   "piston is in the bore: the length is then the least, at the outer dead centre, "
                   "and grows by the piston's way in"),
-           number("eccentricity", "e", FIELD(c.hydraulics->gaps->eccentricity), kNoUnit, {0, 1},
+           number("eccentricity", "eps", FIELD(c.hydraulics->gaps->eccentricity), kNoUnit, {0, 1},
                   {0.0}, "of the piston in its bore, over the radial gap; 1: it touches"),
            number("plate_gap_um", "h_p", FIELD(c.hydraulics->gaps->plate_gap), kMicrometres,
                   {0, 1000}, {0.0},

@@ -24,7 +24,7 @@ Table loop_table() {
           "at `suction_bar` feeds either side through a check valve",
       .part = &kLoop,
       .parameters =
-          {number("volume_l", "V_s", FIELD(c.hydraulics->loop->volume), kLitres, kPositive, {0.5},
+          {number("volume_l", "V_l", FIELD(c.hydraulics->loop->volume), kLitres, kPositive, {0.5},
                   "of the closed loop at the suction port"),
            number("charge_area_mm2", "a_c", FIELD(c.hydraulics->loop->charge_area),
                   kSquareMillimetres, kPositive, {50.0}, "of each check valve, fully open"),

@@ -31,9 +31,9 @@ Table oil_table() {
                             kCentistokes, {1, 1e5}, {6.8}, "the same at 100 deg C",
                             {.range_words = "[1, 1e+05], below that at 40 deg C",
                              .practice = "ISO VG 46, viscosity index 100: 6.8"}),
-                     number("pressure_viscosity_per_GPa", "alpha",
+                     number("pressure_viscosity_per_GPa", "alpha_mu",
                             FIELD(c.hydraulics->oil->pressure_viscosity), kPerGigapascal, {0, 100},
-                            {20.0}, "viscosity grows as exp(alpha p)",
+                            {20.0}, "viscosity grows as exp(alpha_mu p)",
                             {.practice = "mineral oil: 15..25"})},
       .rules = {after("viscosity_100C_cSt", viscosity_refusal)}};
 }

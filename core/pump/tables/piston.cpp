@@ -22,7 +22,7 @@ Table piston_table() {
                "two point masses at A and B; a rigid body; or three point masses at A, centre of "
                "mass and B with the real piston's mass, centre and transverse inertia (no spin)"),
            number("mass_kg", "m_pi", FIELD(c.pump.piston.mass), kKilograms, kNotNegative, kRequired,
-                  "mass of a piston, m in theory.md"),
+                  "mass of a piston"),
            number("joint_mass_fraction", "chi", FIELD(c.pump.piston.joint_mass_fraction), kNoUnit,
                   {0, 1}, {0.5}, "lumped: share of the mass at A; mA = chi m, mB = (1 - chi) m",
                   {.plausible = {0.1,
@@ -34,7 +34,7 @@ Table piston_table() {
                   "from A along the piston's axis to C, where the bore force Rc acts (32); "
                   "pressure and friction stay at B",
                   {.part = &kRingContact}),
-           number("centre_of_mass_mm", "s_G (Gpi)", FIELD(c.pump.piston.real->centre_of_mass),
+           number("centre_of_mass_mm", "s_G", FIELD(c.pump.piston.real->centre_of_mass),
                   kMillimetres, kAny, kRequired, "from A along the piston's axis",
                   {.range_words = "dynamically equivalent: strictly between A and B, unless It = 0",
                    .part = &kRealPiston}),
@@ -50,7 +50,7 @@ Table piston_table() {
                    },
                    .range_words = "[0, 2 It]",
                    .part = &kRealPiston}),
-           number("spin_rpm", "w_s", FIELD(c.pump.piston.real->spin), kRotation, kAny, {0.0},
+           number("spin_rpm", "omega_s", FIELD(c.pump.piston.real->spin), kRotation, kAny, {0.0},
                   "real: axial component of the absolute angular velocity, positive along A to B",
                   {.part = &kRealPiston})},
       .rules = {at_end("inertia", [](const Case& c) {

@@ -55,7 +55,7 @@ Table pressure_table() {
                   {.range_words = "0 or [16, 100000]",
                    .active = kHydraulic,
                    .plausible = {.low = 90, .why = "a port opens within some degrees"}}),
-           number("transition_deg", "w", FIELD(c.pressure.transition_deg), kDegrees, {0, 180},
+           number("transition_deg", "w_t", FIELD(c.pressure.transition_deg), kDegrees, {0, 180},
                   kRequired, "width of each rise and fall; 0 is a step",
                   {.active = kIdeal,
                    .differentiable = moves_with_edges,

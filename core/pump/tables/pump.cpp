@@ -55,7 +55,7 @@ Table pump_table() {
                   kPositive, kRequired, "A to B",
                   {.range_words = "> 0, and long enough to be assembled over the whole turn"}),
            number("bore_diameter_mm", "Dpi", FIELD(c.pump.geometry.bore_diameter), kMillimetres,
-                  kPositive, kRequired, "cylinder diameter; piston area A = pi Dpi^2/4",
+                  kPositive, kRequired, "cylinder diameter; piston area A_p = pi Dpi^2/4",
                   {.also = {"piston_diameter", "bore", "cylinder_diameter"}})},
       .rules = {after("piston_length_mm", not_assembled)}};
 }

@@ -10,7 +10,7 @@ Table shaft_table() {
       .differentiable = always,
       .parameters = {number("mass_kg", "ms", FIELD(c.pump.shaft.mass), kKilograms, kNotNegative,
                             kRequired, "mass"),
-                     number("centre_of_mass_z_mm", "Gs", FIELD(c.pump.shaft.centre_of_mass_z),
+                     number("centre_of_mass_z_mm", "z_s", FIELD(c.pump.shaft.centre_of_mass_z),
                             kMillimetres, kAny, kRequired, "z1 of the centre of mass"),
                      number("axial_inertia_kg_mm2", "I_s", FIELD(c.pump.shaft.axial_inertia),
                             kInertia, kNotNegative, {in_file_unit(kUsualShaftInertia, kInertia)},
