@@ -12,33 +12,79 @@ def output(*command, **options):
     return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True, **options).stdout
 
 
+def cell(text):
+    """Text within a table."""
+    return re.sub(r"([|<>*_`])", r"\\\1", text)
+
+
 # ---------------------------------------------------------------- commands
 
+def command_groups(help_text):
+    """[(heading, [(name, line)])] of the commands that a help text lists, in one group or several."""
+    groups, heading = [], None
+    for line in re.sub(r"\n {10,}", " ", help_text).split("\n"):
+        head = re.fullmatch(r"([A-Z]\S.*):", line)
+        row = re.match(r"  ([a-z][a-z0-9]*)\s{2,}(\S.*)$", line)
+        if head:
+            heading = head[1]
+        elif row and heading not in (None, "Options", "Positionals"):
+            if not groups or groups[-1][0] != heading:
+                groups.append((heading, []))
+            groups[-1][1].append((row[1], row[2]))
+        elif line and not line.startswith(" "):
+            heading = None
+    return groups
+
+
 def subcommands(help_text):
-    """(name, line) of the commands below that a help text lists."""
-    at = help_text.find("Subcommands:")
-    if at < 0:
-        return []
-    return re.findall(r"^  ([a-z0-9]+)\s{2,}(\S.*)$", re.sub(r"\n {10,}", " ", help_text[at:]), re.MULTILINE)
+    """(name, line) of all of them."""
+    return [row for _, rows in command_groups(help_text) for row in rows]
 
 
 def command_pages(program):
     """{path below docs/reference: text}: a page per command and the index."""
-    pages = {}
     top = output(program, "--help")
-    rows = []
-    for name, what in subcommands(top):
-        help_text = output(program, name, "--help")
-        text = f"{NOTE}# bentaxis {name}\n\n```text\n{help_text.rstrip()}\n```\n"
-        for below, _ in subcommands(help_text):
-            text += f"\n## bentaxis {name} {below}\n\n```text\n{output(program, name, below, '--help').rstrip()}\n```\n"
-        pages[f"commands/{name}.md"] = text
-        rows.append(f"| [`bentaxis {name}`](commands/{name}.md) | {what.replace('|', chr(92) + '|')} |")
-    if not rows:
+    pages, index = {}, f"{NOTE}# Commands\n"
+    for heading, commands in command_groups(top):
+        index += f"\n## {heading}\n\n| command | what it does |\n|---|---|\n"
+        for name, what in commands:
+            help_text = output(program, name, "--help")
+            text = f"{NOTE}# bentaxis {name}\n\n```text\n{help_text.rstrip()}\n```\n"
+            for below, _ in subcommands(help_text):
+                text += f"\n## bentaxis {name} {below}\n\n```text\n{output(program, name, below, '--help').rstrip()}\n```\n"
+            pages[f"commands/{name}.md"] = text
+            index += f"| [`bentaxis {name}`](commands/{name}.md) | {cell(what)} |\n"
+    if not pages:
         raise RuntimeError("`bentaxis --help` lists no commands: the form of the help has changed")
-    pages["commands.md"] = (f"{NOTE}# Commands\n\n| command | what it does |\n|---|---|\n" + "\n".join(rows)
-                            + f"\n\n## bentaxis --help\n\n```text\n{top.rstrip()}\n```\n")
+    pages["commands.md"] = index + f"\n## bentaxis --help\n\n```text\n{top.rstrip()}\n```\n"
     return pages
+
+
+# ---------------------------------------------------------------- case keys
+
+def case_keys_page(program):
+    """Every key of a case file, each with an anchor: #pump.tilt_deg."""
+    schema = json.loads(output(program, "schema"))["properties"]
+    tables = ["top"] + [name for name, value in schema.items() if "properties" in value]
+    text = (f"{NOTE}# Case keys\n\nEvery key of a [case file](../case_file.md), by table. The same from the program: `bentaxis schema --markdown TABLE`, "
+            "and `bentaxis schema` as a JSON Schema for editors.\n")
+    count = 0
+    for table in tables:
+        below = [f"{table}.{name}" for name, value in schema.get(table, {}).get("properties", {}).items() if "properties" in value]
+        children = schema.get(table, {}).get("properties", {})
+        own = [table] if table == "top" or len(below) < len(children) else []
+        for name in own + below:
+            done = subprocess.run([program, "schema", "--markdown", name], capture_output=True, text=True)
+            if done.returncode != 0:  # a table whose keys are not listed, as [uncertainty], whose keys are those of others
+                continue
+            printed = done.stdout
+            prefix = "" if name == "top" else name + "."
+            rows, found = re.subn(r"^\| (`(\w+)`)", lambda match: f'| <a id="{prefix}{match[2]}"></a>{match[1]}', printed, flags=re.MULTILINE)
+            count += found
+            text += f"\n## {'Above all tables' if name == 'top' else f'[{name}]'}\n\n{rows}"
+    if count < 100:
+        raise RuntimeError(f"only {count} keys of case files were found: the form of `bentaxis schema` has changed")
+    return text
 
 
 # ---------------------------------------------------------------- plausibility codes
@@ -57,8 +103,25 @@ def documented(node):
 
 def signature(node, source):
     text = ast.get_source_segment(source, node)
-    head = text[:text.index(":\n")] if ":\n" in text else text.split("\n")[0].rstrip(":")
-    return re.sub(r"\s+", " ", head)
+    head = re.sub(r"\s+", " ", text[:text.index(":\n")] if ":\n" in text else text.split("\n")[0].rstrip(":"))
+    if len(head) <= 80:
+        return head
+    # An argument per line.
+    arguments = ",\n    ".join(ast.unparse(argument) for argument in _arguments(node.args))
+    result = f" -> {ast.unparse(node.returns)}" if node.returns else ""
+    return f"def {node.name}(\n    {arguments},\n){result}"
+
+
+def _arguments(arguments):
+    """Each argument as a list of its own, defaults with it, as ast.unparse writes it."""
+    def one(argument, default):
+        return ast.arguments(posonlyargs=[], args=[argument], kwonlyargs=[], kw_defaults=[], defaults=[default] if default else [], vararg=None, kwarg=None)
+
+    defaults = [None] * (len(arguments.args) - len(arguments.defaults)) + list(arguments.defaults)
+    yield from (one(argument, default) for argument, default in zip(arguments.args, defaults))
+    if arguments.kwonlyargs:
+        yield ast.Name("*")
+    yield from (one(argument, default) for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults))
 
 
 def python_page(root):
@@ -69,14 +132,14 @@ def python_page(root):
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
     text += "\n## Functions\n"
     for node in functions:
-        text += f"\n### {node.name} {{#{node.name}}}\n\n```python\n{signature(node, source)}\n```\n\n{documented(node)}\n"
+        text += f"\n### `{node.name}` {{#{node.name}}}\n\n```python\n{signature(node, source)}\n```\n\n{documented(node)}\n"
     text += "\n## Classes\n"
     for node in classes:
-        text += f"\n### {node.name} {{#{node.name}}}\n\n{documented(node)}\n"
+        text += f"\n### `{node.name}` {{#{node.name}}}\n\n{documented(node)}\n"
         for member in node.body:
             if isinstance(member, ast.FunctionDef):
                 kind = " (property)" if any(isinstance(d, ast.Name) and d.id == "property" for d in member.decorator_list) else ""
-                text += (f"\n#### {node.name}.{member.name}{kind} {{#{node.name}.{member.name}}}\n\n"
+                text += (f"\n#### `{node.name}.{member.name}`{kind} {{#{node.name}.{member.name.strip('_')}}}\n\n"
                          f"```python\n{signature(member, source)}\n```\n\n{documented(member)}\n")
     if not functions or not classes:
         raise RuntimeError("the Python stub holds no functions or no classes")
@@ -91,7 +154,7 @@ def cpp_page(headers):
     for module, files in headers.items():
         text += f"\n## bentaxis/{module}\n\n| header | what it is |\n|---|---|\n"
         for file, brief in files:
-            text += f"| `bentaxis/{module}/{file}` | {brief.replace('|', chr(92) + '|')} |\n"
+            text += f"| `bentaxis/{module}/{file}` | {cell(brief)} |\n"
     return text
 
 
@@ -132,6 +195,7 @@ JAVADOC_AUTOBRIEF = YES
 MARKDOWN_SUPPORT = YES
 QUIET = YES
 WARN_IF_UNDOCUMENTED = NO
+WARN_IF_INCOMPLETE_DOC = NO
 HAVE_DOT = NO
 CLASS_GRAPH = NO
 VERBATIM_HEADERS = NO
@@ -151,11 +215,30 @@ BUILTIN_STL_SUPPORT = YES
     return done.stderr.splitlines()
 
 
+# ---------------------------------------------------------------- licences
+
+# Debian packages of which parts are in the site.
+PARTS = {"mkdocs-material": "theme, icons and search (with lunr and RxJS)", "libjs-katex": "typesetting of equations", "fonts-katex": "fonts of the equations",
+         "doxygen": "styles and scripts of the C++ pages"}
+
+
+def parts_page():
+    text = f"{NOTE}# Parts of this site\n\nThe pages are bentaxis', under the Apache License 2.0. The site holds parts of these programs, each under its own licence.\n"
+    for package, what in PARTS.items():
+        file = pathlib.Path("/usr/share/doc") / package / "copyright"
+        if not file.is_file():
+            raise RuntimeError(f"{file}: no licence of {package}, of which the site has {what}")
+        text += f"\n## {package}\n\n{what[0].upper() + what[1:]}.\n\n````text\n{file.read_text(encoding='utf-8').rstrip()}\n````\n"
+    return text
+
+
 def write(root, program, docs):
     """Writes all of them below docs/reference."""
     pages = command_pages(program)
+    pages["case_keys.md"] = case_keys_page(program)
     pages["plausibility_codes.md"] = plausibility_page(program)
     pages["python.md"] = python_page(root)
+    pages["parts.md"] = parts_page()
     pages["cpp.md"] = cpp_page(public_headers(root))
     for path, text in pages.items():
         file = docs / "reference" / path
