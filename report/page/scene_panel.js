@@ -142,7 +142,7 @@ function pumpInSpace(report, data, scene) {
     const first = tips.filter(each("group")), later = tips.filter(t => !first.includes(t));
     const boxes = [], made = [], leads = svg("svg", { width: "100%", height: "100%" });
     for (const { label, colour, at: [x, y] } of [...first, ...later]) {
-      const wide = 8 * label.length + 4, high = 15;
+      const wide = 9 * label.length + 10, high = 16;
       const place = tagPlaces(wide).map(([dx, dy]) => [x + dx, y + dy]).find(([l, t]) => l > 0 && t > 0 && l + wide < canvas.clientWidth && t + high < canvas.clientHeight
         && boxes.every(([bl, bt, bw]) => l > bl + bw || bl > l + wide || Math.abs(t - bt) > high));
       if (!place) continue;
