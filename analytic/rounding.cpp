@@ -126,17 +126,31 @@ void RoundingEstimate::estimate(const Instant& instant,
   }
 }
 
-double pressure_rounding(const PressureTrace& trace, double theta_k_deg) {
+namespace {
+
+// @param computed  by the hydraulic model: the curve closes at 0 deg as well as the search for the
+//                  periodic state ended; that jump is no rounding
+double pressure_rounding(const PressureTrace& trace, double theta_k_deg, bool computed) {
   const double step = kInputRounding * 360;
-  const double here = trace(theta_k_deg);
-  return kInputRounding * std::abs(here) + std::max(std::abs(trace(theta_k_deg + step) - here),
-                                                    std::abs(trace(theta_k_deg - step) - here));
+  const double at = wrap_degrees(theta_k_deg), here = trace(at);
+  const auto change = [&](double there) {
+    return computed && (there < 0 || there >= 360) ? 0.0 : std::abs(trace(there) - here);
+  };
+  return kInputRounding * std::abs(here) + std::max(change(at + step), change(at - step));
+}
+
+}  // namespace
+
+double pressure_rounding(const PressureTrace& trace, double theta_k_deg) {
+  return pressure_rounding(trace, theta_k_deg, false);
 }
 
 std::vector<GroupRounding> estimate_rounding(const Case& the_case, const Assumptions& assumptions,
                                              const Samples& samples, const PressureTrace& trace,
                                              std::size_t most_angles) {
   const RoundingEstimate estimate(the_case.pump, assumptions);
+  const bool computed =
+      the_case.pressure.kind == PressureKind::hydraulic && the_case.pressure.points == 0;
   const ChannelLayout& layout = estimate.layout();
   std::vector<GroupRounding> groups;
   Instant instant;
@@ -147,8 +161,8 @@ std::vector<GroupRounding> estimate_rounding(const Case& the_case, const Assumpt
   for (std::size_t row = 0; row < rows; row += stride) {
     samples.instant(row, instant);
     for (int k = 1; k <= samples.pistons; ++k)
-      pressure[k - 1] =
-          pressure_rounding(trace, piston_angle_deg(samples.theta_deg[row], k, samples.pistons));
+      pressure[k - 1] = pressure_rounding(
+          trace, piston_angle_deg(samples.theta_deg[row], k, samples.pistons), computed);
     estimate.estimate(instant, pressure, parts);
     for (std::size_t c = 0; c < layout.reactions(); ++c) {
       const std::string& name = layout.channels()[c].group;

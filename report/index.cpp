@@ -182,12 +182,25 @@ void sort_by_worst(std::vector<IndexEntry>& entries) {
   });
 }
 
+std::string index_headline(const std::vector<IndexEntry>& entries) {
+  if (entries.empty()) return "No report.";
+  const IndexEntry& worst = entries.front();
+  const std::string name =
+      worst.title + " (" + (worst.page.empty() ? worst.json : worst.page) + ")";
+  if (worst.agrees && !*worst.agrees)
+    return fmt::format("{}. Worst: {}: {}", counts_of(entries), name, worst.headline);
+  if (!worst.warnings.empty())
+    return fmt::format("{}. None differs; first with warnings: {}: {}.", counts_of(entries), name,
+                       warnings_of(worst));
+  return fmt::format("{}. None differs, none has warnings.", counts_of(entries));
+}
+
 std::string index_page(const std::string& title, const std::vector<IndexEntry>& entries,
                        const std::vector<std::string>& skipped) {
   std::string rows;
   for (const IndexEntry& entry : entries) rows += row_of(entry);
   return filled_template("index.html", {{"@CSS@", page_parts().at("report.css")},
-                                        {"@COUNTS@", markup_of(counts_of(entries))},
+                                        {"@COUNTS@", markup_of(index_headline(entries))},
                                         {"@SKIPPED@", skipped_text(skipped)},
                                         {"@ROWS@", rows},
                                         {"@TITLE@", markup_of(title)},
@@ -210,7 +223,8 @@ std::string index_json(const std::vector<IndexEntry>& entries) {
                     {"headline", e.headline},
                     {"worst_channel", e.worst_channel},
                     {"worst_over_peak", e.worst_over_peak ? Json(*e.worst_over_peak) : Json()}});
-  const Json whole = {{"schema", 1}, {"reports", std::move(list)}};
+  const Json whole = {
+      {"schema", 1}, {"headline", index_headline(entries)}, {"reports", std::move(list)}};
   return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -108,6 +108,110 @@ class AnswersTest(unittest.TestCase):
         flagged = [row for row in report["timing"] if row["flagged"]]
         self.assertTrue(answers[1].startswith(f"Port timing: {len(flagged)} of {len(report['timing'])} "))
 
+    def test_turn(self):
+        """compare, show and run say the same of the same turn, and it is what the curves hold."""
+        small = ("--set", "operation.samples_per_revolution=36")
+        answers = self.answers("compare", self.case("bap63_rated"), *small)
+        rows = self.rows("analytic.csv")
+        torque = [float(row["Td_z1_Nm"]) for row in rows]
+        mean, least, greatest = map(float, re.search(
+            r"^Drive torque: mean ([\d.]+) Nm, from ([\d.]+) to ([\d.]+) Nm\.$", answers[0]).groups())
+        self.assertAlmostEqual(mean, sum(torque) / len(torque), delta=1e-3 * mean)
+        self.assertAlmostEqual(least, min(torque), delta=1e-3 * mean)
+        self.assertAlmostEqual(greatest, max(torque), delta=1e-3 * mean)
+        value, at = map(float, re.search(r"Rb1 ([\d.]+) kN at ([\d.]+) deg", answers[1]).groups())
+        size = [sum(float(v) ** 2 for k, v in row.items() if k.startswith("Rb1_")) ** 0.5 for row in rows]
+        self.assertAlmostEqual(1e3 * value, max(size), delta=1e-3 * max(size))
+        self.assertAlmostEqual(size[round(at / 10)], max(size), delta=1e-6 * max(size))
+        self.assertEqual(self.answers("show", self.case("bap63_rated"), *small), answers)
+        for model in ("analytic", "multibody"):
+            done = subprocess.run([PROGRAM, "run", self.case("bap63_rated"), "--model", model, *small, "--out", "run"],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.stdout.splitlines()[1:-1], answers)
+
+    def test_turn_beyond_a_limit(self):
+        # Not enough spring to hold the block on its plate without pressure: the film would have to pull.
+        unloaded = ("--set", "pressure.delivery_bar=1", "--set", "block.spring_force_N=0", "--set",
+                    "operation.samples_per_revolution=72")
+        answers = self.answers("compare", self.case("bap63_rated"), *unloaded)
+        limits = json.loads((self.folder / "out" / "report.json").read_text())["validity"]
+        violated = [limit for limit in limits if limit["violated"]]
+        self.assertGreaterEqual(len(violated), 1)
+        said = [answer for answer in answers if answer.startswith("Not valid over ")]
+        self.assertEqual(len(said), len(violated))
+        for answer, limit in zip(said, violated):
+            share = float(re.match(r"Not valid over ([\d.e+-]+) % of the turn", answer)[1])
+            self.assertAlmostEqual(share, limit["share_percent"], delta=0.01 * limit["share_percent"])
+            self.assertIn(limit["limit"], answer)
+        done = subprocess.run([PROGRAM, "run", self.case("bap63_rated"), "--model", "analytic", *unloaded, "--out", "run"],
+                              cwd=self.folder, capture_output=True, text=True, timeout=300)
+        for answer in said:
+            self.assertIn(answer, done.stdout.splitlines())
+
+    def test_references(self):
+        """What differs is said first, the worst before the others; what agrees says how near it is to its limit."""
+        for name, change in (("good", ()), ("bad", ("--set", "piston.mass_kg=0.0918")), ("worse", ("--set", "pump.tilt_deg=41"))):
+            made = subprocess.run([PROGRAM, "reference", "golden", self.case("bap63_rated"), "--samples", "36", *change, "--out",
+                                   f"data/{name}"], cwd=self.folder, capture_output=True, text=True, timeout=300)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            for file in (self.folder / "data" / name).rglob("case.toml"):  # the pump as it should be
+                file.write_text(file.read_text().replace("mass_kg = 0.0918", "mass_kg = 0.09").replace(
+                    "tilt_deg = 41\n", "tilt_deg = 40\n").replace("tilt_deg = 41.0", "tilt_deg = 40"))
+        done = subprocess.run([PROGRAM, "regress", "data", "--json", "regress.json"], cwd=self.folder, capture_output=True,
+                              text=True, timeout=300)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        verdict = json.loads((self.folder / "regress.json").read_text())["verdict"]
+        self.assertEqual(done.stdout.splitlines()[0], verdict["headline"])
+        self.assertEqual(done.stdout.splitlines()[1:5], verdict["answers"])
+        starts = [re.match(r"\S*(bad|worse)\S*(?: differs)?: ", answer)[0] for answer in verdict["answers"]]
+        self.assertEqual(["differs" in start for start in starts], [True, False, True, False])
+        self.assertTrue("worse" in starts[0] and "bad" in starts[2], starts)
+        self.assertIn("piston.mass_kg 0.09 -> 0.0918", verdict["answers"][3])
+        done = subprocess.run([PROGRAM, "regress", "data/good"], cwd=self.folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout.splitlines()[1], r"^Nearest to its limit: ")
+
+    def test_one_model_is_not_two(self):
+        self.answers("simulate", self.case("bap63_start_up"), "--model", "analytic", "--set", "drive.duration_s=0.02", "--set",
+                     "drive.samples=20")
+        page = (self.folder / "out" / "report.html").read_text()
+        self.assertNotIn("Two derivations", page)
+        self.assertIn("One model's motion", page)
+
+    def test_inertia(self):
+        answers = self.answers("inertia", self.case("bap63_rated"), "--set", "operation.samples_per_revolution=36", "--speeds",
+                               "1500", "--map-size", "2", report="inertia.json")
+        errors = [row for row in self.rows("inertia_errors.csv")]
+        self.assertRegex(answers[0], r"^Two masses change the joint force Rs of a piston by up to [\d.]+ N without load at 1500 rpm")
+        self.assertRegex(answers[-1], r"^Smallest error at 1500 rpm: .*, [\d.e+-]+ N in Rs and [\d.e+-]+ N in Rc\.$")
+        self.assertTrue(errors)
+
+    def test_hard_cases(self):
+        answers = self.answers("hardcases", "--filter", "bearings", report="hardcases.json")
+        rows = self.rows("hardcases.csv")
+        for answer in answers:
+            model, digits, group, case = re.match(r"Fewest digits by (\w+): ([\d.]+) of (\w+) in (\w+) ", answer).groups()
+            known = [row for row in rows if row["model"] == model and row["digits"]]
+            self.assertEqual(float(digits), min(float(row["digits"]) for row in known))
+            self.assertTrue(any(row["case"] == case and row["group"] == group for row in known))
+
+    def test_trade_off(self):
+        answers = self.answers("tradeoff", self.case("bap63_rated"), "--accuracies", "1e-2,1e-4", "--max-seconds-per-run", "2",
+                               "--samples", "8", report="tradeoff.json")
+        times = [(float(row["seconds_per_turn"]), row) for row in self.rows("tradeoff.csv")
+                 if row["seconds_per_turn"] and row["method"] != "integrated"]
+        self.assertIn(" pressure: fastest of all is " + min(times, key=lambda t: t[0])[1]["model"], answers[0])
+
+    def test_index(self):
+        self.answers("compare", self.case("bap63_rated"), "--set", "operation.samples_per_revolution=36")
+        self.folder.joinpath("out").rename(self.folder / "good")
+        self.answers("compare", self.case("bap63_rated"), "--set", "operation.samples_per_revolution=36", "--tolerance", "1e-17")
+        done = subprocess.run([PROGRAM, "index", "."], cwd=self.folder, capture_output=True, text=True, timeout=300)
+        headline = json.loads((self.folder / "index.json").read_text())["headline"]
+        self.assertEqual(done.stdout.splitlines()[0], headline)
+        self.assertIn(headline, (self.folder / "index.html").read_text())
+        self.assertRegex(headline, r"^2 reports, 1 differ.*\. Worst: .*\(out/report\.html\): ")
+
 
 if __name__ == "__main__":
     PROGRAM, REPO = sys.argv[1], pathlib.Path(sys.argv[2])

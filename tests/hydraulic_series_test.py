@@ -76,6 +76,22 @@ class SeriesTest(ProgramTest):
         self.assertIn("2 of 3 points could not be computed", result.err)
         self.assertEqual(len(self.failed("report.json")), 2)
 
+    def test_rattle_keeps_the_other_points_of_a_row(self):
+        # At 500 rpm the leakage takes more than the pump displaces at 100 bar, from 1000 rpm it does not.
+        result = self.run_program("rattle", self.case(), *LEAK, "--speeds", "500:1500:500", "--delivery-bar", "50:100:50", "--out", "out",
+                                  status=COMPUTATION_FAILED)
+        rows = self.rows("rattle.csv")
+        self.assertEqual([(row["delivery_bar"], row["speed_rpm"], row["sweep"]) for row in rows if row["reason"]],
+                         [("100", "500", "up"), ("100", "500", "down")])
+        computed = [row for row in rows if not row["reason"]]
+        self.assertEqual(len(computed), 10)
+        self.assertNotIn("", [row["class"] for row in computed])
+        self.assertIn("out of reach", next(row["reason"] for row in rows if row["reason"]))
+        self.assertIn("2 of 12 points could not be computed", result.err)
+        self.assertIn("delivery_bar = 100, speed_rpm = 500, swept up", result.err)
+        self.assertEqual(len(self.failed("report.json")), 2)
+        self.assertIn("1 of its speeds could not be computed", result.out)
+
     def test_inertia_keeps_the_other_speeds(self):
         text = self.case().read_text().replace(
             'inertia = "lumped"', 'inertia = "lumped"\ncentre_of_mass_mm = 19.0\ntransverse_inertia_kg_mm2 = 24.0\naxial_inertia_kg_mm2 = 5.0\nspin_rpm = 0.0')

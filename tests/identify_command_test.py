@@ -112,7 +112,7 @@ class IdentifyTest(ProgramTest):
         best = tables["Which measurement would help most"]
         gains = [m["all bands narrower by, %"] for m in best]
         self.assertEqual(gains, sorted(gains, reverse=True))
-        self.assertIn(f"most useful further measurement: {best[0]['measurement']}\n", result.out)
+        self.assertIn(f"The most useful further measurement is {best[0]['measurement']}: ", result.out)
 
     def test_the_identified_pump_is_a_case_that_runs(self):
         self.identify(DATA, "--fit-only")

@@ -58,6 +58,19 @@ PROBE = r"""
         return { i, states, free, sums: Object.fromEntries(Object.keys(free).map(n => [n, S.sumOf(n)])) };
       });
       S.model("0");
+      result.tags = {};
+      for (const view of ["free", "side"]) for (const i of [0, 7]) {
+        S.setRow(i);
+        S.select(null);
+        S.show(true);
+        S.view(view);
+        S.drawNow();
+        const frame = document.querySelector("#space canvas").getBoundingClientRect();
+        const box = e => (b => [b.left - frame.left, b.top - frame.top, b.right - frame.left, b.bottom - frame.top])(e.getBoundingClientRect());
+        result.tags[view + i] = { size: [frame.width, frame.height],
+          shown: [...document.querySelectorAll("#space .tags span")].map(e => [e.textContent, ...box(e)]),
+          arrows: [...new Set(S.state().arrows.filter(a => !a.none).map(a => a.label))] };
+      }
       S.view("free");
       S.show(["Rs", "Rc"]);
       const grey = (i, larger = 10) => {
@@ -110,14 +123,14 @@ PROBE = r"""
 """
 
 
-def probe(folder, page, *options):
+def probe(folder, page, *options, size=(1280, 900)):
     """What PROBE finds in a page."""
     text = page.read_text()
     script = PROBE.replace("@ROWS@", str(list(ROWS))).replace("@WIDE@", str(WIDE)).replace("@HIGH@", str(HIGH))
     head, end = text.index("<head>") + 6, text.rindex("</body>")
     probed = page.with_name("probed.html")
     probed.write_text(text[:head] + pages.CATCH_ERRORS + text[head:end] + f"<script>{script}</script>" + text[end:])
-    dump = pages.chromium(folder, probed, (1280, 900), "--dump-dom", *options)
+    dump = pages.chromium(folder, probed, size, "--dump-dom", *options)
     found = re.search(r'<pre id="probe-result">(.*?)</pre>', dump, re.S)
     if not found:
         raise RuntimeError(f"{page}: nothing found")
@@ -218,6 +231,28 @@ class SceneTest(unittest.TestCase):
                         self.assertGreater(rest, 100 * DRAWN * sum(length(a["vector"]) for a in forces))
                         self.assertLessEqual(row["sums"][body][model]["force_over_sum"], DRAWN)
                         self.assertLessEqual(row["sums"][body][model]["moment_over_sum"], DRAWN)
+
+    def tags_are_apart(self, found):
+        for view, tags in found["tags"].items():
+            with self.subTest(view):
+                names = [name for name, *_ in tags["shown"]]
+                self.assertEqual(sorted(names), sorted(tags["arrows"]), "each arrow that is shown has its name, once")
+                self.assertGreater(len(names), 10)
+                wide, high = tags["size"]
+                for i, (name, left, top, right, bottom) in enumerate(tags["shown"]):
+                    self.assertTrue(left >= -1 and top >= -1 and right <= wide + 1 and bottom <= high + 1, (name, left, top))
+                    for other, l, t, r, b in tags["shown"][i + 1:]:
+                        self.assertFalse(left < r - 1 and l < right - 1 and top < b - 1 and t < bottom - 1, f"{name} over {other}")
+
+    def test_names_of_arrows_do_not_overlap(self):
+        for name, found in self.found.items():
+            with self.subTest(name):
+                self.tags_are_apart(found)
+
+    def test_names_of_arrows_on_a_narrow_screen(self):
+        found = probe(self.folder, self.folder / "bap63_rated" / "report.html", *WEBGL, size=(500, 900))
+        self.assertEqual(found["errors"], [])
+        self.tags_are_apart(found)
 
     def test_only_the_body_is_left(self):
         for row in self.found["bap63_rated"]["rows"]:

@@ -8,9 +8,11 @@ import csv
 import json
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 PROGRAM = REPO = None  # set in main
@@ -132,6 +134,27 @@ class Sensitivity(unittest.TestCase):
         self.assertNotIn("The case does not give", done.stdout)
         plate, oil = rows_of(self.out / "sensitivity.csv")
         self.assertNotEqual(plate["derivative"], oil["derivative"])
+
+    def test_an_interruption_keeps_what_is_finished(self):
+        process = subprocess.Popen([PROGRAM, "sensitivity", REPO / "cases/bap63_rated.toml", "--model", "multibody", "--output",
+                                    "mean:Td", "--set", "operation.samples_per_revolution=360", "--out", self.out],
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(4)  # some of 45 parameters, each of some seconds
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=SECONDS)
+        if "nothing was written" in err:
+            self.skipTest("interrupted before the first parameter was finished: a very busy machine")
+        self.assertEqual(process.returncode, 130, err)
+        rows = rows_of(self.out / "sensitivity.csv")
+        missing = [r["parameter"] for r in rows if not r["found_by"] and r["derivative"] == ""]
+        self.assertGreater(len(missing), 0)
+        self.assertLess(len(missing), len(rows))
+        sentence = out.splitlines()[2]
+        self.assertTrue(sentence.startswith("Interrupted: "), sentence)
+        for name in missing:
+            self.assertIn(name, sentence)
+            self.assertIn(name, err)
+        self.assertEqual(json.loads((self.out / "sensitivity.json").read_text())["verdict"]["answers"][0], sentence)
 
     def test_without_names_every_number_of_the_case(self):
         done = self.run_program()

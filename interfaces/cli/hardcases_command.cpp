@@ -3,6 +3,7 @@
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/hard_cases_document.h"
+#include "bentaxis/study/piece_progress.h"
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
@@ -29,14 +30,13 @@ int run(const Options& options) {
   const auto cases = study::read_catalogue(folder, options.filter);
   ReportFolders folders({options.out, ""});
   study::HardCaseStudy result;
-  std::printf("%s", study::hard_cases_heading().c_str());
-  for (const study::HardCase& hard : cases) {
-    for (study::HardOutcome& outcome : study::run_hard_case(hard, progress_of)) {
-      result.runs.push_back({hard, std::move(outcome)});
-      std::printf("%s", study::text_of(result.runs.back()).c_str());
-      std::fflush(stdout);
-    }
-  }
+  const Progress progress = progress_of("hard cases");
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    for (study::HardOutcome& outcome : study::run_hard_case(cases[i], [&](const std::string&) {
+           return study::within(progress, i, cases.size());
+         }))
+      result.runs.push_back({cases[i], std::move(outcome)});
+  progress(1);
   if (options.turns > 0 && options.filter.empty())
     result.long_run = study::run_long(folder, options.turns, kLongRunAccuracy, progress_of);
   const auto paths = folders.write("hardcases", study::hard_cases_document(result, versions()), {},

@@ -78,6 +78,7 @@ int index(const Options& options) {
   output.add("index.html", report::index_page("Reports in " + options.folder, entries, skipped));
   output.add("index.json", report::index_json(entries));
   const auto paths = output.commit();
+  std::printf("%s\n\n", without_control_characters(report::index_headline(entries)).c_str());
   for (const report::IndexEntry& e : entries) {
     const std::string warned =
         e.warnings.empty() ? "" : " (warnings: " + std::to_string(e.warnings.size()) + ")";

@@ -91,8 +91,12 @@ int rattle(const Options& options) {
   }
   file.remove();
   print_result(study::rattle_text(map), paths);
-  return status_of_series(map.agrees() ? kDone : kOutOfTolerance, map.failed,
-                          rattle.delivery_bar.size());
+  const auto failed = map.all_failed();
+  return status_of_series(
+      map.agrees() ? kDone : kOutOfTolerance, failed,
+      failed.size() == map.failed.size()
+          ? rattle.delivery_bar.size()
+          : 2 * rattle.speed_rpm.size() * map.options.delivery_bar.size() + map.failed.size());
 }
 
 }  // namespace

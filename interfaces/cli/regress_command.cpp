@@ -8,6 +8,7 @@
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/report/page.h"
+#include "bentaxis/study/comparison_answers.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/regression_document.h"
 #include "commands.h"
@@ -70,7 +71,7 @@ int regress(const Options& options) {
     if (!outcome.error.empty())
       std::fprintf(stderr, "bentaxis: %s: %s\n", outcome.name.c_str(), outcome.error.c_str());
   }
-  std::printf("%s%s\n", study::regression_text(outcomes).c_str(), study::summary(outcomes).c_str());
+  std::printf("%s", study::regression_report(outcomes).c_str());
   if (!options.junit.empty()) {
     std::vector<report::TestSuite> suites;
     for (const auto& outcome : outcomes) suites.push_back(study::suite_of(outcome));

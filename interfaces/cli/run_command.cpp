@@ -5,9 +5,11 @@
 #include "bentaxis/files/csv.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/study/lost_digits.h"
+#include "bentaxis/study/row_stream.h"
 #include "bentaxis/study/run.h"
 #include "bentaxis/study/state_doubts.h"
 #include "bentaxis/study/timing.h"
+#include "bentaxis/study/turn_summary.h"
 #include "commands.h"
 #include "console.h"
 #include "options.h"
@@ -29,8 +31,12 @@ void warn(const std::vector<std::string>& warnings) {
     std::fprintf(stderr, "bentaxis: warning: %s\n", warning.c_str());
 }
 
-int finish(OutputFolder& folder) {
-  for (const auto& path : folder.commit()) std::printf("%s\n", path.c_str());
+// What was found, then the files.
+int finish(OutputFolder& folder, const std::string& name, const std::vector<std::string>& answers) {
+  const auto paths = folder.commit();
+  std::printf("%s\n", name.c_str());
+  for (const std::string& answer : answers) std::printf("%s\n", answer.c_str());
+  for (const auto& path : paths) std::printf("%s\n", path.c_str());
   return kDone;
 }
 
@@ -48,12 +54,13 @@ int run_states(const Options& options, const study::PreparedCase& ready,
   ResultTable teeth;
   MotionTable table = study::run_states(ready, states, run_options, progress_of,
                                         run_options.teeth ? &teeth : nullptr);
+  const study::TurnSummary summary(table.results);
   table.results = select_channels(table.results,
                                   [&](const Channel& channel) { return channels.wants(channel); });
   const std::string name = to_string(options.model);
   folder.add(name + ".csv", to_csv(table));
   if (run_options.teeth) folder.add("teeth_" + name + ".csv", to_csv(teeth));
-  return finish(folder);
+  return finish(folder, ready.the_case.name, summary.answers());
 }
 
 int run(const Options& options) {
@@ -105,16 +112,27 @@ int run(const Options& options) {
   warn(warnings);
 
   run_options.teeth = toothed && driven && run_options.scene.scene == multibody::Scene::full;
+  std::vector<std::string> answers;
   if (analytic && !run_options.teeth) {
-    study::stream_analytic(ready, assumptions, wanted, folder.open("analytic.csv"), progress_of);
+    study::TurnSummary summary(ChannelLayout(ready.the_case.pump.geometry.pistons).channels());
+    study::stream_analytic(
+        ready, assumptions, wanted, folder.open("analytic.csv"),
+        [&](double theta_deg, const double* values) { summary.add(theta_deg, values); },
+        progress_of);
+    answers = summary.answers();
   } else {
     const study::ModelRun result = study::run(ready, run_options, progress_of);
+    answers = study::TurnSummary(result.table).answers();
     if (!result.choice.empty()) std::fprintf(stderr, "chosen %s\n", result.choice.c_str());
     const std::string name = to_string(options.model);
     folder.add(name + ".csv", to_csv(select_channels(result.table, wanted)));
     if (result.teeth) folder.add("teeth_" + name + ".csv", to_csv(*result.teeth));
   }
-  return finish(folder);
+  for (std::string& sentence : study::limit_answers(ready, assumptions))
+    answers.push_back(std::move(sentence));
+  if (ready.hydraulics)
+    answers.push_back(study::timing_answer(study::timing_rows(ready.the_case, *ready.hydraulics)));
+  return finish(folder, ready.the_case.name, answers);
 }
 
 }  // namespace

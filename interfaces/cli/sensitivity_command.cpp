@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 
 #include "bentaxis/designs/sensitivity_document.h"
+#include "bentaxis/pump/error.h"
 #include "commands.h"
 #include "console.h"
 #include "options.h"
@@ -38,15 +40,27 @@ int sensitivity(const Options& options) {
   ReportFolders folders(options.place);
 
   const designs::Sensitivities found =
-      designs::sensitivities(base, variables, outputs, options.model, progress_of);
+      designs::sensitivities(base, variables, outputs, options.model, progress_of, true);
+  bool interrupted = !found.left_out.empty();
   std::optional<designs::SensitivityCheck> check;
-  if (options.check) check = designs::check(found, progress_of);
-  const auto paths =
-      folders.write("sensitivity",
-                    designs::sensitivity_document(found, check, versions(),
-                                                  study::describe(found.base, progress_of)),
-                    {}, {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
+  try {
+    if (options.check && !interrupted) check = designs::check(found, progress_of);
+  } catch (const Interrupted&) {
+    interrupted = true;
+  }
+  // An interruption that is there already would end the description at once.
+  const auto description =
+      study::describe(found.base, interrupted ? study::silent() : study::PartProgress(progress_of));
+  const auto paths = folders.write(
+      "sensitivity", designs::sensitivity_document(found, check, versions(), description), {},
+      {{"sensitivity.csv", designs::sensitivity_csv(found, check)}});
   print_result(designs::sensitivity_text(found, check), paths);
+  if (interrupted) {
+    std::fprintf(stderr, "bentaxis: %s What is finished is written.\n",
+                 found.left_out.empty() ? "Interrupted: the check is missing."
+                                        : designs::left_out_text(found).c_str());
+    return kInterrupted;
+  }
   return !check || check->agrees() ? kDone : kOutOfTolerance;
 }
 

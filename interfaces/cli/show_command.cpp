@@ -46,17 +46,20 @@ int show(const Options& options) {
   else if (!options.figures.empty())
     figures.emplace(options.figures);
 
+  std::optional<study::ShownPump> pump;
+  if (report || figures) pump = study::show_pump(the_case, progress_of);
   std::printf("%s\n", the_case.name.c_str());
+  if (pump)
+    for (const std::string& answer : pump->answers()) std::printf("%s\n", answer.c_str());
   for (const auto& quantity : study::derived_section(the_case))
     std::printf("  %-22s %10.5g %s\n", quantity.name.c_str(), quantity.value,
                 quantity.unit.c_str());
-  if (!report && !figures) {
+  if (!pump) {
     if (options.picture_alone()) write_picture(the_case, options.out);
     return kDone;
   }
-  const study::ShownPump pump = study::show_pump(the_case, progress_of);
-  const report::Document document = study::pump_document(pump, versions());
-  const report::Curves curves = study::pump_curves(pump);
+  const report::Document document = study::pump_document(*pump, versions());
+  const report::Curves curves = study::pump_curves(*pump);
   if (figures) {
     add_figure_files(*figures, document, curves);
     if (options.picture_alone()) write_picture(the_case, options.out);
@@ -64,7 +67,7 @@ int show(const Options& options) {
     return kDone;
   }
   for (const fs::path& file :
-       report->write("report", document, curves, {{"analytic.csv", to_csv(pump.run.table)}}))
+       report->write("report", document, curves, {{"analytic.csv", to_csv(pump->run.table)}}))
     std::printf("%s\n", file.c_str());
   return kDone;
 }

@@ -6,6 +6,7 @@
 #include "bentaxis/designs/explain.h"
 #include "bentaxis/files/output_folder.h"
 #include "bentaxis/report/junit.h"
+#include "bentaxis/study/comparison_answers.h"
 #include "bentaxis/study/regression.h"
 #include "bentaxis/study/regression_document.h"
 #include "binding.h"
@@ -161,10 +162,7 @@ void add_regression(py::module_& module) {
           "summary", [](const Regression& self) { return study::summary(*self.outcomes); },
           "All in a sentence.")
       .def_property_readonly(
-          "text",
-          [](const Regression& self) {
-            return study::regression_text(*self.outcomes) + study::summary(*self.outcomes);
-          },
+          "text", [](const Regression& self) { return study::regression_report(*self.outcomes); },
           "All that the program prints.")
       .def_property_readonly(
           "outcomes",

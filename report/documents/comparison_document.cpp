@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "answers_text.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/report/text.h"
 #include "bentaxis/study/budget_section.h"
 #include "bentaxis/study/calibration.h"
+#include "bentaxis/study/comparison_answers.h"
 #include "bentaxis/study/force_figures.h"
 #include "bentaxis/study/pump_scene.h"
 #include "bentaxis/study/reference_curves.h"
@@ -25,6 +27,7 @@ namespace {
 
 report::Verdict verdict_of(const ComparisonResult& r) {
   report::Verdict verdict{r.passes(), r.headline()};
+  verdict.answers = comparison_answers(r);
   if (r.with) {
     verdict.models_agree = r.agrees();
     if (r.agrees() && !r.passes()) {
@@ -127,7 +130,6 @@ void add_reference(report::Document& document, const Outcome& outcome) {
   section.table = lines_table({outcome});
   document.runs->insert(document.runs->begin(), std::move(section));
   if (outcome.explanation) {
-    document.verdict->answers.push_back(outcome.name + ": " + outcome.explanation->text());
     document.runs->insert(document.runs->begin() + 1, *explanation_section({outcome}));
   }
   for (report::Figure& figure : *document.figures) {
@@ -236,8 +238,9 @@ report::Curves comparison_curves(const ComparisonResult& r, const report::Docume
 }
 
 std::string comparison_text(const ComparisonResult& r) {
-  std::string text = fmt::format("{}\n{}\n\n{}", r.first.the_case.name, r.headline(),
-                                 report::text_table(r.comparison));
+  std::string text =
+      report::answers_text(r.first.the_case.name, r.headline(), comparison_answers(r)) +
+      report::text_table(r.comparison);
   if (!r.choice.empty()) text += fmt::format("chosen {}\n", r.choice);
   if (r.budget) text += budget_text(*r.budget) + "\n";
   for (const auto& check : r.checks)
@@ -247,10 +250,7 @@ std::string comparison_text(const ComparisonResult& r) {
     text += fmt::format("warning: {}: {}\n", warning.name, warning.text);
   if (r.published)
     text += fmt::format("published numbers: {}\n", r.published->section.summary.text());
-  if (r.with)
-    text += fmt::format("\n{}{} {}: {}\n", regression_text({*r.with}), r.with->name,
-                        r.with->state == Outcome::State::agrees ? "agrees" : "differs",
-                        held_text(*r.with));
+  if (r.with) text += "\n" + regression_text({*r.with});
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "answers_text.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
 #include "document_parts.h"
@@ -192,6 +193,29 @@ std::string headline(const Fig34Study& s) {
                             s.expectations.size());
 }
 
+// What the printed figure says of the teeth, without and with the drag on the block.
+Lines answers_of(const Fig34Study& s) {
+  Lines answers;
+  for (const bool drag : {false, true}) {
+    if (drag && !has_drag(s)) continue;
+    const std::string name = drag_name(drag);
+    if (count(s, drag).both == 0) {
+      answers.push_back(
+          report::sentence(name + ": no contact law of the grid can be what is printed"));
+      continue;
+    }
+    const Lines out = ruled_out(s, drag);
+    answers.push_back(report::sentence(
+        out.empty() ? name + ": the figure rules out no value of the contact law"
+                    : fmt::format("{}: the figure rules out {}", name, fmt::join(out, "; "))));
+  }
+  for (const Fig34Expectation& e : s.expectations)
+    if (!e.holds())
+      answers.push_back(fmt::format("Not as expected: {} ({:.4g} to {:.4g} {} expected).", e.what,
+                                    e.low, e.high, e.unit));
+  return answers;
+}
+
 report::Summary summary_of(const Fig34Study& s) {
   report::Summary summary{
       fmt::format(
@@ -357,6 +381,7 @@ report::Document fig34_document(const Fig34Study& s, const report::Lines& progra
       case_document(description, "What Fig. 34 can mean: " + s.the_case.name, program);
   document.verdict = report::Verdict{std::nullopt, headline(s),
                                      s.as_expected() ? "As expected" : "Not all as expected"};
+  document.verdict->answers = answers_of(s);
   document.summary = summary_of(s);
   document.runs = {expectations_section(s), counts_section(s)};
   document.records = records(s);
@@ -397,9 +422,9 @@ std::string fig34_curves_csv(const Fig34Study& s) {
 }
 
 std::string fig34_text(const Fig34Study& s) {
-  std::string text = s.the_case.name + "\n" + headline(s) + "\n";
+  std::string text = report::answers_text(s.the_case.name, headline(s), answers_of(s));
   for (const auto& group : summary_of(s).groups) {
-    text += "\n" + group.title + "\n";
+    text += group.title + "\n";
     for (const std::string& line : group.lines) text += "  " + line + "\n";
   }
   text +=

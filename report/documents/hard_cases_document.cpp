@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "answers_text.h"
 #include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
@@ -144,12 +145,34 @@ std::string HardCaseStudy::headline() const {
   return text;
 }
 
+std::vector<std::string> HardCaseStudy::answers() const {
+  std::vector<std::string> sentences;
+  for (const auto& [hard, outcome] : runs)
+    if (outcome.verdict == HardVerdict::wrong)
+      sentences.push_back(fmt::format("Wrong: {} by {}: {}.", hard.name, outcome.model,
+                                      outcome.message.empty() ? cell(outcome) : outcome.message));
+  for (const std::string& model : hard_models()) {
+    const HardCaseRun* worst = nullptr;
+    const auto loss = [](const HardCaseRun& run) { return run.outcome.worst()->measured; };
+    for (const HardCaseRun& run : runs)
+      if (run.outcome.model == model && run.outcome.worst() != nullptr &&
+          (worst == nullptr || loss(run) > loss(*worst)))
+        worst = &run;
+    if (worst != nullptr)
+      sentences.push_back(fmt::format("Fewest digits by {}: {:.1f} of {} in {} ({}).", model,
+                                      digits(loss(*worst)), worst->outcome.worst()->group,
+                                      worst->hard.name, worst->hard.hard));
+  }
+  return sentences;
+}
+
 report::Document hard_cases_document(const HardCaseStudy& study, const report::Lines& program) {
   report::Document document;
   document.title = "Hard cases";
   document.program = program;
   document.verdict =
       report::Verdict{study.good(), study.headline(), study.good() ? "Holds" : "Fails"};
+  document.verdict->answers = study.answers();
   document.meaning =
       "Digits are -log10 of the largest difference from the 50-digit curve over the peak of the "
       "reaction; predicted are the digits that the rounding of inputs and arithmetic leaves "
@@ -214,13 +237,16 @@ std::string text_of(const HardCaseRun& run) {
 }
 
 std::string hard_cases_text(const HardCaseStudy& study) {
-  std::string text;
+  std::string text =
+      report::answers_text("", study.headline(), study.answers()) + hard_cases_heading();
+  for (const HardCaseRun& run : study.runs) text += text_of(run);
+  text += "\n";
   for (const auto& [hard, outcome] : study.runs)
     if (misjudged(outcome))
       text += fmt::format("{}, {}: measured over predicted loss {:.1e}\n", hard.name, outcome.model,
                           *outcome.worst_ratio());
   if (study.long_run) text += text_of(*study.long_run);
-  return text + fmt::format("\n{}\n\n", study.headline());
+  return text;
 }
 
 }  // namespace bentaxis::study

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "answers_text.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/results/channels.h"
@@ -554,6 +555,40 @@ std::string headline_of(const DataModel& model, const Identification& result) {
                             100 * worst->half_width, layout.channels()[worst->column].name);
 }
 
+// The unknowns with how well they are known, what the data leave open, and what would help.
+std::vector<std::string> answers_of(const DataModel& model, const Identification& result) {
+  std::vector<std::string> answers;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const Unknown& u = model.data().unknowns[i];
+    const std::string unit = u.variable.unit().empty() ? "" : " " + u.variable.unit();
+    std::string text = fmt::format("{} = {:.6g}{} (case: {:.6g}", u.name(), result.fit.x[i], unit,
+                                   u.variable.value(model.base()));
+    if (result.goodness.refuted())
+      text += fmt::format("; standard deviation {:.3g}, widened", result.information.deviation[i]);
+    else if (!result.profiles.empty())
+      text +=
+          fmt::format("; 95 %: {:.5g}{} to {:.5g}{}", result.profiles[i].low,
+                      result.profiles[i].open_low ? ", its bound," : "", result.profiles[i].high,
+                      result.profiles[i].open_high ? ", its bound" : "");
+    else
+      text += fmt::format("; standard deviation {:.3g}", result.information.deviation[i]);
+    answers.push_back(text + ").");
+  }
+  for (const std::string& line : result.information.words)
+    answers.push_back(report::sentence(line));
+  if (result.goodness.refuted()) {
+    if (!result.worst.empty())
+      answers.push_back("Largest residual: " + worst_line(model, result, result.worst[0]) + ".");
+    answers.push_back(report::sentence(further_text(model, result)));
+  }
+  if (!result.candidates.empty())
+    answers.push_back(
+        fmt::format("The most useful further measurement is {}: it would narrow the "
+                    "bands of the reactions by {:.3g} % on average.",
+                    result.candidates[0].output.name, 100 * result.candidates[0].shrinks));
+  return answers;
+}
+
 }  // namespace
 
 std::string name_of(const DataModel& model, const WorstResidual& worst) {
@@ -573,6 +608,7 @@ report::Document identify_document(const DataModel& model, const Identification&
   document.program = program;
   study::put_description(document, description);
   document.verdict = verdict_of(result, headline_of(model, result));
+  document.verdict->answers = answers_of(model, result);
   document.meaning =
       result.goodness.refuted()
           ? "The data refute the model with these unknowns, at the stated uncertainties: either "
@@ -614,32 +650,18 @@ report::Document identify_document(const DataModel& model, const Identification&
 }
 
 std::string identify_text(const DataModel& model, const Identification& result) {
-  std::string text = headline_of(model, result) + "\n";
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    const Unknown& u = model.data().unknowns[i];
-    text += fmt::format("{:<42} {:>12.6g} {:<8}", u.name(), result.fit.x[i], u.variable.unit());
-    if (result.goodness.refuted())
-      text += fmt::format(" standard deviation {:.3g}, widened", result.information.deviation[i]);
-    if (!result.profiles.empty())
-      text += fmt::format(" 95 %: {:.5g}{} to {:.5g}{}", result.profiles[i].low,
-                          result.profiles[i].open_low ? " (bound)" : "", result.profiles[i].high,
-                          result.profiles[i].open_high ? " (bound)" : "");
-    text += "\n";
-  }
-  for (const std::string& line : result.information.words) text += line + "\n";
+  std::string text = report::answers_text(model.base().name, headline_of(model, result),
+                                          answers_of(model, result));
   if (result.goodness.refuted()) {
     text += "largest residuals:\n";
     for (std::size_t w = 0; w < std::min(kWorstPrinted, result.worst.size()); ++w)
       text += "  " + worst_line(model, result, result.worst[w]) + "\n";
-    text += further_text(model, result) + "\n";
     text += std::string(kWithheld) + "\n" + birge_text(result.goodness) + "\n";
   }
   if (const auto rhat = unsettled(result))
     text +=
         fmt::format("posterior not settled: R-hat {:.3g}; bands are a rough size only\n", *rhat);
-  if (!result.candidates.empty())
-    text += fmt::format("most useful further measurement: {}\n", result.candidates[0].output.name);
-  text.pop_back();
+  while (text.ends_with('\n')) text.pop_back();
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "answers_text.h"
 #include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
@@ -329,6 +330,35 @@ std::string headline(const InertiaStudy& s) {
   return text + fmt::format(" The models agree to {:.1e} of peak.", s.models_apart);
 }
 
+// What makes the error, and which lumping leaves least.
+std::vector<std::string> answers_of(const InertiaStudy& s) {
+  std::vector<std::string> answers;
+  const auto& c = s.causes;
+  for (const auto& [group, piston_force] :
+       {std::pair{"Rs", "the joint force Rs"}, std::pair{"Rc", "the bore force Rc"}}) {
+    const ResultTable* largest = &c.centre;
+    for (const ResultTable* cause : {&c.transverse, &c.spin})
+      if (cause->peak(group) > largest->peak(group)) largest = cause;
+    answers.push_back(fmt::format(
+        "Two masses change {} of a piston by up to {:.3g} N without load at {}; the largest part, "
+        "{:.3g} N, comes from: {}.",
+        piston_force, c.all.peak(group), rpm(s.fastest), largest->peak(group), largest->name));
+  }
+  if (!s.lumpings.empty()) {
+    const auto& best = *std::min_element(
+        s.lumpings.begin(), s.lumpings.end(), [](const Lumping& a, const Lumping& b) {
+          return std::max(a.error_rs, a.error_rc) < std::max(b.error_rs, b.error_rc);
+        });
+    answers.push_back(fmt::format("Smallest error at {}: {}{}, {:.3g} N in Rs and {:.3g} N in Rc.",
+                                  rpm(s.fastest), best.name,
+                                  is_computed(best.joint_mass_fraction)
+                                      ? fmt::format(" (chi = {:.5g})", best.joint_mass_fraction)
+                                      : "",
+                                  best.error_rs, best.error_rc));
+  }
+  return answers;
+}
+
 }  // namespace
 
 InertiaReport inertia_report(const InertiaStudy& s,
@@ -342,6 +372,7 @@ InertiaReport inertia_report(const InertiaStudy& s,
   document = case_document(description, "Lumped or real pistons: " + s.the_case.name, program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->tolerance = kInertiaModelsAgree;
+  document.verdict->answers = answers_of(s);
   document.runs = {
       {"Error of lumping on a piston's reactions",
        "Largest magnitude of two masses - real over the turn. Reactions are linear in the inertia "
@@ -413,7 +444,7 @@ std::string inertia_map_csv(const ErrorMap& map) {
 }
 
 std::string inertia_text(const InertiaStudy& s) {
-  std::string text = s.the_case.name + "\n" + headline(s) + "\n\n";
+  std::string text = report::answers_text(s.the_case.name, headline(s), answers_of(s));
   text += "error of lumping    speed rpm  load      N or Nm   % of loaded peak\n";
   for (const InertiaRun& run : s.full)
     for (const auto& error : lumping_errors(run, InertiaStudy::loaded(s.full, run.speed_rpm)))

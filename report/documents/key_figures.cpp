@@ -2,51 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/turn_summary.h"
 
 namespace bentaxis::study {
 namespace {
 
 using Row = report::KeyFigures::Row;
 using Tables = std::vector<const ResultTable*>;
-
-// What is larger by no more than this is the same peak, at the next piston or a part of a turn
-// later.
-constexpr double kSamePeak = 1e-9;
-
-struct Peak {
-  double value = not_computed();
-  std::size_t row = 0;
-  int piston = 0;
-};
-
-// Channels that together are one vector, by piston.
-std::map<int, std::vector<std::size_t>> vectors_of(const ResultTable& table,
-                                                   const Channel& channel) {
-  std::map<int, std::vector<std::size_t>> vectors;
-  for (std::size_t c = 0; c < table.columns(); ++c) {
-    const Channel& other = table.channels[c];
-    if (other.group == channel.group && other.kind == channel.kind && other.frame == channel.frame)
-      vectors[other.piston].push_back(c);
-  }
-  return vectors;
-}
-
-Peak peak_of(const ResultTable& table, const Channel& channel) {
-  Peak peak;
-  for (const auto& [piston, columns] : vectors_of(table, channel))
-    for (std::size_t row = 0; row < table.rows(); ++row) {
-      double square = 0;
-      for (const std::size_t c : columns) square += table.at(row, c) * table.at(row, c);
-      const double value = std::sqrt(square);
-      if (is_computed(value) && (!is_computed(peak.value) || value > peak.value * (1 + kSamePeak)))
-        peak = {value, row, piston};
-    }
-  return peak;
-}
 
 bool known(const Row& row) {
   return std::any_of(row.values.begin(), row.values.end(), is_computed);
@@ -56,58 +21,45 @@ void add(std::vector<Row>& rows, Row row) {
   if (known(row)) rows.push_back(std::move(row));
 }
 
-Row peak_row(const Tables& tables, const Channel& channel, const std::vector<double>& at) {
-  report::Values values;
-  for (const ResultTable* table : tables) values.push_back(peak_of(*table, channel).value);
-  const bool place = channel.unit == "mm";
-  Row row = key_row(place ? channel.meaning + ", furthest from z2" : channel.meaning + ", peak",
-                    place ? "xh, yh" : channel.group, channel.unit, std::move(values));
-  if (const Peak first = peak_of(*tables.front(), channel); is_computed(first.value)) {
-    row.at = at.at(first.row);
-    if (first.piston > 0) row.note = "piston " + std::to_string(first.piston);
-  }
-  return row;
+using Summaries = std::vector<TurnSummary>;
+
+Summaries summaries_of(const Tables& tables) {
+  Summaries summaries;
+  for (const ResultTable* table : tables) summaries.emplace_back(*table);
+  return summaries;
 }
 
 // Forces that are unknowns of the equilibrium, and where Fh acts.
-std::vector<Row> peaks(const Tables& tables, const std::vector<double>& at) {
+std::vector<Row> peaks(const Summaries& summaries, const std::vector<double>& at) {
+  std::vector<std::vector<TurnSummary::Peak>> of_tables;
+  for (const TurnSummary& summary : summaries) of_tables.push_back(summary.peaks());
   std::vector<Row> rows;
-  std::vector<std::string> seen;
-  for (const Channel& channel : tables.front()->channels) {
-    const bool force = channel.kind == ChannelKind::reaction && channel.unit == "N";
-    if (!force && channel.group != "xh_yh") continue;
-    if (std::find(seen.begin(), seen.end(), channel.group) != seen.end()) continue;
-    seen.push_back(channel.group);
-    add(rows, peak_row(tables, channel, at));
+  for (const TurnSummary::Peak& first : of_tables.front()) {
+    const Channel& channel = first.channel;
+    report::Values values;
+    for (const auto& peaks : of_tables) {
+      const auto found = std::find_if(peaks.begin(), peaks.end(), [&](const auto& peak) {
+        return peak.channel.group == channel.group;
+      });
+      values.push_back(found == peaks.end() ? not_computed() : found->value);
+    }
+    const bool place = channel.unit == "mm";
+    Row row = key_row(place ? channel.meaning + ", furthest from z2" : channel.meaning + ", peak",
+                      place ? "xh, yh" : channel.group, channel.unit, std::move(values));
+    if (is_computed(first.value)) {
+      row.at = at.at(first.row);
+      if (first.piston > 0) row.note = "piston " + std::to_string(first.piston);
+    }
+    add(rows, std::move(row));
   }
   return rows;
 }
 
-struct Torque {
-  double mean = not_computed(), ripple = not_computed(), peak = not_computed();
-};
-Torque torque_of(const ResultTable& table) {
-  const std::size_t column = table.find("Td_z1_Nm");
-  if (column == table.columns() || table.rows() == 0) return {};
-  double sum = 0, least = table.at(0, column), greatest = least;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double value = table.at(row, column);
-    sum += value;
-    least = std::min(least, value);
-    greatest = std::max(greatest, value);
-  }
-  Torque torque;
-  torque.mean = sum / static_cast<double>(table.rows());
-  torque.peak = std::max(std::abs(least), std::abs(greatest));
-  if (std::abs(torque.mean) > kSamePeak * torque.peak)
-    torque.ripple = 100 * (greatest - least) / std::abs(torque.mean);
-  return torque;
-}
-
-Row torque_row(const Tables& tables, const std::string& quantity, const std::string& unit,
-               double Torque::*which) {
+template <class Number>
+Row torque_row(const Summaries& summaries, const std::string& quantity, const std::string& unit,
+               const Number& number) {
   report::Values values;
-  for (const ResultTable* table : tables) values.push_back(torque_of(*table).*which);
+  for (const TurnSummary& summary : summaries) values.push_back(number(summary.torque()));
   return key_row(quantity, "Td", unit, std::move(values));
 }
 
@@ -127,18 +79,22 @@ Row key_row(std::string quantity, std::string symbol, std::string unit, report::
 }
 
 std::vector<Row> turn_figures(const Tables& tables) {
+  const Summaries summaries = summaries_of(tables);
   std::vector<Row> rows;
-  add(rows, torque_row(tables, "drive torque, mean", "Nm", &Torque::mean));
-  add(rows,
-      torque_row(tables, "drive torque, greatest less least over the mean", "%", &Torque::ripple));
-  append(rows, peaks(tables, tables.front()->theta_deg));
+  add(rows, torque_row(summaries, "drive torque, mean", "Nm",
+                       [](const TurnSummary::Torque& torque) { return torque.mean; }));
+  add(rows, torque_row(summaries, "drive torque, greatest less least over the mean", "%",
+                       [](const TurnSummary::Torque& torque) { return torque.ripple(); }));
+  append(rows, peaks(summaries, tables.front()->theta_deg));
   return rows;
 }
 
 std::vector<Row> motion_figures(const Tables& tables, const std::vector<double>& at) {
+  const Summaries summaries = summaries_of(tables);
   std::vector<Row> rows;
-  add(rows, torque_row(tables, "drive torque, peak", "Nm", &Torque::peak));
-  append(rows, peaks(tables, at));
+  add(rows, torque_row(summaries, "drive torque, peak", "Nm",
+                       [](const TurnSummary::Torque& torque) { return torque.peak(); }));
+  append(rows, peaks(summaries, at));
   return rows;
 }
 

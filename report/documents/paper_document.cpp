@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "answers_text.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/paper_figures.h"
 #include "document_parts.h"
@@ -102,6 +103,19 @@ std::string headline(const PaperStudy& s) {
       "none. At the same assumptions the models differ by up to {} of peak.",
       c.inside, c.known, outside.empty() ? "" : " (outside: " + outside + ")", c.unknown,
       worst.share_text());
+}
+
+// Each curve that leaves its axis, and where the numbers printed with them stand.
+std::vector<std::string> answers_of(const PaperStudy& s) {
+  std::vector<std::string> answers;
+  for (const DrawnPanel& p : s.panels)
+    if (p.known() && !p.inside())
+      answers.push_back(p.figure.name(p.panel) + " does not hold our curves: " + leaving(p) +
+                        (p.panel.outside.empty() ? "" : ": " + p.panel.outside) + ".");
+  compare::PublishedSummary numbers;
+  for (const PaperNumber& number : s.numbers) numbers.count(number.row);
+  answers.push_back("Printed numbers: " + numbers.text());
+  return answers;
 }
 
 // ---- Tables
@@ -205,6 +219,7 @@ report::Document paper_document(const PaperStudy& s, const report::Lines& progra
   report::Document document =
       case_document(description, "The paper's figures: " + s.list.numbers.name, program);
   document.verdict = report::Verdict{std::nullopt, headline(s)};
+  document.verdict->answers = answers_of(s);
   document.runs = {figures_section(s), numbers_section(s)};
   document.figures.emplace();
   for (const PaperFigure& figure : s.list.figures) {
@@ -227,7 +242,7 @@ std::string paper_csv(const PaperStudy& s) {
 }
 
 std::string paper_text(const PaperStudy& s) {
-  std::string text = headline(s) + "\n\n";
+  std::string text = report::answers_text("", headline(s), answers_of(s));
   for (const DrawnPanel& p : s.panels) {
     text += fmt::format("{:<18} {:<13} ours {:<26} axis {}\n", p.figure.name(p.panel), verdict(p),
                         range_text(p), p.panel.y.text());

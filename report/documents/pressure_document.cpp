@@ -11,6 +11,7 @@
 #include "bentaxis/study/efficiency.h"
 #include "bentaxis/study/failed_points.h"
 #include "bentaxis/study/published_section.h"
+#include "bentaxis/study/turn_summary.h"
 #include "document_parts.h"
 #include "hydraulic_results.h"
 #include "hydraulic_sections.h"
@@ -37,15 +38,7 @@ std::vector<std::string> pressure_answers(const OperatingPoint& point,
       s.flow / kLitrePerMinute, s.delivery_mean / kPascalPerBar,
       point.the_case().operation.speed_rpm, 100 * s.volumetric_efficiency,
       (s.delivery_greatest - s.delivery_least) / kPascalPerBar)};
-  const auto flagged = std::count_if(timing.begin(), timing.end(),
-                                     [](const report::TimingRow& row) { return row.flagged; });
-  std::string names;
-  for (const report::TimingRow& row : timing)
-    if (row.flagged) names += (names.empty() ? "" : ", ") + row.quantity;
-  answers.push_back(flagged == 0 ? std::string("Port timing: within all limits.")
-                                 : fmt::format("Port timing: {} of {} quantities beyond their "
-                                               "limits: {} (pressure --advise: what to change).",
-                                               flagged, timing.size(), names));
+  answers.push_back(timing_answer(timing));
   return answers;
 }
 

@@ -19,6 +19,7 @@ report::Document pump_document(const ShownPump& pump, const report::Lines& progr
       description, the_case.name, program,
       pump_scene(the_case, {{table, pump.run.loads}}, nullptr, film_path_of(description)));
   document.verdict = {std::nullopt, "The analytic model alone: nothing is compared.", "One model"};
+  document.verdict->answers = pump.answers();
   document.key_figures = {{table.name}, "deg", turn_figures({&table})};
   document.validity = validity_section(pump.limits);
   document.models = {report::model_of(table, in_words(the_case.analytic))};

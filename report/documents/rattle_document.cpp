@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "answers_text.h"
 #include "bentaxis/pump/units.h"
 #include "bentaxis/study/failed_points.h"
 #include "document_parts.h"
@@ -20,7 +22,8 @@ using Sweep = std::vector<RattlePoint> RattleRow::*;
 std::array<long, 4> counts_of(const RattleMap& map, Sweep sweep) {
   std::array<long, 4> counts{};
   for (const RattleRow& row : map.rows)
-    for (const RattlePoint& point : row.*sweep) ++counts.at(static_cast<std::size_t>(point.kind));
+    for (const RattlePoint& point : row.*sweep)
+      if (point.done()) ++counts.at(static_cast<std::size_t>(point.kind));
   return counts;
 }
 
@@ -50,6 +53,14 @@ std::string headline(const RattleMap& map) {
       text +=
           fmt::format("{}{} at {}", text.empty() ? "" : ", ", rattle_class_names()[k], counts[k]);
   text += fmt::format(" of {} points", map.rows.size() * map.options.speed_rpm.size());
+  if (const auto failed = std::accumulate(
+          map.rows.begin(), map.rows.end(), std::ptrdiff_t{0},
+          [](std::ptrdiff_t sum, const RattleRow& row) {
+            return sum + std::count_if(row.up.begin(), row.up.end(),
+                                       [](const RattlePoint& point) { return !point.done(); });
+          });
+      failed > 0)
+    text += fmt::format(", {} could not be computed", failed);
   if (const std::size_t both = two_states_of(map); both > 0)
     text += fmt::format("; another steady state swept down at {}", both);
   if (map.checks.empty()) return text;
@@ -71,8 +82,10 @@ std::vector<std::string> answers_of(const RattleMap& map) {
   if (nearest == nullptr) return {};
   const std::vector<double>& speeds = map.options.speed_rpm;
   const auto avoided = [&](std::size_t j) {
-    return nearest->up[j].kind != RattleClass::carries ||
-           nearest->down[j].kind != RattleClass::carries;
+    const auto rattles = [](const RattlePoint& point) {
+      return point.done() && point.kind != RattleClass::carries;
+    };
+    return rattles(nearest->up[j]) || rattles(nearest->down[j]);
   };
   std::string text;
   for (std::size_t j = 0; j < nearest->up.size(); ++j) {
@@ -85,10 +98,17 @@ std::vector<std::string> answers_of(const RattleMap& map) {
   const std::string at = fmt::format(
       "At {:.4g} bar, of the pressures of the map the nearest to the case's {:.4g} bar: ",
       nearest->delivery_bar, rated);
-  return {at + (text.empty() ? "the teeth carry at all speeds of the map."
-                             : "avoid " + text +
-                                   " rpm: the teeth do not carry all through the "
-                                   "turn (speeds of the map).")};
+  const auto unknown = static_cast<std::size_t>(
+      std::count_if(nearest->up.begin(), nearest->up.end(),
+                    [](const RattlePoint& point) { return !point.done(); }));
+  const std::string open =
+      unknown == 0 ? "" : fmt::format(" {} of its speeds could not be computed.", unknown);
+  return {at +
+          (text.empty() ? "the teeth carry at all speeds of the map."
+                        : "avoid " + text +
+                              " rpm: the teeth do not carry all through the "
+                              "turn (speeds of the map).") +
+          open};
 }
 
 std::string against(RattleClass analytic, RattleClass multibody) {
@@ -170,7 +190,7 @@ report::Section classes_section(const RattleMap& map) {
     double most = 0, apart = 0;
     for (const RattleRow& row : map.rows)
       for (const RattlePoint& p : row.up)
-        if (static_cast<std::size_t>(p.kind) == k) {
+        if (p.done() && static_cast<std::size_t>(p.kind) == k) {
           if (p.mean > 0) most = std::max(most, p.over_mean());
           apart += p.apart / static_cast<double>(up[k]);
         }
@@ -279,8 +299,15 @@ class MapFigures {
                         {}};
     for (const RattleRow& row : map_.rows) {
       m.values.emplace_back();
-      for (const RattlePoint& point : row.*sweep) m.values.back().push_back(value(point));
+      m.reasons.emplace_back();
+      for (const RattlePoint& point : row.*sweep) {
+        m.values.back().push_back(point.done() ? value(point) : not_computed());
+        m.reasons.back().push_back(point.reason);
+      }
     }
+    if (std::all_of(map_.rows.begin(), map_.rows.end(),
+                    [](const RattleRow& row) { return row.done(); }))
+      m.reasons.clear();
     m.lines = lines_;
     return {id, title, "", std::move(m)};
   }
@@ -358,14 +385,12 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
   if (!rigid(map)) document.runs->push_back(states_section(map));
   if (!map.checks.empty()) document.runs->push_back(checks_section(map));
   document.figures = map_figures(map);
-  add_warnings(document, map.failed);
+  add_warnings(document, map.all_failed());
   return document;
 }
 
 std::string rattle_text(const RattleMap& map) {
-  std::string text = map.the_case.name + "\n" + headline(map) + "\n";
-  for (const std::string& answer : answers_of(map)) text += answer + "\n";
-  text += "\n";
+  std::string text = report::answers_text(map.the_case.name, headline(map), answers_of(map));
   const auto up = counts_of(map, &RattleRow::up), down = counts_of(map, &RattleRow::down);
   text += fmt::format("{:<18} {:>8} {:>8}\n", "class", "up", "down");
   for (std::size_t k = 0; k < up.size(); ++k)

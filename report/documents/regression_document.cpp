@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bentaxis/study/comparison_answers.h"
 #include "bentaxis/study/reference_curves.h"
 
 namespace bentaxis::study {
@@ -222,6 +223,7 @@ report::Document regression_document(const std::vector<Outcome>& outcomes, const
   document.title = "Regression of " + what;
   document.program = program;
   document.verdict = report::Verdict{agrees, summary(outcomes)};
+  document.verdict->answers = regression_answers(outcomes);
   document.meaning =
       "High-precision curves verify: they were computed independently. Golden curves detect "
       "changes of the program. External curves are another tool's or a rig's. A missing curve is "
@@ -233,9 +235,6 @@ report::Document regression_document(const std::vector<Outcome>& outcomes, const
                     "Of peak: largest difference over the reaction's peak in the reference.",
                     {},
                     lines_table(outcomes)}};
-  for (const auto& outcome : outcomes)
-    if (outcome.explanation)
-      document.verdict->answers.push_back(outcome.name + ": " + outcome.explanation->text());
   if (auto section = explanation_section(outcomes)) document.runs->push_back(std::move(*section));
   if (auto notes = notes_section(outcomes); !notes.table.rows.empty())
     document.runs->push_back(std::move(notes));

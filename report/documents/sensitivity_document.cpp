@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "answers_text.h"
 #include "bentaxis/pump/number.h"
 #include "document_parts.h"
 
@@ -136,7 +137,8 @@ std::string other_model(const SensitivityCheck& check) {
 std::string headline(const Sensitivities& s, const std::optional<SensitivityCheck>& check) {
   if (!check)
     return fmt::format(
-        "{} derivatives {}, {} by differences", count_of(s, Way::exact) + count_of(s, Way::forward),
+        "{}{} derivatives {}, {} by differences", s.left_out.empty() ? "" : "Interrupted: ",
+        count_of(s, Way::exact) + count_of(s, Way::forward),
         s.base.pressure.kind == PressureKind::hydraulic ? "by forward sensitivities" : "exact",
         count_of(s, Way::differences));
   const std::string worst = check->worst > 0
@@ -158,6 +160,7 @@ std::vector<std::string> answers_of(const Sensitivities& s) {
   constexpr double kSmall = 0.1;  // %/%
   constexpr std::size_t kNamed = 4;
   std::vector<std::string> answers;
+  if (!s.left_out.empty()) answers.push_back(left_out_text(s));
   for (std::size_t o = 0; o < s.outputs.size(); ++o) {
     std::string largest;
     std::size_t named = 0, more = 0, small = 0;
@@ -206,6 +209,13 @@ Section check_section(const Sensitivities& s, const SensitivityCheck& check) {
 
 }  // namespace
 
+std::string left_out_text(const Sensitivities& s) {
+  return fmt::format(
+      "Interrupted: {} of {} parameters are missing, and may matter more than those "
+      "that are here: {}.",
+      s.left_out.size(), s.variables.size(), report::joined(s.left_out));
+}
+
 report::Document sensitivity_document(const Sensitivities& found,
                                       const std::optional<SensitivityCheck>& check,
                                       const report::Lines& program,
@@ -215,6 +225,8 @@ report::Document sensitivity_document(const Sensitivities& found,
   document.verdict = report::Verdict{check ? std::optional<bool>(check->agrees()) : std::nullopt,
                                      headline(found, check), check ? "" : "Sensitivities"};
   document.verdict->answers = answers_of(found);
+  if (!found.left_out.empty())
+    report::append(document.warnings, report::Warning{"interrupted", left_out_text(found)});
   document.meaning =
       "A derivative holds for small changes of one parameter, the others staying. An exact one is "
       "right to round-off; one by differences has the error beside it. A largest or least value "
@@ -255,8 +267,9 @@ std::string sensitivity_csv(const Sensitivities& found,
 
 std::string sensitivity_text(const Sensitivities& found,
                              const std::optional<SensitivityCheck>& check) {
-  std::string text = found.base.name + "\n" + headline(found, check) + "\n";
-  for (const std::string& answer : answers_of(found)) text += answer + "\n";
+  std::string text =
+      report::answers_text(found.base.name, headline(found, check), answers_of(found));
+  text.pop_back();
   for (std::size_t o = 0; o < found.outputs.size(); ++o) {
     text += fmt::format("\n{} = {:.7g} {}\n{:<34} {:>12} {:>13} {:>12}  {}\n",
                         found.outputs[o].name, found.values[o], found.outputs[o].unit, "parameter",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "answers_text.h"
 #include "bentaxis/analytic/teeth.h"
 #include "bentaxis/hydraulics/power.h"
 #include "bentaxis/pump/number.h"
@@ -576,7 +577,12 @@ report::Document simulation_document(const SimulationResult& r, const report::Li
   document.derived = derived_section(the_case);
   document.verdict = verdict_of(r);
   document.meaning =
-      r.oil_follows || r.choice.steady
+      r.choice.only
+          ? "One model's motion, integrated once. Its balances of work, energy and mass say how "
+            "well it was integrated; nothing else was computed that could contradict it. Without "
+            "--model both models are run and compared. Whether a pump does so is another question "
+            "(docs/limits.md)."
+      : r.oil_follows || r.choice.steady
           ? "Two derivations of the mechanics, coupled to the same oil and integrated by the same "
             "method. Agreement says that both follow the same description; the error of the "
             "integration is that of another tolerance, the oil's are its balances; whether a pump "
@@ -667,9 +673,7 @@ report::Curves simulation_curves(const SimulationResult& r) {
 }
 
 std::string simulation_text(const SimulationResult& r) {
-  std::string text = r.ready.the_case.name + "\n" + r.headline() + "\n";
-  for (const std::string& answer : answers_of(r)) text += answer + "\n";
-  text += "\n";
+  std::string text = report::answers_text(r.ready.the_case.name, r.headline(), answers_of(r));
   if (!r.groups.empty()) {
     text += fmt::format("{:<13} {:<17} {:>13} {:>16} {:>12}\n", "group", "       peak",
                         r.choice.steady ? "of peak" : "of peak, time",

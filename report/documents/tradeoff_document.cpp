@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "answers_text.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/study/calibration.h"
@@ -229,6 +230,46 @@ report::Figure figure_of(const TradeoffStudy::Pressure& pressure, bool by_accura
                     "round-off. Integrated runs have a front of their own."};
 }
 
+// By pressure: what is fastest for a coarse and for a fine error, and what needs no integration.
+std::vector<std::string> answers_of(const TradeoffStudy& study) {
+  std::vector<std::string> answers;
+  for (const auto& pressure : study.pressures) {
+    const TradeoffRun* fastest = nullptr;
+    for (const TradeoffRun& run : pressure.runs)
+      if (run.done() && !is_integrated(run) &&
+          (fastest == nullptr || run.seconds_per_turn < fastest->seconds_per_turn))
+        fastest = &run;
+    if (fastest != nullptr)
+      answers.push_back(fmt::format(
+          "{} pressure: fastest of all is {}: {} a turn, right to {:.0e} of peak.", pressure.name,
+          name_of_run(*fastest), time_text(fastest->seconds_per_turn), fastest->error.worst));
+    for (const int digits : {4, 8}) {
+      const TradeoffRun* run = fastest_within(pressure.runs, std::pow(10.0, -digits));
+      answers.push_back(
+          run == nullptr
+              ? fmt::format("{} pressure: no integrated run is right to 1e-{} of peak.",
+                            pressure.name, digits)
+              : fmt::format("{} pressure, integrated in time, right to 1e-{} of peak: {} at "
+                            "accuracy {}, {} a turn.",
+                            pressure.name, digits, run->variant, number_text(*run->accuracy),
+                            time_text(run->seconds_per_turn)));
+    }
+  }
+  for (std::string& answer : answers) answer = report::sentence(std::move(answer));
+  return answers;
+}
+
+std::string headline_of(const TradeoffStudy& study) {
+  std::size_t runs = 0, failed = 0;
+  for (const auto& pressure : study.pressures)
+    for (const TradeoffRun& run : pressure.runs) {
+      ++runs;
+      failed += run.done() ? 0 : 1;
+    }
+  return fmt::format("{} runs timed on this machine against their error{}.", runs,
+                     failed == 0 ? "" : fmt::format("; {} failed", failed));
+}
+
 report::Summary summary_of(const TradeoffStudy& study) {
   report::Summary summary{
       "What a given error costs, and the fastest that is good enough. Times are of this machine; "
@@ -248,11 +289,8 @@ report::Document tradeoff_document(const TradeoffStudy& study, const report::Lin
   document.program = program;
   put_description(document, description);
   document.summary = summary_of(study);
-  if (!document.summary->groups.empty() && !document.summary->groups.front().lines.empty())
-    document.verdict = report::Verdict{std::nullopt,
-                                       document.summary->groups.front().title + ": " +
-                                           document.summary->groups.front().lines.front(),
-                                       "Trade-off"};
+  document.verdict = report::Verdict{std::nullopt, headline_of(study), "Trade-off"};
+  document.verdict->answers = answers_of(study);
   document.records = records(study);
   document.runs.emplace();
   document.figures.emplace();
@@ -278,7 +316,8 @@ std::string tradeoff_csv(const TradeoffStudy& study) {
 }
 
 std::string tradeoff_text(const TradeoffStudy& study) {
-  std::string text;
+  std::string text =
+      report::answers_text(study.the_case.name, headline_of(study), answers_of(study));
   for (const auto& group : summary_of(study).groups) {
     text += group.title + "\n";
     for (const auto& line : group.lines) text += "  " + line + "\n";

@@ -64,18 +64,19 @@ const SECTIONS = [
   ["comparison", "Comparison", comparison], ["assumptions", "Assumptions", assumptionSplit],
   ["validity", "Validity over the turn", validity], ["timing", "Timing of the ports", timing],
   ["budget", "Torque, power and efficiency", budget], ["published", "Against the published numbers", published],
-  ["figures", "Figures", figures], ["runs", "Runs", runs],
+  ["figures", "Figures", figures], ["runs", "Results in tables", runs],
   ["checks", "Checks of each model", checks], ["common", "Common to both models", commonInputs],
   ["case", "Case", caseTable], ["derived", "Derived quantities", derived],
   ["models", "How each model was obtained", models], ["versions", "Origin and versions", versions],
 ];
 
-// Of many pumps there are no curves of one: their tables come first, the pump they all come from last. Of one pump computed
-// in many ways (rows) the figures come first.
+// What a turn or a motion of one pump gives has key figures, and the pump comes before them. In a study the pump comes last.
+// Of many pumps there are no curves of one: their tables come first. Of one pump computed in many ways (rows) the figures do.
 function sectionsOf(report, data) {
-  if (data.theta.length > 0 || report.rows) return SECTIONS;
+  if (report.key_figures) return SECTIONS;
   const of = (...ids) => SECTIONS.filter(([id]) => ids.includes(id));
-  const first = of("verdict", "warnings"), pump = of("pump", "space"), tables = of("runs");
+  const first = of("verdict", "warnings"), pump = of("pump", "space");
+  const tables = data.theta.length > 0 || report.rows ? [] : of("runs");
   const rest = SECTIONS.filter(s => ![...first, ...pump, ...tables].includes(s));
   const place = rest.findIndex(([id]) => id === "figures");
   const end = rest.findIndex(([id]) => id === "case");
@@ -103,10 +104,11 @@ function keepInSight(link, box) {
 // Contents that stay: beside the report where there is room, else a bar on top that says where the reader is and opens.
 function contents(sections, report) {
   const link = (id, text, inner) => el("li", {}, el("a", { href: "#" + id }, text), inner);
-  const inner = () => el("ul", {}, report.figures.map(f => link("figure-" + f.id, f.title)));
+  const inner = id => id === "figures" ? el("ul", {}, report.figures.map(f => link("figure-" + f.id, f.title)))
+    : id === "runs" && report.runs.length > 1 ? el("ul", {}, report.runs.map((r, i) => link("table-" + (i + 1), r.title))) : null;
   const where = el("span.where");
   const folding = el("details", {}, el("summary", {}, "Contents", where),
-    el("ul", {}, sections.map(s => link(s.id, s.title, s.id === "figures" ? inner() : null))));
+    el("ul", {}, sections.map(s => link(s.id, s.title, inner(s.id)))));
   const wide = matchMedia("(min-width: 1100px)");
   const fold = () => { folding.open = wide.matches; };
   wide.addEventListener("change", fold);
@@ -141,9 +143,10 @@ function render() {
   main.replaceChildren();
   startDrawing();
   const shown = [];
-  for (const [id, title, build] of sectionsOf(report, data)) {
+  for (const [id, usual, build] of sectionsOf(report, data)) {
     const body = build(report, data);
     if (!body) continue;
+    const title = id === "runs" && report.runs.length === 1 ? report.runs[0].title : usual;
     main.append(el("section", { id, "aria-labelledby": id + "-title" },
       el("h2", { id: id + "-title" }, title), body));
     shown.push({ id, title });

@@ -125,26 +125,37 @@ function pumpInSpace(report, data, scene) {
     if (film) film.show(row, mode === "1" ? 1 : 0);
     if (view) view.show({ loads: loadsShown(), models: modelsShown(), difference: mode === "difference", body, length }, row);
   }
-  // Names at the tips: first one of each group, the largest first; beside the tip where there is room, else around it.
+  // Where the name of an arrow can stand about its tip, the nearest first.
+  function tagPlaces(wide) {
+    const near = [[4, -9], [-wide - 4, -9], [4, 8], [-wide - 4, 8], [-wide / 2, -26], [-wide / 2, 14], [10, -26], [-wide - 10, -26], [10, 24], [-wide - 10, 24]];
+    const far = [];
+    for (let away = 34; away <= 400; away += 17)
+      for (let k = 0; k < 16; ++k) far.push([away * Math.cos(k * Math.PI / 8) - wide / 2, away * Math.sin(k * Math.PI / 8) - 7]);
+    return [...near, ...far];
+  }
+  // Names at the tips: first one of each group, the largest first; beside the tip where there is room, else around it, further
+  // away with a line to it.
   function drawTags() {
     if (!view || !(names.box.checked || body)) return tags.replaceChildren();
     const each = key => { const seen = new Set(); return t => !seen.has(t[key]) && seen.add(t[key]); };
     const tips = view.tips().filter(t => !t.none).sort((a, b) => b.share - a.share).filter(each("label"));  // of both models one
     const first = tips.filter(each("group")), later = tips.filter(t => !first.includes(t));
-    const boxes = [], made = [];
+    const boxes = [], made = [], leads = svg("svg", { width: "100%", height: "100%" });
     for (const { label, colour, at: [x, y] } of [...first, ...later]) {
-      const wide = 8 * label.length + 4, high = 15;
-      const places = [[4, -9], [-wide - 4, -9], [4, 8], [-wide - 4, 8], [-wide / 2, -26], [-wide / 2, 14], [10, -26], [-wide - 10, -26], [10, 24], [-wide - 10, 24]];
-      const place = places.map(([dx, dy]) => [x + dx, y + dy]).find(([l, t]) => l > 0 && t > 0 && l + wide < canvas.clientWidth && t + high < canvas.clientHeight
+      const wide = 9 * label.length + 10, high = 16;
+      const place = tagPlaces(wide).map(([dx, dy]) => [x + dx, y + dy]).find(([l, t]) => l > 0 && t > 0 && l + wide < canvas.clientWidth && t + high < canvas.clientHeight
         && boxes.every(([bl, bt, bw]) => l > bl + bw || bl > l + wide || Math.abs(t - bt) > high));
       if (!place) continue;
       boxes.push([...place, wide]);
+      const toX = Math.min(Math.max(x, place[0]), place[0] + wide), toY = Math.min(Math.max(y, place[1]), place[1] + high);
+      if (Math.hypot(toX - x, toY - y) > 24)
+        leads.append(svg("line", { x1: x, y1: y, x2: toX, y2: toY, stroke: colour, "stroke-width": 1, "stroke-opacity": 0.7 }));
       const tag = el("span", {}, label);
       tag.style.color = colour;
       tag.style.transform = `translate(${place[0].toFixed(1)}px, ${place[1].toFixed(1)}px)`;
       made.push(tag);
     }
-    tags.replaceChildren(...made);
+    tags.replaceChildren(leads, ...made);
   }
   function setRow(i, from) {
     row = Math.min(Math.max(0, Math.round(i)), state.rows - 1);

@@ -215,9 +215,10 @@ function sceneView(state, canvas, look) {
     const solid = hits.find(h => !h.clear) || hits[0];
     return solid ? solid.name : null;
   }
+  const nameOf = load => load.symbol || load.id;
   const tips = () => seen().map(a => {
     const { tail, drawn: v } = arrowAsDrawn(a);
-    return { ...a.userData.of, label: a.userData.now.load.symbol || a.userData.now.load.id, group: a.userData.now.load.group,
+    return { ...a.userData.of, label: nameOf(a.userData.now.load), group: a.userData.now.load.group,
       colour: colourOf(a.userData.now.load), share: lengthOf(v), none: a.userData.now.none, at: onCanvas(plus(tail, v)) };
   });
 
@@ -233,7 +234,7 @@ function sceneView(state, canvas, look) {
         const { tail, drawn: v } = arrowAsDrawn(a), { newtonsPerMetre, least, none, v: value } = a.userData.now;
         // One at least length says its direction alone.
         const scale = none ? 0 : least ? lengthOf(value) / lengthOf(v) : newtonsPerMetre;
-        return { ...a.userData.of, tail, drawn: v, vector: times(v, scale), least, none };
+        return { ...a.userData.of, label: nameOf(a.userData.now.load), tail, drawn: v, vector: times(v, scale), least, none };
       }),
     };
   }

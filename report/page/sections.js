@@ -18,14 +18,12 @@ function verdictBanner({ verdict, meaning, plausibility }, data) {
     }
   }
   const reference = verdict && verdict.reference;
-  const doubts = list(plausibility && plausibility.warnings).length;
-  if (doubts) tiles.push(["doubtful inputs", `${doubts}, below`]);
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
   return el("div", {},
     el("div.banner." + tone, { role: "status" },
       el("p.word", {}, verdict && verdict.word || { good: "Agrees", bad: "Differs", neutral: "No verdict" }[tone]),
       el("p.headline", {}, verdict && verdict.headline || "No comparison was made."),
-      answers(verdict && verdict.answers),
+      answers(verdict && verdict.answers, plausibility),
       facts(tiles, ".tiles")),
     reference ? el("div.banner." + (reference.agrees ? "good" : "bad"), {},
       el("p.word", {}, `${reference.name}: ${reference.agrees ? "agrees" : "differs"}`),
@@ -34,9 +32,12 @@ function verdictBanner({ verdict, meaning, plausibility }, data) {
 }
 
 // What the command was asked, before everything else that it found.
-function answers(sentences) {
-  if (!list(sentences).length) return null;
-  return el("ul.answers", {}, ...sentences.map((sentence) => el("li", {}, sentence)));
+// Values that are hardly meant may be of another pump than is thought.
+function answers(sentences, plausibility) {
+  const doubtful = list(plausibility && plausibility.warnings).map(w => w.code);
+  const all = [...list(sentences), ...(doubtful.length ? [`Implausible input, listed below: ${doubtful.join(", ")}. `
+    + "If it is an error, the results are those of another pump."] : [])];
+  return all.length ? el("ul.answers", {}, ...all.map((sentence) => el("li", {}, sentence))) : null;
 }
 
 // What is doubtful about the pump, and its picture, which is in the page as SVG.
@@ -168,8 +169,8 @@ function worstOfGroups(channels) {
   return [...worst.values()];
 }
 
-const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map(run => el("div.block", {},
-  el("h3", {}, run.title), run.text ? el("p", {}, run.text) : null, facts(run.facts),
+const runs = ({ runs }) => !list(runs).length ? null : el("div", {}, runs.map((run, i) => el("div.block", { id: "table-" + (i + 1) },
+  runs.length > 1 ? el("h3", {}, run.title) : null, run.text ? el("p", {}, run.text) : null, facts(run.facts),
   !run.table || !list(run.table.rows).length ? null : table(run.table.columns.map((head, i) => ({
     head, main: i === 0, num: run.table.rows.every(r => r[i] == null || typeof r[i] === "number"),
     cell: r => small(r[i]) })), run.table.rows, { fold: false, style: ".narrow" }))));

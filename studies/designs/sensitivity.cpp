@@ -13,6 +13,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/piece_progress.h"
 
 namespace bentaxis::designs {
 namespace {
@@ -424,10 +425,14 @@ class Ridders {
 };
 
 void find_by_differences(Sensitivities& s, const Evaluator& evaluator, std::size_t v,
-                         const std::vector<std::size_t>& outputs) {
+                         const std::vector<std::size_t>& outputs, const Progress& progress) {
   std::string reason;
   std::vector<double> at = s.at;
+  const int levels = evaluator.fast() ? kLevels : kSlowLevels;
+  int evaluations = 0;
   const auto values = [&](double x) {
+    // Some more than the levels need, as a first step may be halved.
+    if (progress) progress(std::min(1.0, evaluations++ / (2.0 * levels + 2)));
     at[v] = x;
     Evaluation found = evaluator.evaluate(at);
     if (!found.feasible()) reason = found.reason;
@@ -449,7 +454,6 @@ void find_by_differences(Sensitivities& s, const Evaluator& evaluator, std::size
   const double first = step;
   std::vector<Ridders> tables(outputs.size());
   std::vector<bool> going(outputs.size(), true);
-  const int levels = evaluator.fast() ? kLevels : kSlowLevels;
   for (int level = 0; level < levels; ++level, step /= 2) {
     const double above = s.at[v] + step, below = s.at[v] - step;
     const auto high = values(above), low = values(below);
@@ -559,7 +563,7 @@ std::vector<Variable> differentiate_reactions(const Case& base, const ReactionVi
 
 Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
                             const std::vector<Output>& outputs, study::Model model,
-                            const study::PartProgress& progress_of) {
+                            const study::PartProgress& progress_of, bool keep_finished) {
   study::require_memory(base, study::Kept::table, study::Way::driven);
   Sensitivities s = begin(base, variables, outputs, model);
   const ChannelLayout layout(base.pump.geometry.pistons);
@@ -577,18 +581,32 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
   };
 
   // Of the outputs that differences are needed of alone, so that these can be quick.
-  const Progress progress = progress_of("derivatives");
-  std::vector<std::size_t> wanted;
-  std::optional<Evaluator> evaluator;
+  std::vector<std::vector<std::size_t>> wanted;
+  std::vector<std::size_t> by_differences;
   for (std::size_t v = 0; v < variables.size(); ++v) {
-    const auto rest = numbers(outputs.size(), [&](std::size_t o) {
+    wanted.push_back(numbers(outputs.size(), [&](std::size_t o) {
       return is_computed(s.values[o]) && !(exact_output(o) && exact_variable(v));
-    });
-    if (!rest.empty()) {
-      if (!evaluator) evaluator.emplace(Family(base, variables), outputs, model);
-      find_by_differences(s, *evaluator, v, rest);
+    }));
+    if (!wanted.back().empty()) by_differences.push_back(v);
+  }
+  if (by_differences.empty()) return s;
+  const Progress progress = progress_of("derivatives");
+  const Evaluator evaluator(Family(base, variables), outputs, model);
+  std::size_t done = 0;
+  try {
+    for (; done < by_differences.size(); ++done)
+      find_by_differences(s, evaluator, by_differences[done], wanted[by_differences[done]],
+                          study::within(progress, done, by_differences.size()));
+    if (progress) progress(1);
+  } catch (const Interrupted&) {
+    const bool exact = !outputs_found.empty() && !variables_found.empty();
+    if (!keep_finished || done == by_differences.size() || (done == 0 && !exact)) throw;
+    for (; done < by_differences.size(); ++done) {
+      const std::size_t v = by_differences[done];
+      s.left_out.push_back(variables[v].name());
+      for (const std::size_t o : wanted[v])
+        s.derivatives[o][v] = {not_computed(), 0, Way::differences, "not computed: interrupted"};
     }
-    if (progress) progress(static_cast<double>(v + 1) / static_cast<double>(variables.size()));
   }
   return s;
 }
@@ -629,11 +647,10 @@ SensitivityCheck check(const Sensitivities& found, const study::PartProgress& pr
   const Progress progress = progress_of("derivatives of " + study::to_string(model));
   const auto all = numbers(found.outputs.size(), [](std::size_t) { return true; });
   const Evaluator evaluator(Family(found.base, found.variables), found.outputs, model);
-  for (std::size_t v = 0; v < found.variables.size(); ++v) {
-    find_by_differences(other, evaluator, v, all);
-    if (progress)
-      progress(static_cast<double>(v + 1) / static_cast<double>(found.variables.size()));
-  }
+  for (std::size_t v = 0; v < found.variables.size(); ++v)
+    find_by_differences(other, evaluator, v, all,
+                        study::within(progress, v, found.variables.size()));
+  if (progress) progress(1);
   return compare_derivatives(found, std::move(other));
 }
 

@@ -4,6 +4,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
@@ -30,39 +31,70 @@ std::vector<double> boundary(const Case& the_case, const std::vector<double>& sp
   };
   const auto near = [](double a, double b) { return b - a <= kBoundaryRpm; };
   for (std::size_t j = 0; j + 1 < speeds.size(); ++j) {
-    if ((row.least[j] < 0) == (row.least[j + 1] < 0)) continue;
+    if (!is_computed(row.least[j]) || !is_computed(row.least[j + 1]) ||
+        (row.least[j] < 0) == (row.least[j + 1] < 0))
+      continue;
     std::uintmax_t evaluations = 50;
-    const auto [low, high] = boost::math::tools::toms748_solve(
-        least, speeds[j], speeds[j + 1], row.least[j], row.least[j + 1], near, evaluations);
-    found.push_back((low + high) / 2);
+    try {
+      const auto [low, high] = boost::math::tools::toms748_solve(
+          least, speeds[j], speeds[j + 1], row.least[j], row.least[j + 1], near, evaluations);
+      found.push_back((low + high) / 2);
+    } catch (const ComputationError&) {
+      // Between two speeds at which there is a pressure there need not be one.
+    }
   }
   return found;
+}
+
+RattlePoint failed_point(const std::string& reason) {
+  RattlePoint point;
+  point.reason = reason;
+  return point;
 }
 
 RattleRow compute_row(const Case& the_case, const RattleOptions& options, double delivery_bar,
                       const std::function<void()>& turn, const std::function<void()>& point) {
   RattleRow row;
   row.delivery_bar = delivery_bar;
-  std::vector<PreparedCase> ready;
   const std::vector<double>& speeds = options.speed_rpm;
-  for (const double rpm : speeds) {
-    ready.push_back(ready_at(the_case, rpm, delivery_bar));
-    const auto [least, greatest] = rigid_extremes(ready.back());
-    row.least.push_back(least);
-    row.greatest.push_back(greatest);
+  std::vector<std::optional<PreparedCase>> ready(speeds.size());
+  std::vector<std::string> reasons(speeds.size());
+  for (std::size_t j = 0; j < speeds.size(); ++j) {
+    std::pair<double, double> extremes{not_computed(), not_computed()};
+    try {
+      ready[j] = ready_at(the_case, speeds[j], delivery_bar);
+      extremes = rigid_extremes(*ready[j]);
+    } catch (const ComputationError& error) {
+      ready[j].reset();
+      reasons[j] = error.what();
+    }
+    row.least.push_back(extremes.first);
+    row.greatest.push_back(extremes.second);
     turn();
   }
   row.boundary_rpm = boundary(the_case, speeds, row);
   double lag = 0, lag_rate = 0;
-  for (const PreparedCase& at : ready) {
-    row.up.push_back(settle(at, options, lag, lag_rate, turn));
+  const auto at = [&](std::size_t j) {
+    // A point that fails on the way leaves the teeth where its neighbour had them.
+    double lag_here = lag, rate_here = lag_rate;
+    RattlePoint found = failed_point(reasons[j]);
+    if (ready[j]) try {
+        found = settle(*ready[j], options, lag_here, rate_here, turn);
+        lag = lag_here;
+        lag_rate = rate_here;
+      } catch (const ComputationError& error) {
+        found = failed_point(error.what());
+      }
     point();
-  }
+    return found;
+  };
+  for (std::size_t j = 0; j < speeds.size(); ++j) row.up.push_back(at(j));
   row.down.resize(speeds.size());
-  for (std::size_t j = speeds.size(); j-- > 0;) {
-    row.down[j] = settle(ready[j], options, lag, lag_rate, turn);
-    point();
-  }
+  for (std::size_t j = speeds.size(); j-- > 0;) row.down[j] = at(j);
+  const auto failed = [](const RattlePoint& p) { return !p.done(); };
+  if (std::all_of(row.up.begin(), row.up.end(), failed) &&
+      std::all_of(row.down.begin(), row.down.end(), failed))
+    throw ComputationError(row.up.front().reason);
   return row;
 }
 
@@ -79,6 +111,7 @@ std::string to_string(RattleClass kind) {
 }
 
 bool two_states(const RattlePoint& up, const RattlePoint& down) {
+  if (!up.done() || !down.done()) return false;
   if (up.kind != down.kind) return true;
   const RattlePoint& weaker = up.largest < down.largest ? up : down;
   const RattlePoint& stronger = up.largest < down.largest ? down : up;
@@ -87,6 +120,24 @@ bool two_states(const RattlePoint& up, const RattlePoint& down) {
 }
 
 bool carries_rigidly(double least, double greatest) { return least >= 0 || greatest <= 0; }
+
+bool RattleRow::done() const {
+  const auto done = [](const RattlePoint& p) { return p.done(); };
+  return std::all_of(up.begin(), up.end(), done) && std::all_of(down.begin(), down.end(), done);
+}
+
+std::vector<FailedPoint> RattleMap::all_failed() const {
+  std::vector<FailedPoint> all = failed;
+  for (const RattleRow& row : rows)
+    for (std::size_t j = 0; j < row.up.size(); ++j)
+      for (const auto& [name, point] : {std::pair{"up", &row.up[j]}, {"down", &row.down[j]}})
+        if (!point->done())
+          all.push_back({row.delivery_bar,
+                         "delivery_bar = " + number_text(row.delivery_bar) + ", speed_rpm = " +
+                             number_text(options.speed_rpm[j]) + ", swept " + name,
+                         point->reason});
+  return all;
+}
 
 bool RattleMap::agrees() const {
   return std::all_of(checks.begin(), checks.end(),
@@ -129,7 +180,7 @@ RattleMap rattle_map(const Case& the_case, const RattleOptions& options,
       return;
     }
     points.tick([&] {
-      if (keeping.keep) keeping.keep(row);
+      if (keeping.keep && row.done()) keeping.keep(row);
     });
   });
   for (std::size_t i = map.rows.size(); i-- > 0;) {

@@ -60,13 +60,14 @@ BoundaryAgreement boundary_agreement(const RattleMap& map) {
   for (const RattleRow& row : map.rows) {
     const auto carries = [&](std::size_t j) { return row.up[j].kind == RattleClass::carries; };
     for (std::size_t j = 0; j < row.up.size(); ++j) {
+      if (!row.up[j].done()) continue;
       ++found.points;
       if (carries(j) == carries_rigidly(row.least[j], row.greatest[j])) ++found.same;
     }
     for (const double criterion : row.boundary_rpm) {
       BoundaryAgreement::Place place{row.delivery_bar, criterion, not_computed(), not_computed()};
       for (std::size_t j = 0; j + 1 < row.up.size(); ++j) {
-        if (carries(j) == carries(j + 1)) continue;
+        if (!row.up[j].done() || !row.up[j + 1].done() || carries(j) == carries(j + 1)) continue;
         const double middle = (speeds[j] + speeds[j + 1]) / 2;
         if (is_computed(place.simulated_rpm) &&
             std::abs(middle - criterion) >= std::abs(place.simulated_rpm - criterion))

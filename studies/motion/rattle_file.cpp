@@ -146,6 +146,11 @@ std::string rattle_csv(const RattleMap& map) {
     for (std::size_t j = 0; j < row.up.size(); ++j)
       for (const auto& [name, points] : {std::pair{"up", &row.up}, {"down", &row.down}}) {
         const RattlePoint& p = (*points)[j];
+        if (!p.done()) {
+          csv.row(row.delivery_bar, map.options.speed_rpm[j], name,
+                  std::vector<std::string>(kColumns - 4), p.reason);
+          continue;
+        }
         csv.row(row.delivery_bar, map.options.speed_rpm[j], name, to_string(p.kind), p.apart,
                 p.plus, p.minus, p.largest, p.mean, p.over_mean(), p.least_turn, p.impacts,
                 p.largest_impulse, p.observed, p.passed, p.period, p.lag, p.lag_rate, row.least[j],

@@ -14,6 +14,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/calibration.h"
 #include "bentaxis/study/memory.h"
+#include "bentaxis/study/row_stream.h"
 
 namespace bentaxis::study {
 namespace {
@@ -206,7 +207,7 @@ bool computes(const RunOptions& options, const Assumptions& assumptions, const C
 
 void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
-                     const PartProgress& progress_of) {
+                     const RowVisitor& visit, const PartProgress& progress_of) {
   const analytic::Model model(ready.the_case.pump, assumptions);
   std::vector<Channel> channels;
   std::vector<std::size_t> columns;
@@ -223,6 +224,7 @@ void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
       [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
       [&](double theta_deg, const std::vector<double>& row) {
         line.clear();
+        if (visit) visit(theta_deg, row.data());
         for (std::size_t i = 0; i < columns.size(); ++i) values[i] = row[columns[i]];
         append_csv_row(line, theta_deg, values.data(), values.size());
         if (theta_deg == 0)
@@ -231,6 +233,12 @@ void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
         out.write(line);
       },
       progress_of("analytic"));
+}
+
+void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
+                     const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
+                     const PartProgress& progress_of) {
+  stream_analytic(ready, assumptions, wanted, out, RowVisitor(), progress_of);
 }
 
 std::vector<multibody::Integrator> all_integrators() {

@@ -2,7 +2,18 @@
 
 #include <utility>
 
+#include "bentaxis/study/timing.h"
+#include "bentaxis/study/turn_summary.h"
+
 namespace bentaxis::study {
+
+std::vector<std::string> ShownPump::answers() const {
+  std::vector<std::string> sentences = TurnSummary(run.table).answers();
+  for (std::string& sentence : limit_answers(limits)) sentences.push_back(std::move(sentence));
+  if (ready.hydraulics)
+    sentences.push_back(timing_answer(timing_rows(ready.the_case, *ready.hydraulics)));
+  return sentences;
+}
 
 ShownPump show_pump(Case the_case, const PartProgress& progress_of) {
   require_memory(the_case, Kept::shown, Way::driven);

@@ -361,9 +361,6 @@ std::string regression_text(const std::vector<Outcome>& outcomes) {
   for (const auto& outcome : outcomes)
     for (const auto& note : outcome.notes)
       text += fmt::format("note        {}: {}\n", outcome.name, note);
-  for (const auto& outcome : outcomes)
-    if (outcome.explanation)
-      text += fmt::format("explanation {}: {}\n", outcome.name, outcome.explanation->text());
   return text;
 }
 

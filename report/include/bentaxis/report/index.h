@@ -31,13 +31,17 @@ std::string picture_of_page(const std::string& html);
 /// neither a verdict nor a warning last.
 void sort_by_worst(std::vector<IndexEntry>& entries);
 
+/// How many reports say what, and which is the worst, in two sentences.
+/// @param entries  sorted by sort_by_worst()
+std::string index_headline(const std::vector<IndexEntry>& entries);
+
 /// The page: a table that needs no script, and a filter for those who have one.
 /// @param title    of the page
 /// @param skipped  files that are no report, to be named
 std::string index_page(const std::string& title, const std::vector<IndexEntry>& entries,
                        const std::vector<std::string>& skipped);
 
-/// {"schema": 1, "reports": [..]} with the same content but for the pictures.
+/// {"schema": 1, "headline": "..", "reports": [..]} with the same content but for the pictures.
 std::string index_json(const std::vector<IndexEntry>& entries);
 
 }  // namespace bentaxis::report

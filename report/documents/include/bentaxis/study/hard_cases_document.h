@@ -24,6 +24,8 @@ struct HardCaseStudy {
   /// Nothing is wrong, every loss was predicted, and nothing grows over the long run.
   bool good() const;
   std::string headline() const;
+  /// What is wrong, and where each model has the fewest digits.
+  std::vector<std::string> answers() const;
 };
 
 report::Document hard_cases_document(const HardCaseStudy& study, const report::Lines& program);

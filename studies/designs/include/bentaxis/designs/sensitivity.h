@@ -43,6 +43,8 @@ struct Sensitivities {
   /// of others the magnitude.
   std::vector<double> scales;
   std::vector<std::vector<Derivative>> derivatives;  ///< by output, then variable
+  /// Variables whose differences an interruption has left out, where finished ones are kept.
+  std::vector<std::string> left_out = {};
 
   /// Percent of the output per percent of the variable; not_computed() where one of them is 0.
   double elasticity(std::size_t output, std::size_t variable) const;
@@ -67,11 +69,14 @@ std::vector<Variable> differentiate_reactions(
 /// reactions, without teeth, with respect to what pump, speed and pressure are made of; under
 /// hydraulic pressure, but for a spline in its place, they are forward sensitivities; a largest or
 /// least value changes as at the sample that attains it.
+/// @param keep_finished  where progress interrupts the differences, what is finished is the result
+///                       (`left_out` names the rest), if anything is
 /// @throws InputError where a variable is no continuous number, or as the case; ComputationError
 Sensitivities sensitivities(const Case& base, const std::vector<Variable>& variables,
                             const std::vector<Output>& outputs,
                             study::Model model = study::Model::analytic,
-                            const study::PartProgress& progress_of = study::silent());
+                            const study::PartProgress& progress_of = study::silent(),
+                            bool keep_finished = false);
 
 /// Two ways to find derivatives, set against each other.
 struct SensitivityCheck {

@@ -54,6 +54,9 @@ struct RattlePoint {
   int passed = 0;                         ///< turns before them
   int period = 0;  ///< turns after which the motion repeats itself; 0: irregular, or longer
   double lag = 0, lag_rate = 0;  ///< where the observed turns begin, at theta = 0, rad, rad/s
+  std::string reason = {};       ///< why it could not be computed, or "": then nothing else holds
+
+  bool done() const { return reason.empty(); }
 
   /// The largest force over the mean; not_computed() where there is none.
   double over_mean() const { return mean > 0 ? largest / mean : not_computed(); }
@@ -63,8 +66,11 @@ struct RattlePoint {
 struct RattleRow {
   double delivery_bar = 0;
   std::vector<RattlePoint> up, down;    ///< by speed
-  std::vector<double> least, greatest;  ///< by speed, N, rigid tooth force over the turn
+  std::vector<double> least, greatest;  ///< by speed, N, rigid tooth force over the turn;
+                                        ///< not_computed() where the pressure could not be found
   std::vector<double> boundary_rpm;     ///< where `least` passes 0, rising
+
+  bool done() const;  ///< all points
 };
 
 /// Whether two sweeps have come to different steady states.
@@ -95,6 +101,8 @@ struct RattleMap {
   /// Pressures whose row could not be computed: they are neither in `rows` nor in `options`.
   std::vector<FailedPoint> failed;
   bool agrees() const;  ///< all checks
+  /// Those, and single points of the other rows.
+  std::vector<FailedPoint> all_failed() const;
 };
 
 /// Rows that are there already, and who hears of each that is finished: one thread at a time.
@@ -108,7 +116,8 @@ struct RattleKeeping {
 Case rattle_case(Case the_case, double speed_rpm, double delivery_bar);
 
 /// Computes a map. A row is computed by one thread: results do not depend on how many there are. A
-/// row whose computation fails at a speed is left out and named; the others are kept.
+/// point whose computation fails says why, and the sweep goes on from its neighbour; a row none of
+/// whose points can be computed is left out and named. `keeping` hears of rows that are whole.
 /// @throws InputError; ComputationError where every row fails, or the check of a point; what
 /// `progress` throws, when rows under way are given up
 RattleMap rattle_map(const Case& the_case, const RattleOptions& options,

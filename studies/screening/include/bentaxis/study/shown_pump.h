@@ -1,6 +1,7 @@
 // A pump by the analytic model alone, with what a report shows of it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "bentaxis/analytic/validity.h"
@@ -15,6 +16,9 @@ struct ShownPump {
   ModelRun run;
   std::vector<analytic::ValidityLimit> limits;
   CaseDescription description;
+
+  /// What is asked first, in sentences: torque and forces, and what makes them invalid.
+  std::vector<std::string> answers() const;
 };
 
 /// @throws InputError (also where `[plausibility] meant` is wrong), ComputationError
