@@ -149,7 +149,7 @@ TEST(PlausibilityCases, AMessageSaysKeyLimitAndWhatMayBeMeant) {
   };
   EXPECT_EQ(
       text("pump.joint_circle_radius_mm=0.02492"),
-      "joint_circle_radius_mm = 0.02492 is below 4 mm: no pump has this size; in metres? 24.92 "
+      "joint_circle_radius_mm = 0.02492 is below 4 mm: no pump is of this size; in metres? 24.92 "
       "would do");
   EXPECT_EQ(text("bearings.tapered_z_mm=26"),
             "tapered_z_mm = 26 is above -6.23 mm: the shaft leaves the joints towards -z1, the "

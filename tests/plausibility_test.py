@@ -195,7 +195,7 @@ class SaidTest(unittest.TestCase):
         for command in (["run", self.rated, "--model", "analytic"], ["compare", self.rated], ["show", self.rated, "--out", "a.svg"],
                         ["inertia", self.rated], ["tradeoff", self.rated], ["reference", "golden", self.rated, "--out", "g"],
                         ["pressure", REPO / "cases" / "bap63_rated_hydraulic.toml"],
-                        ["calibrate", self.rated, "--with", "290", "--without", "289"],
+                        ["calibrate", self.rated, "--torque-with-friction", "290", "--torque-without-friction", "289"],
                         ["blocktorque", self.rated, REPO / "cases" / "bap63_rated_hydraulic.toml"]):
             with self.subTest(command=command[0]):
                 done = run(*command, *doubtful, cwd=self.folder)
@@ -261,7 +261,7 @@ class SaidTest(unittest.TestCase):
         self.assertEqual(said["warnings"], [])
         self.assertEqual([(row["code"], row["reason"]) for row in said["meant"]],
                          [("piston-heavier-than-steel", "pistons of tungsten")])
-        for wrong, why in (("piston-heavy: so", "is no check"), ("gravity", "needs a reason"), ("gravity: ", "needs a reason")):
+        for wrong, why in (("piston-heavy: so", "is not the code of a check"), ("gravity", "needs a reason"), ("gravity: ", "needs a reason")):
             with self.subTest(wrong=wrong):
                 done = run("show", self.rated, "--set", "plausibility.meant=" + wrong)
                 self.assertEqual(done.returncode, 2)

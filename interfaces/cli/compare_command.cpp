@@ -116,6 +116,7 @@ Command add_compare_command(CommandParser program) {
       .option("--multibody-case", options->multibody_case,
               "give the multibody model another case, changed by --set alike: what would a "
               "wrong input do?")
+      .case_file()
       .text("CASE");
   command
       .option("--with", options->with,

@@ -179,7 +179,7 @@ PaperFigures read_paper_figures(const std::filesystem::path& file) {
     const std::string id = list.figures.back().id();
     for (std::size_t i = 0; i + 1 < list.figures.size(); ++i)
       if (list.figures[i].id() == id)
-        throw InputError(fmt::format("{}:{}: figure {} is there twice", file.string(), line, id));
+        throw InputError(fmt::format("{}:{}: figure {} is a duplicate", file.string(), line, id));
   }
   if (list.figures.empty()) in.fail("figure", "at least one [[figure]] is needed");
   for (TableReader& item : in.tables("left_out")) {
