@@ -563,7 +563,7 @@ TEST(Report, LinesAreOneAnothersByTheirMeaning) {
   EXPECT_NEAR(value.at("mean delivery pressure"), 275, 0.1);  // the rated one, bar
   EXPECT_LT(value.at("delivery pressure, minimum"), value.at("mean delivery pressure"));
   EXPECT_LT(value.at("mean delivery pressure"), value.at("delivery pressure, maximum"));
-  for (const char* angle : {"angle of the maximum", "angle of the least"}) {
+  for (const char* angle : {"angle of the maximum", "angle of the minimum"}) {
     EXPECT_GE(value.at(angle), 0);
     EXPECT_LT(value.at(angle), 360);
   }

@@ -101,7 +101,7 @@ void BevelTeeth::refuse_what_does_not_mesh() const {
   const std::string tip = "addendum_mm = " + mm(teeth_.addendum) + ": ";
   const std::string number = "tooth_number = " + std::to_string(teeth_.count) + ": ";
   if (tip_roll_ > -curve_->first_roll())
-    refuse(tip + "tip interference, tips reach beyond the beginning of the mate's flanks");
+    refuse(tip + "tip interference, tips reach past the start of the mate's flanks");
   const Vec3 edge = curve_->at(tip_roll_).point;
   if (std::atan2(edge[1], edge[0]) >= pitch_angle_ / 4) refuse(tip + "pointed tips");
   if (contact_ratio() < 1)

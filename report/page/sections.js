@@ -19,7 +19,7 @@ function verdictBanner({ verdict, meaning, plausibility }, data) {
   }
   const reference = verdict && verdict.reference;
   const doubts = list(plausibility && plausibility.warnings).length;
-  if (doubts) tiles.push(["doubtful inputs", `${doubts}, below`]);
+  if (doubts) tiles.push(["plausibility warnings", `${doubts}, below`]);
   const tone = !verdict || verdict.agrees == null ? "neutral" : verdict.agrees ? "good" : "bad";
   return el("div", {},
     el("div.banner." + tone, { role: "status" },
@@ -46,8 +46,8 @@ function pumpHead({ plausibility }) {
   picture.append(document.querySelector("#picture svg").cloneNode(true));
   return el("div", {},
     !list(plausibility.warnings).length ? null : el("ul.warnings", {}, plausibility.warnings.map(w =>
-      el("li", {}, el("strong", {}, "Doubtful: " + w.code), el("span", {}, w.text)))),
-    !list(plausibility.meant).length ? null : el("p.hint", {}, "Doubtful, and meant: "
+      el("li", {}, el("strong", {}, "Implausible: " + w.code), el("span", {}, w.text)))),
+    !list(plausibility.meant).length ? null : el("p.hint", {}, "Implausible, stated as intended: "
       + plausibility.meant.map(w => `${w.code} (${w.reason})`).join("; ")),
     picture);
 }

@@ -33,7 +33,7 @@ PaperAxis read_axis(TableReader in, const std::string& quantity, const std::stri
     if (axis.range && (range.first > axis.range->first || range.second < axis.range->second))
       in.fail("axis", "must hold its labels");
     axis.range = range;
-    if (axis.why.empty()) in.fail("why", "must say how the axis is known beyond its labels");
+    if (axis.why.empty()) in.fail("why", "must say how the axis is known outside its labels");
   }
   if (!axis.range && axis.why.empty()) in.fail("why", "must say why the axis is not known");
   in.finish();

@@ -391,7 +391,7 @@ const Check kChecks[] = {
                                   f.g.pistons, mm(f.g.bore_circle_radius)),
                       {kRadius, kCentimetres, kInches, kMetres});
      }},
-    {"axis-offset", "b beyond +-Ra/2",
+    {"axis-offset", "b outside +-Ra/2",
      [](const Facts& f) {
        const double most = mm(f.g.joint_circle_radius) / 2;
        return outside(f, "pump", "axis_offset_mm", -most, most,
@@ -841,7 +841,7 @@ const Check kChecks[] = {
      }},
     // Port plate
     {"lands-off-bores",
-     "the bore circle lies outside r1 .. r4, or the groove r2 .. r3 extends beyond Rd -+ Dpi/2",
+     "the bore circle lies outside r1 .. r4, or the groove r2 .. r3 extends outside Rd -+ Dpi/2",
      [](const Facts& f) { return f.pump.port_plate.has_value(); },
      [](const Facts& f) -> std::string {
        const PortPlate& p = *f.pump.port_plate;
@@ -1120,7 +1120,7 @@ std::string stated_reason(const Case& the_case, const std::string& code) {
 }
 
 std::string plausibility_markdown() {
-  std::string text = "| name | doubtful |\n|---|---|\n";
+  std::string text = "| name | warns of |\n|---|---|\n";
   for (const Check& check : kChecks)
     text += fmt::format("| `{}` | {} |\n", check.code, check.words());
   return text;
