@@ -147,7 +147,8 @@ void require_mesh(const Gear& gear, const Bevel& bevel) {
                ", twice the distance of O4 from there");
   if (!(at.tip_cone < kPi - at.base_cone) || bevel.tip_roll > 2 * bevel.roll)
     refuse("addendum_mm", h,
-           "tip interference: the tips reach past the start of the path of contact on the base cone of the mate: must be <= " +
+           "tip interference: the tips reach past the start of the path of contact on the base "
+           "cone of the mate: must be <= " +
                rounded_down_text(addendum(std::min(2 * bevel.roll, kPi))));
   const double depth = cutting_depth(gear.pressure_angle, at.pitch_cone);
   if (at.tip_cone - at.pitch_cone > depth)
