@@ -721,7 +721,7 @@ TEST(Circuit, GivenFlowBeyondTheDisplacementIsRefused) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
-                HasSubstr("[load] flow_l_per_min = 96: must be above 0 and below what the pump"));
+                HasSubstr("[load] flow_l_per_min = 96: must be above 0 and below the ideal flow of the pump"));
   }
 }
 

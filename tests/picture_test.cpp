@@ -410,7 +410,7 @@ TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
   EXPECT_THAT(marks(), testing::ElementsAre("outside the axis: -4 at 270"));
   content.ends = Ends{-2, 3};
   EXPECT_THAT(marks(),
-              testing::ElementsAre("outside the axis: 4 at 90", "beyond the axis: -4 at 270"));
+              testing::ElementsAre("outside the axis: 4 at 90", "outside the axis: -4 at 270"));
   // Cut where it crosses: half way between 180 and 270 deg it is at -2.
   content.ends = Ends{-2, 5};
   const std::string cut_curve = svg_of({"id", "t", "", content}, curves);

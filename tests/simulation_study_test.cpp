@@ -207,13 +207,13 @@ TEST(SimulationStudy, HeadlineOfAPeriodicMotion) {
   r.periodic[1] = motion;
   EXPECT_EQ(r.headline(),
             "Both models find the same periodic motion: largest difference 3.0e-07 of peak (Rs), "
-            "1e-06 allowed; 1500 rpm, stable: of a disturbance 0.5 is left after an N-th of a "
-            "turn");
+            "1e-06 allowed; 1500 rpm, stable: a disturbance is multiplied by 0.5 per N-th of "
+            "a turn");
   motion.multipliers = {1};
   EXPECT_FALSE(motion.stable());
   motion.speed *= 2;
   r.periodic[0] = motion;  // the analytic one where both are
-  EXPECT_THAT(r.headline(), HasSubstr("3000 rpm, unstable: of a disturbance 1 is left"));
+  EXPECT_THAT(r.headline(), HasSubstr("3000 rpm, unstable: a disturbance is multiplied by 1 per"));
   r.groups[0].of_allowed = 2;
   EXPECT_THAT(r.headline(), HasSubstr("The periodic motions differ: "));
   r.groups[0].of_allowed = 0.5;

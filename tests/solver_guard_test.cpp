@@ -101,7 +101,7 @@ TEST(SolverGuard, MultipliersThatAreNoNumbersAreRefused) {
     require_accurate_forces(solved.estimated(), 0.3);
     FAIL() << "not refused";
   } catch (const ComputationError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("no numbers at theta = 17.18"));
+    EXPECT_THAT(error.what(), HasSubstr("not finite at theta = 17.18"));
   }
 }
 

@@ -100,7 +100,7 @@ class MessagesTest(WordsTest):
 
     def test_slips(self):
         self.assertRegex(self.refused("show", self.changed_case('kind = "ideal"', "kind = ideal")),
-                         r'case.toml:\d+: kind = ideal; words stand in quotes: "ideal"$')
+                         r'case.toml:\d+: kind = ideal; words need quotes: "ideal"$')
         for values in ("30-40", "30..40", "-40..-30"):
             self.assertTrue(self.refused("sweep", self.case, "--vary", f"pump.tilt_deg={values}", "--output", "max:Rb1_z1")
                             .endswith("must be a number; a range is FROM:TO:STEP or FROM:TO:#NUMBER"))
@@ -158,7 +158,7 @@ class MessagesTest(WordsTest):
 
     def test_a_dash_is_no_folder(self):
         for command in (["run", self.case, "--model", "analytic"], ["compare", self.case]):
-            self.assertIn("-: cannot be written: is no folder", self.refused(*command, "--out", "-"))
+            self.assertIn("-: cannot be written: is not a directory", self.refused(*command, "--out", "-"))
 
     def test_more_samples_than_a_machine_holds(self):
         many = ["--set", "operation.samples_per_revolution=2000000000"]
