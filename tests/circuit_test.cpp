@@ -720,8 +720,10 @@ TEST(Circuit, GivenFlowBeyondTheDisplacementIsRefused) {
     steady_state(rated({"load.kind=flow", "load.flow_l_per_min=96"}));
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("[load] flow_l_per_min = 96: must be above 0 and below the ideal flow of the pump"));
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr(
+            "[load] flow_l_per_min = 96: must be above 0 and below the ideal flow of the pump"));
   }
 }
 

@@ -136,7 +136,8 @@ TEST(PlausibilityCases, AReasonNeedsACheckAndWords) {
       study::plausibility(shipped("bap63_rated", {"plausibility.meant=\"" + meant + "\""}));
     });
   };
-  EXPECT_THAT(said("no-such-check: why"), HasSubstr("\"no-such-check\" is not the code of a check"));
+  EXPECT_THAT(said("no-such-check: why"),
+              HasSubstr("\"no-such-check\" is not the code of a check"));
   EXPECT_THAT(said("pump-size"), HasSubstr("\"pump-size\" needs a reason"));
   EXPECT_EQ(said("pump-size: why; below-vapour: why"), "accepted");  // of timing too
   EXPECT_EQ(said(" ; "), "accepted");

@@ -93,7 +93,7 @@ class SimulateFmuTest(FmuTest):
         # An input that nothing is connected to stays as it starts, and is named.
         self.simulate("--model", "analytic", "--fmu", self.unit("motor"), "--connect", "shaft_angle=theta_deg",
                       "--communication-step", "2e-5")
-        self.assertEqual(dict(self.section()["facts"])["inputs of the unit left as they start"], "shaft_speed")
+        self.assertEqual(dict(self.section()["facts"])["inputs of the FMU that keep their start values"], "shaft_speed")
 
     def test_a_coarse_step_is_warned_of(self):
         result = self.simulate("--model", "analytic", "--fmu", self.unit("rotor"), "--communication-step", "4e-3",
