@@ -98,7 +98,7 @@ Command add_compare_command(CommandParser program) {
   add_report(command, options->place, "report.html, report.json and the curves");
   command
       .option("--tolerance", options->tolerance,
-              "largest difference over peak that counts as agreement")
+              "largest difference over a reaction's peak that counts as agreement")
       .positive_number()
       .text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   options->choice.add_to(command, true);

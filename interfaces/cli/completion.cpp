@@ -158,7 +158,9 @@ function __bentaxis_complete
   switch "$answer[1]"
     case files
       __fish_complete_path "$last"
-      printf '%s\n' $answer[2..-1]
+      for word in $answer[2..-1]
+        echo $word
+      end
     case folders
       __fish_complete_directories "$last"
     case words

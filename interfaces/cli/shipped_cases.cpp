@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 constexpr const char* kEnding = ".toml";
 
 std::string group_of(const Case& the_case) {
-  const std::string pressure = the_case.hydraulics ? ", hydraulic model" : ", ideal pressure trace";
-  return (the_case.drive ? "Motion in time" : "Constant speed") + pressure;
+  const bool hydraulic = the_case.pressure.kind == PressureKind::hydraulic;
+  return std::string(the_case.drive ? "Motion in time" : "Constant speed") +
+         (hydraulic ? ", hydraulic model" : ", given pressure");
 }
 
 }  // namespace
