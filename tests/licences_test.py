@@ -79,7 +79,7 @@ class LicencesTest(unittest.TestCase):
             self.assertGreater(len(needed), 0, binary)
             for library in needed:
                 if not re.match(r"lib(a|t|ub)san|libclang", library):  # of instrumented builds
-                    self.assertTrue(any(library.startswith(soname) for soname in known), f"{binary} needs {library}")
+                    self.assertIn(library.split(".so")[0], known, f"{binary} needs {library}")
 
     def test_the_command_lists_all_and_prints_each(self):
         done = run(PROGRAM, "licenses")
