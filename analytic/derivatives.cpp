@@ -60,7 +60,7 @@ PumpParameters rate_of(const PumpParameters& pump, const std::string& input) {
       *each.value = 1;
       return rates;
     }
-  throw InputError("derivative with respect to " + input + ": the pump has no such number");
+  throw InputError("derivative with respect to " + input + ": this pump has no such parameter");
 }
 
 struct DerivativeModel::Prepared {
@@ -100,7 +100,7 @@ void DerivativeModel::reactions(const Instant& instant, std::span<const Instant>
                      std::to_string(directions_) + " directions, or not one pressure for each of " +
                      std::to_string(n) + " pistons");
   if (values.size() < reactions || derivatives.size() < reactions * directions_)
-    throw InputError("derivatives: room for " + std::to_string(derivatives.size()) +
+    throw InputError("derivatives: space for " + std::to_string(derivatives.size()) +
                      " of them, needed are " + std::to_string(reactions * directions_));
   const closed_form::Common common = prepared_->pump.common();
   if (common.imposed) {

@@ -61,7 +61,7 @@ void require_sizes(const Instant& instant, const std::vector<Real>& values, int 
     throw InputError("analytic model: " + std::to_string(instant.chamber_pressure.size()) +
                      " chamber pressures for " + std::to_string(pistons) + " pistons");
   if (values.size() < least)
-    throw InputError("analytic model: room for " + std::to_string(values.size()) +
+    throw InputError("analytic model: space for " + std::to_string(values.size()) +
                      " values, needed are " + std::to_string(least));
 }
 
@@ -81,8 +81,7 @@ const PumpParameters& checked(const PumpParameters& pump) {
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
     : Model(checked(pump), assumptions, Unchecked{}) {
   if (assumptions.flanks != FlankShape::involute)
-    throw InputError(
-        "flank_shape: must be involute in the analytic model, whose teeth are involutes");
+    throw InputError("flank_shape: must be involute in the analytic model");
 }
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked)
@@ -436,8 +435,7 @@ MotionTable run_states(const Case& the_case, const Assumptions& assumptions, con
       },
       progress);
   note(table.results.provenance, start, model.layout().pistons(),
-       "exact total derivatives with respect to time of (9)-(12), shaft and block each at its own "
-       "angle");
+       "exact total time derivatives of (9)-(12), with separate angles of shaft and block");
   return table;
 }
 

@@ -32,7 +32,7 @@ double lack(const ToothErrors& errors, int tooth, int count, int side) {
 const PumpParameters& checked(const PumpParameters& pump) {
   validate(pump);
   if (pump.gear.contact != ToothContact::teeth || !pump.gear.teeth)
-    throw InputError("[gear] contact: must be \"teeth\" for teeth that touch where they are");
+    throw InputError("[gear] contact: must be \"teeth\" for resolved tooth contact");
   closed_form::require_mesh(pump.gear, closed_form::bevel(pump));
   return pump;
 }
@@ -418,7 +418,7 @@ ToothLag BevelTeeth::rest(double theta, double torque) const {
     near_excess = far_excess;
     step *= 2;
     if (step > kMax)
-      throw ComputationError("analytic model: no lag of the teeth carries a torque of " +
+      throw ComputationError("analytic model: no lag of the teeth transmits a torque of " +
                              rounded_text(torque) +
                              " Nm at theta = " + rounded_text(theta / kRadPerDegree) + " deg");
     far = near + side * step;

@@ -47,18 +47,18 @@ void describe_flanks(ValidityLimit& flank, const Model& model, bool two, double 
   const bool differs = change.tapered > 0;
   if (two) {
     flank.consequence =
-        "where it is negative the other flank carries; each flank pushes the gears apart" +
+        "where it is negative the other flank is loaded; each flank pushes the gears apart" +
         (differs
-             ? ". With one line of action for both, as the paper prints it, " + flank_text(change)
+             ? ". With one line of action for both, as printed in the paper, " + flank_text(change)
              : std::string());
     return;
   }
   flank.consequence =
-      "the model keeps one line of action; a real tooth pair loads its other flank, which still "
-      "pushes the gears apart";
+      "the model uses one line of action; in reality the other flank is loaded, which also pushes "
+      "the gears apart";
   if (flank.violated_share == 0) return;
   flank.consequence += omega < 0 ? ", as the line turned by sign(omega) does here"
-                                 : ": with the other flank carrying, " + flank_text(change);
+                                 : ": with the other flank loaded, " + flank_text(change);
 }
 
 // Bore forces off B act on a point that the bore does not guide.
@@ -95,8 +95,8 @@ ValidityLimit reach_limit(const Model& model, const Case& the_case, const Sample
                           const ResultTable& table) {
   const double reach = BevelTeeth(the_case.pump).geometry().reach;
   ValidityLimit limit;
-  limit.limit = "teeth pressed together so little that no further pair touches: below " +
-                rounded_text(reach * 1e6) + " um";
+  limit.limit =
+      "tooth load so low that no further pair touches: below " + rounded_text(reach * 1e6) + " um";
   limit.name = "further pairs of teeth touch";
   limit.key = "reach";
   limit.unit = "um";
@@ -115,7 +115,7 @@ ValidityLimit reach_limit(const Model& model, const Case& the_case, const Sample
       limit, table, [&](std::size_t row) { return reach - pressed[row]; },
       [&](std::size_t row) { return pressed[row] * 1e6; });
   limit.consequence =
-      "three pairs of each flank are looked at; a fourth would carry a part of the force";
+      "three pairs of each flank are modelled; a fourth would carry part of the force";
   return limit;
 }
 
@@ -163,7 +163,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
     turned.consequence =
         "(22) as printed turns the whole line of action with the speed; a real gear keeps the "
         "separating direction" +
-        (turned.violated_share > 0 ? ": with the other flank carrying, " +
+        (turned.violated_share > 0 ? ": with the other flank loaded, " +
                                          flank_text(model.flank_change(turned.worst, samples.omega))
                                    : std::string());
     limits.push_back(turned);
@@ -181,7 +181,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
 
   ValidityLimit point;
   point.limit = "film force acts within the plate: radius of (xh, yh) <= r4";
-  point.name = "(xh, yh) beyond r4";
+  point.name = "(xh, yh) outside r4";
   point.key = "point";
   point.unit = "mm";
   point.applicable = the_case.pump.port_plate.has_value();
@@ -193,8 +193,8 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
     scan(
         point, table, [&](std::size_t row) { return r4 - radius(row); }, radius);
     point.consequence =
-        "no pressure in the film can act outside the plate: the block tilts until "
-        "its edge carries";
+        "the film pressure cannot act outside the plate: the block tilts until its edge makes "
+        "contact";
   } else {
     point.consequence = "the case has no port plate";
   }
@@ -206,12 +206,13 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   thrust.key = "thrust";
   thrust.unit = "N";
   scan(thrust, table, value(at.Rb1(2)), value(at.Rb1(2)));
-  thrust.consequence = "a tapered roller bearing takes thrust one way only; the shaft would move";
+  thrust.consequence =
+      "a tapered roller bearing takes thrust in one direction only; the shaft would move";
   limits.push_back(thrust);
 
   ValidityLimit friction;
-  friction.limit = "friction takes energy: no friction with positive power";
-  friction.name = "friction feeds energy in";
+  friction.limit = "friction dissipates energy: its power is not positive";
+  friction.name = "friction adds energy";
   friction.key = "friction";
   friction.unit = "W";
   Instant instant;
@@ -223,7 +224,7 @@ std::vector<ValidityLimit> check_validity(const Case& the_case, const Assumption
   scan(
       friction, table, [&](std::size_t row) { return -power(row); }, power);
   friction.consequence =
-      "(38) is kept as printed: where Td omega < 0 (motoring) its proportional part drives the "
+      "(38) is used as printed: where Td omega < 0 (motoring) its proportional part drives the "
       "shaft instead of braking it";
   limits.push_back(friction);
 

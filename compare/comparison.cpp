@@ -156,8 +156,7 @@ const char* to_string(Verdict verdict) {
 }
 
 std::string scale_in_words(const ChannelComparison& channel) {
-  return channel.at_floor ? "the scale that the loads give, as its own peak is far below"
-                          : "its peak";
+  return channel.at_floor ? "the scale of the loads, as its own peak is far smaller" : "its peak";
 }
 
 Options above_round_off(double tolerance, const ZeroScales& scales) {

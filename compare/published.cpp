@@ -221,9 +221,8 @@ void PublishedSummary::count(const PublishedRow& row) {
 std::string PublishedSummary::text() const {
   return fmt::format(
       "Only predicted rows are validation: {} of {} can be compared in this case, {} of them "
-      "inside. "
-      "{} further rows were used to infer the geometry or calibrated ({} inside): their agreement "
-      "shows nothing.",
+      "inside. {} further rows were used to infer the geometry or calibrated ({} inside): their "
+      "agreement is no evidence.",
       predicted_comparable, predicted, predicted_inside, other_comparable, other_inside);
 }
 
@@ -386,7 +385,7 @@ PublishedSection judge_published(
                            : PublishedVerdict::outside;
     row.where = n.where;
     if (!n.note.empty()) row.where += ". " + n.note;
-    if (n.repeats) row.where += ". Repeats another row: not counted";
+    if (n.repeats) row.where += ". Duplicates another row: not counted";
     if (!any && !why.empty()) row.where += ". Not comparable: " + why;
     section.summary.count(row);
     section.rows.push_back(std::move(row));

@@ -100,7 +100,8 @@ VectorMap read_vector(TableReader in) {
   VectorMap map;
   const auto theirs = in.texts("theirs");
   if (theirs.size() != 3)
-    in.fail("theirs", "must be three columns, their x, y and z; \"\" for one that the file lacks");
+    in.fail("theirs",
+            "must be three columns, x, y and z of the file; \"\" for one that it does not have");
   std::copy(theirs.begin(), theirs.end(), map.theirs.begin());
   map.ours = in.text("ours");
   map.unit = in.text("unit", "");
@@ -148,7 +149,7 @@ FrameMap read_frame(TableReader in) {
     for (std::size_t i = 0; i < 3; ++i)
       if (std::abs(dot(c[i], c[i]) - 1) > kRounded ||
           std::abs(dot(c[i], c[(i + 1) % 3])) > kRounded)
-        in.fail(names[i], "axes must have length 1 and be at right angles");
+        in.fail(names[i], "axes must have length 1 and be orthogonal");
     if (dot(cross, c[2]) < 0) in.fail("z", "axes must be right-handed: x cross y = z");
   }
   in.finish();
@@ -528,8 +529,7 @@ Turn one_turn(const std::string& file, const AngleMap& map, const std::vector<do
     }
     points.emplace_back(angle + turns, row);
   }
-  if (scale == 0)
-    fail("column " + map.column + " is a time, but the shaft of the case stands still");
+  if (scale == 0) fail("column " + map.column + " is a time, but the shaft of the case is at rest");
   if (points.size() > 1 && points.back().first < points.front().first)
     std::reverse(points.begin(), points.end());
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -549,7 +549,7 @@ Turn one_turn(const std::string& file, const AngleMap& map, const std::vector<do
   const double span = points.back().first - points.front().first;
   if (span > 360 + same)
     fail("covers " + number_text(span) +
-         " deg: more than a turn; choose one by turn_from_deg in [curve.angle]");
+         " deg: more than a turn; choose the turn by turn_from_deg in [curve.angle]");
   if (span > 360 - same) {
     turn.repeated = {points.front().second, points.back().second};
     points.pop_back();
@@ -622,7 +622,7 @@ std::vector<std::string> assumptions_of(const CurveDescription& curve) {
   if (!curve.ignored.empty()) {
     std::string list;
     for (const auto& name : curve.ignored) list += (list.empty() ? "" : ", ") + name;
-    lines.push_back("assumed to stand for no result: " + list);
+    lines.push_back("assumed to be no result: " + list);
   }
   return lines;
 }
@@ -630,8 +630,8 @@ std::vector<std::string> assumptions_of(const CurveDescription& curve) {
 std::vector<fs::path> find_references(const fs::path& root) {
   if (!fs::is_directory(root))
     throw InputError(root.string() +
-                     ": is not a folder with reference data; bentaxis reference new makes one of a "
-                     "file of curves");
+                     ": is not a directory with reference data; `bentaxis reference new` makes one "
+                     "from a file of curves");
   std::vector<fs::path> found;
   const std::function<void(const fs::path&)> visit = [&](const fs::path& folder) {
     if (fs::is_regular_file(folder / kDescriptionName)) {
@@ -645,7 +645,7 @@ std::vector<fs::path> find_references(const fs::path& root) {
     for (const auto& entry : entries) {
       if (entry.filename() == "README.md" || entry.filename() == "generator") continue;
       if (!fs::is_directory(entry))
-        throw InputError(entry.string() + ": is used by nothing: " + folder.string() + " has no " +
+        throw InputError(entry.string() + ": is not used: " + folder.string() + " has no " +
                          kDescriptionName);
       visit(entry);
     }
@@ -718,8 +718,8 @@ void check_files(const ReferenceDescription& description, const std::vector<fs::
     if (!entry.is_directory()) there.insert(entry.path());
   for (const auto& path : there)
     if (normal.count(fs::absolute(path).lexically_normal()) == 0)
-      throw InputError(path.string() + ": is used by nothing: name it in " +
-                       (description.folder / kDescriptionName).string() + " or take it away");
+      throw InputError(path.string() + ": is not used: name it in " +
+                       (description.folder / kDescriptionName).string() + " or remove it");
 }
 
 ReferenceCurve read_reference_curve(const ReferenceDescription& description,
@@ -738,7 +738,7 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
     return foreign ? whole.place(row) : file + ":" + std::to_string(data.lines[row]);
   };
   if (description.kind != ReferenceKind::external && !ends_its_last_line(curve.file))
-    fail("the last line is not ended: the file is truncated");
+    fail("the last line has no end: the file is truncated");
   if (data.rows.size() != static_cast<std::size_t>(curve.points))
     fail("has " + std::to_string(data.rows.size()) +
          " rows of numbers, its description says points = " + std::to_string(curve.points) +
@@ -798,7 +798,8 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
               map.ours &&
           (ours.empty() || ours.front().frame == channel.frame))
         ours.push_back(channel);
-    if (ours.empty()) fail("a vector is mapped to \"" + map.ours + "\", which is none of a result");
+    if (ours.empty())
+      fail("a vector is mapped to \"" + map.ours + "\", which is not a vector of a result");
     require_convertible(map.unit, map.ours, ours.front().unit);
     std::array<std::optional<std::size_t>, 3> columns;
     for (std::size_t j = 0; j < 3; ++j)
@@ -852,7 +853,7 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
     const auto channel = known(map.ours);
     if (channel == channels.end())
       fail("column \"" + map.theirs + "\" is mapped to \"" + map.ours +
-           "\", which is no column of a result");
+           "\", which is not a column of a result");
     require_convertible(map.unit, map.ours, channel->unit);
     take(*channel, {{column, map.factor * in_our_unit(map.unit_in_si, *channel)}});
   }
@@ -862,8 +863,7 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
     const std::string& name = data.header[column];
     const auto channel = known(name);
     if (channel == channels.end())
-      fail("column \"" + name +
-           "\" is used by nothing: map it in [[curve.column]] or name it in ignore");
+      fail("column \"" + name + "\" is not used: map it in [[curve.column]] or name it in ignore");
     is_free(name);
     take(*channel, {{column, 1}});
   }
@@ -894,8 +894,8 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
       if (channel.quantity == quantity) peak = std::max(peak, table.peak(channel.group));
     if (largest > description.relative * peak)
       out.notes.push_back(
-          fmt::format("the file has a part of {} up to {:.2e} of its peak: not "
-                      "compared, the models have none there",
+          fmt::format("the file has a part of {} up to {:.2e} of its peak: not compared, because "
+                      "it is 0 in both models",
                       words, peak > 0 ? largest / peak : 1));
   }
   if (turn.repeated) {
@@ -907,7 +907,8 @@ ReferenceCurve read_reference_curve(const ReferenceDescription& description,
                              (absolute == description.absolute.end() ? 0 : absolute->second);
       if (is_computed(start) && is_computed(again) && std::abs(again - start) > allowed)
         fail("column \"" + data.header[sources[c].front().first] +
-             "\" ends the turn at another value than it starts with: the record is not periodic");
+             "\" has different values at the start and the end of the turn: the record is not "
+             "periodic");
     }
   }
   return out;
@@ -963,10 +964,10 @@ Judgement judge(const ReferenceDescription& description, const std::vector<Refer
       entry.finding = !computed(result, column) ? Finding::absent
                       : wanted                  ? Finding::incomplete
                                                 : Finding::missing;
-      if (wanted) entry.hint = "the reference lacks it";
+      if (wanted) entry.hint = "the reference does not have it";
     } else if (!entry.comparison.compared()) {
       entry.finding = Finding::incomplete;
-      entry.hint = computed(result, column) ? "one of both has gaps where the other has values"
+      entry.hint = computed(result, column) ? "one of them has gaps where the other has values"
                                             : "the model did not compute it";
     } else {
       const bool agrees = entry.comparison.verdict == Verdict::agrees;

@@ -32,13 +32,13 @@ using Reason = numerics::IntegrationFailure::Reason;
 const char* text_of(Reason reason) {
   switch (reason) {
     case Reason::tolerance:
-      return "the tolerance asks for more than double precision gives there";
+      return "the tolerance is tighter than double precision allows there";
     case Reason::no_rates:
-      return "motion or pressures have no finite rate of change from there on";
+      return "the rates of change of motion or pressures are not finite from there on";
     case Reason::step:
       break;
   }
-  return "motion or pressures change faster there than steps above round-off can follow";
+  return "motion or pressures change too fast there: the step falls below round-off";
 }
 
 }  // namespace
@@ -259,13 +259,13 @@ void HybridIntegrator::keep_going() {
   if (integrator_.steps() > kStepsToForesee && time_ > 0) {
     const double expected = static_cast<double>(integrator_.steps()) * duration_ / time_;
     if (expected > kHopeless * static_cast<double>(kMaxSteps))
-      fail("at this rate it would take " + rounded_text(expected) + " steps, more than " +
-           std::to_string(kMaxSteps) + ": simulate less of it (duration_s)");
+      fail("at this step size it would take " + rounded_text(expected) + " steps, more than " +
+           std::to_string(kMaxSteps) + ": shorten the simulated time (duration_s)");
   }
   if (integrator_.steps() - forgotten_steps_ > kMaxSteps)
     fail("after " + std::to_string(kMaxSteps) +
-         " steps: motion or pressures are too fast for the time that is asked for; simulate less "
-         "of it (duration_s), or with a larger error");
+         " steps: motion or pressures are too fast for the simulated time; shorten it (duration_s) "
+         "or allow a larger error");
   if (time_ - step_start_ > 1e2 * kRounding * time_) {
     short_steps_ = 0;
     integrator_.forget_complaint();

@@ -107,7 +107,7 @@ class Rows {
 
 std::string method_text(double tolerance) {
   return "BDF of variable order with Newton's method (CVODES), motion and oil together, " +
-         rounded_text(tolerance) + " per step of what each state's scale is";
+         rounded_text(tolerance) + " per step relative to the scale of each state";
 }
 
 Trajectory tabulate(const std::string& name, Mechanics& mechanics, Oil& oil, const DriveSpec& drive,

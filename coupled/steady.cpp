@@ -118,7 +118,7 @@ class PeriodMap {
       if (course.time() >= end) {
         if (period_ > 0) break;
         fail("the block does not turn by an N-th of a turn within " + number_text(limit_) +
-             " s (duration_s): what drives the shaft may not turn it at all");
+             " s (duration_s): the drive may not turn the shaft at all");
       }
       course.advance(end);
       course.state_at(course.time(), at);
@@ -335,12 +335,9 @@ SteadyMotion steady(const std::string& name, Mechanics& mechanics, Oil& oil, con
   const bool over_time = !drive.curve.time.empty() && drive.kind != DriveKind::motor;
   if (over_time || !mechanics.knots().empty())
     throw InputError(
-        "[drive] file: must be left out for a periodic motion: what drives the shaft changes in "
-        "time");
+        "[drive] file: must be left out for a periodic motion: the drive changes over time");
   if (!oil.knots().empty())
-    throw InputError(
-        "[hydraulics]: what the pump is connected to must not change in time for a periodic "
-        "motion");
+    throw InputError("[hydraulics]: the circuit must not change over time for a periodic motion");
   PeriodMap map(name, mechanics, oil, drive, progress);
   Newton newton(map, options.tolerance);
   SystemState start{mechanics.start(), oil.start()};

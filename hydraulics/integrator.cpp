@@ -121,8 +121,8 @@ class Period : public numerics::Equations {
 
 const char* text_of(numerics::IntegrationFailure::Reason reason) {
   return reason == numerics::IntegrationFailure::Reason::tolerance
-             ? "[hydraulics] tolerance asks for more than double precision gives there"
-             : "the pressures change faster there than steps above round-off can follow";
+             ? "[hydraulics] tolerance is tighter than double precision allows there"
+             : "the pressures change too fast there: the step falls below round-off";
 }
 
 }  // namespace

@@ -46,13 +46,12 @@ double seconds_per_degree(const Case& the_case, Network::Use use) {
     throw InputError(the_case.file.string() + ": [operation] speed_rpm = " + number_text(speed) +
                      ": refused with [pressure] kind = \"hydraulic\": " + why);
   };
-  if (speed == 0) refuse("at standstill there is no periodic pressure");
+  if (speed == 0) refuse("at rest there is no periodic pressure");
   if (speed < 0 && !delivery_is_held(the_case) && !load_of(the_case).sets_pressure())
     refuse(
-        "backwards the pump takes oil from the delivery line (motoring), and no size of a load "
-        "gives "
-        "delivery_bar there: a supply does ([load] kind = \"constant_pressure\"), or a size of "
-        "[load] is to be given, in a [loop] say");
+        "in reverse rotation the pump takes oil from the delivery line (motoring), and no size of "
+        "a load results in delivery_bar: give a supply ([load] kind = \"constant_pressure\") or "
+        "the size of [load], for example in a [loop]");
   return 1 / (6 * std::abs(speed));
 }
 
@@ -96,14 +95,14 @@ Network::Network(const Case& the_case, Use use)
   if (chamber().swept() <= kNoStroke * area * g.piston_length)
     throw InputError(the_case.file.string() +
                      ": [pump] tilt_deg = " + number_text(g.tilt / kRadPerDegree) +
-                     ": the pistons have no stroke, so that there is no displacement to compute a "
-                     "hydraulic pressure from");
+                     ": the pistons have no stroke, so the displacement is 0 and no hydraulic "
+                     "pressure can be computed");
   const HydraulicData& data = *the_case.hydraulics;
   if (use == Use::period && load_.kind() == LoadKind::flow && !fixed_end_ && !backwards() &&
       !(data.load->flow > 0 && data.load->flow * suction_.oil.density < ideal_mass_flow()))
     throw InputError(the_case.file.string() +
                      ": [load] flow_l_per_min = " + number_text(data.load->flow / kLitrePerMinute) +
-                     ": must be above 0 and below what the pump displaces, " +
+                     ": must be above 0 and below the ideal flow of the pump, " +
                      number_text(ideal_mass_flow() / suction_.oil.density / kLitrePerMinute) +
                      " l/min");
   // The terminals between which the load lies.

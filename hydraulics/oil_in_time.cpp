@@ -192,12 +192,12 @@ class OilInTime : public Oil {
     flow("leakage", "leakage of all chambers",
          [](const Flows& flows) { return sum_over_chambers(flows.leakage); });
     if (network_.load().has_relief() && !network_.fixed_end())
-      flow("flow_relief", "over the relief valve beside the load",
+      flow("flow_relief", "through the relief valve parallel to the load",
            [](const Flows& flows) { return flows.relief; });
     all.push_back(
         {{"power_useful_W",
-          "what the oil carries out of the delivery volume less what it carries in to "
-          "the suction port, mass flow times pressure potential",
+          "power that the oil carries out of the delivery volume less that into the suction port, "
+          "mass flow times pressure potential",
           "W"},
          [this](const double* y, const Flows& flows) { return network_.port_power(y, flows); }});
     return all;

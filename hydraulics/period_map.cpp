@@ -73,7 +73,7 @@ void search(PeriodMap& map, PeriodMap::Vector& z, double tolerance, PeriodMap::M
     PeriodMap::Vector step = -jacobian.partialPivLu().solve(f);
     if (!step.allFinite())
       throw ComputationError(
-          "hydraulics: no periodic state found: no load holds this mean delivery pressure");
+          "hydraulics: no periodic state found: no load results in this mean delivery pressure");
     step *= std::min(1.0, kLongestStep / size_of(step));
     bool accepted = false;
     for (int halving = 0; halving < kMaxHalvings && !accepted; ++halving, step /= 2) {

@@ -28,9 +28,10 @@ constexpr Description kDescriptions[kPlaces] = {
     {PowerUse::loss, "ring_slot", "leakage, joint of the piston ring"},
     {PowerUse::loss, "delivery_line", "delivery line, friction"},
     {PowerUse::loss, "damped_waves", "delivery line, waves above its bandwidth"},
-    {PowerUse::loss, "air", "air that comes out and dissolves late"},
-    {PowerUse::approximation, "line_density", "lines: one density in them, another at their ends"},
-    {PowerUse::loss, "relief_valve", "relief valve beside the load"},
+    {PowerUse::loss, "air", "delayed release and dissolution of air"},
+    {PowerUse::approximation, "line_density",
+     "lines: different densities inside and at their ends"},
+    {PowerUse::loss, "relief_valve", "relief valve parallel to the load"},
     {PowerUse::loss, "accumulator_inlet", "inlet of the accumulator"},
     {PowerUse::loss, "charge_valves", "check valves of the charge supply"},
 };

@@ -176,7 +176,7 @@ void refuse_what_is_out_of_reach(const Network& network, const Case& the_case,
     throw ComputationError(
         the_case.file.string() +
         ": [pressure] delivery_bar = " + number_text(network.delivery_pressure() / kPascalPerBar) +
-        ": out of reach: with nothing passing the load the mean delivery pressure is " +
+        ": cannot be reached: with the load closed the mean delivery pressure is " +
         (left > map.noise() * kCoarse ? "about " : "") +
         number_text(std::round(10 * largest / kPascalPerBar) / 10) +
         " bar, and leakage, backflow and compression take all of the flow");
@@ -443,7 +443,7 @@ SteadyState steady_state(const Case& the_case, const std::optional<Start>& start
   if (network.load_sought() && !(result.summary.mass_flow > 0)) {
     refuse_what_is_out_of_reach(network, the_case, alive);
     throw ComputationError(
-        failure_text(the_case, network, "hydraulics: nothing is left for the load"));
+        failure_text(the_case, network, "hydraulics: no flow is left for the load"));
   }
   result.equations = equations;
   result.corrected_states = map.states(found.next);
@@ -585,19 +585,19 @@ std::vector<Line> lines(const SteadyState& state) {
        100 * s.volumetric_efficiency, "%", "volumetric_efficiency_percent"},
       {"leakage", s.leakage / kLitrePerMinute, "l/min", "leakage_l_per_min"},
       {"mean delivery pressure", s.delivery_mean / bar, "bar", "delivery_mean_bar"},
-      {"delivery pressure, least", s.delivery_least / bar, "bar", "delivery_least_bar"},
-      {"delivery pressure, greatest", s.delivery_greatest / bar, "bar", "delivery_greatest_bar"},
+      {"delivery pressure, minimum", s.delivery_least / bar, "bar", "delivery_least_bar"},
+      {"delivery pressure, maximum", s.delivery_greatest / bar, "bar", "delivery_greatest_bar"},
       {"delivery pressure ripple, peak to peak", (s.delivery_greatest - s.delivery_least) / bar,
        "bar", "delivery_ripple_bar"},
       {"ripple of the flow to the load, peak to peak", 100 * s.flow_ripple, "% of mean",
        "flow_ripple_percent"},
       {"ripple of the flow through the delivery port, peak to peak", 100 * s.port_flow_ripple,
        "% of mean", "port_flow_ripple_percent"},
-      {"chamber pressure, greatest", s.chamber_greatest / bar, "bar", "chamber_greatest_bar"},
-      {"angle of the greatest", s.chamber_greatest_deg, "deg", "chamber_greatest_deg"},
+      {"chamber pressure, maximum", s.chamber_greatest / bar, "bar", "chamber_greatest_bar"},
+      {"angle of the maximum", s.chamber_greatest_deg, "deg", "chamber_greatest_deg"},
       {"overshoot over mean delivery pressure", s.overshoot / bar, "bar", "overshoot_bar"},
-      {"chamber pressure, least", s.chamber_least / bar, "bar", "chamber_least_bar"},
-      {"angle of the least", s.chamber_least_deg, "deg", "chamber_least_deg"},
+      {"chamber pressure, minimum", s.chamber_least / bar, "bar", "chamber_least_bar"},
+      {"angle of the minimum", s.chamber_least_deg, "deg", "chamber_least_deg"},
       {"undershoot under suction pressure", s.undershoot / bar, "bar", "undershoot_bar"},
       {"work of the pistons per turn", s.work, "J", "work_J"},
       {"mean torque of that work", s.work / (2 * kPi), "Nm", "work_torque_Nm"},

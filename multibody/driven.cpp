@@ -99,8 +99,8 @@ ResultTable run_driven(const Case& the_case, const Assumptions& assumptions, con
   ResultTable table = tabulate("multibody", at, samples, evaluate, progress);
   table.provenance = model.provenance();
   if (scene == Scene::piston)
-    table.provenance.facts.emplace_back("pistons",
-                                        shared ? "one stands for all" : "evaluated one by one");
+    table.provenance.facts.emplace_back(
+        "pistons", shared ? "one piston represents all" : "evaluated one by one");
   table.provenance.seconds = stopwatch.seconds();
   return table;
 }

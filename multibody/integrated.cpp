@@ -26,7 +26,7 @@ void check(const Case& the_case, const Samples& samples) {
   if (the_case.operation.speed_rpm == 0)
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = 0: an integrated run needs a speed other than 0 "
-                     "(use the driven way at standstill)");
+                     "(at rest use --way driven)");
 }
 
 }  // namespace

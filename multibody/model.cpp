@@ -98,7 +98,7 @@ void Model::Implementation::check(const Instant& instant) const {
   };
   if (lacks(instant.shaft.acceleration, system.pump().shaft.axial_inertia) ||
       lacks(instant.block.acceleration, system.pump().block.axial_inertia))
-    throw InputError("multibody model: changing speed needs axial inertias above 0");
+    throw InputError("multibody model: a changing speed needs axial inertias > 0");
 }
 
 void Model::Implementation::require_sizes(const Instant& instant,
@@ -107,7 +107,7 @@ void Model::Implementation::require_sizes(const Instant& instant,
     throw InputError("multibody model: " + std::to_string(instant.chamber_pressure.size()) +
                      " chamber pressures for " + std::to_string(layout.pistons()) + " pistons");
   if (values.size() < layout.size())
-    throw InputError("multibody model: room for " + std::to_string(values.size()) +
+    throw InputError("multibody model: space for " + std::to_string(values.size()) +
                      " values, needed are " + std::to_string(layout.size()));
 }
 
@@ -117,7 +117,7 @@ void Model::Implementation::check_rank() {
   if (rank.rank < rank.equations)
     throw ComputationError("multibody model: " + std::to_string(rank.equations) +
                            " constraint equations have rank " + std::to_string(rank.rank) +
-                           ": reactions cannot be told apart");
+                           ": the reactions are not determined uniquely");
 }
 
 // Lets the teeth stand as they are given, or where they give what the block's balance takes.
@@ -273,8 +273,8 @@ Provenance Model::provenance() const {
            ", no time integration"});
   if (!self.system.contact_at_b())
     facts.emplace_back("bore forces",
-                       "act off B and do work on the play between pistons and bores, as no ideal "
-                       "constraint can: found by inverse dynamics" +
+                       "do not act at B and do work on the play between pistons and bores, which "
+                       "an ideal constraint cannot: found by inverse dynamics" +
                            std::string(self.method_is_given ? "" : ", chosen for that"));
   facts.emplace_back("mobilities", std::to_string(self.rank.mobilities));
   facts.emplace_back("constraint equations", std::to_string(self.rank.equations));

@@ -35,7 +35,7 @@ namespace {
 std::string ring_contact_text(const PumpParameters& pump) {
   const auto mm = [](double metres) { return number_text(metres * 1e3); };
   return "multibody model: [piston] contact_mm = " + mm(*pump.piston.contact) +
-         " is not piston_length_mm = " + mm(pump.geometry.piston_length) +
+         " differs from piston_length_mm = " + mm(pump.geometry.piston_length) +
          ": the bores' forces do work, which Simbody's ideal constraints cannot; ";
 }
 
@@ -61,7 +61,7 @@ Method method_for(const PumpParameters& pump, std::optional<Method> asked) {
   if (!has_ring_off_b(pump)) return asked.value_or(Method::multipliers);
   if (asked == Method::multipliers)
     throw InputError(ring_contact_text(pump) +
-                     "no multipliers are such forces: use --reactions residual");
+                     "multipliers cannot represent such forces: use --reactions residual");
   return Method::residual;
 }
 

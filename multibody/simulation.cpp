@@ -25,7 +25,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Case& the_case,
   auto facts = scene_facts(the_case.pump, assumptions);
   for (auto& [name, fact] : facts) {
     if (name == "scene" && !rigid)
-      fact = "full pump, compliant teeth pushing each other at O4 by a force element";
+      fact = "full pump, compliant tooth contact at O4 as a force element";
     if (name == "bodies" && drive == DriveKind::motor) fact += " and the motor's rotor";
     if (name == "constraints")
       fact = std::string("cylindrical bearing inline at C2 (2), ") +

@@ -52,6 +52,17 @@ std::string scene_block(const Document& document) {
          page_parts().at("OrbitControls.js") + "</script>\n";
 }
 
+// The licences of the libraries in the page.
+std::string notices(const Document& document) {
+  std::string text;
+  const auto add = [&](const std::string& name) {
+    text += "<h2>" + name + "</h2>\n<pre>" + markup_of(page_parts().at(name + ".txt")) + "</pre>\n";
+  };
+  add("dygraphs");
+  if (document.scene) add("three.js");
+  return text;
+}
+
 }  // namespace
 
 std::string filled_template(const std::string& part, const Fillings& fillings) {
@@ -73,6 +84,7 @@ std::string render_page(const Document& document, const Curves& curves) {
                                            {"@REPORT_JS@", script()},
                                            {"@PICTURES@", pictures(document, curves)},
                                            {"@PICTURE@", document.picture},
+                                           {"@NOTICES@", notices(document)},
                                            {"@SCENE@", scene_block(document)},
                                            {"@CURVES_JSON@", script_safe(packed_json(curves))},
                                            {"@REPORT_JSON@", script_safe(compact_json(document))}});

@@ -79,7 +79,7 @@ class AnswersTest(unittest.TestCase):
         answers = self.answers("life", self.case("bap63_bearing_life"), "--set", "operation.samples_per_revolution=60",
                                "--duty", REPO / "cases" / "curves" / "duty_cycle.csv", report="life.json")
         self.assertRegex(answers[0], r"^The tapered bearing sets the life \(\d+ h; both together \d+ h\)\.$")
-        self.assertRegex(answers[1], r"^Most of it goes to row 2: .*: 44\.\d % of its life in 30 % of the time\.$")
+        self.assertRegex(answers[1], r"^Most of its life is consumed by row 2: .*: 44\.\d % of its life in 30 % of the time\.$")
 
     def test_rattle(self):
         answers = self.answers("rattle", self.case("bap63_tooth_rattle"), "--speeds", "300:900:#2", "--delivery-bar",

@@ -213,7 +213,7 @@ class UsageTest(ProgramTest):
         for arguments, words in (
             (["hardcases", "--turns", "100001"], ["--turns", "100000"]),
             (["hardcases", "--filter", "absent"], ["hard/catalogue.toml", "absent"]),
-            (["tradeoff", case, "--samples", "100001"], ["--samples", "100000"]),
+            (["tradeoff", case, "--angles", "100001"], ["--angles", "100000"]),
             (["run", case, "--model", "multibody", "--way", "integrated", "--error", "0.1004"], ["--error", "0.1"]),
             (["run", case, "--model", "multibody", "--way", "integrated", "--error", "9.96e-12"], ["--error", "1e-11"]),
         ):
@@ -223,7 +223,7 @@ class UsageTest(ProgramTest):
                 self.assertRegex(line, rf"\b{words[1]}\b")
 
     def test_accuracies_that_are_tried_unless_others_are_named(self):
-        self.run_program("tradeoff", self.case(), "--integrators", "verlet", "--samples", 10, "--max-seconds-per-run", 1e-6, "--out", ".")
+        self.run_program("tradeoff", self.case(), "--integrators", "verlet", "--angles", 10, "--max-seconds-per-run", 1e-6, "--out", ".")
         rows = json.loads((self.folder / "tradeoff.json").read_text())["rows"]
         tried = [row["accuracy"] for row in rows if row["method"] == "integrated"]
         self.assertEqual(tried, 2 * [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10])
@@ -379,7 +379,7 @@ class UsageTest(ProgramTest):
             ["run", case, "--model", "analytic"], ["run", case, "--model", "multibody"], ["compare", case],
             ["compare", case, "--multibody-case", case], ["inertia", case], ["tradeoff", case],
             ["pressure", hydraulic], ["rattle", case, "--speeds", "1:2:#2", "--delivery-bar", "1:2:#2"], ["reference", "new", case, "--from", "curve.csv"],
-            ["reference", "golden", case, "--out", "golden"], ["calibrate", hydraulic, "--with", "294.7", "--without", "293.4"],
+            ["reference", "golden", case, "--out", "golden"], ["calibrate", hydraulic, "--torque-with-friction", "294.7", "--torque-without-friction", "293.4"],
             ["blocktorque", case, hydraulic],
             ["uncertainty", case],
         ):
@@ -1060,7 +1060,7 @@ class InterruptionTest(ProgramTest):
 
     def test_an_interrupted_update_says_what_was_rewritten(self):
         for name, samples in (("a", 3), ("b", 4000)):
-            self.run_program("reference", "golden", self.case(), "--samples", samples, "--out", f"data/{name}")
+            self.run_program("reference", "golden", self.case(), "--angles", samples, "--out", f"data/{name}")
         (self.folder / "data" / "a" / "multibody.csv").write_text("theta_deg\n0\n")
         process = self.start("reference", "update", "data")
         self.addCleanup(process.kill)
@@ -1288,15 +1288,15 @@ class PressureTest(ProgramTest):
         self.assertEqual(drawn, {})
 
     def test_calibrate_and_blocktorque(self):
-        result = self.run_program("calibrate", REPO / "cases" / "bap63_rated_hydraulic.toml", "--with", "294.7",
-                                  "--without", "293.4")
+        result = self.run_program("calibrate", REPO / "cases" / "bap63_rated_hydraulic.toml", "--torque-with-friction", "294.7",
+                                  "--torque-without-friction", "293.4")
         self.assertEqual(result.out, 4 * ("piston_coulomb_N = 25.1777, shaft_torque_factor = 0.987746: 294.7000 Nm with, "
                                           "293.4000 Nm without piston friction\n"))
         cases = [REPO / "cases" / f"{name}.toml" for name in ("bap63_rated", "bap63_rated_hydraulic")]
         result = self.run_program("blocktorque", *cases)
         self.assertIn(result.out, (REPO / "docs" / "shaft_to_block_torque.md").read_text())
         self.assert_mentions(self.refused("blocktorque", cases[0]), "HYDRAULIC_CASE is missing")
-        self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0}), "--with", 2, "--without", 1),
+        self.assert_mentions(self.refused("calibrate", self.case(**{"friction.piston_coulomb_N": 0.0}), "--torque-with-friction", 2, "--torque-without-friction", 1),
                              "piston_coulomb_N")
 
     def test_calibrate_finds_the_torques_or_says_that_it_does_not(self):
@@ -1304,12 +1304,12 @@ class PressureTest(ProgramTest):
             return self.case(**{"operation.samples_per_revolution": 36, "friction.piston_viscous_N_s_per_m": value})
 
         # Viscous friction does not grow with piston_coulomb_N: it adds about 2 of the wanted 3 Nm.
-        result = self.run_program("calibrate", viscous(20.0), "--with", 295, "--without", 292)
+        result = self.run_program("calibrate", viscous(20.0), "--torque-with-friction", 295, "--torque-without-friction", 292)
         self.assertIn(": 295.0000 Nm with, 292.0000 Nm without", result.out.splitlines()[-1])
         # And here more than is wanted: no Coulomb friction gives that.
-        self.assert_mentions(self.refused("calibrate", viscous(500.0), "--with", 295, "--without", 292),
+        self.assert_mentions(self.refused("calibrate", viscous(500.0), "--torque-with-friction", 295, "--torque-without-friction", 292),
                              "piston_coulomb_N", "must be > 0", "add 3 Nm", "piston_viscous_N_s_per_m")
-        self.assert_mentions(self.refused("calibrate", viscous(0.0), "--with", 290, "--without", 295), "piston_coulomb_N", "add -5 Nm")
+        self.assert_mentions(self.refused("calibrate", viscous(0.0), "--torque-with-friction", 290, "--torque-without-friction", 295), "piston_coulomb_N", "add -5 Nm")
 
     def test_overlay(self):
         self.run_program("pressure", self.hydraulic(), "--overlay", self.hydraulic("peak.toml", "bap63_peak"),
@@ -1351,7 +1351,7 @@ class PressureTest(ProgramTest):
         for text, word in ("1:2", "FROM:TO:STEP"), ("a:2:1", "FROM:TO:STEP"), ("5:1:1", "FROM <= TO"), ("0:1:0", "STEP > 0"):
             self.assert_mentions(self.refused("pressure", case, "--delivery-bar", text), text, word)
         slow = self.hydraulic("slow.toml", **{"operation.speed_rpm": 5.0})
-        self.assert_mentions(self.refused("pressure", slow, status=COMPUTATION_FAILED), "slow.toml", "delivery_bar", "out of reach",
+        self.assert_mentions(self.refused("pressure", slow, status=COMPUTATION_FAILED), "slow.toml", "delivery_bar", "cannot be reached",
                              "11.7 bar")
 
 

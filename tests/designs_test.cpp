@@ -31,7 +31,7 @@ TEST(Variable, IsAParameterByItsName) {
   EXPECT_THAT(refusal([&] { Variable("pump.tilt", base); }), testing::HasSubstr("pump.tilt_deg"));
   EXPECT_THAT(refusal([&] { Variable("name", base); }), testing::HasSubstr("cannot vary"));
   EXPECT_THAT(refusal([&] { Variable("gear.backlash_um", base); }),
-              testing::HasSubstr("changes nothing"));
+              testing::HasSubstr("has no effect"));
   // Where the bore force acts does something in every case, but this one leaves it to its default.
   EXPECT_THAT(refusal([&] { Variable("piston.contact_mm", base); }),
               testing::HasSubstr("is not in this case: give it a value"));

@@ -78,7 +78,7 @@ class ExplanationTest(unittest.TestCase):
 
     def explanations(self):
         """By reference: the sentence, and the rows of the table."""
-        text = self.program("regress", "references", "--json", "regress.json", status=1)
+        text = self.program("regress", "references", "--json-file", "regress.json", status=1)
         report = json.loads((self.folder / "regress.json").read_text())
         (section,) = [run for run in report["runs"] if run["title"] == "What would explain the difference"]
         for name, sentence in dict(section["facts"]).items():

@@ -285,7 +285,7 @@ TEST_F(OutputFolderTest, RunsAreKeptApartByALock) {
          {RunLock::Kind::alone, RunLock::Kind::shared, RunLock::Kind::reader})
       EXPECT_THAT(refused(kind),
                   testing::AllOf(testing::HasSubstr((folder_ / "parts").string()),
-                                 testing::HasSubstr("another sweep is running there"),
+                                 testing::HasSubstr("another sweep is running in this directory"),
                                  testing::HasSubstr("process " + std::to_string(getpid()))));
   }
   EXPECT_FALSE(fs::exists(file));
@@ -564,7 +564,7 @@ TEST_F(InputFileTest, AreReadWholeUpToALimit) {
 }
 
 TEST_F(InputFileTest, AreRegular) {
-  EXPECT_THAT(refusal(folder_, 10), HasSubstr("is a folder, not a curve"));
+  EXPECT_THAT(refusal(folder_, 10), HasSubstr("is a directory, not a curve"));
   EXPECT_THAT(refusal(folder_ / "none", 10), HasSubstr("no such file"));
   EXPECT_THAT(refusal("/dev/null", 10), HasSubstr("is a device: a curve must be a regular file"));
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);

@@ -406,7 +406,7 @@ class Archives(unittest.TestCase):
 
     def test_tokens_differ_where_units_do(self):
         tokens = set()
-        variants = [[], ["--tolerance", "1e-7"], ["--drive", "torque"], ["--set", "pump.tilt_deg=39"]]
+        variants = [[], ["--accuracy", "1e-7"], ["--drive", "torque"], ["--set", "pump.tilt_deg=39"]]
         for i, more in enumerate(variants):
             file = self.folder / f"variant{i}.fmu"
             self.assertEqual(run("fmu", REPO / "cases/bap63_rated.toml", "--out", file, *more).returncode, 0)
@@ -494,7 +494,7 @@ class Refusals(unittest.TestCase):
     def test_options(self):
         self.refused("--fmi", "1", says="--fmi")
         self.refused("--drive", "hand", says="--drive")
-        self.refused("--tolerance", "1", says="--tolerance")
+        self.refused("--accuracy", "1", says="--accuracy")
         self.refused("--drive", "case", says="[drive]")
         self.refused("--set", "pump.tilt_deg=95", says="tilt_deg")
 
@@ -507,7 +507,7 @@ class Refusals(unittest.TestCase):
         book = self.folder / "pressure.xlsx"
         write_workbook(book, [["theta_deg", "pressure_bar"]] + [[20 * i, 275 if i < 9 else 0] for i in range(18)])
         curve = ["--set", "pressure.kind=curve", "--set", f'pressure.file="{book}"']
-        self.refused(*curve, says="which a unit cannot read")
+        self.refused(*curve, says="which an FMU cannot read")
         # The program can.
         result = run("show", REPO / "cases/bap63_rated.toml", *curve)
         self.assertEqual(result.returncode, 0, result.stderr)

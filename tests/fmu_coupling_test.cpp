@@ -132,20 +132,20 @@ TEST_F(ConnectTest, RefusesWhatIsNotThereOrNotClear) {
   EXPECT_THAT(refused({"drive_torque=local"}), HasSubstr("no output \"local\""));
   EXPECT_THAT(refused({"n=motor_speed"}), HasSubstr("no column \"motor_speed\""));
   EXPECT_THAT(refused({"drive=torque"}),
-              AllOf(HasSubstr("neither the pump nor the unit"), HasSubstr("drive_speed")));
+              AllOf(HasSubstr("neither the pump nor the FMU"), HasSubstr("drive_speed")));
   EXPECT_THAT(refused({"drive_torque=torque", "drive_torque=torque"}),
               HasSubstr("connected already"));
-  EXPECT_THAT(refused({"n=shaft_rpm"}), HasSubstr("nothing of it acts on the pump"));
+  EXPECT_THAT(refused({"n=shaft_rpm"}), HasSubstr("no output acts on the pump"));
   // Of names that both sides have.
   add(variable("drive_torque", "input", "N.m"));
   add(variable("Td_z1_Nm", "output", "N.m"));
-  EXPECT_THAT(refused({"drive_torque=Td_z1_Nm"}), HasSubstr("is not clear"));
+  EXPECT_THAT(refused({"drive_torque=Td_z1_Nm"}), HasSubstr("is ambiguous"));
 }
 
 TEST_F(ConnectTest, RefusesTwoThatTurnTheShaftOrHalfAMotion) {
   add(variable("drive_torque", "output", "N.m"));
   add(variable("drive_speed", "output", "rad/s"));
-  EXPECT_THAT(refused({}), AllOf(HasSubstr("is not clear"), HasSubstr("drive_torque")));
+  EXPECT_THAT(refused({}), AllOf(HasSubstr("is ambiguous"), HasSubstr("drive_torque")));
   unit_.variables = {variable("drive_acceleration", "output", "rad/s2")};
   EXPECT_THAT(refused({}), HasSubstr("drive_acceleration without drive_speed"));
 }

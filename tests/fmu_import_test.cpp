@@ -103,7 +103,7 @@ TEST_F(FmuImportTest, RefusesWhatIsNoUnitByName) {
   EXPECT_THAT(of(folder_ / "none.fmu"), EndsWith("none.fmu: does not exist"));
   EXPECT_THAT(of(folder_), HasSubstr("is a folder"));
   std::ofstream(folder_ / "text.fmu") << "hello";
-  EXPECT_THAT(of(folder_ / "text.fmu"), HasSubstr("no zip archive"));
+  EXPECT_THAT(of(folder_ / "text.fmu"), HasSubstr("not a zip archive"));
   EXPECT_THAT(of(Entries{{"readme.txt", "hello"}}), HasSubstr("it has no modelDescription.xml"));
   EXPECT_THAT(of(Entries{{"modelDescription.xml", "<fmi"}}), HasSubstr("is no XML"));
   EXPECT_THAT(of(Entries{{"modelDescription.xml", "<other/>"}}),
@@ -124,7 +124,7 @@ TEST_F(FmuImportTest, RefusesPathsThatLeaveTheFolder) {
   for (const std::string name : {"../evil.txt", "resources/../../evil.txt", "/tmp/evil.txt",
                                  "resources\\..\\evil.txt", "C:/evil.txt"})
     EXPECT_THAT(of(Entries{{name, "x"}, {"modelDescription.xml", "<x/>"}}),
-                AllOf(HasSubstr(name), HasSubstr("would be unpacked elsewhere")));
+                AllOf(HasSubstr(name), HasSubstr("would be unpacked outside")));
   EXPECT_FALSE(fs::exists(temporary_ / "evil.txt"));
 }
 
@@ -147,7 +147,7 @@ TEST_F(FmuImportTest, RefusesDescriptionsByElementAndValue) {
   EXPECT_THAT(with("valueReference=\"1\"", "valueReference=\"-1\""),
               AllOf(HasSubstr("\"moving\""), HasSubstr("valueReference = \"-1\"")));
   EXPECT_THAT(with("stopTime=\"1\"", "stopTime=\"soon\""), HasSubstr("stopTime = \"soon\""));
-  EXPECT_THAT(with("<CoSimulation", "<ModelExchange"), HasSubstr("is for model exchange alone"));
+  EXPECT_THAT(with("<CoSimulation", "<ModelExchange"), HasSubstr("is for model exchange only"));
   EXPECT_THAT(with("<CoSimulation", "<Other"), HasSubstr("has no <CoSimulation>"));
 }
 
@@ -172,7 +172,7 @@ TEST_F(FmuImportTest, SaysWhichBinaryIsMissing) {
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   EXPECT_THAT(of(Entries{{"modelDescription.xml", text}, {"binaries/win64/valve.dll", "x"}}),
               AllOf(HasSubstr("/valve.so"), HasSubstr("its binaries are for win64")));
-  EXPECT_THAT(of(Entries{{"modelDescription.xml", text}}), HasSubstr("nor binaries for another"));
+  EXPECT_THAT(of(Entries{{"modelDescription.xml", text}}), HasSubstr("none for another"));
   EXPECT_THAT(of(Entries{{"modelDescription.xml", text},
                          {"binaries/linux64/valve.so", "x"},
                          {"binaries/linux-aarch64/valve.so", "x"}}),

@@ -172,7 +172,7 @@ TEST_F(FmuProcessTest, AHangAnywhereIsEndedInTime) {
       const std::string function = place.functions[version - 2];
       if (function.empty()) continue;
       EXPECT_THAT(said(place.name, "hang", version, limits),
-                  AllOf(HasSubstr(": " + function + ": the FMU has not come back after 1 s"),
+                  AllOf(HasSubstr(": " + function + ": the FMU has not returned after 1 s"),
                         HasSubstr("--fmu-timeout")));
     }
   EXPECT_THAT(said("unload", "hang", 2, limits), HasSubstr("exit handlers"));
@@ -191,7 +191,7 @@ TEST_F(FmuProcessTest, EveryWayToEndIsSaid) {
   EXPECT_THAT(step("kill_group"), HasSubstr("SIGKILL"));
   EXPECT_THAT(step("stop"), HasSubstr("SIGSTOP"));
   EXPECT_THAT(step("recursion"), HasSubstr("SIGSEGV"));
-  EXPECT_THAT(step("exception"), EndsWith("a C++ exception came out of the FMU: no level of oil"));
+  EXPECT_THAT(step("exception"), EndsWith("the FMU threw a C++ exception: no level of oil"));
   EXPECT_THAT(step("close_all"), EndsWith("the FMU closed the descriptor by which it is called"));
   EXPECT_THAT(step("close_and_open"), EndsWith("by which it is called"));
   EXPECT_THAT(step("close_and_pair"), EndsWith("by which it is called"));
@@ -203,7 +203,7 @@ TEST_F(FmuProcessTest, NoSignalHandlerKeepsAnFmuAlive) {
   Limits limits;
   limits.call_seconds = kShort;
   for (const char* action : {"hang_deaf", "hang_in_handler", "endless_log", "endless_print"})
-    EXPECT_THAT(said("step", action, 3, limits), HasSubstr("has not come back")) << action;
+    EXPECT_THAT(said("step", action, 3, limits), HasSubstr("has not returned")) << action;
 }
 
 // ---- What it goes on from

@@ -40,7 +40,7 @@ class SeriesTest(ProgramTest):
         for row in rows[1:]:
             self.assertEqual({value for key, value in row.items() if key not in ("delivery_bar", "reason")}, {""})
             self.assertIn("[pressure] delivery_bar = " + row["delivery_bar"], row["reason"])
-            self.assertIn("out of reach", row["reason"])
+            self.assertIn("cannot be reached", row["reason"])
             self.assertIn("delivery_bar = " + row["delivery_bar"], result.err)
         self.assertIn("2 of 3 points could not be computed", result.err)
         self.assertEqual(len(self.failed("pressure.json")), 2)
@@ -58,7 +58,7 @@ class SeriesTest(ProgramTest):
         rows = self.rows("life.csv")
         self.assertEqual([row["row"] for row in rows], ["1", "3", "2"])
         self.assertEqual({value for key, value in rows[2].items() if key not in ("row", "reason")}, {""})
-        self.assertIn("out of reach", rows[2]["reason"])
+        self.assertIn("cannot be reached", rows[2]["reason"])
         self.assertAlmostEqual(sum(float(row["tapered_life_share"]) for row in rows[:2]), 1, 9)
         self.assertIn("NOT the life under the whole duty cycle: row 2 could not be computed", result.out)
         self.assertIn("row 2: delivery_bar 500", result.err)

@@ -33,7 +33,7 @@ IdentificationData record_of(const Case& the_case, const ResultTable& turn, unsi
   const auto uniform = [&] { return (static_cast<double>(engine() >> 11U) + 0.5) * 0x1p-53; };
   IdentificationData data;
   for (const std::string& text : kUnknowns)
-    data.unknowns.push_back(unknown_of("--unknown", text, the_case));
+    data.unknowns.push_back(unknown_of("--vary", text, the_case));
   for (const std::string& name : kMeasured) {
     Datum datum;
     datum.what = name;

@@ -73,7 +73,7 @@ IdentificationData record_of(const Case& truth, const Rig& rig) {
   };
   IdentificationData data;
   for (const std::string& text : rig.unknowns)
-    data.unknowns.push_back(unknown_of("--unknown", text, truth));
+    data.unknowns.push_back(unknown_of("--vary", text, truth));
   for (const double speed : {500.0, 1500.0, 2500.0})
     for (const double bar : {50.0, 150.0, 250.0}) {
       Condition condition;
@@ -273,7 +273,7 @@ Datum torque(const Case& base, double value, double uncertainty) {
 TEST_F(Goodness, AsManyUnknownsAsDataAreNoTest) {
   const Case base = pump(25);
   IdentificationData data;
-  data.unknowns = {unknown_of("--unknown", "pressure.delivery_bar=200:400", base)};
+  data.unknowns = {unknown_of("--vary", "pressure.delivery_bar=200:400", base)};
   data.data = {torque(base, 292, 1)};
   const DataModel model(base, data);
   const Identification found = fit(model);
@@ -291,14 +291,14 @@ TEST_F(Goodness, AsManyUnknownsAsDataAreNoTest) {
 TEST_F(Goodness, AnUnknownAtItsBoundIsNotFitted) {
   const Case base = pump(25);
   IdentificationData data;
-  data.unknowns = {unknown_of("--unknown", "pressure.delivery_bar=200:280", base)};
+  data.unknowns = {unknown_of("--vary", "pressure.delivery_bar=200:280", base)};
   data.data = {torque(base, 400, 1)};
   const Identification found = fit(DataModel(base, data));
   EXPECT_NEAR(found.fit.x[0], 280, 1e-6);
   EXPECT_EQ(found.goodness.degrees_of_freedom(), 1U);
   EXPECT_TRUE(found.goodness.refuted());
   // And one of which the data say nothing neither.
-  data.unknowns = {unknown_of("--unknown", "block.mass_kg=1:2", base)};
+  data.unknowns = {unknown_of("--vary", "block.mass_kg=1:2", base)};
   data.data = {torque(base, 292.5, 1), torque(base, 292.6, 1)};
   EXPECT_EQ(fit(DataModel(base, data)).goodness.degrees_of_freedom(), 2U);
 }
@@ -307,7 +307,7 @@ TEST_F(Goodness, AnUnknownAtItsBoundIsNotFitted) {
 TEST_F(Goodness, WindowsCountWhereTheyAreLeft) {
   const Case base = pump(25);
   IdentificationData data;
-  data.unknowns = {unknown_of("--unknown", "pressure.delivery_bar=200:400", base)};
+  data.unknowns = {unknown_of("--vary", "pressure.delivery_bar=200:400", base)};
   Datum window = torque(base, 0, 1);
   window.value.reset();
   window.low = -HUGE_VAL;

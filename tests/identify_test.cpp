@@ -57,8 +57,7 @@ Datum number(const Case& base, const std::string& name, double value, double unc
 IdentificationData data_of(const Case& base, const std::vector<std::string>& unknowns,
                            std::vector<Datum> data) {
   IdentificationData all;
-  for (const std::string& text : unknowns)
-    all.unknowns.push_back(unknown_of("--unknown", text, base));
+  for (const std::string& text : unknowns) all.unknowns.push_back(unknown_of("--vary", text, base));
   all.data = std::move(data);
   return all;
 }
@@ -421,9 +420,9 @@ TEST_F(Identify, WhatCannotBeIsRefused) {
   EXPECT_THAT(refusal(data_of(base, {"pump.tilt_deg=30:50"}, {})), HasSubstr("nothing that"));
   EXPECT_THAT(refusal(data_of(base, {"pump.tilt_deg=30:50", "pump.tilt_deg=30:50"}, {torque})),
               HasSubstr("unknown twice"));
-  EXPECT_THAT(refusal_of([&] { unknown_of("--unknown", "pump.tilt_deg=50:30", base); }),
+  EXPECT_THAT(refusal_of([&] { unknown_of("--vary", "pump.tilt_deg=50:30", base); }),
               HasSubstr("below"));
-  EXPECT_THAT(refusal_of([&] { unknown_of("--unknown", "pump.pistons=3:9", base); }),
+  EXPECT_THAT(refusal_of([&] { unknown_of("--vary", "pump.pistons=3:9", base); }),
               HasSubstr("no values in between"));
 }
 

@@ -65,7 +65,7 @@ class ExportTest(ImportTest):
 
     def test_the_report_shows_what_agrees(self):
         self.new(self.exports / "good" / "bench.csv", "--accept")
-        self.run_program("regress", "ref", "--json", "r.json")
+        self.run_program("regress", "ref", "--json-file", "r.json")
         figures = json.loads((self.folder / "r.json").read_text())["figures"]
         self.assertEqual({name for figure in figures for name in figure["channels"]},
                          {f"Rs_1_{axis}2_N" for axis in "xyz"} | {f"Rb1_{axis}1_N" for axis in "xyz"} | {"Rb2_x1_N", "Rb2_y1_N"}

@@ -56,8 +56,8 @@ class Index(unittest.TestCase):
         for name, more in {ODD: [], "deep/er/differs": ["--multibody-case", other]}.items():
             cls.status[name] = run("compare", case, *few, *more, "--out", cls.folder / name).returncode
         run("pressure", REPO / "cases/bap63_rated_hydraulic.toml", "--out", cls.folder / "deep")
-        run("reference", "golden", case, "--samples", "36", "--out", cls.folder.with_name(cls.folder.name + "_golden"))
-        done = run("regress", cls.folder.with_name(cls.folder.name + "_golden"), "--html", cls.folder / "deep/regress.html", "--json",
+        run("reference", "golden", case, "--angles", "36", "--out", cls.folder.with_name(cls.folder.name + "_golden"))
+        done = run("regress", cls.folder.with_name(cls.folder.name + "_golden"), "--html", cls.folder / "deep/regress.html", "--json-file",
                    cls.folder / "deep/regress.json")
         assert done.returncode == 0, done.stderr
         (cls.folder / "no_report.json").write_text('{"schema": 1}')

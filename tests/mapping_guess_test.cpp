@@ -743,7 +743,7 @@ TEST(MappingRecords, ColumnsSignsUnitsAndPhase) {
   EXPECT_EQ(found.samples, 0);  // half a step off
   EXPECT_EQ(found.digits, 4);
   EXPECT_EQ(found.recognised(), 6U);
-  EXPECT_THAT(found.ignored, ElementsAre(Pair("noise", "no channel has this curve")));
+  EXPECT_THAT(found.ignored, ElementsAre(Pair("noise", "no channel has a similar curve")));
   EXPECT_THAT(found.curve.ignored, ElementsAre("noise"));
   // Half of the last digit over the peak: of Fy, whose column reaches 10 kN and more, 5 N.
   double largest = 0;
@@ -975,7 +975,7 @@ TEST(MappingRecords, AWrongSignOfOneComponentIsComparedNotLeftOut) {
                   {"Rb1x -> 1 Rb1_x1_N, N", "Rb1y -> 1 Rb1_y1_N, N", "Rb1z -> 1 Rb1_z1_N, N"}));
   ASSERT_EQ(found.proposals.size(), 3U);
   EXPECT_EQ(found.proposals[0].theirs, "Rb1x, Rb1y, Rb1z");  // worst first
-  EXPECT_EQ(found.proposals[0].remark, "differs by its signs, or only its name says so");
+  EXPECT_EQ(found.proposals[0].remark, "signs differ, or only the name matches");
   double wrong = 0, all = 0;
   for (const auto& row : record(1, 40, columns).rows) {
     wrong += 4 * row[1] * row[1];
@@ -1002,7 +1002,7 @@ TEST(MappingRecords, AWrongSignIsComparedInASmallPumpToo) {
     columns.push_back({theirs, "N", of(name, sign * kSize)});
   const MappingGuess found = guess_mapping(record(1, 40, columns), small, frames(), 3600);
   EXPECT_EQ(found.recognised(), 7U);
-  EXPECT_EQ(found.proposals.at(0).remark, "differs by its signs, or only its name says so");
+  EXPECT_EQ(found.proposals.at(0).remark, "signs differ, or only the name matches");
 }
 
 // Rs of pistons, each of which is number(k) of ours.
@@ -1101,7 +1101,7 @@ TEST(MappingRecords, AColumnTwiceAndARecordOfAnotherPump) {
                                            {"empty", "Nm", [](double) { return not_computed(); }},
                                            {"along", "Nm", [](double t) { return t; }}}));
   EXPECT_THAT(found.ignored, ElementsAre(Pair("empty", "has empty fields"),
-                                         Pair("along", "runs along with the angle"),
+                                         Pair("along", "is proportional to the angle"),
                                          Pair("copy", "like another column, looks like Td_z1_Nm")));
   EXPECT_EQ(found.curve.angle.offset_deg, 0);
   EXPECT_THROW(guess(record(1, 0, {{"a", "", [](double t) { return std::cos(radians(61 * t)); }}})),

@@ -323,7 +323,7 @@ TEST(FreeMotion, SmallerScenesFindTheSamePistons) {
 TEST(RingContact, IsRefusedByNameWhereConstraintsWouldHaveToDoWork) {
   const auto refused = [](const std::string& what) {
     return testing::ThrowsMessage<InputError>(testing::AllOf(
-        testing::HasSubstr("[piston] contact_mm = 41.5 is not piston_length_mm = 46"),
+        testing::HasSubstr("[piston] contact_mm = 41.5 differs from piston_length_mm = 46"),
         testing::HasSubstr(what)));
   };
   Case the_case = reference_case("bap63_rated");

@@ -463,7 +463,7 @@ TEST(HardMotion, WhatWouldNotEndIsGivenUp) {
             testing::AllOf(testing::HasSubstr("multibody model: simulation stopped at "),
                            testing::HasSubstr(what), testing::HasSubstr("very stiff teeth"))));
   };
-  gives_up(stored_case("rattle", 20), 100, "100 steps are used up");
+  gives_up(stored_case("rattle", 20), 100, "100 steps are used");
   // More speed than the pump's parts would bear.
   Case the_case = stored_case("constant_torque", 2);
   the_case.drive->torque = 1e7;

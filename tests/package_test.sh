@@ -57,6 +57,15 @@ head -n 1 $documents/copyright |
 grep -qx 'Files: \*' $documents/copyright
 [[ $(grep -cx 'License: Apache-2.0' $documents/copyright) == 2 ]]
 grep -q '^Copyright: ' $documents/copyright
+# Notices of what the package carries.
+for part in three.js dygraphs SUNDIALS Boost Eigen; do
+  grep -q "^ ==== $part ====" $documents/copyright || { echo "copyright lacks $part"; exit 1; }
+done
+# Debian's checker; errors fail. Stripping and xz are of scripts/make_package.
+if command -v lintian > /dev/null; then
+  lintian --fail-on error --suppress-tags malformed-contact,bad-distribution-in-changes-file "$package" > lintian.log ||
+    { grep '^E:' lintian.log; exit 1; }
+fi
 # Sanitized or not, the program of the package runs where it lies.
 root/usr/bin/bentaxis --version > /dev/null
 echo "$(wc -l < content) entries"

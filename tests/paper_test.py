@@ -361,7 +361,7 @@ class HandOnTest(unittest.TestCase):
         self.assertGreater(max(high - low for low, high in zip(held["low"], held["high"])), 0.1)
 
     def test_a_golden_run_and_another_case(self):
-        run(self.folder, "reference", "golden", "case.toml", "--samples", 36, "--out", "golden")
+        run(self.folder, "reference", "golden", "case.toml", "--angles", 36, "--out", "golden")
         # A fifth of the angles: judged at these, not between them.
         done = run(self.folder, "compare", "case.toml", "--with", "golden", "--out", "third")
         held = self.embedded(self.folder / "third" / "report.html", "curves")["reference"]["held"]["Td_z1_Nm"]
@@ -369,13 +369,13 @@ class HandOnTest(unittest.TestCase):
         self.assertLess(max(abs(v) for v in held["difference"]["multibody"] if v is not None), 1e-8)
         self.assertRegex(done.stdout, r"golden agrees: (\d+) of \1 reactions compared agree")
         done = run(self.folder, "compare", "case.toml", "--set", "pump.tilt_deg=39.9", "--with", "golden", "--out", "third", status=1)
-        self.assertRegex(done.stdout, r"warning: the curves are of another case: golden: pump\.tilt_deg = 40\.?0* \(here 39\.(9|89+)\)")
+        self.assertRegex(done.stdout, r"warning: the curves belong to another case: golden: pump\.tilt_deg = 40\.?0* \(here 39\.(9|89+)\)")
 
     def test_what_is_no_reference_is_refused_first(self):
         for name in ("one", "other"):
             (self.folder / "several").mkdir(exist_ok=True)
             shutil.copytree(self.folder / "rig", self.folder / "several" / name)
-        for folder, words in (("several", "holds 2 references"), ("nowhere", "is not a folder"), (REPO / "reference_data" / "published" / "bap63", "printed numbers")):
+        for folder, words in (("several", "holds 2 references"), ("nowhere", "is not a directory"), (REPO / "reference_data" / "published" / "bap63", "printed numbers")):
             with self.subTest(folder):
                 done = run(self.folder, "compare", "case.toml", "--with", folder, "--out", "refused", status=2)
                 self.assertIn(words, done.stderr)

@@ -407,10 +407,10 @@ TEST(Picture, ACurveThatLeavesFixedEndsIsCutAndMarkedThere) {
   content.ends = Ends{-2, 5};
   const auto [top, bottom] = heights();
   EXPECT_NEAR(bottom - top, 185 * 6.0 / 7, 0.13);  // 4 above 0, 2 below; cut within a hair
-  EXPECT_THAT(marks(), testing::ElementsAre("beyond the axis: -4 at 270"));
+  EXPECT_THAT(marks(), testing::ElementsAre("outside the axis: -4 at 270"));
   content.ends = Ends{-2, 3};
   EXPECT_THAT(marks(),
-              testing::ElementsAre("beyond the axis: 4 at 90", "beyond the axis: -4 at 270"));
+              testing::ElementsAre("outside the axis: 4 at 90", "outside the axis: -4 at 270"));
   // Cut where it crosses: half way between 180 and 270 deg it is at -2.
   content.ends = Ends{-2, 5};
   const std::string cut_curve = svg_of({"id", "t", "", content}, curves);

@@ -136,7 +136,8 @@ TEST(PlausibilityCases, AReasonNeedsACheckAndWords) {
       study::plausibility(shipped("bap63_rated", {"plausibility.meant=\"" + meant + "\""}));
     });
   };
-  EXPECT_THAT(said("no-such-check: why"), HasSubstr("\"no-such-check\" is no check"));
+  EXPECT_THAT(said("no-such-check: why"),
+              HasSubstr("\"no-such-check\" is not the code of a check"));
   EXPECT_THAT(said("pump-size"), HasSubstr("\"pump-size\" needs a reason"));
   EXPECT_EQ(said("pump-size: why; below-vapour: why"), "accepted");  // of timing too
   EXPECT_EQ(said(" ; "), "accepted");
@@ -149,11 +150,11 @@ TEST(PlausibilityCases, AMessageSaysKeyLimitAndWhatMayBeMeant) {
   };
   EXPECT_EQ(
       text("pump.joint_circle_radius_mm=0.02492"),
-      "joint_circle_radius_mm = 0.02492 is below 4 mm: no pump has this size; in metres? 24.92 "
+      "joint_circle_radius_mm = 0.02492 is below 4 mm: no pump is of this size; in metres? 24.92 "
       "would do");
   EXPECT_EQ(text("bearings.tapered_z_mm=26"),
-            "tapered_z_mm = 26 is above -6.23 mm: the shaft leaves the joints towards -z1, the "
-            "pistons stand at +z1; with the other sign? -26 would do");
+            "tapered_z_mm = 26 is above -6.23 mm: the shaft extends from the joints towards "
+            "-z1, the pistons towards +z1; with the other sign? -26 would do");
   // Nothing usual explains it.
   EXPECT_THAT(text("gear.pressure_angle_deg=36"), Not(HasSubstr("would do")));
 }

@@ -195,7 +195,7 @@ class SaidTest(unittest.TestCase):
         for command in (["run", self.rated, "--model", "analytic"], ["compare", self.rated], ["show", self.rated, "--out", "a.svg"],
                         ["inertia", self.rated], ["tradeoff", self.rated], ["reference", "golden", self.rated, "--out", "g"],
                         ["pressure", REPO / "cases" / "bap63_rated_hydraulic.toml"],
-                        ["calibrate", self.rated, "--with", "290", "--without", "289"],
+                        ["calibrate", self.rated, "--torque-with-friction", "290", "--torque-without-friction", "289"],
                         ["blocktorque", self.rated, REPO / "cases" / "bap63_rated_hydraulic.toml"]):
             with self.subTest(command=command[0]):
                 done = run(*command, *doubtful, cwd=self.folder)
@@ -240,7 +240,7 @@ class SaidTest(unittest.TestCase):
         for factor, above in ((0.998, True), (1.002, False)):
             run("pressure", case, "--set", f"operation.speed_rpm={row['value'] * factor}", "--out", "at", cwd=self.folder)
             table = json.loads((self.folder / "at" / "pressure.json").read_text())["runs"][0]["table"]["rows"]
-            least = next(value for name, value, _ in table if name == "chamber pressure, least")
+            least = next(value for name, value, _ in table if name == "chamber pressure, minimum")
             self.assertEqual(least >= -0.5, above, least)
         for wrong in ("deep", "inf", "1bar"):
             done = run("pressure", case, "--suction-speed", wrong, cwd=self.folder)
@@ -261,7 +261,7 @@ class SaidTest(unittest.TestCase):
         self.assertEqual(said["warnings"], [])
         self.assertEqual([(row["code"], row["reason"]) for row in said["meant"]],
                          [("piston-heavier-than-steel", "pistons of tungsten")])
-        for wrong, why in (("piston-heavy: so", "is no check"), ("gravity", "needs a reason"), ("gravity: ", "needs a reason")):
+        for wrong, why in (("piston-heavy: so", "is not the code of a check"), ("gravity", "needs a reason"), ("gravity: ", "needs a reason")):
             with self.subTest(wrong=wrong):
                 done = run("show", self.rated, "--set", "plausibility.meant=" + wrong)
                 self.assertEqual(done.returncode, 2)

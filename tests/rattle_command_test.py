@@ -122,7 +122,7 @@ class RattleTest(ProgramTest):
             time.sleep(0.002)
         first.send_signal(signal.SIGSTOP)
         for more in ((), ("--resume",), ("--error", "1e-4")):
-            self.assert_mentions(self.refused(*command, *more), "out: another rattle map is running there", f"process {first.pid} on ")
+            self.assert_mentions(self.refused(*command, *more), "out: another rattle map is running in this directory", f"process {first.pid} on ")
         first.kill()
         first.communicate()
         self.assertEqual(self.files(), {"rattle.partial.csv", "rattle.partial.lock"})
@@ -172,19 +172,19 @@ class RattleTest(ProgramTest):
             with self.subTest(options):
                 option = "--speeds" if "speeds" in options else "--delivery-bar"
                 self.assert_mentions(self.refused(*self.command(**options)), option, word)
-        for option, value in (("--error", "0"), ("--check", "-1"), ("--threads", "x")):
+        for option, value in (("--error", "0"), ("--check-points", "-1"), ("--threads", "x")):
             self.assert_mentions(self.refused(*self.command(option, value)), option)
         self.assert_mentions(self.refused(*self.command("--turns", 0)[:2], "--speeds", "1:2:#2"), "--delivery-bar")
         self.assert_mentions(self.refused(*self.command("--set", "friction.regularization_m_per_s=0")), "regularization_m_per_s")
         rigid = ("rattle", program.REPO / "cases/bap63_rated.toml", "--speeds", "1000:1500:#2", "--delivery-bar", "100:200:#2")
-        self.assert_mentions(self.refused(*rigid, "--check", 3), "--check", "rigid")
+        self.assert_mentions(self.refused(*rigid, "--check-points", 3), "--check-points", "rigid")
 
     def test_check_counts_for_the_status(self):
-        result = self.run_program(*self.command("--check", 1, speeds="1500:1500:#1", delivery="275:275:#1"))
+        result = self.run_program(*self.command("--check-points", 1, speeds="1500:1500:#1", delivery="275:275:#1"))
         self.assertIn("Simbody agrees at 1 of 1 points", result.out)
         self.assertRegex(result.out, r"[a-z] at 1 of 1 points.*; Simbody")  # the class it has
         other = ("--set", "friction.block_viscous_Nm_per_rpm=0.0054", "--set", "friction.piston_coulomb_N=500",
-                 "--set", "assumptions.multibody.piston_friction=false", "--check", 1)
+                 "--set", "assumptions.multibody.piston_friction=false", "--check-points", 1)
         result = self.run_program(*self.command(*other, speeds="1500:1500:#1", delivery="100:100:#1"), status=1)
         self.assertIn("Simbody agrees at 0 of 1 points", result.out)
 

@@ -424,7 +424,7 @@ TEST(Rattle, RowsThatAreThereAreNotComputedAgain) {
     damaged[at] = damaged[at] == '7' ? '8' : '7';
     EXPECT_THAT(refused(damaged), HasSubstr("is damaged")) << at;
   }
-  EXPECT_THAT(refused(rows + rows.substr(second)), HasSubstr("as an earlier row is"));
+  EXPECT_THAT(refused(rows + rows.substr(second)), HasSubstr("which is a duplicate row"));
   EXPECT_THAT(refused("# rows of a rattle map that is not complete (docs/rattle.md)\n# one case\n" +
                       rows.substr(first, second - first)),
               "accepted");

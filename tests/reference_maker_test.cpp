@@ -100,7 +100,7 @@ TEST(ReferenceMaker, WhatCannotBeUsedIsRefusedAndNothingWritten) {
   } const cases[] = {
       {"a folder in use", record, good, scratch.path() / "full", "exists and is not empty"},
       {"a curve's name", scratch.path() / "case.toml", good, scratch.path() / "new",
-       "a curve must not be named so"},
+       "is a reserved name"},
       {"no TOML", record, "schema = [", scratch.path() / "new", "record.csv"},
       {"another column", record, std::string(good).replace(good.find("torque [Nm]"), 6, "moment"),
        scratch.path() / "new", "moment"}};

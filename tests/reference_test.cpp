@@ -415,7 +415,7 @@ TEST_F(ReferenceFolder, RefusesWhatCannotBeMeant) {
   EXPECT_THAT(refusal(37, ""), HasSubstr("has 36 rows"));
   EXPECT_THAT(refusal(36, "[curve.angle]\ncolumn = \"angle\"\n"), HasSubstr("no column \"angle\""));
   EXPECT_THAT(refusal(36, "[[curve.column]]\ntheirs = \"X_x_N\"\nours = \"Y\"\n"),
-              HasSubstr("\"Y\", which is no column of a result"));
+              HasSubstr("\"Y\", which is not a column of a result"));
   EXPECT_THAT(refusal(36, "[[curve.column]]\ntheirs = \"X_x_N\"\nours = \"T_Nm\"\n"),
               HasSubstr("two columns stand for T_Nm"));
   EXPECT_THAT(refusal(36, "[[curve.column]]\ntheirs = \"X_x_N\"\nours = \"X_x_N\"\nsign = 0\n"),
@@ -437,7 +437,7 @@ TEST_F(ReferenceFolder, FolderIsTheManifest) {
   const auto d = description(36);
   EXPECT_NO_THROW(check_files(d, {}));
   write("pressure.csv", "x\n");
-  EXPECT_THAT(thrown([&] { check_files(d, {}); }), HasSubstr("pressure.csv: is used by nothing"));
+  EXPECT_THAT(thrown([&] { check_files(d, {}); }), HasSubstr("pressure.csv: is not used"));
   EXPECT_NO_THROW(check_files(d, {folder_ / "pressure.csv"}));
 }
 

@@ -258,7 +258,7 @@ TEST(Teeth, AreReadWithTheirDefaults) {
 
 TEST(Teeth, AreRefusedByName) {
   EXPECT_THAT(refusal([] { with_teeth({"gear.flanks=one"}); }),
-              HasSubstr("teeth that give way have two flanks"));
+              HasSubstr("compliant teeth have two flanks"));
   EXPECT_THAT(refusal([] { with_teeth({"pump.tilt_deg=0"}); }),
               HasSubstr("bevel teeth need [pump] tilt_deg >= 0.0001"));
   EXPECT_THAT(refusal([] { with_teeth({"gear.rim_ratio=1.2"}); }),
@@ -685,11 +685,11 @@ TEST(Border, RoomForEveryValue) {
   const analytic::Model analytic(the_case.pump, the_case.analytic);
   multibody::Model multibody(the_case.pump, the_case.multibody, 1);
   std::vector<double> few(analytic.layout().reactions() - 1);
-  EXPECT_THAT(refusal([&] { analytic.reactions(instant, few); }), HasSubstr("room for 36 values"));
+  EXPECT_THAT(refusal([&] { analytic.reactions(instant, few); }), HasSubstr("space for 36 values"));
   few.resize(analytic.layout().size() - 1);
   EXPECT_EQ(refusal([&] { analytic.reactions(instant, few); }), "accepted");
-  EXPECT_THAT(refusal([&] { analytic.evaluate(instant, few); }), HasSubstr("room for"));
-  EXPECT_THAT(refusal([&] { multibody.evaluate(instant, few); }), HasSubstr("room for"));
+  EXPECT_THAT(refusal([&] { analytic.evaluate(instant, few); }), HasSubstr("space for"));
+  EXPECT_THAT(refusal([&] { multibody.evaluate(instant, few); }), HasSubstr("space for"));
 }
 
 TEST(Border, SamplesAreThoseOfThePump) {

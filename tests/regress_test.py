@@ -212,17 +212,17 @@ class NegativeControlTest(RegressTest):
         self.assert_mentions(self.regress("ref", status=OUT_OF_TOLERANCE), "incomplete", "Td_z1_Nm", "gaps")
 
     def test_unused_file(self):
-        self.spoilt(lambda folder: (folder / "old.csv").write_text("x\n"), BAD_INPUT, "old.csv", "used by nothing")
+        self.spoilt(lambda folder: (folder / "old.csv").write_text("x\n"), BAD_INPUT, "old.csv", "is not used")
 
     def test_unused_file_above_the_cases(self):
         self.copy_of("high_precision", "all")
         (self.folder / "all" / "stray.csv").write_text("x\n")
-        self.assert_mentions(self.refused("regress", "all"), "stray.csv", "used by nothing")
+        self.assert_mentions(self.refused("regress", "all"), "stray.csv", "is not used")
 
     def test_unused_column(self):
         def change(header, rows):
             header[header.index("Td_z1_Nm")] = "Td"
-        self.spoilt_curve(change, BAD_INPUT, '"Td"', "used by nothing")
+        self.spoilt_curve(change, BAD_INPUT, '"Td"', "is not used")
 
     def test_reaction_taken_out_of_a_complete_reference(self):
         def change(header, rows):
@@ -419,7 +419,7 @@ class ForeignCurveTest(RegressTest):
         """A pressure edge half a degree off fails at its flank, and passes in a tube of one degree."""
         case = Case(**{"operation.samples_per_revolution": 360, "pressure.transition_deg": 4.0})
         case.write(self.folder / "case.toml")
-        self.run_program("reference", "golden", "case.toml", "--samples", "720", "--out", "ref")
+        self.run_program("reference", "golden", "case.toml", "--angles", "720", "--out", "ref")
         d = self.folder / "ref" / "description.toml"
         text = d.read_text().replace('kind = "golden"', 'kind = "external"').replace("1e-11", "1e-2")
         text = text.replace("samples_per_revolution = 720", "samples_per_revolution = 360")

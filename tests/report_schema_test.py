@@ -65,7 +65,7 @@ class SchemaTest(unittest.TestCase):
                                       "--sobol", "32"),
             "rattle": cls.report("report.json", "rattle", REPO / "cases" / "bap63_tooth_rattle.toml", "--set",
                                  "friction.block_viscous_Nm_per_rpm=0.0054", "--speeds", "900:1200:#2", "--delivery-bar",
-                                 "350", "--turns", "2", "--check", "1"),
+                                 "350", "--turns", "2", "--check-points", "1"),
             "sweep": cls.report("report.json", "sweep", rated, "--vary", "pump.piston_length_mm=6:46:10", "--vary",
                                 "pump.joint_circle_radius_mm=20:35:5", "--maximise", "mean:Td", "--minimise", "max:Rb2", "--check", "10%"),
             "optimise": cls.report("report.json", "optimise", rated, "--vary", "pump.tilt_deg=20:42", "--maximise", "mean:Td", "--minimise",
@@ -95,7 +95,7 @@ class SchemaTest(unittest.TestCase):
 
     @classmethod
     def page_of_a_regression(cls):
-        """A changed curve brings figures. What is in the page is what --json writes."""
+        """A changed curve brings figures. What is in the page is what --json-file writes."""
         cls.run_program("reference", "golden", "bap63_rated.toml", "--out", "golden")
         stored = cls.folder / "golden" / "analytic.csv"
         lines = stored.read_text().splitlines()
@@ -103,11 +103,11 @@ class SchemaTest(unittest.TestCase):
         fields[1:4] = [str(float(value) + 1) for value in fields[1:4]]
         lines[5] = ",".join(fields)
         stored.write_text("\n".join(lines) + "\n")
-        cls.run_program("regress", "golden", "--html", "regress.html", "--json", "regress.json", status=None)
+        cls.run_program("regress", "golden", "--html", "regress.html", "--json-file", "regress.json", status=None)
         text = (cls.folder / "regress.html").read_text()
         page = json.loads(re.search(r'<script type="application/json" id="report">(.*?)</script>', text, re.S).group(1))
         written = json.loads((cls.folder / "regress.json").read_text())
-        assert written == page, "regress --json is not what is in the page"
+        assert written == page, "regress --json-file is not what is in the page"
         return written
 
     def test_every_report_follows_the_schema(self):

@@ -119,7 +119,7 @@ TEST(Scene, OnePistonStandsForAllOrIsEvaluatedOneByOne) {
               scaled(kSameNumbers));
     return table.provenance.facts.back().second;
   };
-  EXPECT_EQ(pistons_fact(60), "one stands for all");
+  EXPECT_EQ(pistons_fact(60), "one piston represents all");
   EXPECT_EQ(pistons_fact(61), "evaluated one by one");
   // A piston of its own pressure must not be stood for.
   the_case.operation.samples_per_revolution = 60;

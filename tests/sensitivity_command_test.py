@@ -40,8 +40,8 @@ class Sensitivity(unittest.TestCase):
 
     def test_every_pair_is_written_and_the_check_agrees(self):
         # What is named twice is there once.
-        done = self.run_program("--output", "mean:Td,peak:Rb1,mean:Td", "--parameter",
-                                "pump.tilt_deg,pressure.delivery_bar,pump.tilt_deg", "--check")
+        done = self.run_program("--output", "mean:Td,peak:Rb1,mean:Td", "--vary",
+                                "pump.tilt_deg,pressure.delivery_bar,pump.tilt_deg", "--check-derivatives")
         rows = rows_of(self.out / "sensitivity.csv")
         self.assertEqual([(r["output"], r["parameter"]) for r in rows],
                          [(o, p) for o in ("mean:Td", "peak:Rb1") for p in ("pump.tilt_deg", "pressure.delivery_bar")])
@@ -56,7 +56,7 @@ class Sensitivity(unittest.TestCase):
         self.assertTrue((self.out / "sensitivity.html").exists())
 
     def test_the_report_says_what_the_file_says(self):
-        done = self.run_program("--output", "mean:Td,peak:Rb1", "--check", "--parameter",
+        done = self.run_program("--output", "mean:Td,peak:Rb1", "--check-derivatives", "--vary",
                                 "pump.tilt_deg,pressure.delivery_bar,block.mass_kg,friction.piston_coulomb_N")
         rows = {(r["output"], r["parameter"]): r for r in rows_of(self.out / "sensitivity.csv")}
         report = json.loads((self.out / "sensitivity.json").read_text())
@@ -105,14 +105,14 @@ class Sensitivity(unittest.TestCase):
                            check=True, capture_output=True, timeout=SECONDS)
             rows = rows_of(out / "analytic.csv")
             return sum(float(r["Td_z1_Nm"]) for r in rows) / len(rows)
-        self.run_program("--output", "mean:Td", "--parameter", "pump.tilt_deg")
+        self.run_program("--output", "mean:Td", "--vary", "pump.tilt_deg")
         [row] = rows_of(self.out / "sensitivity.csv")
         difference = (mean_torque(1e-3) - mean_torque(-1e-3)) / 2e-3
         # Third derivative times 1e-6, and round-off of 1e-13 over 1e-3.
         self.assertAlmostEqual(float(row["derivative"]), difference, delta=1e-7 * abs(difference))
 
     def test_hydraulic_pressure_names_its_method(self):
-        done = self.run_program("--output", "mean:Td,efficiency.volumetric", "--parameter",
+        done = self.run_program("--output", "mean:Td,efficiency.volumetric", "--vary",
                                 "hydraulics.bulk_modulus_MPa", case="bap63_rated_hydraulic")
         reactions, efficiency = rows_of(self.out / "sensitivity.csv")
         self.assertEqual(reactions["found_by"], "forward sensitivities (CVODES)")
@@ -124,12 +124,12 @@ class Sensitivity(unittest.TestCase):
     def test_a_value_taken_from_another_parameter_is_said(self):
         """Arcs of [hydraulics] are those of [port_plate] unless given: two rows with one derivative."""
         names = "port_plate.delivery_arc_deg.1,hydraulics.delivery_arc_deg.1"
-        done = self.run_program("--output", "mean:Td", "--parameter", names, case="bap63_rated_hydraulic")
+        done = self.run_program("--output", "mean:Td", "--vary", names, case="bap63_rated_hydraulic")
         self.assertIn("The case does not give hydraulics.delivery_arc_deg: the value is that of another parameter.", done.stdout)
         plate, oil = rows_of(self.out / "sensitivity.csv")
         self.assertEqual([r["parameter"] for r in (plate, oil)], names.split(","))
         self.assertEqual(plate["derivative"], oil["derivative"])
-        done = self.run_program("--output", "mean:Td", "--parameter", names, "--set", "hydraulics.delivery_arc_deg=[204, 336]",
+        done = self.run_program("--output", "mean:Td", "--vary", names, "--set", "hydraulics.delivery_arc_deg=[204, 336]",
                                 case="bap63_rated_hydraulic")
         self.assertNotIn("The case does not give", done.stdout)
         plate, oil = rows_of(self.out / "sensitivity.csv")
@@ -167,8 +167,8 @@ class Sensitivity(unittest.TestCase):
         self.assertLessEqual({"pump.tilt_deg", "port_plate.inner_land_mm.2", "operation.speed_rpm"}, parameters)
 
     def test_what_is_no_number_is_refused(self):
-        for options, words in ((("--parameter", "pump.pistons"), "pump.pistons: is no continuous number"),
-                               (("--parameter", "pump.tilt"), "pump.tilt_deg"),
+        for options, words in ((("--vary", "pump.pistons"), "pump.pistons: is no continuous number"),
+                               (("--vary", "pump.tilt"), "pump.tilt_deg"),
                                (("--output", "most:Td"), "most:Td: no statistic")):
             done = self.run_program(*options, status=BAD_INPUT)
             self.assertIn(words, done.stderr)

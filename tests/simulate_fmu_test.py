@@ -62,7 +62,7 @@ class SimulateFmuTest(FmuTest):
         for version in 2, 3:
             result = self.simulate("--fmu", self.unit("rotor", version), "--communication-step", "1e-4",
                                    "--fmu-set", "torque=330")
-            self.assertIn("Both models move alike", result.out)
+            self.assertIn("The trajectories agree", result.out)
             self.assertIn("unit: drive_speed (1/min) -> drive_speed (rad/s), by equal names", result.out)
             rows = self.rows("unit_analytic.csv")
             self.assertEqual(len(rows), 40)  # points before the end
@@ -93,7 +93,7 @@ class SimulateFmuTest(FmuTest):
         # An input that nothing is connected to stays as it starts, and is named.
         self.simulate("--model", "analytic", "--fmu", self.unit("motor"), "--connect", "shaft_angle=theta_deg",
                       "--communication-step", "2e-5")
-        self.assertEqual(dict(self.section()["facts"])["inputs of the unit left as they start"], "shaft_speed")
+        self.assertEqual(dict(self.section()["facts"])["inputs of the FMU that keep their start values"], "shaft_speed")
 
     def test_a_coarse_step_is_warned_of(self):
         result = self.simulate("--model", "analytic", "--fmu", self.unit("rotor"), "--communication-step", "4e-3",
@@ -113,7 +113,7 @@ class SimulateFmuTest(FmuTest):
         for option, value in (("--connect", "a=b"), ("--communication-step", "1e-3"), ("--fmu-set", "a=1"), ("--fmu-timeout", "3")):
             self.says(option, value, contains=[option, "there is no --fmu"])
         self.says("--fmu", "none.fmu", contains="none.fmu: does not exist")
-        self.says("--fmu", self.case(), contains="no zip archive")
+        self.says("--fmu", self.case(), contains="not a zip archive")
         self.says("--fmu", self.unit("old_valve"), "--connect", "drive_speed=load_share", contains="units do not fit")
         self.says("--fmu", self.unit("short_valve"), case="bap63_load_step", contains="no function fmi2Terminate")
         self.says("--fmu", self.unit("old_valve", 3), case="bap63_load_step", contains="its library is of FMI 2.9")
@@ -173,7 +173,7 @@ class HostileFmuTest(FmuTest):
                                 ("free exit0", "fmi2FreeInstance", "by exit status 0"),
                                 ("terminate segv", "fmi2Terminate", "SIGSEGV"),
                                 ("step close_all", "fmi2DoStep", "closed the descriptor"),
-                                ("step hang", "fmi2DoStep", "has not come back after 2 s", "--fmu-timeout")):
+                                ("step hang", "fmi2DoStep", "has not returned after 2 s", "--fmu-timeout")):
             with self.subTest(hostile=hostile):
                 line = self.refused(*self.command("--fmu-timeout", "2"), status=program.COMPUTATION_FAILED,
                                     env=self.environment(hostile))

@@ -95,7 +95,7 @@ class RestTest(SimulateTest):
     def test_a_shaft_at_rest_has_one_direction(self):
         """A given speed of 0 counts as +, whatever round-off the integration makes of it."""
         out = self.simulate(self.case(duration_s=0.002, samples=8), "--set", "operation.speed_rpm=0", "--error", 1e-5).stdout
-        self.assertIn("Both models move alike", out)
+        self.assertIn("The trajectories agree", out)
         for name in ("analytic", "multibody"):
             for row in self.table(f"out/simulation_{name}.csv"):
                 self.assertEqual(row["power_residual_Nm"], "")
@@ -171,7 +171,7 @@ class RestTest(SimulateTest):
     def test_oil_follows_the_motion(self):
         case, options = self.with_oil()
         text = self.simulate(case, *options, "--error", 1e-5).stdout
-        self.assertIn("move alike", text)
+        self.assertIn("trajectories agree", text)
         self.assertNotIn("pressure of constant speed", text)
         oil = self.table("out/oil_analytic.csv")
         self.assertEqual(len(oil), 21)
@@ -260,7 +260,7 @@ class RestTest(SimulateTest):
 class TrajectoryTest(SimulateTest):
     def test_models_move_alike(self):
         out = self.simulate(self.case(duration_s=0.002, samples=20), "--error", 1e-5).stdout
-        self.assertIn("Both models move alike", out)
+        self.assertIn("The trajectories agree", out)
         a, m = self.table("out/simulation_analytic.csv"), self.table("out/simulation_multibody.csv")
         self.assertEqual(len(a), 21)
         self.assertEqual(list(a[0]), list(m[0]))
@@ -314,7 +314,7 @@ class TrajectoryTest(SimulateTest):
 
     def test_what_is_chaotic_is_not_judged(self):
         out = self.simulate(self.case(), "--error", 0.003, "--accuracy", 1e-6).stdout
-        self.assertRegex(out, r"Both models move alike.*Later than 0\.0\d+ s nothing is judged")
+        self.assertRegex(out, r"The trajectories agree.*Results after 0\.0\d+ s are not compared")
         facts = dict(self.section("Difference")["facts"])
         self.assertGreater(float(facts["growth of a disturbance until the end"]), 1e3)
 

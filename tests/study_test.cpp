@@ -739,8 +739,8 @@ TEST(CompareModels, AGapIsNoAgreementWhateverExplainsTheRest) {
     channel.verdict = compare::Verdict::incomplete;
     channel.gap = "no value of multibody at 30 deg";
     EXPECT_FALSE(result.agrees());
-    EXPECT_EQ(result.headline(), "The two models cannot be said to agree: " + channel.gap + " of " +
-                                     channel.channel.name + ".");
+    EXPECT_EQ(result.headline(), "Agreement of the two models cannot be shown: " + channel.gap +
+                                     " of " + channel.channel.name + ".");
   }
 }
 

@@ -305,7 +305,7 @@ class SweepTest(ProgramTest):
         first = self.interrupted(self.start(*self.slow("--threads", 1)), lambda p: p.send_signal(signal.SIGSTOP))
         for command in (self.slow(), self.slow("--resume"), self.slow("--part", "1/2"), ["merge", "out"],
                         self.slow("--set", "operation.speed_rpm=1600")):
-            self.assert_mentions(self.refused(*command), "out/sweep.parts: another sweep is running there", f"process {first.pid} on ")
+            self.assert_mentions(self.refused(*command), "out/sweep.parts: another sweep is running in this directory", f"process {first.pid} on ")
         first.send_signal(signal.SIGCONT)
         self.finish(first, 0)
         self.assertEqual(self.results("out"), self.results("whole"))
@@ -313,7 +313,7 @@ class SweepTest(ProgramTest):
         # Parts of one sweep are computed side by side; a whole one is not computed beside them.
         one = self.interrupted(self.start(*self.slow("--part", "1/2", "--threads", 1)), lambda p: p.send_signal(signal.SIGSTOP))
         self.run_program(*self.slow("--part", "2/2"))
-        self.assert_mentions(self.refused(*self.slow()), "another sweep is running there")
+        self.assert_mentions(self.refused(*self.slow()), "another sweep is running in this directory")
         one.send_signal(signal.SIGCONT)
         self.finish(one, 0)
         self.run_program("merge", "out")

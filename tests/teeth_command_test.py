@@ -246,7 +246,7 @@ class TeethTest(ProgramTest):
     def test_simulate(self):
         result = self.run_program("simulate", self.case_file(), "--set", "drive.duration_s=0.002", "--set", "drive.samples=40",
                                   "--out", "out")
-        self.assertIn("Both models move alike", result.out)
+        self.assertIn("The trajectories agree", result.out)
         rows = self.rows("teeth_analytic.csv")
         self.assertEqual(len(rows), 41)
         self.assertEqual(float(rows[0]["lag_urad"]), 0)

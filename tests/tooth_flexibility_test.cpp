@@ -227,12 +227,13 @@ TEST(ToothFlexibility, RefusesTeethThatNoRackCuts) {
     return std::string();
   };
   EXPECT_EQ(said(gear(20, 2e-3, 20)), "");
-  EXPECT_THAT(said(gear(12, 2e-3, 20)), HasSubstr("[gear] dedendum_mm: gaps that deep undercut"));
+  EXPECT_THAT(said(gear(12, 2e-3, 20)),
+              HasSubstr("[gear] dedendum_mm: tooth gaps of this depth undercut"));
   EXPECT_EQ(said(gear(12, 2e-3, 20), radians(70)), "");
   EXPECT_THAT(said(gear(30, 2e-3, 20, 1, 1)), HasSubstr("no clearance"));
-  EXPECT_THAT(said(gear(30, 2e-3, 20, 1, 2.3)), HasSubstr("pointed before their bottom"));
+  EXPECT_THAT(said(gear(30, 2e-3, 20, 1, 2.3)), HasSubstr("pointed above their bottom"));
   EXPECT_THAT(said(gear(40, 2e-3, 30, 1.3, 1.32)),
-              HasSubstr("[gear] addendum_mm: teeth that high"));
+              HasSubstr("[gear] addendum_mm: teeth of this height"));
 }
 
 }  // namespace

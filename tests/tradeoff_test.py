@@ -84,7 +84,7 @@ class TradeoffTest(ProgramTest):
         self.assert_mentions(self.refused("tradeoff", self.case(**{"operation.speed_rpm": 0}), "--out", "o"), "speed_rpm")
         self.assert_mentions(self.refused("tradeoff", self.case(), "--integrators", "euler"), "euler")
         self.assert_mentions(self.refused("tradeoff", self.case(), "--accuracies", "0"), "accuracies")
-        self.assert_mentions(self.refused("tradeoff", self.case(), "--samples", "0"), "samples")
+        self.assert_mentions(self.refused("tradeoff", self.case(), "--angles", "0"), "angles")
 
 
 class ErrorTest(ProgramTest):

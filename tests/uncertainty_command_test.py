@@ -106,7 +106,7 @@ class UncertaintyTest(ProgramTest):
         deviations = {row["parameter"]: row["standard deviation"] for row in tables["What is not known"]}
         self.assertAlmostEqual(deviations["pressure.delivery_bar"], 10 / math.sqrt(12), 12)
         parts = {}
-        for row in tables["Where it comes from, to first order"]:
+        for row in tables["Contributions of the parameters, to first order"]:
             parts[row["output"], row["parameter"]] = row["contribution"]
             self.assertAlmostEqual(row["contribution"], row["derivative"] * deviations[row["parameter"]],
                                    delta=1e-12 * abs(row["contribution"]))
@@ -151,7 +151,7 @@ class UncertaintyTest(ProgramTest):
         [warning] = self.report()["warnings"]
         self.assertEqual(warning["name"], "Samples left out")
         self.assertIn("left out", self.report()["verdict"]["headline"])
-        kept = {s["title"]: s for s in self.report()["runs"]}["Parameters of the samples that are left"]["table"]
+        kept = {s["title"]: s for s in self.report()["runs"]}["Parameters of the remaining samples"]["table"]
         self.assertEqual(kept["columns"][2:], ["stated mean", "mean", "standard error of it", "stated standard deviation",
                                                "standard deviation", "standard error of it"])
         samples = self.table("samples.csv")

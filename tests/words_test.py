@@ -12,11 +12,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
 
 PROGRAM = REPO = None  # set in main
 DONE, BAD_INPUT = 0, 2
 SECONDS = 120
+GROUPS = ("Compare and report", "Simulate", "Study many designs", "Data in and out", "The paper")
 # What every command says about the pump before anything else: another test's business.
 PUMP = re.compile(r"^(pump|bentaxis: warning: [a-z0-9-]+): [^\n]+\n", re.MULTILINE)
 
@@ -98,7 +100,7 @@ class MessagesTest(WordsTest):
 
     def test_slips(self):
         self.assertRegex(self.refused("show", self.changed_case('kind = "ideal"', "kind = ideal")),
-                         r'case.toml:\d+: kind = ideal; words stand in quotes: "ideal"$')
+                         r'case.toml:\d+: kind = ideal; words need quotes: "ideal"$')
         for values in ("30-40", "30..40", "-40..-30"):
             self.assertTrue(self.refused("sweep", self.case, "--vary", f"pump.tilt_deg={values}", "--output", "max:Rb1_z1")
                             .endswith("must be a number; a range is FROM:TO:STEP or FROM:TO:#NUMBER"))
@@ -156,7 +158,7 @@ class MessagesTest(WordsTest):
 
     def test_a_dash_is_no_folder(self):
         for command in (["run", self.case, "--model", "analytic"], ["compare", self.case]):
-            self.assertIn("-: cannot be written: is no folder", self.refused(*command, "--out", "-"))
+            self.assertIn("-: cannot be written: is not a directory", self.refused(*command, "--out", "-"))
 
     def test_more_samples_than_a_machine_holds(self):
         many = ["--set", "operation.samples_per_revolution=2000000000"]
@@ -276,6 +278,38 @@ class PageTest(WordsTest):
             self.assertEqual({columns(row) for row in rows}, {columns(head)}, head)
 
 
+class ShippedCasesTest(WordsTest):
+    def test_are_listed_as_their_files_say(self):
+        cases = json.loads(self.run_program("cases", "--json").stdout)
+        files = sorted((REPO / "cases").glob("*.toml"))
+        self.assertEqual(sorted(case["name"] for case in cases), [file.stem for file in files])
+        text = self.run_program("cases").stdout
+        for case in cases:
+            content = tomllib.loads(pathlib.Path(case["file"]).read_text())
+            self.assertEqual(case["title"], content["name"])
+            self.assertEqual(case["group"].startswith("Motion"), "drive" in content)
+            self.assertEqual("hydraulic" in case["group"], content["pressure"]["kind"] == "hydraulic")
+            self.assertRegex(text, rf"(?m)^  {case['name']} +{re.escape(case['title'])}$")
+            self.assertIn(f"\n{case['group']}\n", "\n" + text)
+
+    def test_a_name_is_a_case_from_any_folder(self):
+        run = ["--model", "analytic", "--out"]
+        self.run_program("run", "bap63_rated", *run, "name")
+        self.run_program("run", self.case, *run, "file")
+        name, file = ((self.folder / folder / "analytic.csv").read_bytes() for folder in ("name", "file"))
+        self.assertEqual(name, file)
+        # A file of this name wins.
+        (self.folder / "bap63_rated").write_text(self.case.read_text().replace("pistons = 5 ", "pistons = 7 "))
+        self.run_program("run", "bap63_rated", *run, "own")
+        self.assertIn(b"Rs_7_", (self.folder / "own" / "analytic.csv").read_bytes().split(b"\n")[0])
+
+    def test_unknown_names_get_near_suggestions(self):
+        self.assertEqual(self.refused("run", "bap63_ratd", "--model", "analytic"),
+                         'bap63_ratd: neither a file nor a shipped case; did you mean "bap63_rated"?')
+        for elsewhere in ("bap63_rated.toml", "./bap63_rated", "cases/bap63_rated"):  # a file is meant
+            self.assertNotIn("shipped", self.refused("run", elsewhere, "--model", "analytic"))
+
+
 class CompletionTest(WordsTest):
     def words(self, *typed):
         kind, *lines = self.run_program("completion", "words", "--", *typed).stdout.splitlines()
@@ -287,7 +321,8 @@ class CompletionTest(WordsTest):
             lines = text.split(f"\n{heading}:\n")[1].split("\n\n")[0].splitlines() if f"\n{heading}:\n" in text else []
             words = [line.split()[0] for line in lines if line.startswith("  ") and line[2:3].strip()]
             return [word.split(",")[-1] for word in words]
-        commands = [[name] for name in names(self.run_program("--help").stdout, "Subcommands")]
+        help_text = self.run_program("--help").stdout
+        commands = [[name] for group in GROUPS for name in names(help_text, group)]
         self.assertGreater(len(commands), 12)
         self.assertEqual(self.words(""), ("words", [name for [name] in commands]))
         commands += [["reference", name] for name in self.words("reference", "")[1]]
@@ -300,7 +335,8 @@ class CompletionTest(WordsTest):
     def test_values(self):
         for typed, kind, words in (
             (["comp"], "words", ["compare", "completion"]),
-            (["run", ""], "files", []),
+            (["run", "zz"], "files", []),
+            (["run", "bap63_rated_h"], "files", ["bap63_rated_hydraulic"]),  # names beside files
             (["run", "case.toml", ""], "nothing", []),
             (["run", "case.toml", "--mod"], "words", ["--model"]),
             (["run", "a=b"], "files", []),
@@ -308,7 +344,7 @@ class CompletionTest(WordsTest):
             (["run", "case.toml", "--model", "m"], "words", ["multibody"]),
             (["run", "case.toml", "--model=m"], "words", ["--model=multibody"]),
             (["run", "--model", "multibody", "--out", ""], "folders", []),
-            (["compare", "case.toml", "--multibody-case", ""], "files", []),
+            (["compare", "case.toml", "--multibody-case", "z"], "files", []),
             (["compare", "case.toml", "--tolerance", ""], "nothing", []),
             (["tradeoff", "case.toml", "--integrators", "verlet,rk"], "words",
              ["verlet,rk-merson", "verlet,rk-feldberg", "verlet,rk3"]),
@@ -346,6 +382,7 @@ class CompletionTest(WordsTest):
         self.assertEqual(completed("bentaxis run pump.toml --model "), ["analytic", "multibody"])
         self.assertEqual(completed("bentaxis run pump.toml --model=an"), ["analytic"])  # bash replaces what follows =
         self.assertEqual(completed("bentaxis run pu"), ["pump.toml", "-o", "filenames"])
+        self.assertEqual(completed("bentaxis run bap63_te"), ["bap63_teeth", "-o", "filenames"])
         self.assertEqual(completed("bentaxis run pump.toml --out p"), ["place", "-o", "filenames"])
         self.assertEqual(completed("bentaxis run --set pump.tilt"), ["pump.tilt_deg=", "-o", "nospace"])
 
@@ -358,6 +395,7 @@ class CompletionTest(WordsTest):
         self.assertEqual(completed("bentaxis tra"), ["tradeoff"])
         self.assertEqual(completed("bentaxis run pump.toml --model "), ["analytic", "multibody"])
         self.assertEqual(completed("bentaxis run pu"), ["pump.toml"])
+        self.assertEqual(completed("bentaxis run bap63_te"), ["bap63_teeth"])
 
     def test_zsh(self):
         script = self.script("zsh")
@@ -368,8 +406,126 @@ class CompletionTest(WordsTest):
                 words=({quoted}); CURRENT=$#words; _bentaxis""").split()
         self.assertEqual(completed("bentaxis", "tra"), ["tradeoff"])
         self.assertEqual(completed("bentaxis", "run", "pump.toml", "--model", ""), ["analytic", "multibody"])
-        self.assertEqual(completed("bentaxis", "run", ""), ["files"])
+        self.assertEqual(completed("bentaxis", "run", "zz"), ["files"])
+        self.assertEqual(completed("bentaxis", "run", "bap63_te"), ["bap63_teeth", "files"])
         self.assertEqual(completed("bentaxis", "run", "c", "--out", ""), ["files", "-/"])
+
+
+class OptionNamesTest(WordsTest):
+    """One meaning per option name: what --help of every command says of it."""
+
+    def commands(self):
+        names = [[name] for name in CompletionTest.words(self, "")[1]]
+        return names + [["reference", name] for name in CompletionTest.words(self, "reference", "")[1]]
+
+    def options(self):
+        """(command, option, its value, what is said of it) from the manual page, which is made of the parser."""
+        page = self.run_program("manual").stdout.split(".SH COMMANDS")[1].split(".SH EXIT STATUS")[0]
+        page = page.replace("\\:", "").replace("\\-", "-").replace("\\fB", "").replace("\\fR", "").replace("\\fI", "")
+        for section in page.split(".SS ")[1:]:
+            head, *items = section.split(".TP\n")
+            command = re.match(r"bentaxis ((?:[a-z0-9]+ ?)+)", head)[1].strip()
+            for item in items:
+                line, said = item.splitlines()[:2]
+                if line.startswith("-"):
+                    name, _, value = line.partition(" ")
+                    yield command, name, value, said
+
+    @staticmethod
+    def kind(value):
+        """The same for a value and a list of such values; defaults in brackets do not count."""
+        value = value.split(" [")[0]
+        if value.startswith(("DIR", "FILE")):
+            return "path"
+        if "|" not in value:
+            value = re.split(r"[,=]| \.\.", value)[0]  # NAME=VALUES and NAME[,NAME..] begin with a name
+        return re.sub(r"\[$", "", value)
+
+    def test_have_one_kind_of_value_and_one_meaning(self):
+        seen, count = {}, 0
+        for command, name, value, said in self.options():
+            count += 1
+            # What stands behind a semicolon is of the command alone.
+            meaning = (self.kind(value), said.split(";")[0].strip())
+            first = seen.setdefault(name, (command, meaning))
+            self.assertEqual(meaning, first[1], f"{name} of {command} against {name} of {first[0]}")
+        self.assertGreater(count, 150)
+        self.assertGreater(len(seen), 60)
+
+    def test_kinds_tell_values_apart(self):
+        self.assertEqual(self.kind("NUMBER[,NUMBER..] [1e-4,1e-6]"), self.kind("NUMBER [1e-6]"))
+        self.assertEqual(self.kind("NAME=VALUES"), self.kind("NAME[,NAME..]"))
+        self.assertEqual(self.kind("FILE.fmu"), self.kind("DIR [out]"))
+        kinds = {self.kind(value) for value in ("", "NUMBER", "SHARE [0%]", "FILE", "NAME", "analytic|multibody [analytic]")}
+        self.assertEqual(len(kinds), 6)
+
+    def test_former_names_work_and_say_the_new_one(self):
+        hydraulic = REPO / "cases" / "bap63_rated_hydraulic.toml"
+        few = ["--set", "operation.samples_per_revolution=36"]
+        for arguments, former, name in (
+            (["sensitivity", self.case, *few, "--output", "mean:Td", "--parameter", "pump.tilt_deg"], "--parameter", "--vary"),
+            (["sensitivity", self.case, *few, "--output=mean:Td", "--parameter=pump.tilt_deg"], "--parameter", "--vary"),
+            (["reference", "golden", self.case, "--samples", "36", "--out", "golden"], "--samples", "--angles"),
+            (["fmu", self.case, "--tolerance", "1e-8", "--out", "pump.fmu"], "--tolerance", "--accuracy"),
+            (["regress", "golden", "--json", "regress.json"], "--json", "--json-file"),
+        ):
+            with self.subTest(arguments):
+                said = PUMP.sub("", self.run_program(*arguments).stderr)
+                self.assertEqual(said.count("\n"), 1, said)
+                self.assertRegex(said, rf"{former} is now called {name}; the former name goes on working\n")
+        for arguments, name in (
+            (["calibrate", hydraulic, "--with", "0", "--without", "0"], "--torque-with-friction"),
+            (["identify", self.case, "--data", "no.toml", "--unknown", "x"], "--vary"),
+            (["rattle", self.case, "--speeds", "1:2:1", "--delivery-bar", "1", "--check", "-1"], "--check-points"),
+            (["sensitivity", "no.toml", "--check"], "--check-derivatives"),
+            (["tradeoff", self.case, "--samples", "0"], "--angles"),
+        ):
+            with self.subTest(arguments):
+                self.assertIn(f"is now called {name};", self.run_program(*arguments, status=BAD_INPUT).stderr)
+
+    def test_former_names_are_no_longer_shown(self):
+        shown = {(command, name) for command, name, _, _ in self.options()}
+        for former in (("rattle", "--check"), ("sensitivity", "--check"), ("identify", "--unknown"), ("regress", "--json")):
+            self.assertNotIn(former, shown)
+        self.assertIn(("sweep", "--check"), shown)
+
+    def test_speeds_are_a_list_or_a_range(self):
+        for text in ("1:2", "1,x", "1,,2"):
+            for command in (["inertia", self.case], ["rattle", self.case, "--delivery-bar", "1"]):
+                self.assertIn("--speeds", self.refused(*command, "--speeds", text))
+
+
+class HelpTest(WordsTest):
+    def test_lists_commands_in_groups(self):
+        text = self.run_program("--help").stdout
+        places = [text.index(f"\n{group}:\n") for group in GROUPS]
+        self.assertEqual(places, sorted(places))
+        self.assertNotIn("Subcommands:", text)
+
+    def test_every_command_has_an_example_of_its_own(self):
+        seen = {}
+        for command in OptionNamesTest.commands(self):
+            text = self.run_program(*command, "--help").stdout
+            example = text.split("\nExample:\n")[1].strip()
+            self.assertIn("bentaxis " + " ".join(command), example)
+            self.assertNotIn(example, seen.values() if command[0] != "reference" else ())
+            seen[" ".join(command)] = example
+
+    def test_examples_run(self):
+        # Those that take seconds, one after the other in one empty directory, as a shell runs them.
+        for command in (["compare"], ["show"], ["regress"], ["index"], ["run"], ["outputs"], ["cases"], ["init"], ["sensitivity"],
+                        ["sweep"], ["reference", "golden"], ["reference", "update"], ["fmu"], ["schema"], ["completion"]):
+            example = self.run_program(*command, "--help").stdout.split("\nExample:\n")[1].strip()
+            with self.subTest(example):
+                done = subprocess.run(["bash", "-c", example], cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True,
+                                      text=True, timeout=SECONDS,
+                                      env={**os.environ, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}"})
+                self.assertEqual(done.returncode, DONE, done.stderr)
+
+    def test_says_what_this_build_cannot_run(self):
+        text, parts = self.run_program("--help").stdout, self.run_program("--version").stdout
+        for part, lacking in (("Ceres none", "it has no Ceres"), ("search none", "it has no pagmo")):
+            self.assertEqual(part in parts, lacking in " ".join(text.split()))
 
 
 class ManualTest(WordsTest):

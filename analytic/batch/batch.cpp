@@ -280,9 +280,9 @@ void BatchModel::reactions(const BatchInstants& instants, const BatchOutputs& ou
 void BatchModel::statistics(const BatchInstants& instants, std::span<const Measured> measured,
                             std::span<Statistics> results, const BatchOptions& options) const {
   if (results.size() != measured.size())
-    throw InputError("statistics of a batch: room for " + std::to_string(results.size()) +
+    throw InputError("statistics of a batch: space for " + std::to_string(results.size()) +
                      " results, needed are " + std::to_string(measured.size()));
-  if (instants.count == 0) throw InputError("statistics of a batch: of no instant");
+  if (instants.count == 0) throw InputError("statistics of a batch: there is no instant");
   bool bodies = false;
   for (const Measured& m : measured) {
     const std::size_t end = m.reaction + m.components;
@@ -340,7 +340,7 @@ void BatchModel::set_pump(const PumpParameters& pump, const Assumptions& assumpt
 PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions)
     : layout_(pumps.empty() ? 1 : without_teeth(pumps.front()).geometry.pistons),
       size_(pumps.size()) {
-  if (pumps.empty()) throw InputError("batch of pumps: there is none");
+  if (pumps.empty()) throw InputError("batch of pumps: empty");
   numbers_.resize(kNumbers * size_);
   for (std::size_t i = 0; i < size_; ++i) {
     if (pumps[i].geometry.pistons != layout_.pistons())

@@ -143,18 +143,18 @@ void require_mesh(const Gear& gear, const Bevel& bevel) {
            "no clearance: must be > addendum_mm = " + number_text(h));
   if (!(at.distance > teeth.face_width / 2))
     refuse("face_width_mm", teeth.face_width * 1e3,
-           "reaches the point where the axes meet: must be < " +
-               number_text(2 * at.distance * 1e3) + ", twice the distance of O4 from there");
+           "reaches the intersection of the axes: must be < " + number_text(2 * at.distance * 1e3) +
+               ", twice the distance of O4 from there");
   if (!(at.tip_cone < kPi - at.base_cone) || bevel.tip_roll > 2 * bevel.roll)
     refuse("addendum_mm", h,
-           "tip interference: the tips reach beyond where the path of contact leaves the other's "
-           "base cone: must be <= " +
+           "tip interference: the tips reach past the start of the path of contact on the base "
+           "cone of the mate: must be <= " +
                rounded_down_text(addendum(std::min(2 * bevel.roll, kPi))));
   const double depth = cutting_depth(gear.pressure_angle, at.pitch_cone);
   if (at.tip_cone - at.pitch_cone > depth)
     refuse("addendum_mm", h,
-           "undercut: a crown gear's flank that cuts as deep as the tips reach takes away working "
-           "flanks: must be <= " +
+           "undercut: a crown gear flank that reaches as deep as the tips removes part of the "
+           "working flanks: must be <= " +
                rounded_down_text(at.distance * std::tan(depth) * 1e3));
   if (!(bevel.pitch / 4 + involute(bevel, bevel.roll) > involute(bevel, bevel.tip_roll)))
     refuse("addendum_mm", h, "pointed tips: both flanks of a tooth meet below its tip");

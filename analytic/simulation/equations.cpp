@@ -53,7 +53,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
       curve_(curve_of(drive_)) {
   if (assumptions.gear == BlockDrive::imposed)
     throw InputError(
-        "gear = \"imposed\": must be \"mesh\" in a simulation, where the shaft moves the "
+        "gear = \"imposed\": must be \"mesh\" in a simulation, in which the shaft drives the "
         "block");
   if (the_case.pump.gear.contact == ToothContact::rigid) law_.reset();
   if (the_case.pump.gear.contact == ToothContact::teeth) {
@@ -88,7 +88,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   // Rounding leaves this much of nothing.
   constexpr double kMinInertia = 1e-14;
   if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kMinInertia))
-    throw InputError("[shaft] axial_inertia_kg_mm2: must be > 0 where a torque moves the shaft");
+    throw InputError("[shaft] axial_inertia_kg_mm2: must be > 0 where a torque drives the shaft");
   if (compliant() && !(block_inertia_ > kMinInertia))
     throw InputError("[block] axial_inertia_kg_mm2: must be > 0 where the teeth are compliant");
   probe_ = torque_scale_ / std::max(shaft_inertia_, kMinInertia);

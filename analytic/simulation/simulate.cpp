@@ -143,7 +143,7 @@ class Simulation {
     record.seconds = watch.seconds();
     record.share_out_of_contact = equations_.compliant() ? apart_ / drive.duration : 0;
     record.choice = "Gragg-Bulirsch-Stoer extrapolation, " + rounded_text(tolerance_) +
-                    " per step of what each state's scale is, for an error of " +
+                    " per step relative to the scale of each state, for an error of " +
                     rounded_text(options_.error) + " of peak";
     return trajectory;
   }
@@ -264,8 +264,8 @@ class Simulation {
     if (progress_) progress_(std::min(1.0, time_ / equations_.drive().duration));
     if (equations_.evaluations() > kMaxEvaluations)
       fail("after " + std::to_string(kMaxEvaluations) +
-           " evaluations: the motion is too fast for the time that is asked for; simulate less of "
-           "it (duration_s), or a larger error");
+           " evaluations: the motion is too fast for the simulated time; shorten it (duration_s) "
+           "or allow a larger error");
     State dy, out, out_dy;
     equations_.rates(time_, y_, dy);
     const EventFunctions before = event_functions(time_, y_, dy);
@@ -351,7 +351,7 @@ class Simulation {
   void shrink(double taken, double proposal) {
     next_ = std::min(proposal, taken / 2);
     if (next_ < smallest_step())
-      fail("the motion changes faster there than steps above round-off can follow");
+      fail("the motion changes too fast there: the step falls below round-off");
   }
 
   double smallest_step() const {
@@ -360,7 +360,7 @@ class Simulation {
 
   void count_at_once() {
     if (++at_once_ > kMaxEventsAtOnce)
-      fail("teeth and edges of the pressure are passed again and again without any motion");
+      fail("events of teeth and pressure edges repeat without any motion");
   }
 
   // What changes at an event.

@@ -87,7 +87,7 @@ class CaseReader {
     for (const std::string& key : in.keys()) {
       if (key == correlation) continue;
       if (numbers.count(key) == 0)
-        in.fail(key, "no such number of a case" + suggestion(key, numbers));
+        in.fail(key, "not a number of this case" + suggestion(key, numbers));
       result_.uncertainty.parameters.push_back({key, in.text(key)});
     }
     for (const TableReader::Link& link : in.links(correlation)) {

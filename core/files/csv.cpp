@@ -204,7 +204,7 @@ PressureCurve read_pressure_curve(const std::filesystem::path& file) {
       if (pascal != curve.pressure.front())
         throw InputError(table.place(i) + ": " + table.header[pressure.index] + " = " +
                          number_text(value) +
-                         ": must be what the turn begins with: the curve is periodic");
+                         ": must equal the value at the start of the turn: the curve is periodic");
       break;
     }
     if (i > 0 && !(theta - curve.theta_deg.front() < 360))
@@ -336,7 +336,7 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
     if (known.count(name) == 0)
       throw InputError(head + ": unknown column \"" + name + "\"" + suggestion(name, known));
     if (!columns.emplace(name, c).second)
-      throw InputError(head + ": column \"" + name + "\" stands there twice");
+      throw InputError(head + ": column \"" + name + "\" is a duplicate column");
   }
   const auto has = [&](const std::string& name) { return columns.count(name) > 0; };
   const auto require = [&](const std::string& name) {
@@ -361,7 +361,7 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
     if (has("time_s")) {
       if (i > 0 && at("time_s") < states.time.back())
         refuse_value(file, table, i, columns.at("time_s"),
-                     ">= " + number_text(states.time.back()) + " (time does not run back)");
+                     ">= " + number_text(states.time.back()) + " (times must not decrease)");
       states.time.push_back(at("time_s"));
     }
     MotionState state;

@@ -152,7 +152,7 @@ ForeignTable read_matlab(const std::filesystem::path& file, const std::string& c
   Mat_LogInitFunc("bentaxis", [](int, char*) {});  // what is wrong is said below
   const std::unique_ptr<mat_t, int (*)(mat_t*)> in(Mat_Open(file.c_str(), MAT_ACC_RDONLY),
                                                    Mat_Close);
-  if (!in) fail("is no MATLAB file, or a damaged one");
+  if (!in) fail("is not a MATLAB file, or it is damaged");
   Found found;
   std::string names;
   while (matvar_t* next = Mat_VarReadNext(in.get())) {

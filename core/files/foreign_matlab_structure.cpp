@@ -235,7 +235,7 @@ class Version5 {
     for (std::uint64_t i = 0; i < count; ++i) {
       const Element element = parts.next(what);
       if (element.type != kMatrix)
-        damaged("is a damaged MATLAB file: " + what + " holds what is no variable");
+        damaged("is a damaged MATLAB file: " + what + " holds something that is not a variable");
       check_matrix(element.data, what, depth + 1);
     }
   }
@@ -262,11 +262,11 @@ void check_version_4(std::string_view content) {
         matrix > 1)
       damaged(matrix == 2 && kind < 9999
                   ? "holds a sparse matrix: save it as full(..)"
-                  : "is no MATLAB file, or a damaged one: " + what + " is of no known kind");
+                  : "is not a MATLAB file, or it is damaged: " + what + " is of no known kind");
     const std::uint64_t rows = word_at(rest, 4, swapped), columns = word_at(rest, 8, swapped);
     const std::uint64_t complex = word_at(rest, 12, swapped), name = word_at(rest, 16, swapped);
     if (complex > 1 || name == 0)
-      damaged("is no MATLAB file, or a damaged one: " + what + " has no name");
+      damaged("is not a MATLAB file, or it is damaged: " + what + " has no name");
     const std::uint64_t values =
         times(times(rows, columns), kSizes[precision] * (complex == 1 ? 2 : 1));
     const std::uint64_t there = rest.size() - kHeader;
@@ -274,7 +274,7 @@ void check_version_4(std::string_view content) {
       truncated(what, values == std::numeric_limits<std::uint64_t>::max() ? values : name + values,
                 there);
     if (rest[kHeader + name - 1] != '\0')
-      damaged("is no MATLAB file, or a damaged one: the name of " + what + " has no end");
+      damaged("is not a MATLAB file, or it is damaged: the name of " + what + " has no end");
     rest.remove_prefix(kHeader + name + values);
   }
 }
@@ -293,7 +293,7 @@ void check_hdf5(std::string_view content) {
   const unsigned version = byte(8);
   const std::size_t width = byte(version < 2 ? 13 : 9);
   if (version > 3 || (width != 2 && width != 4 && width != 8))
-    damaged("is a damaged MATLAB file: its beginning is no HDF5 of a known version");
+    damaged("is a damaged MATLAB file: it does not begin as HDF5 of a known version");
   // Base address, another one, then where the file ends.
   const std::size_t place = (version == 0 ? 24 : version == 1 ? 28 : 12) + 2 * width;
   std::uint64_t end = 0;
@@ -317,7 +317,7 @@ void check_matlab_structure(const std::filesystem::path& file, const std::string
       Version5(bytes, version == "\1\0MI"sv).check();
     } else if (bytes.substr(0, 7) == "MATLAB ") {
       if (!heading) truncated("its heading", kHeader, bytes.size());
-      damaged("is no MATLAB file, or a damaged one");
+      damaged("is not a MATLAB file, or it is damaged");
     } else {
       check_version_4(bytes);
     }

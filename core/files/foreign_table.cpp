@@ -339,7 +339,7 @@ void fill(const Grid& grid, ForeignTable& table) {
     for (std::size_t c = 0; c < grid.rows[i].cells.size(); ++c)
       if (grid.rows[i].cells[c].number)
         throw InputError(grid.place(grid.rows[i], c) +
-                         ": a number below the table that is no row of it");
+                         ": a number below the table that does not belong to a row of it");
 }
 
 }  // namespace foreign
@@ -413,7 +413,8 @@ ForeignTable unchecked_table_of(std::string content, const std::filesystem::path
       (extension == ".mat" && content.find('\0') != std::string::npos))
     return foreign::read_matlab(file, content, sheet);
   if (starts("\xD0\xCF\x11\xE0"))
-    throw InputError(file.string() + ": is an .xls of before 2007: save it as .xlsx or as CSV");
+    throw InputError(file.string() +
+                     ": is an .xls file from before 2007: save it as .xlsx or as CSV");
   if (starts("# Created by Octave"))
     throw InputError(file.string() + ": is Octave's own text format: save it with -v7");
   if (!sheet.empty())

@@ -52,7 +52,7 @@ class Archive {
     pugi::xml_document document;
     if (!document.load_buffer(text->data(), text->size(),
                               pugi::parse_default | pugi::parse_ws_pcdata))
-      fail(name + " is no XML: the file is damaged");
+      fail(name + " is not XML: the file is damaged");
     return document;
   }
 
@@ -114,7 +114,7 @@ std::vector<Sheet> sheets_of(const Archive& archive) {
   const auto relations = archive.xml("xl/_rels/workbook.xml.rels");
   if (!book || !relations)
     archive.fail(archive.part("content.xml") ? "is an OpenDocument file: save it as .xlsx"
-                                             : "is a zip archive, but no .xlsx workbook");
+                                             : "is a zip archive, but not an .xlsx workbook");
   std::map<std::string, std::string> targets;
   for (const auto& relation : relations->document_element().children())
     targets[relation.attribute("Id").value()] = relation.attribute("Target").value();
@@ -165,7 +165,7 @@ Grid grid_of(const Archive& archive, const std::filesystem::path& file, const Sh
       if (type == "s") {
         const std::size_t index = static_cast<std::size_t>(std::strtoul(text.c_str(), nullptr, 10));
         if (index >= shared.size())
-          throw InputError(grid.place(out, column) + ": refers to a text that is not there");
+          throw InputError(grid.place(out, column) + ": refers to a text that is missing");
         text = shared[index];
       }
       Cell value{stored(std::string(trimmed(text)))};

@@ -43,7 +43,7 @@ std::string content_of(int handle, const std::filesystem::path& file, const Inpu
   struct stat facts {};
   if (::fstat(handle, &facts) != 0) fail(file, "cannot be read: " + std::string(strerror(errno)));
   const std::string name = kind.name;
-  if (S_ISDIR(facts.st_mode)) fail(file, "is a folder, not " + name);
+  if (S_ISDIR(facts.st_mode)) fail(file, "is a directory, not " + name);
   if (!S_ISREG(facts.st_mode))
     fail(file, std::string(S_ISFIFO(facts.st_mode)   ? "is a pipe"
                            : S_ISSOCK(facts.st_mode) ? "is a socket"

@@ -19,22 +19,22 @@ namespace {
 }  // namespace
 
 NewFolder::NewFolder(fs::path folder) : folder_(std::move(folder)) {
-  if (folder_.empty()) throw InputError("the new folder needs a name");
+  if (folder_.empty()) throw InputError("the new directory needs a name");
   std::error_code error;
   const fs::path full = fs::absolute(folder_).lexically_normal();
   const fs::path place = full.has_filename() ? full : full.parent_path();
-  if (fs::is_symlink(place, error)) refuse(folder_, "is a link; name the folder itself");
+  if (fs::is_symlink(place, error)) refuse(folder_, "is a link; name the directory itself");
   if (fs::exists(place, error)) {
-    if (!fs::is_directory(place, error)) refuse(folder_, "is there already, and no folder");
-    if (!fs::is_empty(place, error)) refuse(folder_, "is there already, and not empty");
+    if (!fs::is_directory(place, error)) refuse(folder_, "exists and is not a directory");
+    if (!fs::is_empty(place, error)) refuse(folder_, "exists and is not empty");
   } else if (!fs::is_directory(place.parent_path(), error)) {
-    refuse(place.parent_path(), "there is no such folder");
+    refuse(place.parent_path(), "the directory does not exist");
   }
   folder_ = place;
   try {
     staging_.emplace(place.parent_path(), prefix());
   } catch (const fs::filesystem_error& failed) {
-    refuse(place.parent_path(), "nothing can be written there: " + failed.code().message());
+    refuse(place.parent_path(), "the directory is not writable: " + failed.code().message());
   }
 }
 
@@ -57,7 +57,7 @@ void NewFolder::commit() {
     fill();
   } else {
     fs::rename(here(), folder_, error);
-    if (error) refuse(folder_, "cannot be made: " + error.message());
+    if (error) refuse(folder_, "cannot be created: " + error.message());
   }
   StagingFolder::remove_abandoned(folder_.parent_path(), prefix());
 }

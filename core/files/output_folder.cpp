@@ -46,9 +46,11 @@ class FolderLock {
 
 OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
-  if (folder_.empty()) fail("\"\"", "an output folder needs a name");
+  if (folder_.empty()) fail("\"\"", "an output directory needs a name");
   if (folder_ == "-")
-    fail(folder_, "is no folder, and results go to files; name one (./- where it is called so)");
+    fail(folder_,
+         "is not a directory; results are written to files in a directory (for one called - write "
+         "./-)");
   fs::path missing = fs::absolute(folder_, error).lexically_normal();
   if (missing.filename().empty()) missing = missing.parent_path();
   while (!missing.empty() && !fs::exists(missing, error)) {

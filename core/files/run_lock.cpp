@@ -73,9 +73,9 @@ bool RunLock::take(Kind kind, const std::string& work) {
   if (!held && errno == EWOULDBLOCK) {
     const std::string holder = holder_in(handle_);
     close(std::exchange(handle_, -1));
-    throw InputError(file_.parent_path().string() + ": another " + work + " is running there" +
-                     (holder.empty() ? "" : " (" + holder + ")") +
-                     "; wait until it has ended, or name another --out");
+    throw InputError(file_.parent_path().string() + ": another " + work +
+                     " is running in this directory" + (holder.empty() ? "" : " (" + holder + ")") +
+                     "; wait until it has ended, or choose another --out");
   }
   if (held && !is_in_place()) {
     close(std::exchange(handle_, -1));

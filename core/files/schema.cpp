@@ -151,7 +151,7 @@ std::string meaning_cell(const Parameter& p) {
 namespace {
 
 Json uncertainty_schema() {
-  Json schema = object("what is not known exactly: a distribution for each parameter by its name");
+  Json schema = object("distributions of parameters that are not known exactly, by name");
   schema["additionalProperties"] = {{"type", "string"},
                                     {"description",
                                      "normal(mean, s), uniform(low, high), triangular(low, mode, "

@@ -106,7 +106,7 @@ void check_node(const toml::node& node, int depth) {
   const std::size_t line = node.source().begin.line;
   if (depth > kDeepest)
     throw Refusal{
-        line, "tables and lists lie more than " + std::to_string(kDeepest) + " deep in each other"};
+        line, "tables and lists are nested more than " + std::to_string(kDeepest) + " levels deep"};
   const auto check_length = [&](const char* what, std::size_t size) {
     if (size > kLongestList)
       throw Refusal{line, std::string(what) + " of " + std::to_string(size) +
@@ -129,8 +129,8 @@ void check_node(const toml::node& node, int depth) {
 // The one place where TOML is parsed.
 toml::table parsed_toml(const std::string& text, const std::string& file) {
   if (const std::size_t line = Depth(text).line_too_deep(); line > 0)
-    throw Refusal{line, "keys, tables or lists lie more than " + std::to_string(kDeepest) +
-                            " deep in each other"};
+    throw Refusal{line, "keys, tables or lists are nested more than " + std::to_string(kDeepest) +
+                            " levels deep"};
   toml::table table = toml::parse(text, file);
   check_node(table, 0);
   return table;
@@ -197,7 +197,7 @@ std::string slip_in(const std::string& text, std::size_t line) {
   if (value.empty() || !std::isalpha(static_cast<unsigned char>(value.front())) ||
       !std::all_of(value.begin(), value.end(), in_a_word))
     return "";
-  return one_line(found.substr(0, start) + value) + "; words stand in quotes: \"" + value + "\"";
+  return one_line(found.substr(0, start) + value) + "; words need quotes: \"" + value + "\"";
 }
 
 }  // namespace

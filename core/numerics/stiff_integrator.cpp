@@ -30,13 +30,13 @@ void check(int flag) {
 const char* text_of(Reason reason) {
   switch (reason) {
     case Reason::tolerance:
-      return "the tolerance asks for more than double precision gives there";
+      return "the tolerance is tighter than double precision allows there";
     case Reason::no_rates:
-      return "the states have no finite rate of change from there on";
+      return "the rates of change of the states are not finite from there on";
     case Reason::step:
       break;
   }
-  return "the states change faster there than steps above round-off can follow";
+  return "the states change too fast there: the step falls below round-off";
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ PeriodicCubic::PeriodicCubic(std::vector<Piece> pieces) : pieces_(std::move(piec
     throw InputError("the first piece of a periodic curve must start at 0 deg");
   for (std::size_t i = 1; i < pieces_.size(); ++i)
     if (!(pieces_[i].from_deg > pieces_[i - 1].from_deg))
-      throw InputError("pieces of a periodic curve must rise");
+      throw InputError("breakpoints of a periodic curve must increase");
   if (!(pieces_.back().from_deg < 360))
     throw InputError("the last piece of a periodic curve must start below 360 deg");
 }

@@ -27,8 +27,7 @@ PressureTrace::PressureTrace(const PressureSpec& spec)
       delivery_start_deg_(spec.delivery_start_deg) {
   if (kind_ == PressureKind::hydraulic) {
     if (!spec.computed)
-      throw InputError(
-          "[pressure] kind = \"hydraulic\": this job needs the pressure to be computed first");
+      throw InputError("[pressure] kind = \"hydraulic\": the pressure must be computed first");
     if (spec.points == 0) {
       computed_ = spec.computed;
       edges_deg_ = computed_->edges_deg;

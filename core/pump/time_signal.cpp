@@ -11,7 +11,7 @@ TimeSignal::TimeSignal(const TimeCurve& curve) : time_(curve.time), value_(curve
   constexpr std::size_t kFewest = 4;
   if (time_.size() < kFewest || time_.size() != value_.size() ||
       std::adjacent_find(time_.begin(), time_.end(), std::greater_equal<>()) != time_.end())
-    throw InputError(curve.file.string() + ": needs at least 4 points at rising times");
+    throw InputError(curve.file.string() + ": needs at least 4 points at increasing times");
   const auto chord = [&](std::size_t i) {
     return (value_[i + 1] - value_[i]) / (time_[i + 1] - time_[i]);
   };

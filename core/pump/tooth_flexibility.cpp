@@ -87,15 +87,17 @@ Profile cut_by_a_rack(const Gear& gear, double pitch_cone) {
   to.corner_depth = data.dedendum - to.corner_radius;
   const double straight = data.dedendum - to.corner_radius * (1 - sine);
   if (to.corner_radius <= 0 || to.corner_depth <= 0)
-    throw InputError("[gear] dedendum_mm: gaps that deep become pointed before their bottom");
+    throw InputError(
+        "[gear] dedendum_mm: tooth gaps of this depth become pointed above their bottom");
   to.corner_offset = half_thickness + straight * tangent + to.corner_radius * cosine;
   to.base_angle = kPi / (2 * to.teeth) + tangent - gear.pressure_angle;
   to.root_angle = to.corner_offset / to.pitch_radius;
   to.start_roll = tangent - straight / (sine * to.base_radius);
-  if (to.start_roll <= 0) throw InputError("[gear] dedendum_mm: gaps that deep undercut the teeth");
+  if (to.start_roll <= 0)
+    throw InputError("[gear] dedendum_mm: tooth gaps of this depth undercut the teeth");
   to.tip_roll = std::sqrt(std::pow(to.tip_radius / to.base_radius, 2) - 1);
   if (to.tip_roll - std::atan(to.tip_roll) >= to.base_angle)
-    throw InputError("[gear] addendum_mm: teeth that high become pointed before their tip");
+    throw InputError("[gear] addendum_mm: teeth of this height become pointed below their tip");
   return to;
 }
 
@@ -121,7 +123,7 @@ ToothFlexibility::ToothFlexibility(const Gear& gear, double pitch_cone)
   }
   if (!std::isfinite(coefficients_.front()))
     throw InputError("[gear] youngs_modulus_GPa = " + number_text(youngs_modulus_ / 1e9) +
-                     ": the flexibility of the teeth is too large for a number");
+                     ": the flexibility of the teeth is too large");
   // What is rounding only costs time.
   while (std::abs(coefficients_.back()) < 1e-14 * coefficients_.front()) coefficients_.pop_back();
 }

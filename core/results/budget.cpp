@@ -22,7 +22,7 @@ constexpr CauseWords kWords[kCauses] = {
     {"block_friction", "viscous friction of the block, Cc", true},
     {"shaft_friction", "viscous friction of the shaft, Cs", false},
     {"torque_factor", "proportional loss of the shaft, (1 - Ct) Td", false},
-    {"ring", "bore forces beside B, on the play of the pistons", true},
+    {"ring", "bore forces that do not act at B, on the play of the pistons", true},
     {"teeth", "deformation of the teeth", false}};
 
 // Causes that a table has columns of.
@@ -72,9 +72,9 @@ ResultTable budget_table(const std::string& model, bool ring, bool teeth) {
   for (const Cause cause : causes)
     if (words_of(cause).carries)
       add(carrying_column(cause),
-          std::string("torque that carries the block round against ") + words_of(cause).meaning,
-          "Nm", "block");
-  add("Tcs_z2_Nm", "torque that carries the block round", "Nm", "block");
+          std::string("torque that drives the block against ") + words_of(cause).meaning, "Nm",
+          "block");
+  add("Tcs_z2_Nm", "torque that drives the block", "Nm", "block");
   add("Fpress_z2_N", "force that presses the block onto the port plate", "N", "block");
   add("Fland_z2_N", "force of the pressure in the port-plate lands", "N", "block");
   const ChannelKind check = ChannelKind::check;

@@ -19,7 +19,7 @@ AxisMotion Surroundings::shaft_at(double at) const {
 }
 
 void Mechanics::surround(const Surroundings& /*outside*/) {
-  throw std::logic_error("these mechanics take nothing from outside");
+  throw std::logic_error("this model takes no drive or load from outside");
 }
 
 void require_drive(const DriveSpec& drive, const Surroundings& outside) {

@@ -37,7 +37,7 @@ ResultTable teeth_table(const std::string& model) {
     channel.kind = ChannelKind::derived;
     table.channels.push_back(std::move(channel));
   };
-  add("lag_urad", "how far the shaft's teeth are ahead of the block's", "urad", "lag");
+  add("lag_urad", "angle by which the shaft's teeth are ahead of the block's", "urad", "lag");
   add("transmission_error_um", "the lag along the line of action at O4", "um",
       "transmission_error");
   for (int flank = 0; flank < 2; ++flank)

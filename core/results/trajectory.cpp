@@ -68,13 +68,13 @@ const DriveSpec& drive_of(const Case& the_case) {
   };
   if (!the_case.drive)
     refuse(
-        "table [drive] is missing: a simulation needs what turns the shaft, and duration_s, "
-        "as in cases/bap63_start_up.toml");
+        "table [drive] is missing: a simulation needs a drive of the shaft and duration_s, as in "
+        "cases/bap63_start_up.toml");
   const DriveSpec& drive = *the_case.drive;
   if (drive.start_speed && drive.kind == DriveKind::speed)
     refuse(
-        "[drive] start_rpm: must be left out beside kind = \"speed\", which says how the shaft "
-        "turns from the start");
+        "[drive] start_rpm: must be left out with kind = \"speed\", which says how the shaft turns "
+        "from the start");
   if (drive.kind != DriveKind::speed && the_case.pump.friction.piston_coulomb > 0 &&
       the_case.pump.friction.regularization == 0)
     refuse(
@@ -91,7 +91,7 @@ void require_smooth_friction(const Case& the_case) {
       the_case.pump.friction.regularization == 0)
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") +
                      "[friction] regularization_m_per_s = 0: must be > 0 where the oil follows the "
-                     "motion: friction that jumps is not followed there");
+                     "motion: discontinuous friction cannot be integrated there");
 }
 
 }  // namespace bentaxis

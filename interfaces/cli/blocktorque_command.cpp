@@ -36,6 +36,7 @@ Command add_blocktorque_command(CommandParser program) {
       .option("hydraulic", options->hydraulic,
               "the same pump with the hydraulic model, changed by --set alike")
       .required()
+      .case_file()
       .text("HYDRAULIC_CASE");
   return {command, [options] { return blocktorque(*options); }};
 }

@@ -34,12 +34,14 @@ Command add_calibrate_command(CommandParser program) {
       "calibrate", "Find the piston friction and shaft losses that give two mean torques");
   add_case(command, options->the_case);
   command
-      .option("--with", options->wanted.with_friction,
+      .option("--torque-with-friction", options->wanted.with_friction,
               "mean drive torque wanted with piston friction, Nm")
       .required()
       .positive_number()
       .text("NUMBER");
-  command.option("--without", options->wanted.without_friction, "the same without piston friction")
+  command
+      .option("--torque-without-friction", options->wanted.without_friction,
+              "the same without piston friction")
       .required()
       .positive_number()
       .text("NUMBER");

@@ -3,10 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/words.h"
+#include "data_folder.h"
+#include "shipped_cases.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -123,6 +126,16 @@ Option& Option::text(const std::string& values) {
   return *this;
 }
 
+Option& Option::case_file() {
+  option_->transform(CLI::Validator(
+      [](std::string& text) {
+        text = cli::case_file(text, shipped_cases());
+        return std::string();
+      },
+      ""));
+  return completed_with(case_names(shipped_cases()));
+}
+
 Option& Option::list() {
   option_->delimiter(',');
   return *this;
@@ -199,6 +212,15 @@ CommandParser CommandParser::subcommand(const std::string& name, const std::stri
   return {app_->add_subcommand(name, what), words_};
 }
 
+void CommandParser::place(const std::string& group, const std::string& example) {
+  app_->group(group);
+  app_->footer("Example:\n  " + example);
+}
+
+void CommandParser::lacks(const std::string& what) {
+  app_->description(app_->get_description() + " (not in this build: it has no " + what + ")");
+}
+
 void CommandParser::require_subcommand() { app_->require_subcommand(1); }
 
 namespace {
@@ -259,7 +281,8 @@ Option CommandParser::choices_of(const std::string& name,
 }
 
 CommandInfo CommandParser::info() const {
-  CommandInfo info{app_->get_name(), app_->get_description(), {}, {}};
+  CommandInfo info{
+      app_->get_name(), app_->get_description(), app_->get_group(), app_->get_footer(), {}, {}};
   for (const CLI::Option* option : app_->get_options()) {
     OptionInfo one;
     one.names = names_of(*option);
@@ -294,9 +317,36 @@ ProgramParser::ProgramParser(const Texts& texts)
 
 ProgramParser::~ProgramParser() = default;
 
+// The argument by the option's present name. Says on standard error that it has one.
+std::string ProgramParser::with_new_names(const std::string& command,
+                                          const std::string& argument) const {
+  const std::size_t end = std::min(argument.find('='), argument.size());
+  const auto found = renamed_.find({command, argument.substr(0, end)});
+  if (found == renamed_.end()) return argument;
+  std::fprintf(stderr, "bentaxis: %s: %s is now called %s; the former name goes on working\n",
+               command.c_str(), found->first.second.c_str(), found->second.c_str());
+  return found->second + argument.substr(end);
+}
+
 bool ProgramParser::parse(int argc, char** argv) {
+  std::vector<std::string> arguments;
+  const CLI::App* command = app_.get();
+  std::string name;  // of the command so far
+  bool options_end = false;
+  for (int i = 1; i < argc; ++i) {
+    std::string argument = argv[i];
+    options_end = options_end || argument == "--";
+    const auto below = commands_of(*command);
+    if (std::find(below.begin(), below.end(), argument) != below.end()) {
+      command = command->get_subcommand(argument);
+      name += (name.empty() ? "" : " ") + argument;
+    } else if (!options_end) {
+      argument = with_new_names(name, argument);
+    }
+    arguments.insert(arguments.begin(), argument);  // CLI11 takes them from the end
+  }
   try {
-    app_->parse(argc, argv);
+    app_->parse(std::move(arguments));
     return true;
   } catch (const CLI::Success& answered) {
     app_->exit(answered);

@@ -28,6 +28,7 @@ struct OptionInfo {
 /// What the parser knows of a command, or of the program.
 struct CommandInfo {
   std::string name, what;
+  std::string group, example;       ///< as placed() says
   std::vector<OptionInfo> options;  ///< arguments too
   std::vector<CommandInfo> commands;
 };
@@ -42,6 +43,8 @@ class Option {
       : option_(option), words_(std::move(words)) {}
 
   Option& required();
+  /// A case file, or the name of a shipped case, which is replaced by its file.
+  Option& case_file();
   /// Its values in the help text, as in "NUMBER [36]".
   Option& text(const std::string& values);
   Option& list();        ///< values are parted by commas too
@@ -74,6 +77,10 @@ class CommandParser {
       : app_(app), words_(std::move(words)) {}
 
   CommandParser subcommand(const std::string& name, const std::string& what);
+  /// In which group the help text lists the command, and a line that calls it.
+  void place(const std::string& group, const std::string& example);
+  /// Says in the list of commands that it cannot run in this build. @param what  that it lacks
+  void lacks(const std::string& what);
   void require_subcommand();
 
   Option option(const std::string& name, int& value, const std::string& what);
@@ -137,13 +144,22 @@ class ProgramParser {
   /// The program as the command that the commands are added to.
   CommandParser root() { return {app_.get(), words_}; }
 
+  /// An option that had another name: the former one goes on working, and standard error says the
+  /// new one. @param command  "reference golden"
+  void renamed(const std::string& command, const std::string& former, const std::string& option) {
+    renamed_[{command, former}] = option;
+  }
+
   /// @return false where the line asked for --help or --version, which are then printed
   /// @throws InputError
   bool parse(int argc, char** argv);
 
  private:
+  std::string with_new_names(const std::string& command, const std::string& argument) const;
+
   std::unique_ptr<CLI::App> app_;
   std::shared_ptr<OptionWords> words_ = std::make_shared<OptionWords>();
+  std::map<std::pair<std::string, std::string>, std::string> renamed_;
 };
 
 }  // namespace bentaxis::cli

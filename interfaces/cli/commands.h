@@ -25,6 +25,7 @@ struct Command {
 Command add_run_command(CommandParser program);
 Command add_blocktorque_command(CommandParser program);
 Command add_calibrate_command(CommandParser program);
+Command add_cases_command(CommandParser program);
 Command add_completion_command(CommandParser program);
 Command add_compare_command(CommandParser program);
 Command add_docs_command(CommandParser program);
@@ -35,6 +36,7 @@ Command add_identify_command(CommandParser program);
 Command add_init_command(CommandParser program);
 Command add_index_command(CommandParser program);
 Command add_inertia_command(CommandParser program);
+Command add_licenses_command(CommandParser program);
 Command add_life_command(CommandParser program);
 Command add_manual_command(CommandParser program);
 Command add_merge_command(CommandParser program);

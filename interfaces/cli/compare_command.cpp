@@ -98,7 +98,7 @@ Command add_compare_command(CommandParser program) {
   add_report(command, options->place, "report.html, report.json and the curves");
   command
       .option("--tolerance", options->tolerance,
-              "largest difference over peak that counts as agreement")
+              "largest difference over a reaction's peak that counts as agreement")
       .positive_number()
       .text("NUMBER [1e-9 driven, 100 x accuracy integrated]");
   options->choice.add_to(command, true);
@@ -116,6 +116,7 @@ Command add_compare_command(CommandParser program) {
       .option("--multibody-case", options->multibody_case,
               "give the multibody model another case, changed by --set alike: what would a "
               "wrong input do?")
+      .case_file()
       .text("CASE");
   command
       .option("--with", options->with,

@@ -19,8 +19,9 @@ Kind kind_of(const std::string& values) {
 // @param before  what stands before the value in the same word: "--model="
 Completion values_of(const OptionInfo& option, const std::string& before,
                      const std::string& begun) {
-  if (option.words.empty()) return {before.empty() ? kind_of(option.values) : Kind::nothing, {}};
-  Completion result{Kind::words, {}};
+  const Kind kind = before.empty() ? kind_of(option.values) : Kind::nothing;
+  if (option.words.empty()) return {kind, {}};
+  Completion result{kind == Kind::files ? kind : Kind::words, {}};  // names of cases beside files
   const std::size_t comma = option.takes_several ? begun.rfind(',') : std::string::npos;
   const std::string list = comma == std::string::npos ? "" : begun.substr(0, comma + 1);
   for (const std::string& word : option.words)
@@ -114,7 +115,10 @@ _bentaxis() {
   mapfile -t answer < <("${typed[0]}" completion words -- "${typed[@]:1}" 2> /dev/null)
   COMPREPLY=()
   case ${answer[0]} in
-    files) mapfile -t COMPREPLY < <(compgen -f -- "$last"); compopt -o filenames ;;
+    files)
+      mapfile -t COMPREPLY < <(compgen -f -- "$last"); compopt -o filenames
+      COMPREPLY+=("${answer[@]:1}")
+      COMPREPLY=("${COMPREPLY[@]%%$'\t'*}") ;;
     folders) mapfile -t COMPREPLY < <(compgen -d -- "$last"); compopt -o filenames ;;
     words)
       COMPREPLY=("${answer[@]:1}")
@@ -132,7 +136,10 @@ _bentaxis() {
   local -a answer found shown blank
   answer=("${(@f)$(${words[1]} completion words -- "${(@)words[2,CURRENT]}" 2> /dev/null)}")
   case $answer[1] in
-    files) _files ;;
+    files)
+      found=("${(@)${(@)answer[2,-1]}%%$'\t'*}")
+      (( $#answer > 1 )) && compadd -a found
+      _files ;;
     folders) _files -/ ;;
     words)
       found=("${(@)${(@)answer[2,-1]}%%$'\t'*}")
@@ -151,6 +158,9 @@ function __bentaxis_complete
   switch "$answer[1]"
     case files
       __fish_complete_path "$last"
+      for word in $answer[2..-1]
+        echo $word
+      end
     case folders
       __fish_complete_directories "$last"
     case words

@@ -12,10 +12,17 @@ std::optional<fs::path> shipped_folder(const std::string& name, const fs::path& 
   return std::nullopt;
 }
 
-std::optional<fs::path> shipped_reference_data() {
+namespace {
+
+std::optional<fs::path> shipped_with_program(const std::string& name) {
   std::error_code error;
-  return shipped_folder("reference_data", fs::read_symlink("/proc/self/exe", error),
-                        BENTAXIS_DATA_FROM_BINARY);
+  return shipped_folder(name, fs::read_symlink("/proc/self/exe", error), BENTAXIS_DATA_FROM_BINARY);
 }
+
+}  // namespace
+
+std::optional<fs::path> shipped_reference_data() { return shipped_with_program("reference_data"); }
+
+std::optional<fs::path> shipped_cases() { return shipped_with_program("cases"); }
 
 }  // namespace bentaxis::cli

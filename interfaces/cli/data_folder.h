@@ -10,6 +10,8 @@ namespace bentaxis::cli {
 /// The folder reference_data: of the installed copy the program belongs to, else of the source
 /// tree it was built from; nothing where there is neither.
 std::optional<std::filesystem::path> shipped_reference_data();
+/// The folder cases, likewise.
+std::optional<std::filesystem::path> shipped_cases();
 /// The same of a folder "reference_data" or "cases" and any file that was installed with it.
 /// @param data_from_file  path of the installed data from the folder that the file is in
 std::optional<std::filesystem::path> shipped_folder(const std::string& name,

@@ -8,6 +8,7 @@
 #include "data_folder.h"
 #include "options.h"
 #include "report_files.h"
+#include "shipped_cases.h"
 #include "versions.h"
 
 namespace bentaxis::cli {
@@ -32,11 +33,8 @@ std::vector<double> in_si(std::vector<double> values, const std::string& option,
 }
 
 int run(Options& options) {
-  if (options.the_case.file.empty()) {
-    const auto data = shipped_reference_data();
-    if (!data) throw InputError("CASE: the shipped cases are not there; name one");
-    options.the_case.file = (data->parent_path() / "cases" / "bap63_rated.toml").string();
-  }
+  if (options.the_case.file.empty())
+    options.the_case.file = case_file("bap63_rated", shipped_cases());
   study::Fig34Options& study = options.study;
   study.approaches = in_si(options.approaches_um, "--approaches-um", false);
   if (!options.backlashes_um.empty())
@@ -61,7 +59,7 @@ Command add_fig34_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand(
       "fig34", "Which tooth contacts could have made the paper's Fig. 34, and which not");
-  add_case(command, options->the_case, "cases/bap63_rated.toml");
+  add_case(command, options->the_case, "bap63_rated");
   add_report(command, options->place, "fig34.html, fig34.json and the tables");
   command.option("--exponents", options->study.exponents, "exponents of the contact law")
       .list()

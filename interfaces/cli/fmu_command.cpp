@@ -92,7 +92,9 @@ Command add_fmu_command(CommandParser program) {
   CommandParser command = program.subcommand(
       "fmu", "Write the pump of a case as a Functional Mock-up Unit for system simulators");
   add_case(command, options->the_case);
-  command.option("--out", options->out, "the unit; its folder is made where it is missing")
+  command
+      .option("--out", options->out,
+              "where results are written; the FMU, whose directory is made where missing")
       .required()
       .text("FILE.fmu");
   command.option("--fmi", options->version, "version of the standard")
@@ -105,8 +107,10 @@ Command add_fmu_command(CommandParser program) {
       .one_of({"speed", "torque", "case"})
       .text("speed|torque|case [speed; case where its [drive] is a torque or a motor]");
   command
-      .option("--tolerance", options->unit.tolerance,
-              "of co-simulation: error of a step of the integrator, of each state's scale")
+      .option(
+          "--accuracy", options->unit.tolerance,
+          "relative accuracy per step of the time integrator; of co-simulation, relative to the "
+          "scale of each state")
       .number_in(1e-13, 1e-3)
       .text("NUMBER [1e-9]");
   return {command, [options] { return make_unit(*options); }};

@@ -54,10 +54,12 @@ Command add_hardcases_command(CommandParser program) {
   CommandParser command = program.subcommand(
       "hardcases", "Run the catalogue of hard cases: digits achieved and predicted, refusals");
   add_out(command, options->out, "hardcases.html, .json, .csv and .md");
-  command.option("--filter", options->filter, "only cases whose name contains this").text("TEXT");
+  command.option("--filter", options->filter, "only cases whose name contains this text")
+      .text("TEXT");
   command
       .option("--turns", options->turns,
-              "length of the integrated run; 0 leaves it out, as --filter does")
+              "turns of the shaft that are evaluated; of the integrated run. 0 leaves it out, as "
+              "--filter does")
       .integer_in(0, 100000)
       .text("NUMBER [20]");
   command

@@ -33,7 +33,7 @@ int identify(const Options& options, const CommandParser& command) {
   designs::IdentificationData data;
   for (const std::string& file : options.data) designs::read_identification(file, base, data);
   for (const std::string& unknown : options.unknowns)
-    data.unknowns.push_back(designs::unknown_of("--unknown", unknown, base));
+    data.unknowns.push_back(designs::unknown_of("--vary", unknown, base));
   const designs::DataModel model(base, std::move(data));
   ReportFolders folders(options.place);
   designs::IdentifyOptions settings = options.identify;
@@ -67,14 +67,19 @@ Command add_identify_command(CommandParser program) {
       .list()
       .required()
       .text("FILE.toml[,FILE..]");
-  command.option("--unknown", options->unknowns, "further unknowns")
+  command
+      .option("--vary", options->unknowns,
+              "parameter that varies; with the range in which it is searched, in addition to those "
+              "of --data")
       .list()
       .text("NAME=LOW:HIGH[,NAME=LOW:HIGH..]");
   designs::IdentifyOptions& identify_options = options->identify;
   command.option("--starts", identify_options.starts, "starts of the search; the first is the case")
       .integer_in(1, 10000)
       .text("NUMBER [8]");
-  command.option("--seed", options->seed, "of starts and posterior")
+  command
+      .option("--seed", options->seed,
+              "seed of the random number generator; of starts and posterior")
       .integer_in(0, 2147483647)
       .text("NUMBER [1]");
   command
@@ -93,7 +98,7 @@ Command add_identify_command(CommandParser program) {
   command.flag("--fit-only", options->fit_only,
                "least squares and their derivatives alone: no profiles, posterior, leaving out");
   add_threads(command, identify_options.threads,
-              "threads, at most one per processor; 0: as many. Results do not depend on it");
+              "at most one per processor; 0: as many. Results do not depend on it");
   return {command, [options, command] { return identify(*options, command); }};
 }
 

@@ -103,7 +103,10 @@ Command add_index_command(CommandParser program) {
   CommandParser command =
       program.subcommand("index", "One page over all reports below a folder, the worst first");
   command.option("DIR", options->folder, "folder with folders of reports").required();
-  command.option("--out", options->out, "where index.html and index.json go").text("DIR [DIR]");
+  command
+      .option("--out", options->out,
+              "where results are written; directory for index.html and index.json")
+      .text("DIR [DIR]");
   return {command, [options] { return index(*options); }};
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -20,6 +21,7 @@ namespace {
 struct Options {
   CaseOption the_case;
   ReportPlace place;
+  std::string speeds;
   std::vector<double> map_speeds, map_factors = {0.25, 8};  // from, to
   study::InertiaOptions study;
 };
@@ -60,9 +62,7 @@ Command add_inertia_command(CommandParser program) {
       "inertia", "What treating the pistons as two point masses does to the reactions");
   add_case(command, options->the_case);
   add_report(command, options->place, "inertia.html, inertia.json and the curves");
-  command.option("--speeds", options->study.speeds, "speeds to study, rpm")
-      .list()
-      .text("NUMBER[,NUMBER..] [1500,2350]");
+  add_values(command, "--speeds", options->speeds, "shaft speeds, rpm", "1500,2350");
   command.choice("--map", options->study.map_axis, {"mass", "length"},
                  "what grows along the map beside the speed: the piston's mass or its length");
   command.option("--map-speeds", options->map_speeds, "range of speed of the map, rpm")
@@ -76,6 +76,9 @@ Command add_inertia_command(CommandParser program) {
       .text("NUMBER [30]");
   return {command, [options] {
             study::InertiaOptions& study = options->study;
+            if (!options->speeds.empty())
+              study.speeds = values_in("--speeds", options->speeds, "rpm",
+                                       -std::numeric_limits<double>::infinity());
             study.map_factors = range_of(options->map_factors, "--map-factors");
             if (!options->map_speeds.empty())
               study.map_speeds = range_of(options->map_speeds, "--map-speeds");

@@ -2,12 +2,12 @@
 #include <memory>
 #include <string>
 
-#include "bentaxis/pump/error.h"
 #include "bentaxis/study/project.h"
 #include "commands.h"
 #include "console.h"
 #include "data_folder.h"
 #include "options.h"
+#include "shipped_cases.h"
 
 namespace bentaxis::cli {
 namespace {
@@ -18,15 +18,9 @@ struct Options {
   std::string ci = "both";
 };
 
-std::string shipped_case() {
-  if (const auto data = shipped_reference_data())
-    return (data->parent_path() / "cases" / "bap63_rated.toml").string();
-  throw InputError("no case came with this program: --case CASE names one");
-}
-
 int init(const Options& options) {
   CaseOption wanted = options.the_case;
-  if (wanted.file.empty()) wanted.file = shipped_case();
+  if (wanted.file.empty()) wanted.file = case_file("bap63_rated", shipped_cases());
   const auto chosen = [&](const char* system) {
     return options.ci == "both" || options.ci == system;
   };
@@ -45,8 +39,11 @@ Command add_init_command(CommandParser program) {
   CommandParser command = program.subcommand(
       "init", "Write a project: a case, a reference made from it, job files for CI, a README");
   command.option("dir", options->folder, "new folder").required().text("DIR");
-  command.option("--case", options->the_case.file, "case file (TOML)")
-      .text("CASE [the shipped bap63_rated.toml]");
+  command
+      .option("--case", options->the_case.file,
+              "case file (TOML), or the name of a shipped case (bentaxis cases)")
+      .case_file()
+      .text("CASE [bap63_rated]");
   add_changes(command, options->the_case);
   command.option("--ci", options->ci, "for which CI systems a job file is written")
       .one_of({"both", "github", "gitlab", "none"})

@@ -15,6 +15,7 @@
 #include "bentaxis/pump/characters.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/study/timing.h"
+#include "command_list.h"
 #include "commands.h"
 #include "console.h"
 #include "provenance.h"
@@ -74,7 +75,8 @@ ProgramParser::Texts texts() {
           "and how far they are apart.",
           "bentaxis " BENTAXIS_VERSION "\noptional parts: " + optional_parts(),
           "Exit status: 0 agreed or done, 1 out of tolerance, 2 bad usage or input, 3 computation "
-          "failed.\nExample: bentaxis compare cases/bap63_rated.toml --out out"};
+          "failed.\nExample: bentaxis compare bap63_rated --out out\nAll cases by name: bentaxis "
+          "cases"};
 }
 
 // A pressure that is less accurate than its case allows is said, whatever the command makes of it.
@@ -87,23 +89,7 @@ int with_accuracy_said(int status) {
 
 int run_program(int argc, char** argv) {
   ProgramParser parser(texts());
-  const CommandParser program = parser.root();
-  const std::vector<Command> commands = {
-      add_run_command(program),         add_compare_command(program),
-      add_regress_command(program),     add_reference_command(program),
-      add_hardcases_command(program),   add_inertia_command(program),
-      add_pressure_command(program),    add_tradeoff_command(program),
-      add_schema_command(program),      add_calibrate_command(program),
-      add_blocktorque_command(program), add_completion_command(program),
-      add_manual_command(program),      add_show_command(program),
-      add_simulate_command(program),    add_rattle_command(program),
-      add_fig34_command(program),       add_sweep_command(program),
-      add_optimise_command(program),    add_merge_command(program),
-      add_uncertainty_command(program), add_sensitivity_command(program),
-      add_life_command(program),        add_identify_command(program),
-      add_index_command(program),       add_paper_command(program),
-      add_fmu_command(program),         add_init_command(program),
-      add_outputs_command(program),     add_docs_command(program)};
+  const std::vector<Command> commands = add_commands(parser);
   return guarded([&]() -> int {
     refuse_control_characters(argc, argv);
     if (!parser.parse(argc, argv)) return kDone;

@@ -54,6 +54,7 @@ std::string section(const std::string& name, const CommandInfo& command) {
     text = fmt::format(".SS {}\n{}.\n", call(name, command), roff(command.what));
     for (const OptionInfo& option : command.options)
       if (option.names.back() != kHelp) text += item(option);
+    if (!command.example.empty()) text += ".PP\n.nf\n" + roff(command.example) + "\n.fi\n";
   }
   for (const CommandInfo& below : command.commands) text += section(name + " " + below.name, below);
   return text;

@@ -126,28 +126,33 @@ Command add_optimise_command(CommandParser program) {
   add_case(command, options->the_case);
   add_report(command, options->place,
              "report.html, report.json, front.csv, evaluations.csv and chosen_N.toml");
-  command.option("--vary", options->vary, "a parameter and its range, or a list of values")
+  command
+      .option("--vary", options->vary, "parameter that varies; with its range, or a list of values")
       .repeatable()
       .text("NAME=FROM:TO");
   const std::string names = "NAME[,NAME..]";
   designs::OptimiseRequest& request = options->request;
-  command.option("--minimise", request.minimise, "outputs of which less is better (see outputs)")
+  command.option("--minimise", request.minimise, "outputs to minimise; see bentaxis outputs")
       .list()
       .text(names);
-  command.option("--maximise", request.maximise, "outputs of which more is better")
-      .list()
-      .text(names);
+  command.option("--maximise", request.maximise, "outputs to maximise").list().text(names);
   command
       .option("--subject-to", request.subject_to,
               "what every design must keep, as \"timing.backflow.excess <= 0\"")
       .repeatable()
       .text("\"NAME <= NUMBER\"");
-  command.option("--output", request.outputs, "further numbers of every design").list().text(names);
+  command
+      .option("--output", request.outputs, "outputs to compute; besides objectives and constraints")
+      .list()
+      .text(names);
   command
       .option("--conditions", options->conditions,
               "CSV: operating points with their share of the time, as a duty cycle of life")
       .text("FILE");
-  command.option("--study", options->study, "the same in a file; options come on top").text("FILE");
+  command
+      .option("--study", options->study,
+              "study file; it holds the same as the options, which add to it")
+      .text("FILE");
   command.option("--population", options->population, "designs evaluated at once, a multiple of 4")
       .integer_in(8, designs::kMaxPopulation)
       .text("NUMBER [64]");
@@ -157,13 +162,16 @@ Command add_optimise_command(CommandParser program) {
   command.option("--restarts", options->restarts, "searches, each from points of its own")
       .integer_in(1, designs::kMaxRestarts)
       .text("NUMBER [2]");
-  command.option("--seed", options->seed, "of the first search; the next ones count on")
+  command
+      .option("--seed", options->seed,
+              "seed of the random number generator; of the first search, the next ones count on")
       .integer_in(0, 2147483647)
       .text("NUMBER [1]");
-  command.choice("--model", request.model, {"analytic", "multibody"}, "which model");
+  command.choice("--model", request.model, {"analytic", "multibody"}, "model that computes");
   command.flag("--no-refinement", options->no_refinement,
                "leave out the improvement of the best designs by gradients");
-  command.flag("--resume", options->resume, "keep the batches that an interrupted run has left");
+  command.flag("--resume", options->resume,
+               "continue an interrupted run; with the batches that it has left");
   add_threads(command, options->threads, "0: one per processor, one where started by mpirun");
   return {command, [options, command] {
             return in_ranks([&](const Ranks& ranks) { return optimise(*options, command, ranks); });

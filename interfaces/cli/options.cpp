@@ -1,9 +1,11 @@
 #include "options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 
+#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
@@ -52,7 +54,9 @@ void CaseOption::refuse_timing(const std::vector<report::Warning>& timing) const
 }
 
 void add_case(CommandParser command, CaseOption& the_case, const std::string& otherwise) {
-  Option file = command.option("case", the_case.file, "case file (TOML)");
+  Option file = command.option("case", the_case.file,
+                               "case file (TOML), or the name of a shipped case (bentaxis cases)");
+  file.case_file();
   if (otherwise.empty())
     file.required().text("CASE");
   else
@@ -72,12 +76,42 @@ void add_changes(CommandParser command, CaseOption& the_case) {
 }
 
 void add_out(CommandParser command, std::string& folder, const std::string& what) {
-  command.option("--out", folder, "folder for " + what + ", made where missing")
-      .text("DIR [" + folder + "]");
+  command
+      .option("--out", folder,
+              "where results are written; directory for " + what + ", made where missing")
+      .text(folder.empty() ? "DIR" : "DIR [" + folder + "]");
+}
+
+Option add_values(CommandParser command, const std::string& name, std::string& text,
+                  const std::string& what, const std::string& otherwise) {
+  return command.option(name, text, what)
+      .text("NUMBER[,NUMBER..]|FROM:TO:STEP|FROM:TO:#N" +
+            (otherwise.empty() ? "" : " [" + otherwise + "]"));
+}
+
+std::vector<double> values_in(const std::string& name, const std::string& text,
+                              const std::string& unit, double least) {
+  constexpr int kMost = 1000;
+  if (text.find(',') == std::string::npos)
+    return designs::spaced_values(name, text, unit, least, kMost);
+  std::vector<double> values;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string one = text.substr(at, end - at);
+    const auto value = number_in(one);
+    if (!value || *value < least)
+      throw InputError(name + " " + text + ": \"" + one + "\" must be a number in " + unit +
+                       (std::isfinite(least) ? ", >= " + number_text(least) : ""));
+    values.push_back(*value);
+    at = end + 1;
+  }
+  return values;
 }
 
 void add_threads(CommandParser command, int& threads, const std::string& what) {
-  command.option("--threads", threads, what).integer_in(0, 1024).text("NUMBER [0]");
+  command.option("--threads", threads, "threads that compute; " + what)
+      .integer_in(0, 1024)
+      .text("NUMBER [0]");
 }
 
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators) {
@@ -103,11 +137,13 @@ void RunChoice::add_to(CommandParser command, bool several) {
       .completed_with(study::quantity_names())
       .text("NAME[,NAME..] [all]");
   command.choice("--integrator", integration.integrator, multibody::integrator_names(),
-                 "time integrator of an integrated run");
-  Option accuracy = command.option("--accuracy", accuracies,
-                                   several ? "accuracies of an integrated run; all are tabled, the "
-                                             "last is compared"
-                                           : "relative accuracy per step of an integrated run");
+                 "time integrator of Simbody; of an integrated run");
+  Option accuracy =
+      command.option("--accuracy", accuracies,
+                     std::string("relative accuracy per step of the time integrator; ") +
+                         (several ? "of an integrated run; all are tabled, the last "
+                                    "is compared"
+                                  : "of an integrated run"));
   accuracy.accuracy();
   if (several)
     accuracy.list().text("NUMBER[,NUMBER..] [1e-4,1e-6]");
@@ -115,8 +151,8 @@ void RunChoice::add_to(CommandParser command, bool several) {
     accuracy.one_value().text("NUMBER [1e-6]");
   command
       .option("--error", error_,
-              "integrated: choose integrator and accuracy for this error of every reaction, of "
-              "peak, by a short calibration, and verify it")
+              "wanted error of every reaction, relative to its peak; of an integrated run: a short "
+              "calibration chooses integrator and accuracy, and the error is verified")
       .number_in(1e-11, 0.1)
       .excludes(accuracy)
       .text("NUMBER");

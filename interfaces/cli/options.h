@@ -35,7 +35,14 @@ void add_case(CommandParser command, CaseOption& the_case, const std::string& ot
 /// --set and --strict alone.
 void add_changes(CommandParser command, CaseOption& the_case);
 void add_out(CommandParser command, std::string& folder, const std::string& what);
-/// --threads.
+/// An option whose value is a list of numbers or a range: --speeds, --delivery-bar.
+/// @param otherwise  what is taken where it is not given
+Option add_values(CommandParser command, const std::string& name, std::string& text,
+                  const std::string& what, const std::string& otherwise = {});
+/// The numbers of such a text, each at least `least`. @throws InputError naming the option
+std::vector<double> values_in(const std::string& name, const std::string& text,
+                              const std::string& unit, double least);
+/// --threads. @param what  goes on behind its meaning
 void add_threads(CommandParser command, int& threads, const std::string& what);
 /// A list of integrators; empty where not given.
 void add_integrators(CommandParser command, std::vector<multibody::Integrator>& integrators);

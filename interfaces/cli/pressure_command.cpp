@@ -1,7 +1,6 @@
 #include <memory>
 #include <optional>
 
-#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/designs/timing_advice_section.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/files/csv.h"
@@ -18,8 +17,6 @@
 
 namespace bentaxis::cli {
 namespace {
-
-constexpr int kMaxPoints = 1000;  // of a torque curve
 
 struct Options {
   CaseOption the_case;
@@ -55,7 +52,7 @@ int pressure(const Options& options) {
   if (!options.published.empty()) published = compare::read_published(options.published);
   std::vector<double> pressures;
   if (!options.delivery.empty())
-    pressures = designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMaxPoints);
+    pressures = values_in("--delivery-bar", options.delivery, "bar", 0);
   std::optional<double> limit;
   if (!options.suction_speed.empty() && options.suction_speed != kFilling)
     limit = suction_limit(options.suction_speed, *read.hydraulics);
@@ -114,13 +111,12 @@ Command add_pressure_command(CommandParser program) {
       "pressure", "Compute chamber and delivery pressures, flows and the torque they need");
   add_case(command, options->the_case);
   add_report(command, options->place, "pressure.html, pressure.json and the curves");
-  command
-      .option("--delivery-bar", options->delivery,
-              "also mean torque and flow at these delivery pressures; 0 is an open line")
-      .text("FROM:TO:STEP|FROM:TO:#N");
+  add_values(command, "--delivery-bar", options->delivery,
+             "delivery pressures, bar; also mean torque and flow at these. 0 is an open line");
   command
       .option("--overlay", options->overlay,
               "another hydraulic case, drawn into one figure with the first over three turns")
+      .case_file()
       .text("CASE");
   command
       .option("--published", options->published,

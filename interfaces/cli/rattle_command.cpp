@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "bentaxis/designs/spaced_values.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/files/run_lock.h"
@@ -19,8 +18,6 @@
 
 namespace bentaxis::cli {
 namespace {
-
-constexpr int kMaxPoints = 1000;  // of either axis
 
 struct Options {
   CaseOption the_case;
@@ -42,14 +39,12 @@ std::string origin_of(const Case& the_case, const study::RattleOptions& options)
 int rattle(const Options& options) {
   study::RattleOptions rattle = options.rattle;
   constexpr double kMinSpeed = 1;  // rpm
-  rattle.speed_rpm =
-      designs::spaced_values("--speeds", options.speeds, "rpm", kMinSpeed, kMaxPoints);
-  rattle.delivery_bar =
-      designs::spaced_values("--delivery-bar", options.delivery, "bar", 0, kMaxPoints);
+  rattle.speed_rpm = values_in("--speeds", options.speeds, "rpm", kMinSpeed);
+  rattle.delivery_bar = values_in("--delivery-bar", options.delivery, "bar", 0);
   const Case the_case = options.the_case.read();
   if (rattle.check > 0 && the_case.pump.gear.contact == ToothContact::rigid)
     throw InputError(
-        "--check: changes nothing: with [gear] contact = \"rigid\" no motion is integrated");
+        "--check-points: has no effect: with [gear] contact = \"rigid\" no motion is integrated");
   study::RattleFile file(std::filesystem::path(options.place.out) / "rattle.partial.csv",
                          origin_of(the_case, rattle));
   study::RattleKeeping keeping;
@@ -107,35 +102,34 @@ Command add_rattle_command(CommandParser program) {
       "rattle", "Map where the gear carries, reverses, loses contact or hits both flanks");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and rattle.csv");
-  command.option("--speeds", options->speeds, "speeds of the shaft, rpm")
-      .required()
-      .text("FROM:TO:STEP|FROM:TO:#N");
-  command.option("--delivery-bar", options->delivery, "delivery pressures, bar")
-      .required()
-      .text("FROM:TO:STEP|FROM:TO:#N");
+  add_values(command, "--speeds", options->speeds, "shaft speeds, rpm").required();
+  add_values(command, "--delivery-bar", options->delivery, "delivery pressures, bar").required();
   study::RattleOptions& rattle_options = options->rattle;
   command
-      .option("--turns", rattle_options.turns,
-              "turns observed at a point whose motion does not repeat itself")
+      .option(
+          "--turns", rattle_options.turns,
+          "turns of the shaft that are evaluated; at a point whose motion does not repeat itself")
       .integer_in(1, 10000)
       .text("NUMBER [10]");
-  command.option("--discard", rattle_options.discard, "turns before them, at most")
+  command.option("--discard", rattle_options.discard, "turns before those of --turns, at most")
       .integer_in(0, 10000)
       .text("NUMBER [10]");
   command
-      .option("--error", rattle_options.error,
-              "wanted error of the tooth force, of its peak, where no impact makes it grow")
+      .option(
+          "--error", rattle_options.error,
+          "wanted error of every reaction, relative to its peak; here of the tooth force, where no "
+          "impact amplifies it")
       .number_in(1e-8, 1e-2)
       .text("NUMBER [1e-3]");
   command
-      .option("--check", rattle_options.check,
-              "points, spread over the classes, that Simbody computes too")
+      .option("--check-points", rattle_options.check,
+              "number of points, spread over the classes, that Simbody computes too")
       .integer_in(0, 10000)
       .text("NUMBER [0]");
   add_threads(command, rattle_options.threads,
-              "rows computed at a time, at most one per processor; 0: as many");
+              "one row each, at most one per processor; 0: as many");
   command.flag("--resume", options->resume,
-               "go on with the rows that an interrupted run has left in the folder");
+               "continue an interrupted run; with the rows that it has left in the directory");
   return {command, [options] { return rattle(*options); }};
 }
 

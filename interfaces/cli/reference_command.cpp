@@ -127,21 +127,29 @@ Command add_reference_command(CommandParser program) {
   make.option("--source", options->source, "which tool or rig, which version, who, when")
       .text("TEXT")
       .excludes(mapping);
-  make.option("--tolerance", options->tolerance, "allowed difference over the reaction's peak")
+  make.option("--tolerance", options->tolerance,
+              "largest difference over a reaction's peak that counts as agreement")
       .positive_number()
       .text("NUMBER [what the digits of the file allow]")
       .excludes(mapping);
-  make.option("--out", options->out, "new folder").text("DIR [reference_CASE]");
+  make.option("--out", options->out, "where results are written; new directory")
+      .text("DIR [reference_CASE]");
   CommandParser golden = command.subcommand(
       "golden", "Folder with the curves that both models give today, to detect changes");
   add_case(golden, options->the_case);
-  golden.option("--samples", options->samples, "angles in the turn")
+  golden.option("--angles", options->samples, "angles per turn at which results are taken")
       .integer_in(3, 100000)
       .text("NUMBER [36]");
-  golden.option("--out", options->out, "new folder").required().text("DIR");
+  golden.option("--out", options->out, "where results are written; new directory")
+      .required()
+      .text("DIR");
   CommandParser renew = command.subcommand(
       "update", "Rewrite golden curves and say what changed; never touches other data");
   renew.option("dir", options->folder, "folder with references").required().text("DIR");
+  const std::string group = "Commands";
+  make.place(group, "bentaxis reference new bap63_rated --from record.csv --accept");
+  golden.place(group, "bentaxis reference golden bap63_rated --out golden");
+  renew.place(group, "bentaxis reference update golden");
   return {command, [=] {
             if (make.parsed()) return make_new(*options);
             if (golden.parsed()) return make_golden(*options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "bentaxis/designs/explain.h"
 #include "bentaxis/files/output_folder.h"
@@ -24,7 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string folder, junit, html, json, figures, filter;
+  std::string folder, junit, html, json, filter;
+  ReportPlace place;
 };
 
 ExitStatus status_of(study::Outcome::State state) {
@@ -61,6 +63,8 @@ int regress(const Options& options) {
   if (places.empty())
     throw InputError(fmt::format("--filter \"{}\" leaves none of the {} cases below {}",
                                  options.filter, all, root.string()));
+  std::optional<ReportFolders> folders;
+  if (!options.place.out.empty()) folders.emplace(options.place);
   std::vector<study::Outcome> outcomes;
   int status = kDone;
   for (const auto& place : places) {
@@ -72,21 +76,24 @@ int regress(const Options& options) {
       std::fprintf(stderr, "bentaxis: %s: %s\n", outcome.name.c_str(), outcome.error.c_str());
   }
   std::printf("%s", study::regression_report(outcomes).c_str());
-  if (!options.junit.empty()) {
-    std::vector<report::TestSuite> suites;
-    for (const auto& outcome : outcomes) suites.push_back(study::suite_of(outcome));
-    write(options.junit, report::junit_xml("bentaxis regress", suites));
-  }
-  if (options.html.empty() && options.json.empty() && options.figures.empty()) return status;
+  std::vector<report::TestSuite> suites;
+  for (const auto& outcome : outcomes) suites.push_back(study::suite_of(outcome));
+  const std::string junit = report::junit_xml("bentaxis regress", suites);
+  if (!options.junit.empty()) write(options.junit, junit);
+  if (options.html.empty() && options.json.empty() && options.place.figures.empty() && !folders)
+    return status;
   const std::string name = fs::absolute(root / ".").parent_path().filename();
   report::Document document = study::regression_document(outcomes, name, versions());
+  if (folders)
+    for (const auto& path : folders->write("report", document, {}, {{"junit.xml", junit}}))
+      std::printf("%s\n", path.c_str());
   add_provenance(document);
   for (const std::string& file : {options.html, options.json})
     if (!file.empty()) document.files.push_back(fs::path(file).filename());
   if (!options.html.empty()) write(options.html, report::render_page(document));
   if (!options.json.empty()) write(options.json, report::json_text(document));
-  if (!options.figures.empty()) {
-    OutputFolder folder(options.figures);
+  if (!options.place.figures.empty() && !folders) {
+    OutputFolder folder(options.place.figures);
     add_figure_files(folder, document);
     commit_figures(folder);
   }
@@ -101,16 +108,17 @@ Command add_regress_command(CommandParser program) {
       "regress", "Hold both models to stored curves: the shipped reference data or your own");
   command.option("dir", options->folder, "folder with references (default: the shipped set)")
       .text("[DIR]");
+  options->place.out.clear();  // nothing is written where it is not given
+  add_report(command, options->place, "report.html, report.json and junit.xml");
   command.option("--junit", options->junit, "write the results as JUnit XML").text("FILE");
   command
       .option("--html", options->html,
               "write a page with the curves that fail and every external curve, over both models")
       .text("FILE");
   command
-      .option("--json", options->json,
+      .option("--json-file", options->json,
               "write the same as JSON (docs/report_json.md); beside the page, for `bentaxis index`")
       .text("FILE");
-  add_figures(command, options->figures);
   command.option("--filter", options->filter, "only cases whose name contains this text")
       .text("TEXT");
   return {command, [options] { return regress(*options); }};

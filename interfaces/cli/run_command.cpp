@@ -141,7 +141,7 @@ Command add_run_command(CommandParser program) {
   auto options = std::make_shared<Options>();
   CommandParser command = program.subcommand("run", "Run one model and write its curves as CSV");
   add_case(command, options->the_case);
-  command.choice("--model", options->model, {"analytic", "multibody"}, "which model")
+  command.choice("--model", options->model, {"analytic", "multibody"}, "model that computes")
       .required()
       .text("analytic|multibody");
   add_out(command, options->out, "the curves");

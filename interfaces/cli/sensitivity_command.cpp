@@ -72,16 +72,19 @@ Command add_sensitivity_command(CommandParser program) {
       "sensitivity", "Derivatives of any output with respect to any parameter of a case");
   add_case(command, options->the_case);
   add_report(command, options->place, "sensitivity.html, sensitivity.json and sensitivity.csv");
-  command.option("--output", options->outputs, "what to differentiate (docs/sweeps.md)")
+  command
+      .option("--output", options->outputs,
+              "outputs to compute; their derivatives are found (docs/sweeps.md)")
       .list()
       .text("NAME[,NAME..] [Td, bearings, Rs, Rc, pin, film]");
   command
-      .option("--parameter", options->parameters,
-              "with respect to what: names as of --set; without, every number of the case")
+      .option("--vary", options->parameters,
+              "parameter that varies; the derivatives are with respect to it. Names as of --set; "
+              "without, every number of the case")
       .list()
       .text("NAME[,NAME..]");
-  command.choice("--model", options->model, {"analytic", "multibody"}, "which model");
-  command.flag("--check", options->check,
+  command.choice("--model", options->model, {"analytic", "multibody"}, "model that computes");
+  command.flag("--check-derivatives", options->check,
                "also by differences of the other model; a difference: exit status 1");
   return {command, [options] { return sensitivity(*options); }};
 }

@@ -83,8 +83,8 @@ Command add_show_command(CommandParser program) {
   add_case(command, options->the_case);
   command
       .option("--out", options->out,
-              "write the picture; or into a folder a report with forces and curves of the analytic "
-              "model alone")
+              "where results are written; the picture, or a directory for a report with forces and "
+              "curves of the analytic model alone")
       .text("FILE.svg|DIR");
   add_figures(command, options->figures);
   return {command, [options] { return show(*options); }};

@@ -69,7 +69,8 @@ Command add_simulate_command(CommandParser program) {
       "simulate", "Integrate the motion of shaft and block in time by both models and compare");
   add_case(command, options->the_case);
   add_report(command, options->place, "report.html, report.json and the curves");
-  command.option("--model", options->model, "one model alone; nothing is compared then")
+  command
+      .option("--model", options->model, "model that computes; one alone, nothing is compared then")
       .one_of({"analytic", "multibody"})
       .text("analytic|multibody [both]");
   command
@@ -82,17 +83,19 @@ Command add_simulate_command(CommandParser program) {
                "find the motion that repeats itself every N-th of a turn, and its stability, "
                "instead of what follows the start; rows over one turn");
   options->unit.add_to(command);
-  Option accuracy = command.option("--accuracy", options->choice.accuracy,
-                                   "multibody: relative accuracy per step of Simbody's integrator");
+  Option accuracy =
+      command.option("--accuracy", options->choice.accuracy,
+                     "relative accuracy per step of the time integrator; of the multibody model");
   accuracy.accuracy().text("NUMBER [found for --error]");
   command
-      .option("--error", options->choice.error,
-              "wanted error of every reaction, of peak: what both models are integrated for and "
-              "held to")
+      .option(
+          "--error", options->choice.error,
+          "wanted error of every reaction, relative to its peak; both models are integrated to it "
+          "and compared by it")
       .number_in(1e-10, 0.1)
       .text("NUMBER [1e-6]");
   command.choice("--integrator", options->choice.integrator, multibody::integrator_names(),
-                 "multibody: time integrator of Simbody");
+                 "time integrator of Simbody; of the multibody model");
   return {command, [options, command] { return simulate(*options, command); }};
 }
 

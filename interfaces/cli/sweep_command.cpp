@@ -107,7 +107,7 @@ Command add_sweep_command(CommandParser program) {
   command.option("--part", options->part, "compute this part of the blocks only; then merge")
       .text("I/N");
   command.flag("--resume", options->share.resume,
-               "keep the blocks that an interrupted run has left in the folder");
+               "continue an interrupted run; with the blocks that it has left in the directory");
   add_threads(command, options->share.threads, "0: one per processor, one where started by mpirun");
   return {command, [options, command] {
             return in_ranks([&](const Ranks& ranks) { return sweep(*options, command, ranks); });

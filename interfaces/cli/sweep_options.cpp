@@ -25,31 +25,33 @@ double check_share(const std::string& text) {
 }  // namespace
 
 void add_plan(CommandParser command, PlanOptions& options) {
-  command.option("--vary", options.vary, "a parameter and its values (docs/sweeps.md)")
+  command.option("--vary", options.vary, "parameter that varies; with its values (docs/sweeps.md)")
       .repeatable()
       .text("NAME=VALUES");
   const std::string names = "NAME[,NAME..]";
   command
       .option("--output", options.request.outputs,
-              "numbers asked for, as max:Rb1_z1 (docs/sweeps.md)")
+              "outputs to compute; as max:Rb1_z1 (docs/sweeps.md)")
       .list()
       .text(names);
-  command.option("--minimise", options.request.minimise, "outputs of which less is better")
-      .list()
-      .text(names);
-  command.option("--maximise", options.request.maximise, "outputs of which more is better")
-      .list()
-      .text(names);
-  command.option("--study", options.study, "the same in a file; options come on top").text("FILE");
+  command.option("--minimise", options.request.minimise, "outputs to minimise").list().text(names);
+  command.option("--maximise", options.request.maximise, "outputs to maximise").list().text(names);
+  command
+      .option("--study", options.study,
+              "study file; it holds the same as the options, which add to it")
+      .text("FILE");
   command.choice("--sampling", options.request.sampling, designs::sampling_words(),
                  "every combination, or points in distributions");
-  command.option("--samples", options.samples, "number of points; not of a grid")
+  command.option("--samples", options.samples, "number of samples that are drawn; not of a grid")
       .integer_in(1, 1000000000)
       .text("NUMBER");
-  command.option("--seed", options.seed, "of the points; 0: Sobol's sequence as it is")
+  command
+      .option("--seed", options.seed,
+              "seed of the random number generator; 0: Sobol's sequence as it is")
       .integer_in(0, 2147483647)
       .text("NUMBER [1]");
-  command.choice("--model", options.request.model, {"analytic", "multibody"}, "which model");
+  command.choice("--model", options.request.model, {"analytic", "multibody"},
+                 "model that computes");
   command.option("--check", options.check, "share of the designs that the other model computes too")
       .text("SHARE [0%]");
 }

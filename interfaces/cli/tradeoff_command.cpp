@@ -46,7 +46,7 @@ Command add_tradeoff_command(CommandParser program) {
       .accuracy()
       .text("NUMBER[,NUMBER..] [1e-2,1e-3,..,1e-10]");
   command
-      .option("--samples", tradeoff_options.samples_per_revolution,
+      .option("--angles", tradeoff_options.samples_per_revolution,
               "angles per turn at which results are taken; each ends a step")
       .integer_in(1, 100000)
       .text("NUMBER [8 per piston]");

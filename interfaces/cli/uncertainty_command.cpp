@@ -78,23 +78,23 @@ Command add_uncertainty_command(CommandParser program) {
   add_case(command, options->the_case);
   add_report(command, options->place,
              "report.html, report.json, outputs.csv, samples.csv and bands.csv");
-  command.option("--output", options->outputs, "numbers asked for")
+  command.option("--output", options->outputs, "outputs to compute")
       .list()
       .text("NAME[,NAME..] [mean:Td,peak:Rb1,peak:Rb2]");
   command
       .option("--vary", options->varied,
-              "distribution of a parameter, instead of what [uncertainty] says of it: "
+              "parameter that varies; with its distribution, instead of that in [uncertainty]: "
               "\"pump.tilt_deg=normal(40, 0.1)\"")
       .repeatable()
       .text("NAME=DISTRIBUTION");
   designs::UncertaintyOptions& how = options->uncertainty;
-  command.option("--samples", options->samples, "samples of the Monte Carlo")
+  command.option("--samples", options->samples, "number of samples that are drawn; by Monte Carlo")
       .integer_in(10, kMaxSamples)
       .text("NUMBER [1000]");
-  command.option("--seed", options->seed, "of its random numbers")
+  command.option("--seed", options->seed, "seed of the random number generator; of Monte Carlo")
       .integer_in(0, 2'000'000'000)
       .text("NUMBER [1]");
-  command.option("--level", how.level, "part of all pumps that a band holds")
+  command.option("--level", how.level, "coverage probability of the bands")
       .number_in(0.01, 0.9999)
       .text("NUMBER [0.95]");
   command
@@ -104,8 +104,8 @@ Command add_uncertainty_command(CommandParser program) {
       .integer_in(0, kMaxSamples)
       .text("NUMBER [0]");
   command.flag("--no-curves", options->no_curves, "numbers only, no bands on reactions");
-  command.choice("--model", how.model, {"analytic", "multibody"}, "the model that computes them");
-  add_threads(command, how.threads, "samples computed at a time, at most; 0: one per processor");
+  command.choice("--model", how.model, {"analytic", "multibody"}, "model that computes");
+  add_threads(command, how.threads, "one sample each, at most; 0: one per processor");
   return {command, [options] { return uncertainty(*options); }};
 }
 

@@ -13,7 +13,7 @@ constexpr zip_uint16_t kFirstDay = (1 << 5) | 1;  // of a zip archive: 1980-01-0
 constexpr int kCompression = 6;                   // of nine: the rest is time for nothing
 
 [[noreturn]] void fail(const std::string& why) {
-  throw ComputationError("the archive of the unit cannot be made: " + why);
+  throw ComputationError("the archive of the FMU cannot be made: " + why);
 }
 
 struct Discard {

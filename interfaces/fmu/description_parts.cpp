@@ -147,11 +147,11 @@ void add_types(pugi::xml_node root, const std::vector<Variable>& variables, Vers
 void add_log_categories(pugi::xml_node root) {
   pugi::xml_node all = root.append_child("LogCategories");
   const std::pair<const char*, const char*> categories[] = {
-      {"logEvents", "events: edges of ports, teeth that touch or part, knots of curves"},
-      {"logStatusWarning", "what a call that returns a warning has to say"},
-      {"logStatusDiscard", "why a call was not followed"},
+      {"logEvents", "events: port edges, contact of teeth, breakpoints of curves"},
+      {"logStatusWarning", "warnings of calls that return fmi*Warning"},
+      {"logStatusDiscard", "reason why a call was refused"},
       {"logStatusError", "what was wrong"},
-      {"logStatusFatal", "why no instance can go on"},
+      {"logStatusFatal", "reason why the instance cannot continue"},
       {"logAll", "all of these"}};
   for (const auto& [name, meaning] : categories) {
     pugi::xml_node category = all.append_child("Category");

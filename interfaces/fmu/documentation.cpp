@@ -16,14 +16,15 @@ void say(pugi::xml_node body, const char* element, const std::string& text) {
 const char* sentence_of(Drive drive) {
   switch (drive) {
     case Drive::speed:
-      return "The shaft turns as drive_speed and drive_acceleration say. Without the acceleration "
-             "reactions lack what it adds to them, and inertia_reactions_valid is false.";
+      return "The inputs drive_speed and drive_acceleration set the motion of the shaft. Without "
+             "the acceleration the reactions do not contain its inertia forces, and "
+             "inertia_reactions_valid is false.";
     case Drive::torque:
-      return "The input drive_torque turns the shaft.";
+      return "The input drive_torque drives the shaft.";
     case Drive::as_in_case:
       break;
   }
-  return "The shaft is driven as the case says; no input drives it.";
+  return "The drive of the case turns the shaft; it has no input.";
 }
 
 void add_table(pugi::xml_node body, const std::string& title, Causality causality,
@@ -61,8 +62,8 @@ std::string documentation_page(const Description& description, const UnitOptions
   say(body, "p", sentence_of(options.drive));
   say(body, "p",
       "Co-simulation integrates to " + number_text(description.tolerance) +
-          " of each state's scale per step, however long the communication steps are. The case is "
-          "in resources/case.toml. For Linux on x86-64 with glibc " +
+          " of the scale of each state per step, for any length of the communication steps. The "
+          "case is in resources/case.toml. For Linux on x86-64 with glibc " +
           needed_glibc() +
           " or newer. Angles are those of the paper (Roccatello "
           "and Nervegna 2009); forces act on the body that is named first, at its point, in its "

@@ -117,7 +117,7 @@ void require_text(const KeptCase& kept) {
   for (const KeptCase::Curve& curve : kept.curves)
     if (curve.bytes.find('\0') != std::string::npos)
       throw InputError(curve.name.substr(curve.name.find('/') + 1) +
-                       ": is a workbook or a .mat file, which a unit cannot read: save it as CSV");
+                       ": is a workbook or a .mat file, which an FMU cannot read: save it as CSV");
 }
 
 const char* folder_of_library(Version version) {

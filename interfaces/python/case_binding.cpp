@@ -11,6 +11,8 @@
 #include "bentaxis/study/plausibility.h"
 #include "binding.h"
 #include "python_case.h"
+#include "report.h"
+#include "shipped_cases.h"
 #include "values.h"
 
 namespace bentaxis::python {
@@ -58,11 +60,10 @@ std::string range_text(const Parameter& parameter) {
 }
 
 void add_class(py::module_& module) {
-  py::class_<PythonCase>(
-      module, "Case",
-      "A pump, how it runs and the pressure in its chambers, as a case file says. "
-      "A mapping from the keys of the file, \"pump.tilt_deg\", to values in the "
-      "file's units. Computations work on a copy made when they are called.")
+  py::class_<PythonCase>(module, "Case",
+                         "A case: pump, operating point and chamber pressure. A mapping from the "
+                         "keys of the case file, such as \"pump.tilt_deg\", to values in the units "
+                         "of the file. Each computation uses a copy made at the call.")
       .def("__getitem__", &value_in, py::arg("key"),
            "Value of a parameter in the file's unit; None where it has none in this case.")
       .def(
@@ -71,25 +72,26 @@ void add_class(py::module_& module) {
             self.change({{key, toml_of(value, key)}});
           },
           py::arg("key"), py::arg("value"),
-          "Changes a parameter as if its file said so: it is held to its range, and defaults that "
-          "follow from it follow.")
+          "Changes a parameter as if its file said so: its range is checked, and defaults that "
+          "depend on it are updated.")
       .def(
           "update",
           [](PythonCase& self, const CaseValues& values) { self.change(changes_of(values)); },
           py::arg("changes"),
-          "Changes several parameters together: for those that are refused alone. All or none.")
+          "Changes several parameters at once, where single changes would be refused. All are "
+          "changed or none.")
       .def(
           "__contains__",
           [](const PythonCase& self, const std::string& key) {
             return self.value(key).has_value();
           },
           py::arg("key"), "Whether a parameter has a value in this case.")
-      .def("keys", &PythonCase::keys, "Parameters that have something to do in this case.")
+      .def("keys", &PythonCase::keys, "Keys of the parameters that are active in this case.")
       .def(
           "__iter__", [](const PythonCase& self) { return py::iter(py::cast(self.keys())); },
-          "Over keys().")
+          "Iterates over keys().")
       .def(
-          "__len__", [](const PythonCase& self) { return self.keys().size(); }, "Of keys().")
+          "__len__", [](const PythonCase& self) { return self.keys().size(); }, "Number of keys().")
       .def(
           "items",
           [](const PythonCase& self) {
@@ -100,22 +102,22 @@ void add_class(py::module_& module) {
           "Keys with their values.")
       .def(
           "validate", [](const PythonCase& self) { validate(self.get()); },
-          "Holds every parameter to its range and all to each other; raises InputError.")
+          "Checks the range of every parameter and their consistency; raises InputError.")
       .def(
           "doubts", [](const PythonCase& self) { return study::plausibility(self.get()).warnings; },
-          "What is possible but hardly meant, as docs/plausibility.md says.")
+          "Plausibility warnings of the case (docs/plausibility.md).")
       .def(
           "summary",
           [](const PythonCase& self) { return study::plausibility(self.get()).summary(); },
           "The pump in a line: displacement, flow, torque, speed, pressure.")
       .def(
           "write", [](const PythonCase& self, const fs::path& path) { write(self.get(), path); },
-          py::arg("path"), "Writes a case file that reads back as this case.")
+          py::arg("path"), "Writes a case file; reading it gives the same case.")
       .def(
           "text", [](const PythonCase& self) { return case_text(self.get()); },
-          "What write() writes.")
+          "Text of the case file.")
       .def(
-          "copy", [](const PythonCase& self) { return self; }, "A case of its own.")
+          "copy", [](const PythonCase& self) { return self; }, "Copy of the case.")
       .def(
           "__copy__", [](const PythonCase& self) { return self; }, "As copy().")
       .def(
@@ -154,13 +156,14 @@ void add_class(py::module_& module) {
 }  // namespace
 
 void add_case(py::module_& module) {
-  py::class_<PlausibilityWarning>(module, "Doubt",
-                                  "A value, or values together, that are hardly meant.")
+  py::class_<PlausibilityWarning>(
+      module, "Doubt",
+      "A plausibility warning: a value, or a combination of values, that is implausible.")
       .def_readonly("code", &PlausibilityWarning::code, "Stable short name: \"tilt-in-radians\".")
       .def_readonly("text", &PlausibilityWarning::text,
                     "The key with its value, the limit and its reason.")
       .def_readonly("reason", &PlausibilityWarning::reason,
-                    "Why it is meant all the same, where the case says.")
+                    "Reason why the value is intended, where the case gives one.")
       .def(
           "__repr__",
           [](const PlausibilityWarning& self) {
@@ -172,26 +175,28 @@ void add_case(py::module_& module) {
           "unit", [](const Parameter& self) { return std::string(self.unit.name); },
           "Unit of its value; \"\" where it has none.")
       .def_readonly("symbol", &Parameter::symbol, "Symbol in the paper or in the documentation.")
-      .def_readonly("meaning", &Parameter::meaning, "What it is.")
-      .def_property_readonly("range", &range_text, "What it may be.")
-      .def_readonly("words", &Parameter::words, "Of a choice: its words.");
+      .def_readonly("meaning", &Parameter::meaning, "Meaning of the parameter.")
+      .def_property_readonly("range", &range_text, "Allowed values.")
+      .def_readonly("words", &Parameter::words, "Allowed words, for a choice.");
   add_class(module);
   module.def(
       "read_case",
       [](const fs::path& path, const CaseValues& changes) {
-        return PythonCase::read(path, changes_of(changes));
+        return PythonCase::read(cli::case_file(path.string(), shipped("cases")),
+                                changes_of(changes));
       },
       py::arg("path"), py::arg("changes") = py::none(),
-      "Reads a case file. Files that it names are found from it, wherever the program goes "
-      "later. `changes`: as if the file said so.");
+      "Reads a case file, or the shipped case of this name (cases()). Files that the case names "
+      "are found from its own directory. `changes`: as if the file said so.");
   module.def(
       "parse_case",
       [](const std::string& text, const fs::path& path) { return PythonCase(text, path, {}); },
       py::arg("text"), py::arg("path") = "case.toml",
-      "The same of a text; `path` stands in messages and says where files are that it names.");
+      "Reads a case from a text. `path` appears in messages, and files named in the text are found "
+      "from its directory.");
   module.def("parameter", &known, py::arg("key"), py::return_value_policy::reference,
-             "What is known of a parameter: unit, symbol, meaning, range.");
-  module.def("parameters", &all_keys, "Every key that a case file may have.");
+             "Unit, symbol, meaning and range of a parameter.");
+  module.def("parameters", &all_keys, "All keys that a case file may have.");
 }
 
 }  // namespace bentaxis::python

@@ -112,17 +112,18 @@ Table table(const Comparison& self, const ResultTable& part) {
 
 void add_comparison_pieces(py::module_& module) {
   py::class_<ChannelComparison>(module, "ChannelComparison",
-                                "How far apart both models are in one channel. Differences are "
-                                "multibody minus analytic, in the channel's unit.")
+                                "Difference of the two models in one channel: multibody minus "
+                                "analytic, in the unit of the channel.")
       .def_property_readonly(
           "name", [](const ChannelComparison& self) { return self.channel.name; },
-          "Of the channel.")
+          "Name of the channel.")
       .def_readonly("channel", &ChannelComparison::channel, "What it is.")
       .def_property_readonly(
           "verdict",
           [](const ChannelComparison& self) { return std::string(to_string(self.verdict)); },
           "In a word.")
-      .def_readonly("judged", &ChannelComparison::judged, "Whether it counts for the verdict.")
+      .def_readonly("judged", &ChannelComparison::judged,
+                    "Whether the channel counts for the verdict.")
       .def_readonly("peak", &ChannelComparison::peak,
                     "Largest magnitude of the channel's group, at least a thousandth of the "
                     "largest load of the case.")
@@ -132,7 +133,7 @@ void add_comparison_pieces(py::module_& module) {
       .def_property_readonly("largest_over_peak", &ChannelComparison::largest_over_peak,
                              "Largest difference over the peak.")
       .def_readonly("theta_of_largest_deg", &ChannelComparison::theta_of_largest_deg,
-                    "Angle of the shaft there.")
+                    "Angle of the shaft at the largest difference.")
       .def_readonly("rms", &ChannelComparison::rms, "Root of the mean square of the difference.")
       .def_readonly("mean_difference", &ChannelComparison::mean_difference,
                     "Mean of the difference.")
@@ -145,12 +146,14 @@ void add_comparison_pieces(py::module_& module) {
                    to_string(self.verdict) + ">";
           },
           "Name and verdict.");
-  py::class_<compare::Check>(module, "Check", "What must vanish, over a whole table.")
-      .def_readonly("table", &compare::Check::table, "Of which model.")
-      .def_readonly("name", &compare::Check::name, "What must vanish.")
-      .def_readonly("worst", &compare::Check::worst, "Its largest magnitude.")
+  py::class_<compare::Check>(module, "Check",
+                             "A check: a quantity that must be zero in every row of a table.")
+      .def_readonly("table", &compare::Check::table, "Model of the table.")
+      .def_readonly("name", &compare::Check::name, "Quantity that must be zero.")
+      .def_readonly("worst", &compare::Check::worst, "Largest magnitude of the quantity.")
       .def_readonly("unit", &compare::Check::unit, "Unit of that.")
-      .def_property_readonly("relative", &compare::Check::relative, "The same over its scale.")
+      .def_property_readonly("relative", &compare::Check::relative,
+                             "Largest magnitude over its scale.")
       .def_property_readonly("holds", &compare::Check::holds, "Whether it is within tolerance.");
 }
 
@@ -159,18 +162,17 @@ void add_comparison_pieces(py::module_& module) {
 void add_comparison(py::module_& module) {
   add_comparison_pieces(module);
   py::class_<Comparison>(module, "Comparison",
-                         "Both models on one case, and how far they are apart.")
+                         "Results of both models on one case, and their differences.")
       .def_property_readonly(
           "agrees", [](const Comparison& self) { return self.result->passes(); },
-          "The verdict: every difference is within tolerance, or what no assumption explains is, "
-          "and "
-          "every check holds.")
+          "Verdict: every difference, less what stated assumptions explain, is within tolerance, "
+          "and every check is passed.")
       .def_property_readonly(
           "headline", [](const Comparison& self) { return self.result->headline(); },
           "The verdict in a sentence.")
       .def_property_readonly(
           "text", [](const Comparison& self) { return study::comparison_text(*self.result); },
-          "All that the program prints.")
+          "Text that the program prints.")
       .def_property_readonly(
           "tolerance", [](const Comparison& self) { return self.result->tolerance; },
           "Allowed difference over the peak.")
@@ -181,8 +183,9 @@ void add_comparison(py::module_& module) {
       .def_property_readonly(
           "channels", [](const Comparison& self) { return self.result->comparison.channels; },
           "Every channel.")
-      .def_property_readonly("groups", &groups,
-                             "By group of channels that share a peak, the one furthest apart.")
+      .def_property_readonly(
+          "groups", &groups,
+          "For each group of channels with a common peak, the channel with the largest difference.")
       .def_property_readonly(
           "analytic", [](const Comparison& self) { return table(self, self.result->analytic); },
           "Results of the analytic model.")
@@ -195,12 +198,11 @@ void add_comparison(py::module_& module) {
             if (!self.result->first.hydraulics) return std::nullopt;
             return table(self, self.result->first.hydraulics->table);
           },
-          "What the hydraulic model found; None where the case gives its pressure.")
+          "Results of the hydraulic model; None where the pressure is given by the case.")
       .def_property_readonly(
           "checks", [](const Comparison& self) { return self.result->checks; },
-          "What must vanish in each model.")
-      .def_readonly("warnings", &Comparison::warnings,
-                    "What is doubtful about the case and the results, which was warned of.")
+          "Checks of each model.")
+      .def_readonly("warnings", &Comparison::warnings, "Warnings about the case and the results.")
       .def("report", &report_comparison, py::arg("folder"),
            "Writes report.html, report.json and the curves as the program does; returns their "
            "paths.")
@@ -214,10 +216,10 @@ void add_comparison(py::module_& module) {
       "compare", &compare_cases, py::arg("case"), py::arg("multibody") = py::none(), py::kw_only(),
       py::arg("analytic") = py::none(), py::arg("multibody_case") = nullptr,
       py::arg("channels") = py::none(), py::arg("tolerance") = py::none(),
-      "Runs both models over one turn and compares them. `multibody`, `analytic`: what a model "
-      "assumes instead of what the case says, {\"piston_friction\": False, \"gear\": "
-      "\"imposed\"}: the difference is then taken apart. `multibody_case`: another case for "
-      "the multibody model. `channels`: only these.");
+      "Runs both models over one turn and compares them. `multibody`, `analytic`: assumptions of a "
+      "model that override the case, {\"piston_friction\": False, \"gear\": \"imposed\"}: the "
+      "difference is then split by assumption. `multibody_case`: another case for the multibody "
+      "model. `channels`: only these channels.");
 }
 
 }  // namespace bentaxis::python

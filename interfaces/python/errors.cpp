@@ -44,22 +44,20 @@ void warn_of_plausibility(const std::vector<std::string>& texts) {
 }
 
 void add_errors(py::module_& module) {
-  input_error =
-      new_class(module, "InputError",
-                "An input cannot be used: a file, a key, an argument. One line that names "
-                "it, its value and what is allowed, in the words of the program.",
-                PyExc_ValueError);
+  input_error = new_class(module, "InputError",
+                          "An input (file, key or argument) cannot be used. The message names it, "
+                          "its value and what is allowed.",
+                          PyExc_ValueError);
   computation_error = new_class(module, "ComputationError",
                                 "A computation on valid input failed: which model, where, and why.",
                                 PyExc_RuntimeError);
-  warning =
-      new_class(module, "DoubtWarning",
-                "A result can be computed but is doubtful: digits that rounding takes, a port's "
-                "timing beyond its limits, states that are hardly meant.",
-                PyExc_UserWarning);
+  warning = new_class(module, "DoubtWarning",
+                      "A result was computed, but with a warning: digits lost to round-off, port "
+                      "timing outside its limits, implausible states.",
+                      PyExc_UserWarning);
   plausibility_warning = new_class(
       module, "PlausibilityWarning",
-      "A case is valid but implausible: a value, or values together, as Case.doubts() lists them.",
+      "A case is valid but implausible: a plausibility warning, as listed by Case.doubts().",
       warning);
   // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 wants it so
   py::register_exception_translator([](std::exception_ptr thrown) {

@@ -183,11 +183,13 @@ std::vector<fs::path> report_identification(const Identification& self, const fs
 }  // namespace
 
 void add_identification(py::module_& module) {
-  py::class_<Minimum>(module, "Minimum", "A point at which the sum of squares is smallest nearby.")
-      .def_readonly("values", &Minimum::x, "Of the unknowns, in their order.")
+  py::class_<Minimum>(module, "Minimum", "A local minimum of the sum of squares.")
+      .def_readonly("values", &Minimum::x, "Values of the unknowns, in their order.")
       .def_readonly("sum_of_squares", &Minimum::sum_of_squares, "There.")
-      .def_readonly("starts", &Minimum::starts, "How many led there.");
-  py::class_<Identification>(module, "Identification", "What data say about a pump.")
+      .def_readonly("starts", &Minimum::starts, "Number of starts that ended there.");
+  py::class_<Identification>(
+      module, "Identification",
+      "Result of an identification: parameters of a pump determined from data.")
       .def_property_readonly(
           "unknowns",
           [](const Identification& self) {
@@ -200,7 +202,7 @@ void add_identification(py::module_& module) {
       .def_property_readonly(
           "values",
           [](const Identification& self) { return by_name(self, self.found->result.fit.x); },
-          "What they were found to be.")
+          "Identified values.")
       .def_property_readonly(
           "deviations",
           [](const Identification& self) {
@@ -209,18 +211,19 @@ void add_identification(py::module_& module) {
           "Standard deviations, as if the model were linear there; where the fit is refuted, with "
           "all stated uncertainties multiplied by birge_ratio.")
       .def_property_readonly("intervals", &intervals,
-                             "95 % limits by their profiles; empty with fit_only and where the fit "
-                             "is refuted. Right only where the stated uncertainties are.")
+                             "95 % limits from profile likelihoods; empty with fit_only and where "
+                             "the fit is refuted. Valid only if the stated uncertainties are.")
       .def_property_readonly(
           "sum_of_squares",
           [](const Identification& self) { return self.found->result.fit.sum_of_squares; },
-          "Of all residuals over their uncertainties: chi-square.")
+          "Chi-square: sum of squares of all residuals over their uncertainties.")
       .def_property_readonly(
           "degrees_of_freedom",
           [](const Identification& self) {
             return self.found->result.goodness.degrees_of_freedom();
           },
-          "Data that count less what was fitted to them; 0: the fit cannot be tested.")
+          "Degrees of freedom: number of data less number of fitted values; 0: the fit cannot be "
+          "tested.")
       .def_property_readonly(
           "p_value", [](const Identification& self) { return self.found->result.goodness.p_value; },
           "Probability of a larger sum of squares if model and stated uncertainties are right; "
@@ -248,13 +251,13 @@ void add_identification(py::module_& module) {
           "Best first.")
       .def_property_readonly(
           "words", [](const Identification& self) { return self.found->result.information.words; },
-          "What is determined only together with what, or not at all.")
+          "Unknowns that are determined only in combination, or not at all.")
       .def_property_readonly(
           "text",
           [](const Identification& self) {
             return designs::identify_text(self.found->model, self.found->result);
           },
-          "All that the program prints.")
+          "Text that the program prints.")
       .def_property_readonly(
           "case",
           [](const Identification& self) {
@@ -266,23 +269,22 @@ void add_identification(py::module_& module) {
           "Reactions over the turn with their bands; None with fit_only and where the "
           "fit is refuted.")
       .def("report", &report_identification, py::arg("folder"),
-           "Writes what the program writes; returns the files' paths.")
+           "Writes the same files as the program; returns their paths.")
       .def(
           "__repr__",
           [](const Identification& self) {
             return "<bentaxis.Identification of " +
                    std::to_string(self.found->model.data().unknowns.size()) + " unknowns>";
           },
-          "How many unknowns.");
-  module.def(
-      "identify", &identify, py::arg("case"), py::arg("data"), py::arg("unknowns") = py::none(),
-      py::kw_only(), py::arg("starts") = 8, py::arg("seed") = 1, py::arg("steps") = 2000,
-      py::arg("draws") = 400, py::arg("measured") = 0.01, py::arg("fit_only") = false,
-      py::arg("threads") = 0,
-      "Determines parameters from printed numbers, windows and records "
-      "(docs/identification.md). `data`: a file or several. `unknowns`: further ones, lowest "
-      "and highest value by name. `fit_only`: least squares alone, without profiles, posterior "
-      "and leaving out. Needs a build with Ceres.");
+          "Number of unknowns.");
+  module.def("identify", &identify, py::arg("case"), py::arg("data"),
+             py::arg("unknowns") = py::none(), py::kw_only(), py::arg("starts") = 8,
+             py::arg("seed") = 1, py::arg("steps") = 2000, py::arg("draws") = 400,
+             py::arg("measured") = 0.01, py::arg("fit_only") = false, py::arg("threads") = 0,
+             "Determines parameters from printed numbers, windows and records "
+             "(docs/identification.md). `data`: a file or several. `unknowns`: further unknowns, "
+             "minimum and maximum by name. `fit_only`: least squares only, without profiles, "
+             "posterior and leave-one-out. Needs a build with Ceres.");
 }
 
 }  // namespace bentaxis::python

@@ -50,7 +50,7 @@ Regression regress(const std::optional<fs::path>& folder, const std::string& fil
   } else {
     const auto with_package = shipped("reference_data");
     if (!with_package)
-      throw InputError("no reference data are installed with this package: name a folder");
+      throw InputError("no reference data are installed with this package: give a directory");
     root = *with_package;
   }
   return {unlocked([&](const study::PartProgress& progress_of) {
@@ -87,30 +87,30 @@ std::optional<Table> table(const Held& self, const std::string& model, bool refe
 
 void add_regression_pieces(py::module_& module) {
   py::class_<GroupLine>(module, "ReferenceGroup",
-                        "A group of channels of one model, held against one reference.")
+                        "Comparison of a group of channels of one model with one reference.")
       .def_readonly("reference", &GroupLine::reference, "Name of the reference.")
-      .def_readonly("kind", &GroupLine::kind, "What kind of reference that is.")
-      .def_readonly("model", &GroupLine::model, "Of which model.")
-      .def_readonly("group", &GroupLine::group, "Which channels.")
+      .def_readonly("kind", &GroupLine::kind, "Kind of the reference.")
+      .def_readonly("model", &GroupLine::model, "Name of the model.")
+      .def_readonly("group", &GroupLine::group, "Group of channels.")
       .def_readonly("compared", &GroupLine::compared, "Number of channels that were compared.")
-      .def_readonly("missing", &GroupLine::missing, "Number of those the reference has not.")
-      .def_readonly("failed", &GroupLine::failed, "Number of those that differ.")
+      .def_readonly("missing", &GroupLine::missing,
+                    "Number of channels that the reference does not have.")
+      .def_readonly("failed", &GroupLine::failed, "Number of channels that differ.")
       .def_property_readonly("verdict", &GroupLine::verdict, "In a word.")
       .def_property_readonly("text", &GroupLine::text,
-                             "Where it is worst and what that looks like.")
+                             "Channel and angle of the largest difference, and its likely kind.")
       .def(
           "__repr__",
           [](const GroupLine& self) {
             return "<bentaxis.ReferenceGroup " + self.reference + ", " + self.model + ", " +
                    self.group + ": " + self.verdict() + ">";
           },
-          "What it is and its verdict.");
-  py::class_<Held>(module, "Outcome", "What one reference came to.")
+          "Group and verdict.");
+  py::class_<Held>(module, "Outcome", "Result for one reference.")
       .def_property_readonly(
-          "name", [](const Held& self) { return self.outcome->name; }, "Of the reference.")
+          "name", [](const Held& self) { return self.outcome->name; }, "Name of the reference.")
       .def_property_readonly(
-          "kind", [](const Held& self) { return self.outcome->kind; },
-          "What kind of reference it is.")
+          "kind", [](const Held& self) { return self.outcome->kind; }, "Kind of the reference.")
       .def_property_readonly(
           "state", [](const Held& self) { return state_of(*self.outcome); },
           "\"agrees\", \"differs\", \"unusable\" or \"failed\".")
@@ -119,7 +119,7 @@ void add_regression_pieces(py::module_& module) {
           "Why it differs as a whole, is unusable or failed.")
       .def_property_readonly(
           "groups", [](const Held& self) { return self.outcome->lines; },
-          "What was found of each group of channels of each model.")
+          "Result for each group of channels of each model.")
       .def_property_readonly(
           "explanation",
           [](const Held& self) {
@@ -127,12 +127,11 @@ void add_regression_pieces(py::module_& module) {
           },
           "Where it differs: which parameters of the case would explain it, in words.")
       .def_property_readonly(
-          "notes", [](const Held& self) { return self.outcome->notes; },
-          "What else there is to know.")
+          "notes", [](const Held& self) { return self.outcome->notes; }, "Further remarks.")
       .def(
           "result",
           [](const Held& self, const std::string& model) { return table(self, model, false); },
-          py::arg("model"), "What a model gave; None where it was not run.")
+          py::arg("model"), "Results of a model; None where it was not run.")
       .def(
           "reference",
           [](const Held& self, const std::string& model) { return table(self, model, true); },
@@ -149,7 +148,7 @@ void add_regression_pieces(py::module_& module) {
 
 void add_regression(py::module_& module) {
   add_regression_pieces(module);
-  py::class_<Regression>(module, "Regression", "Both models held to stored curves.")
+  py::class_<Regression>(module, "Regression", "Comparison of both models with stored curves.")
       .def_property_readonly(
           "agrees",
           [](const Regression& self) {
@@ -157,13 +156,13 @@ void add_regression(py::module_& module) {
                 self.outcomes->begin(), self.outcomes->end(),
                 [](const Outcome& one) { return one.state == Outcome::State::agrees; });
           },
-          "Whether all do.")
+          "Whether all references agree.")
       .def_property_readonly(
           "summary", [](const Regression& self) { return study::summary(*self.outcomes); },
-          "All in a sentence.")
+          "Summary in one sentence.")
       .def_property_readonly(
           "text", [](const Regression& self) { return study::regression_report(*self.outcomes); },
-          "All that the program prints.")
+          "Text that the program prints.")
       .def_property_readonly(
           "outcomes",
           [](const Regression& self) {
@@ -171,7 +170,7 @@ void add_regression(py::module_& module) {
             for (const Outcome& one : *self.outcomes) all.push_back({part_of(self.outcomes, one)});
             return all;
           },
-          "What each reference came to.")
+          "Result for each reference.")
       .def("write_junit", &write_junit, py::arg("path"), "Writes a JUnit file for CI.")
       .def(
           "__repr__",
@@ -179,10 +178,9 @@ void add_regression(py::module_& module) {
             return "<bentaxis.Regression: " + study::summary(*self.outcomes) + ">";
           },
           "The summary.");
-  module.def(
-      "regress", &regress, py::arg("folder") = py::none(), py::arg("filter") = "",
-      "Holds both models to the references of a folder, or to those that come with bentaxis. "
-      "`filter`: only those whose name contains it.");
+  module.def("regress", &regress, py::arg("folder") = py::none(), py::arg("filter") = "",
+             "Compares both models with the references in a directory, or with those that come "
+             "with bentaxis. `filter`: only references whose name contains this text.");
 }
 
 }  // namespace bentaxis::python

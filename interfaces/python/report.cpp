@@ -4,12 +4,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <map>
 #include <mutex>
 
 #include "bentaxis/files/input_log.h"
 #include "bentaxis/pump/error.h"
 #include "data_folder.h"
 #include "provenance.h"
+#include "shipped_cases.h"
 #include "versions.h"
 
 namespace bentaxis::python {
@@ -62,8 +64,17 @@ void add_report(py::module_& module) {
         return folder->string();
       },
       py::arg("name") = "cases",
-      "Folder of what comes with bentaxis: \"cases\" or \"reference_data\".");
-  module.def("versions", &versions, "Name and version of everything that results depend on.");
+      "Directory of files that come with bentaxis: \"cases\" or \"reference_data\".");
+  module.def(
+      "cases",
+      [] {
+        std::map<std::string, std::string> titles;
+        if (const auto folder = shipped("cases"))
+          for (const cli::ShippedCase& one : cli::cases_in(*folder)) titles[one.name] = one.title;
+        return titles;
+      },
+      "Names of the cases that come with bentaxis, with their titles; read_case() takes a name.");
+  module.def("versions", &versions, "Names and versions of all software that results depend on.");
 }
 
 }  // namespace bentaxis::python

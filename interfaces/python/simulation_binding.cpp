@@ -94,24 +94,27 @@ std::vector<std::filesystem::path> report_simulation(const Simulation& self,
 }
 
 void add_simulation_pieces(py::module_& module) {
-  py::class_<GroupDifference>(module, "GroupDifference",
-                              "How far apart the models are in a group of channels, over its peak.")
-      .def_readonly("group", &GroupDifference::group, "Which channels.")
+  py::class_<GroupDifference>(
+      module, "GroupDifference",
+      "Difference of the models in a group of channels, relative to its peak.")
+      .def_readonly("group", &GroupDifference::group, "Group of channels.")
       .def_readonly("unit", &GroupDifference::unit, "Of the peak.")
       .def_readonly("peak", &GroupDifference::peak, "Largest magnitude.")
-      .def_readonly("in_time", &GroupDifference::in_time, "At equal times, largest.")
+      .def_readonly("in_time", &GroupDifference::in_time, "Largest difference at equal times.")
       .def_readonly("time_s", &GroupDifference::time_s, "When that is.")
-      .def_readonly("over_angle", &GroupDifference::over_angle, "At equal angles of the shaft.")
+      .def_readonly("over_angle", &GroupDifference::over_angle,
+                    "Largest difference at equal angles of the shaft.")
       .def_readonly("of_allowed", &GroupDifference::of_allowed,
-                    "Largest difference over what is allowed then: 1 is the limit.");
-  py::class_<PeriodicMotion>(module, "PeriodicMotion", "A motion that repeats itself.")
+                    "Largest difference over the tolerance at that time: 1 is the limit.");
+  py::class_<PeriodicMotion>(module, "PeriodicMotion", "A periodic motion.")
       .def_readonly("period_s", &PeriodicMotion::period_s, "Its period.")
       .def_readonly("speed_rad_per_s", &PeriodicMotion::speed, "Mean speed of the shaft.")
       .def_readonly("iterations", &PeriodicMotion::iterations, "Of the search.")
-      .def_readonly("error", &PeriodicMotion::error, "How far a state is off, of its scale.")
+      .def_readonly("error", &PeriodicMotion::error,
+                    "Largest error of a state, relative to its scale.")
       .def_readonly("multipliers", &PeriodicMotion::multipliers,
-                    "Floquet's, largest magnitude first.")
-      .def_property_readonly("stable", &PeriodicMotion::stable, "Whether disturbances die away.");
+                    "Floquet multipliers, largest magnitude first.")
+      .def_property_readonly("stable", &PeriodicMotion::stable, "Whether disturbances decay.");
 }
 
 }  // namespace
@@ -123,51 +126,51 @@ void add_simulation(py::module_& module) {
   const auto periodic = [](int model) {
     return [model](const Simulation& self) { return self.result->periodic[model]; };
   };
-  py::class_<Simulation>(
-      module, "Simulation",
-      "Motion in time by both models, or by one alone, and how far they are apart.")
+  py::class_<Simulation>(module, "Simulation",
+                         "Motion in time by both models, or by one, and their differences.")
       .def_property_readonly(
           "agrees", [](const Simulation& self) { return self.result->agrees(); },
-          "Whether both models agree; of one model alone: whether its checks hold.")
+          "Whether both models agree; of one model: whether its checks are passed.")
       .def_property_readonly(
           "headline", [](const Simulation& self) { return self.result->headline(); },
           "The verdict in a sentence.")
       .def_property_readonly(
           "text", [](const Simulation& self) { return study::simulation_text(*self.result); },
-          "All that the program prints.")
+          "Text that the program prints.")
       .def_property_readonly(
           "analytic", [](const Simulation& self) { return motion(self, kAnalytic); },
-          "What the analytic model found, over time; None where it was not asked.")
+          "Results of the analytic model over time; None where it was not run.")
       .def_property_readonly(
           "multibody", [](const Simulation& self) { return motion(self, kMultibody); },
-          "What the multibody model found; None where it was not asked.")
+          "Results of the multibody model; None where it was not run.")
       .def_property_readonly(
           "oil_analytic",
           [](const Simulation& self) { return oil(self, kAnalytic, "oil, analytic"); },
-          "What the oil does; None where it does not follow the motion.")
+          "Results of the oil; None where it does not follow the motion.")
       .def_property_readonly(
           "oil_multibody",
           [](const Simulation& self) { return oil(self, kMultibody, "oil, multibody"); },
           "Likewise.")
       .def_property_readonly(
           "teeth_analytic", [](const Simulation& self) { return teeth(self, kAnalytic); },
-          "What the teeth do; None where the contact is none of teeth.")
+          "Results of the teeth; None without resolved tooth contact.")
       .def_property_readonly(
           "teeth_multibody", [](const Simulation& self) { return teeth(self, kMultibody); },
           "Likewise.")
       .def_property_readonly("periodic_analytic", periodic(0),
-                             "The motion it settles to; None where it was not asked for.")
+                             "Periodic motion; None where it was not requested.")
       .def_property_readonly("periodic_multibody", periodic(1), "Likewise.")
       .def_property_readonly(
           "groups", [](const Simulation& self) { return self.result->groups; },
-          "How far apart the models are.")
+          "Differences of the models.")
       .def_property_readonly(
-          "checks", [](const Simulation& self) { return self.result->checks; }, "What must vanish.")
-      .def_readonly("warnings", &Simulation::warnings,
-                    "What is doubtful about the case and the motion, which was warned of.")
+          "checks", [](const Simulation& self) { return self.result->checks; },
+          "Checks: quantities that must be zero.")
+      .def_readonly("warnings", &Simulation::warnings, "Warnings about the case and the motion.")
       .def_property_readonly(
           "judged_until_s", [](const Simulation& self) { return self.result->judged_until_s; },
-          "Later a disturbance of the wanted error would change results altogether.")
+          "Time up to which results are compared; after it a disturbance of the wanted error is "
+          "amplified too much.")
       .def("report", &report_simulation, py::arg("folder"),
            "Writes report.html, report.json and the curves as the program does; returns their "
            "paths.")
@@ -177,13 +180,12 @@ void add_simulation(py::module_& module) {
             return "<bentaxis.Simulation: " + self.result->headline() + ">";
           },
           "The headline.");
-  module.def(
-      "simulate", &simulate, py::arg("case"), py::arg("model") = py::none(), py::kw_only(),
-      py::arg("error") = 1e-6, py::arg("oil") = "coupled", py::arg("steady") = false,
-      "Integrates the motion of shaft and block in time, as [drive] of the case says, by both "
-      "models or by one. `error`: wanted error of every reaction, of its peak, in [1e-10, "
-      "0.1]. `oil`, of a hydraulic case: \"coupled\" or \"periodic\". `steady`: the motion "
-      "that repeats itself, and its stability.");
+  module.def("simulate", &simulate, py::arg("case"), py::arg("model") = py::none(), py::kw_only(),
+             py::arg("error") = 1e-6, py::arg("oil") = "coupled", py::arg("steady") = false,
+             "Integrates the motion of shaft and block in time, with the drive in [drive] of the "
+             "case, by both models or by one. `error`: wanted error of every reaction, relative to "
+             "its peak, in [1e-10, 0.1]. `oil`, of a hydraulic case: \"coupled\" or \"periodic\". "
+             "`steady`: the periodic motion and its stability.");
 }
 
 }  // namespace bentaxis::python

@@ -116,33 +116,35 @@ std::vector<std::filesystem::path> report_sweep(const Sweep& self,
 }  // namespace
 
 void add_sweep(py::module_& module) {
-  py::class_<SweepCheck>(module, "SweepCheck", "A design that the other model computed too.")
+  py::class_<SweepCheck>(module, "SweepCheck",
+                         "A design that was also computed by the other model.")
       .def_readonly("design", &SweepCheck::design, "Its row.")
-      .def_readonly("own", &SweepCheck::own, "Outputs of the sweep's model.")
-      .def_readonly("values", &SweepCheck::values, "Outputs of the other one.")
-      .def_readonly("scales", &SweepCheck::scales, "What differences are over; 0: not compared.")
+      .def_readonly("own", &SweepCheck::own, "Outputs by the model of the sweep.")
+      .def_readonly("values", &SweepCheck::values, "Outputs by the other model.")
+      .def_readonly("scales", &SweepCheck::scales,
+                    "Scales that differences are relative to; 0: not compared.")
       .def_property_readonly(
           "agrees", [](const SweepCheck& self) { return self.agrees(designs::kCheckTolerance); },
-          "Whether both refuse it or all outputs are within 1e-9 of their scales.");
+          "Whether all outputs agree within 1e-9 of their scales, or both models refuse the "
+          "design.");
   py::class_<Sweep, Table, std::shared_ptr<Sweep>>(
       module, "Sweep",
       "A table of designs: parameters that vary, in the units of the case file, and outputs. A "
-      "choice "
-      "is the place of its word, from 0.")
+      "choice is the index of its word, from 0.")
       .def_property_readonly("infeasible", &infeasible,
-                             "Why designs have no outputs, by their rows.")
+                             "Reasons why designs have no outputs, by row.")
       .def_property_readonly(
           "checks", [](const Sweep& self) { return self.result->checks; },
-          "Designs that the other model computed too.")
+          "Designs that were also computed by the other model.")
       .def_property_readonly(
           "agrees", [](const Sweep& self) { return self.result->agrees(); },
-          "Whether all that were checked do.")
+          "Whether all checked designs agree.")
       .def_property_readonly(
           "headline", [](const Sweep& self) { return designs::headline(*self.result); },
-          "What came out, in a line.")
+          "Summary in one line.")
       .def_property_readonly(
           "seconds", [](const Sweep& self) { return self.result->seconds; },
-          "What the computation took.")
+          "Elapsed time of the computation.")
       .def("report", &report_sweep, py::arg("folder"),
            "Writes report.html, report.json and sweep.csv as the program does; returns their "
            "paths.");

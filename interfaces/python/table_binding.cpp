@@ -87,19 +87,18 @@ void write_csv(const Table& table, const std::filesystem::path& path) {
 }
 
 void add_channel(py::module_& module) {
-  py::class_<Channel>(
-      module, "Channel",
-      "One scalar result: of what, on which body, by which body, at which point, in "
-      "which frame and unit.")
+  py::class_<Channel>(module, "Channel",
+                      "One scalar result: quantity, body, acting body, point, frame and unit.")
       .def_readonly("name", &Channel::name, "Name of the column: \"Rs_1_x2_N\".")
       .def_readonly("quantity", &Channel::quantity, "\"Rs\".")
       .def_readonly("meaning", &Channel::meaning, "In words.")
-      .def_readonly("equation", &Channel::equation, "Of Roccatello and Nervegna (2009).")
-      .def_readonly("piston", &Channel::piston, "From 1; 0 where it belongs to none.")
+      .def_readonly("equation", &Channel::equation, "Equation of Roccatello and Nervegna (2009).")
+      .def_readonly("piston", &Channel::piston,
+                    "Piston, from 1; 0 where the channel belongs to none.")
       .def_readonly("axis", &Channel::axis, "\"x2\".")
       .def_readonly("frame", &Channel::frame, "\"S2\".")
-      .def_readonly("on_body", &Channel::on_body, "Body that it acts on.")
-      .def_readonly("by_body", &Channel::by_body, "Body that it comes from.")
+      .def_readonly("on_body", &Channel::on_body, "Body on which it acts.")
+      .def_readonly("by_body", &Channel::by_body, "Body that exerts it.")
       .def_readonly("point", &Channel::point, "Where it acts.")
       .def_readonly("unit", &Channel::unit, "\"N\".")
       .def_readonly("group", &Channel::group, "Channels of one group share one peak.")
@@ -112,11 +111,10 @@ void add_channel(py::module_& module) {
 
 void add_tables(py::module_& module) {
   add_channel(module);
-  py::class_<Table, std::shared_ptr<Table>>(module, "Table",
-                                            "Columns of numbers by name. They are looks at the "
-                                            "memory that the computation filled: nothing "
-                                            "is copied, nothing can be written, and it stays as "
-                                            "long as any array does. NaN: not computed.")
+  py::class_<Table, std::shared_ptr<Table>>(
+      module, "Table",
+      "Columns of numbers by name. Arrays are read-only views of the memory of the computation, "
+      "which is kept as long as any view exists; nothing is copied. NaN: not computed.")
       .def("__getitem__", &column, py::arg("name"),
            "A column as an array; its name may lack the unit and, of a quantity of one "
            "component, the axis: \"Td_z1_Nm\", \"Td_z1\", \"Td_Nm\", \"Td\".")
@@ -132,13 +130,12 @@ void add_tables(py::module_& module) {
       .def(
           "__len__", [](const Table& self) { return self.rows; }, "Number of rows.")
       .def("keys", &names, "As names.")
-      .def_property_readonly(
-          "names", &names, "Names of the columns; the first says where a row is, by angle or time.")
-      .def_readonly("name", &Table::name, "Who computed it.")
+      .def_property_readonly("names", &names,
+                             "Names of the columns; the first is the angle or the time of a row.")
+      .def_readonly("name", &Table::name, "Model that computed it.")
       .def("__array__", &as_array, py::arg("dtype") = py::none(), py::arg("copy") = py::none(),
            "All columns as one array, row by row, in the order of `names`; a copy.")
-      .def_readonly("warnings", &Table::warnings,
-                    "What is doubtful about the case or the results, which was warned of.")
+      .def_readonly("warnings", &Table::warnings, "Warnings about the case or the results.")
       .def_property_readonly("values", &values,
                              "All columns of `channels` as one array, row by row.")
       .def_property_readonly(
@@ -156,15 +153,16 @@ void add_tables(py::module_& module) {
       .def(
           "meaning",
           [](const Table& self, const std::string& name) { return self.column(name).meaning; },
-          py::arg("name"), "What a column is: on which body, by which, where, in which frame.")
+          py::arg("name"), "Description of a column: body, acting body, point, frame.")
       .def(
           "channel",
           [](const Table& self, const std::string& name) { return self.column(name).channel; },
-          py::arg("name"), "The same by parts; None where it is no result of a model.")
+          py::arg("name"),
+          "Description of a column as an object; None where it is not a result of a model.")
       .def("to_pandas", &to_pandas,
            "A pandas.DataFrame over angle or time, units in its attrs. Needs pandas.")
       .def("write_csv", &write_csv, py::arg("path"),
-           "Writes the file that the program writes: the shortest text that reads back to the same "
+           "Writes the same CSV file as the program: the shortest text that reads back to the same "
            "numbers.")
       .def(
           "__reduce__",

@@ -17,8 +17,8 @@ void require_simulable(const Case& the_case, const Assumptions& assumptions) {
   refuse_ring_off_b(the_case.pump);
   if (assumptions.gear == BlockDrive::imposed)
     throw InputError(
-        "multibody model: a block whose motion is imposed has none to simulate: use the gear in "
-        "mesh");
+        "multibody model: the motion of the block is imposed, so it cannot be simulated: use gear "
+        "= \"mesh\"");
   const bool compliant = the_case.pump.gear.is_compliant();
   const bool speed_changes = drive.kind != DriveKind::speed || !drive.curve.time.empty();
   const std::string file = the_case.file.empty() ? "" : the_case.file.string() + ": ";

@@ -30,9 +30,8 @@ constexpr long kForeseenAfter = 1000;
 constexpr double kFirstStep = 1e-6;
 
 constexpr const char* kSmallSteps =
-    "; very stiff teeth or coupling, very light bodies, great speed or an accuracy beyond "
-    "round-off "
-    "ask for so small ones";
+    "; causes of such small steps: very stiff teeth or coupling, very light bodies, high speed, an "
+    "accuracy near round-off";
 
 // A witness at a time; NaN for a rate that is not known.
 struct Look {
@@ -87,7 +86,7 @@ bool EventStepper::step_once(double time) {
   ++steps_;
   system_.realize(integrator_->getState(), Stage::Velocity);
   if (steps_ >= most_steps_)
-    throw ComputationError(std::to_string(steps_) + " steps are used up, the last of " +
+    throw ComputationError(std::to_string(steps_) + " steps are used, the last of " +
                            short_text(integrator_->getTime() - before) + " s" + kSmallSteps);
   if (duration_ > 0 && steps_ % std::max(most_steps_ / kForeseenShare, kForeseenAfter) == 0 &&
       static_cast<double>(steps_) * duration_ >

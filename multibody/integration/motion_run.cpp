@@ -241,7 +241,7 @@ void MotionRun::guard_against_chatter(double time) {
   events_there_ = same ? events_there_ + 1 : 0;
   if (events_there_ > kMaxEvents)
     throw ComputationError("flanks, pressures or friction change " + std::to_string(kMaxEvents) +
-                           " times at one time: nothing comes of it");
+                           " times at the same time without progress");
 }
 
 void MotionRun::advance_to(double time) {
@@ -336,7 +336,7 @@ void MotionRun::read(double time, Trajectory& trajectory) {
   held.swap(system_.inputs().held_direction);
   const double theta = shaft_angle(state) / kRadPerDegree;
   if (!std::isfinite(theta + shaft_speed(state) + block_speed(state)))
-    throw ComputationError("the state is no longer made of numbers");
+    throw ComputationError("the state is no longer finite");
   require_accurate_forces(estimated_force_error(system_, state), radians(theta));
 
   const int n = case_.pump.geometry.pistons;

@@ -192,7 +192,7 @@ void TimeRun::note(std::size_t row) {
   if (!errors.is_finite())
     throw ComputationError("multibody model: integration stopped near theta = " +
                            number_text(samples_.theta_deg[row]) +
-                           " deg: the state is no longer made of numbers");
+                           " deg: the state is no longer finite");
 }
 
 }  // namespace bentaxis::multibody

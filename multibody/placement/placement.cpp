@@ -201,8 +201,9 @@ void Placement::place(const AxisMotion& shaft, const AxisMotion& block, double r
     pump_.drive_torque()->set_rotor_speed(dynamics_, rotor_speed);
   const double rate_error = solver_.solve_speeds(dynamics_);
   if (!(rate_error <= kAssemblyTolerance * speed_scale(shaft, block)))
-    throw ComputationError("multibody model: no speeds found that keep the pistons in their bores" +
-                           where(shaft.angle, block.angle));
+    throw ComputationError(
+        "multibody model: no velocities found that satisfy the constraints of the pistons" +
+        where(shaft.angle, block.angle));
 }
 
 void Placement::constrained_accelerations(Vector& udot) {

@@ -44,12 +44,12 @@ constexpr double kSameSize = 10;
 ComputationError not_finite(const char* whose, double theta) {
   return ComputationError(
       std::string("multibody model: ") + whose +
-      " reactions that are no numbers at theta = " + number_text(theta / kRadPerDegree) + " deg");
+      " reactions that are not finite at theta = " + number_text(theta / kRadPerDegree) + " deg");
 }
 
 // What the multipliers lose and why, without what they were held to.
 std::string lost_forces(double error, double theta) {
-  return "multibody model: Simbody's constraint solver loses the reactions at theta = " +
+  return "multibody model: Simbody's constraint solver is inaccurate at theta = " +
          number_text(theta / kRadPerDegree) + " deg: about " + short_text(error) +
          " of the largest would be wrong, allowed " + short_text(kLargestForceError);
 }
@@ -140,14 +140,15 @@ void require_agreement(double difference, const std::function<double()>& estimat
       throw ComputationError(
           "multibody model: inverse dynamics contradicts Simbody's constraint solver at theta = " +
           number_text(theta / kRadPerDegree) +
-          " deg and is at fault, not Simbody: the multipliers' own error does not account for it" +
+          " deg; the error is in inverse dynamics, because the estimated error of the multipliers "
+          "does not explain it" +
           figures + "; use the analytic model");
     case Fault::undecided:
       break;
   }
   throw ComputationError(
       "multibody model: inverse dynamics contradicts Simbody's constraint solver at theta = " +
-      number_text(theta / kRadPerDegree) + " deg and neither can be said to be right" + figures +
+      number_text(theta / kRadPerDegree) + " deg and neither is known to be right" + figures +
       "; use the analytic model");
 }
 

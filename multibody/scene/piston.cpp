@@ -70,8 +70,7 @@ PistonBody piston_body(const PumpParameters& pump, PistonInertia inertia) {
   if (mass.mass == 0 && mass.real && mass.real->transverse_inertia > 0)  // axial <= 2 transverse
     throw ComputationError(
         "multibody model: a piston with inertia (transverse_ or axial_inertia_kg_mm2) but without "
-        "mass "
-        "(mass_kg = 0) is no body in Simbody; the analytic model has no such limit");
+        "mass (mass_kg = 0) is not a body in Simbody; use the analytic model");
   if (const std::string why = piston_inertia_refusal(inertia, pump); !why.empty())
     throw InputError(to_string(inertia) + " pistons: " + why);
   return inertia == PistonInertia::real ? rigid_body(mass)

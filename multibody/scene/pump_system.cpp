@@ -39,7 +39,7 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
       matter_(system_),
       forces_(system_) {
   if (drive == Drive::torque && !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
-    throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
+    throw InputError("a free shaft needs axial inertias of shaft and block > 0");
   inputs_.rest_speed = rest_speed_at(pump.geometry, omega);
   inputs_.chamber_pressure = [](double, double, std::vector<double>& p) {
     std::fill(p.begin(), p.end(), 0.0);

@@ -82,7 +82,7 @@ BevelTeeth::BevelTeeth(const PumpParameters& pump, FlankShape shape)
       curve_(flank_curve(shape, pitch_cone_, pump.gear.pressure_angle)) {
   if (!(tip_cone_ < kPi - curve_->at(curve_->first_roll()).polar_angle()))
     throw InputError("[gear] addendum_mm = " + mm(teeth_.addendum) +
-                     ": the tips lie beyond where flanks of this kind reach");
+                     ": the tips are outside the range of flanks of this shape");
   tip_roll_ = curve_->roll_at(tip_cone_);
   refuse_what_does_not_mesh();
   flexibility_.emplace(pump.gear, pitch_cone_);
@@ -101,7 +101,7 @@ void BevelTeeth::refuse_what_does_not_mesh() const {
   const std::string tip = "addendum_mm = " + mm(teeth_.addendum) + ": ";
   const std::string number = "tooth_number = " + std::to_string(teeth_.count) + ": ";
   if (tip_roll_ > -curve_->first_roll())
-    refuse(tip + "tip interference, tips reach beyond the beginning of the mate's flanks");
+    refuse(tip + "tip interference, tips reach past the start of the mate's flanks");
   const Vec3 edge = curve_->at(tip_roll_).point;
   if (std::atan2(edge[1], edge[0]) >= pitch_angle_ / 4) refuse(tip + "pointed tips");
   if (contact_ratio() < 1)
@@ -409,7 +409,7 @@ double BevelTeeth::root(double theta, int flank, double torque_on_block,
   double at_low = excess(low), at_high = at_low;
   for (double step = kFirstStep; at_high < 0 || at_low > 0; step *= 2) {
     if (step > pitch_angle_)
-      throw ComputationError("multibody model: no lag of the teeth carries " +
+      throw ComputationError("multibody model: no lag of the teeth transmits " +
                              number_text(torque_on_block) +
                              " Nm at theta = " + number_text(theta / kRadPerDegree) + " deg");
     if (at_high < 0) {

@@ -27,7 +27,7 @@ constexpr CauseText kTexts[] = {
     {Cause::torque_factor, "shaft friction, (1 - Ct) Td", "loss"},
     {Cause::weight, "weight of the pistons", "stored"},
     {Cause::inertia, "inertia", "stored"},
-    {Cause::ring, "bore forces beside B, on the play", "no body's"},
+    {Cause::ring, "bore forces that do not act at B, on the play", "no body's"},
     {Cause::teeth, "deformation of the teeth", "stored"},
 };
 
@@ -142,7 +142,7 @@ std::vector<report::Budget::Quantity> power_lines(const std::vector<Turn>& turns
   };
   add("pistons on the oil, by the hydraulic model", "check",
       oil([](const PumpPower& power) { return power.pistons; }),
-      "work of -p dV per turn from the balance of mass: beside the power of the pressure");
+      "work of -p dV per turn from the mass balance: a check of the power of the pressure");
   add("flow to the load", "out", oil([](const PumpPower& power) { return power.useful; }),
       "of the power on the oil: mass flow x pressure potential, out through the delivery port less "
       "in through the suction port; the work of compression is part of it");
@@ -177,7 +177,7 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
                        const std::function<Statistics(const Turn&)>& of,
                        const std::string& note = {}) {
     lines.push_back(quantity(
-        turns, name + (greatest ? ", greatest" : ", least"), "", unit,
+        turns, name + (greatest ? ", maximum" : ", minimum"), "", unit,
         [&](const Turn& turn) { return greatest ? of(turn).greatest : of(turn).least; }, note));
   };
   const std::optional<PortPlate>& plate = turns.front().ready.the_case.pump.port_plate;
@@ -192,7 +192,7 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
     return plate ? -statistics(turn.budget, "Fland_z2_N").mean : not_computed();
   };
   lines.push_back(quantity(turns, "separating force of the lands", "", "N", lands,
-                           plate ? "constant: port pressures on a plate that stands" : none));
+                           plate ? "constant: port pressures on the fixed plate" : none));
   const auto ratio = [&](const Turn& turn) {
     if (!plate) return Statistics{not_computed(), not_computed(), not_computed()};
     const std::size_t press = turn.budget.find("Fpress_z2_N");
@@ -206,7 +206,7 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
     add("balance, separating over pressing force", "", greatest, ratio,
         !plate     ? none
         : greatest ? "above 1 the block lifts off"
-                   : "the film carries what is left to 1");
+                   : "the film carries the difference from 1");
   const auto radius = [&](const Turn& turn) {
     const std::size_t x = turn.table.find("xh_x2_mm");
     const std::size_t y = turn.table.find("yh_y2_mm");
@@ -217,7 +217,7 @@ std::vector<report::Budget::Quantity> block_lines(const std::vector<Turn>& turns
     });
   };
   for (const bool greatest : {false, true})
-    add("film force's distance from z2", "mm", greatest, radius,
+    add("distance of the film force from z2", "mm", greatest, radius,
         plate ? fmt::format("the plate's lands lie from {:.4g} to {:.4g} mm", plate->r1 * 1e3,
                             plate->r4 * 1e3)
               : "");
@@ -234,9 +234,9 @@ report::Budget budget_section(const BudgetComparison& budgets, const PreparedCas
   report::Budget section;
   section.text =
       "Each line from its own load alone: analytic by the closed form under that load, multibody "
-      "by the load's virtual power along Simbody's velocities. Spring, film, weights of shaft and "
-      "block turn nothing. What carries the block round goes through the gear; where the block's "
-      "speed is imposed it comes from there and is no part of Td.";
+      "by the load's virtual power along Simbody's velocities. Spring, film and the weights of "
+      "shaft and block have no torque. The torque that drives the block is transmitted by the "
+      "gear; where the speed of the block is imposed, it is not part of Td.";
   section.models = {analytic.name, multibody.name};
   section.torque = torque_lines(budgets, turns);
   section.power = power_lines(turns);

@@ -29,13 +29,12 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
             once + (motion ? "; that of the constant speed of [operation]" : "");
   const report::CommonInput pressure =
       oil_follows
-          ? report::
-                CommonInput{"oil and its integration",
-                            "one set of equations of the oil and one integrator, run with each "
-                            "model's own motion",
-                            "balances of energy and mass; work of pressures and of pistons, one "
-                            "found by the model and one by the oil; the periodic state of "
-                            "constant speed, found by another search; another tolerance"}
+          ? report::CommonInput{"oil and its integration",
+                                "one set of equations of the oil and one integrator, run with each "
+                                "model's own motion",
+                                "balances of energy and mass; work of pressures and of pistons, "
+                                "one found by the model and one by the oil; the periodic state of "
+                                "constant speed, found by another method; another tolerance"}
           : report::CommonInput{
                 "chamber pressure", trace,
                 "high-precision curves (computed with their own trace); mean torque "
@@ -51,7 +50,8 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
        "high-precision curves; power balance; written once in each model"},
       {"line of action of the teeth (22)",
        the_case.pump.gear.contact == ToothContact::teeth
-           ? "of each pair where it touches; the arm (d/2) cos alpha_p, over which Rcs is stated"
+           ? "of each pair at its contact point; the arm (d/2) cos alpha_p, over which Rcs is "
+             "stated"
        : the_case.pump.gear.flanks == Flanks::two
            ? "one for each flank, whose separating part pushes the gears apart; written once in "
              "each model"
@@ -59,11 +59,12 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
        the_case.pump.gear.flanks == Flanks::two
            ? "high-precision instants and the frame of O4; what one line of action would change is "
              "among the limits of validity"
-           : "high-precision curves and the frame of O4 check the algebra; that real teeth push "
-             "otherwise backwards and on the other flank is among the limits of validity"},
+           : "high-precision curves and the frame of O4 check the algebra; that real teeth have "
+             "another line of action in reverse rotation and on the other flank is among the "
+             "limits of validity"},
       {"law of shaft friction (38)", "Td (1 - Ct) + Cs omega", "power balance of each model"},
       {"rigid bodies, points A and B on the piston's axis, no clearance", "assumed",
-       "nothing here: a rig or an elastic model"},
+       "not in this program: a rig or an elastic model"},
       {"frames, signs and the names of the reactions", "docs/theory.md",
        "free-body diagrams written in the tests; signs printed in the paper"}};
   if (the_case.pump.gear.contact == ToothContact::teeth) {
@@ -74,19 +75,18 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
          "mesh stiffness of a published spur pair and of ISO 6336 (docs/judges.md); "
          "1/E in the tests"});
     inputs.push_back(
-        {"shape of the teeth and what counts as their approach (docs/teeth.md)",
+        {"shape of the teeth and definition of their approach (docs/teeth.md)",
          "spherical involutes in closed form; curves on the sphere and Newton's method "
          "in the multibody model",
          "each other; octoids, of which only the ratio of 1 is the same"});
   }
   if (!motion) {
-    inputs.push_back(
-        {"constant speed, equal for shaft and block (1:1)",
-         the_case.pump.gear.contact == ToothContact::teeth
-             ? "omega given; no torsion; the teeth stand back by their lag"
-             : "omega given; no torsion, no play in the gear",
-         "nothing here: a rig. Torque-driven run: the shaft, set free under the analytic torque, "
-         "holds its speed"});
+    inputs.push_back({"constant speed, equal for shaft and block (1:1)",
+                      the_case.pump.gear.contact == ToothContact::teeth
+                          ? "omega given; no torsion; constant lag of the teeth"
+                          : "omega given; no torsion, no play in the gear",
+                      "not in this program: a rig. Torque-driven run: the free shaft under the "
+                      "analytic torque keeps its speed"});
     return inputs;
   }
   const DriveSpec& drive = *the_case.drive;
@@ -98,7 +98,7 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
                     "stored trajectories of a third integration; work balance of each model"});
   if (!drive.curve.time.empty())
     inputs.push_back(
-        {drive.kind == DriveKind::motor ? "the motor's torque over its speed" : "course over time",
+        {drive.kind == DriveKind::motor ? "the motor's torque over its speed" : "curve over time",
          "one monotone cubic through " + drive.curve.file.filename().string() + " for both models",
          "its values, slopes and integral in the tests"});
   inputs.push_back(
@@ -113,7 +113,7 @@ std::vector<report::CommonInput> common_inputs(const Case& the_case, bool motion
                                 "one integrator, run with each model's own accelerations",
                                 "another tolerance; work balance of each model"}
           : report::CommonInput{"rigid teeth", "psi = theta (1:1), no play",
-                                "nothing here: a rig, or compliant teeth"});
+                                "not in this program: a rig; compliant teeth"});
   inputs.push_back({"instants of events between steps",
                     "one bisection, of the events that each model finds in its own steps",
                     "stored trajectories; roots of known functions in the tests"});

@@ -25,10 +25,10 @@ std::string arrow(const Connection& c) {
 
 std::string drive_in_words(const UnitCoupling& coupling) {
   for (const Connection& c : coupling.connections()) {
-    if (c.to_pump && c.pump == "drive_torque") return "a torque by the unit, instead of [drive]";
+    if (c.to_pump && c.pump == "drive_torque") return "a torque from the FMU, instead of [drive]";
     if (c.to_pump && c.pump == "drive_speed")
-      return "a speed by the unit, instead of [drive]; between points it changes by the "
-             "acceleration";
+      return "a speed from the FMU, instead of [drive]; between communication points it is "
+             "extrapolated with the acceleration";
   }
   return "as [drive] of the case says";
 }
@@ -41,10 +41,11 @@ report::Section coupling_section(const SimulationResult& r) {
   report::Section section;
   section.title = "Coupling to a unit";
   section.text =
-      "A Functional Mock-up Unit acts on the pump: at every communication point it is told of the "
-      "pump, and what it then says stands until the next. Each model has an instance of its own. "
-      "The change is that of a run with half the communication step; as the error falls with the "
-      "step, twice the change is the estimated error of the results shown.";
+      "A Functional Mock-up Unit acts on the pump: it receives values of the pump at every "
+      "communication point, and its outputs are held until the next. Each model has its own "
+      "instance. The change is the difference from a run with half the communication step; because "
+      "the error is proportional to the step, twice the change is the estimated error of the "
+      "results shown.";
   section.facts = {
       {"unit", fmt::format("{}: {}, FMI {}.0{}", coupling.unit().file().filename().string(),
                            unit.model_name, unit.version,
@@ -59,9 +60,10 @@ report::Section coupling_section(const SimulationResult& r) {
   for (const Connection& c : coupling.connections())
     section.facts.emplace_back(fmt::format("connection {}", ++number), arrow(c));
   if (const auto loose = coupling.loose_inputs(); !loose.empty())
-    section.facts.emplace_back("inputs of the unit left as they start", report::joined(loose));
+    section.facts.emplace_back("inputs of the FMU that keep their start values",
+                               report::joined(loose));
   if (const auto loose = coupling.loose_outputs(); !loose.empty())
-    section.facts.emplace_back("outputs of the unit that are not used", report::joined(loose));
+    section.facts.emplace_back("outputs of the FMU that are not used", report::joined(loose));
   const std::vector<std::string> said = coupling.log();
   for (std::size_t i = 0; i < said.size() && i < kMaxLines; ++i)
     section.facts.emplace_back("the unit says", said[i]);
@@ -78,8 +80,8 @@ std::vector<report::Warning> coupling_warnings(const SimulationResult& r) {
   if (r.coupling.empty() || r.coupling.front().error() <= kMuch) return {};
   const CouplingChange& worst = r.coupling.front();
   return {{"coarse coupling",
-           fmt::format("exchanging values every {:.3g} s alone makes an estimated error of {:.1e} "
-                       "of peak ({}, at {:.4g} s): choose a smaller --communication-step",
+           fmt::format("exchanging values every {:.3g} s causes an estimated error of {:.1e} of "
+                       "peak ({}, at {:.4g} s): choose a smaller --communication-step",
                        r.choice.unit->step(), worst.error(), worst.group, worst.time_s)}};
 }
 
@@ -89,7 +91,7 @@ std::string coupling_text(const SimulationResult& r) {
   for (const Connection& c : coupling.connections()) text += "unit: " + arrow(c) + "\n";
   if (r.coupling.empty()) return text;
   text += fmt::format(
-      "unit: at half the communication step of {:.3g} s results change, of peak, by (estimated "
+      "FMU: at half the communication step of {:.3g} s results change, of peak, by (estimated "
       "error: twice that)\n",
       coupling.step());
   for (const CouplingChange& change : r.coupling)

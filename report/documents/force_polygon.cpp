@@ -168,13 +168,14 @@ report::Figure force_polygon(const DiagramRun& run, const std::string& body,
   drawing.shown = nearest_frame(run, rows, shown_deg);
   if (!run.time_ms.empty()) drawing.axis = kTimeAxis;
   const bool piston = body != "block";
-  return {piston ? "polygon_piston" : "polygon_block",
-          fmt::format("Force polygon of {}, tip to tail, in S2", piston ? body : "the block"),
-          piston ? "Fig. 14b" : "", std::move(drawing),
-          fmt::format("All forces on the body, by the {} model: what is given first, then the "
-                      "reactions, which close the polygon; numbers are of all of a name together. "
-                      "What is never as much as {:g} of the largest force is left out.",
-                      run.table.name, kNothing)};
+  return {
+      piston ? "polygon_piston" : "polygon_block",
+      fmt::format("Force polygon of {}, tip to tail, in S2", piston ? body : "the block"),
+      piston ? "Fig. 14b" : "", std::move(drawing),
+      fmt::format("All forces on the body, by the {} model: first the given loads, then the "
+                  "reactions, which close the polygon; a number is the sum of all forces of that "
+                  "name. Forces that are always below {:g} of the largest force are left out.",
+                  run.table.name, kNothing)};
 }
 
 }  // namespace bentaxis::study

@@ -57,7 +57,7 @@ report::Figure law_figure(const Case& the_case, const SteadyState& state) {
           report::XyFigure{{"absolute pressure", "bar", true},
                            {"effective bulk modulus", "MPa", true},
                            {std::move(law)}},
-          "Density x dP/d density of oil with its air, as docs/hydraulics.md has it."};
+          "Density x dP/d density of oil with its air (docs/hydraulics.md)."};
 }
 
 std::vector<report::ScatterPoint> points(const std::vector<hydraulics::Order>& orders,
@@ -88,11 +88,12 @@ report::Section power_section(const Case& the_case, const SteadyState& state,
   section.text =
       "Means over a turn, all chambers. What flows from one pressure to another loses the mass "
       "flow times the difference of the oil's pressure potential, the integral of dP/density; "
-      "compression gives back what it takes. Sources less everything else is what is left over.";
+      "compression returns the energy that it takes. The residual is the sources less all other "
+      "rows.";
   const double indicated =
       state.indicated_work * the_case.pump.geometry.pistons * turns_per_second(the_case);
   section.facts = {
-      {"left over, of the pistons' power",
+      {"residual, of the power of the pistons",
        fmt::format("{:.1e}", share(power, hydraulics::left_over(power)))},
       {"efficiency: load less oil taken in, over the pistons",
        fmt::format("{:.4g} %", 100 * share(power, power[Place::load] - power[Place::tank]))},
@@ -118,9 +119,9 @@ report::Section efficiency_section(const OperatingPoint& point, const PowerBudge
   report::Section section;
   section.title = "Power and efficiency of the pump";
   section.text =
-      "Means over a turn. The flow to the load is what the oil carries out through the delivery "
-      "port less what it carries in through the suction port: mass flow x pressure potential, with "
-      "the work of compression (docs/budgets.md).";
+      "Means over a turn. The power to the load is carried by the oil out through the delivery "
+      "port less in through the suction port: mass flow x pressure potential, with the work of "
+      "compression (docs/budgets.md).";
   section.table.columns = {"quantity", "unit", point.analytic.name, point.multibody.name,
                            "definition"};
   const auto watts = [&](const char* name, double analytic, double multibody, const char* text) {
@@ -198,8 +199,7 @@ std::vector<report::Figure> result_figures(const Case& the_case, const SteadySta
         series(port + channel.meaning.substr(channel.meaning.find(": ")), channel.name);
 
   angle("backflow", "Backflow", "l/min",
-        "What flows from the delivery port into a chamber, and from a chamber into the suction "
-        "port.");
+        "Backflow from the delivery port into a chamber and from a chamber into the suction port.");
   series("delivery port, all chambers", "Qdb_l_per_min");
   series("suction port, all chambers", "Qsb_l_per_min");
   series("delivery port into chamber 1", "Qdb_1_l_per_min");

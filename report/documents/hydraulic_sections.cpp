@@ -44,11 +44,11 @@ report::Section hydraulic_section(const Case& the_case, const hydraulics::Steady
   report::Section section;
   section.title = "Hydraulic model";
   section.text =
-      "Chamber pressures by balance of mass (docs/hydraulics.md), as the periodic steady state. "
-      "Both mechanical models get one and the same curve of it.";
+      "Chamber pressures from mass balances (docs/hydraulics.md), as the periodic steady state. "
+      "Both mechanical models use the same curve.";
   const auto& convergence = state.convergence;
   section.facts = {
-      {"curve that both models get", curve_text(the_case, state)},
+      {"curve that both models use", curve_text(the_case, state)},
       {"its largest error, estimated", error_text(state, state.computed->error)},
       {"Newton steps", std::to_string(convergence.iterations)},
       {"change of ln P from period to period", fmt::format("{:.1e}", convergence.residual)},
@@ -80,9 +80,9 @@ std::vector<report::Figure> hydraulic_figures(const Case& the_case,
         add_series(figures.back(), label, report::values_of(state.table, name));
   const auto& s = state.summary;
   figures.back().note = fmt::format(
-      "Chamber: greatest {:.5g} bar at {:.4g} deg, least {:.3g} bar at {:.4g} deg. Delivery: "
-      "{:.5g} to {:.5g} bar, mean {:.5g} bar. The chamber is above the delivery volume by the "
-      "pressure drop of the port.",
+      "Chamber: maximum {:.5g} bar at {:.4g} deg, minimum {:.3g} bar at {:.4g} deg. Delivery: "
+      "{:.5g} to {:.5g} bar, mean {:.5g} bar. The chamber pressure exceeds that of the delivery "
+      "volume by the pressure drop of the port.",
       s.chamber_greatest / kPascalPerBar, s.chamber_greatest_deg, s.chamber_least / kPascalPerBar,
       s.chamber_least_deg, s.delivery_least / kPascalPerBar, s.delivery_greatest / kPascalPerBar,
       s.delivery_mean / kPascalPerBar);
@@ -101,7 +101,7 @@ std::vector<report::Figure> hydraulic_figures(const Case& the_case,
     theta.push_back(360.0 * i / kPerTurn);
     pressure.push_back(curve(theta.back()) / kPascalPerBar);
   }
-  figures.push_back(angle_figure("spline", "Pressure of piston 1 as both models get it", "Fig. 25",
+  figures.push_back(angle_figure("spline", "Pressure of piston 1 as used by both models", "Fig. 25",
                                  "bar", theta));
   figures.back().note = curve_text(the_case, state) + ".";
   add_series(figures.back(), "chamber 1", pressure);

@@ -69,9 +69,9 @@ std::string agreement_text(const LifeStudy& s) {
 report::Section bearings_section(const LifeStudy& s) {
   report::Section section{
       "Bearings",
-      "Rating life after ISO 281: nine bearings of ten last longer. P_m: the constant equivalent "
-      "load that costs as much life. No factor for lubrication, cleanliness or reliability "
-      "(a_ISO = a_1 = 1).",
+      "Rating life after ISO 281: 90 % of the bearings last longer. P_m: the constant equivalent "
+      "load with the same life. No factor for lubrication, cleanliness or reliability (a_ISO = a_1 "
+      "= 1).",
       {{"both together, million revolutions", rounded_text(s.analytic.life.revolutions)},
        {"both together", hours_text(s.analytic.life.hours)},
        {"mean speed", fmt::format("{:.6g} rpm", s.analytic.life.mean_speed_rpm)},
@@ -100,7 +100,7 @@ double load_of(const LifePoint& point, Bearing bearing) {
 report::Section duty_section(const LifeStudy& s) {
   report::Section section{"Duty cycle",
                           "Loads count by revolutions, time at standstill by the hours only. Life: "
-                          "the part of it that each row uses up.",
+                          "the share of the life that each row consumes.",
                           {},
                           {{"row", "time, %", "revolutions, %"}, {}}};
   if (!s.duty.file.empty()) section.facts.emplace_back("file", s.duty.file.filename().string());
@@ -147,14 +147,13 @@ std::vector<std::string> answers_of(const LifeStudy& s) {
     const auto row =
         static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin());
     const study::DutyShares duty = study::duty_shares(s.analytic.points);
-    answers.push_back(
-        fmt::format("Most of it goes to {}: {:.3g} % of its life in {:.3g} % of the "
-                    "time.",
-                    s.duty.name_of(row), 100 * shares[row], 100 * duty.time[row]));
+    answers.push_back(fmt::format(
+        "Most of its life is consumed by {}: {:.3g} % of its life in {:.3g} % of the time.",
+        s.duty.name_of(row), 100 * shares[row], 100 * duty.time[row]));
   }
   for (const study::LifeLimit& l : life.limits)
     if (l.violated_share > 0)
-      answers.push_back(fmt::format("Limit not kept over {:.3g} % of the revolutions: {}.",
+      answers.push_back(fmt::format("Limit exceeded over {:.3g} % of the revolutions: {}.",
                                     100 * l.violated_share, limit_name(l)));
   return answers;
 }
@@ -203,7 +202,7 @@ report::Figure turn_figure(const LifeStudy& s, Bearing bearing, std::size_t row)
                         fmt::format("Loads of the {} bearing over a turn", to_string(bearing)), "",
                         report::ChannelFigure{"N", names, {}, std::move(curves)}};
   if (s.duty.rows.size() > 1)
-    figure.note = "The row that uses up most of the life: " + s.duty.name_of(row) + ".";
+    figure.note = "The row that consumes most of the life: " + s.duty.name_of(row) + ".";
   return figure;
 }
 
@@ -235,10 +234,9 @@ report::Figure spectrum_figure(const LifeStudy& s) {
     const double mean = s.analytic.life.of(bearing).mean_load;
     plot.series.push_back({to_string(bearing) + ", P_m", {0, 100}, {mean, mean}});
   }
-  return {
-      "spectrum", "Load spectrum of both bearings", "", std::move(plot),
-      "Every angle of every row of the duty cycle, largest load first; P_m is the constant load "
-      "that costs as much life."};
+  return {"spectrum", "Load spectrum of both bearings", "", std::move(plot),
+          "Every angle of every row of the duty cycle, largest load first; P_m is the constant "
+          "load with the same life."};
 }
 
 }  // namespace
@@ -249,10 +247,9 @@ report::Document life_document(const LifeStudy& s, const report::Lines& program,
       study::case_document(description, s.the_case.name + ": life of the bearings", program);
   document.verdict = report::Verdict{s.agrees(), headline(s)};
   document.verdict->answers = answers_of(s);
-  document.meaning =
-      agreement_text(s) +
-      " The rating life counts fatigue of the rolling contacts under these loads and nothing else; "
-      "it is worth what ratings and loads are worth.";
+  document.meaning = agreement_text(s) +
+                     " The rating life includes only fatigue of the rolling contacts under these "
+                     "loads; it is as reliable as the ratings and loads.";
   document.validity = validity_of(s);
   document.runs = {bearings_section(s), duty_section(s)};
   const std::size_t row = hardest_row(s);
@@ -329,7 +326,7 @@ std::string life_text(const LifeStudy& s) {
   }
   for (const study::LifeLimit& l : s.analytic.life.limits)
     if (l.violated_share > 0)
-      text += fmt::format("not kept over {:.3g} % of the revolutions: {} (worst {:.4g} N): {}\n",
+      text += fmt::format("exceeded over {:.3g} % of the revolutions: {} (worst {:.4g} N): {}\n",
                           100 * l.violated_share, limit_name(l), l.worst, l.consequence);
   return text;
 }

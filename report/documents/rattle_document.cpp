@@ -374,7 +374,7 @@ report::Document rattle_document(const RattleMap& map, const report::Lines& prog
   document.meaning =
       map.checks.empty()
           ? "What the closed form's teeth do; a class is that of the observed turns, under the "
-            "thresholds below. Nothing was compared: --check N recomputes points by Simbody."
+            "thresholds below. Nothing was compared: --check-points N recomputes points by Simbody."
           : "What the closed form's teeth do; a class is that of the observed turns, under the "
             "thresholds below. Simbody's model, from the same states, says whether both follow the "
             "same description.";

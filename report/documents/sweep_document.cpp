@@ -141,8 +141,8 @@ Section infeasible_section(const SweepResult& result, const SweepView& view) {
                    [](const Group& a, const Group& b) { return a.designs > b.designs; });
   Section section{
       "Infeasible designs",
-      "What a case file with these values would be refused for, or what could not be computed. "
-      "Reasons that differ in numbers only are counted together; the first is shown.",
+      "Reasons why a case file with these values is refused or cannot be computed. Reasons that "
+      "differ in numbers only are counted together; the first is shown.",
       {{"infeasible", fmt::format("{} of {} designs, {}", result.all_infeasible, result.plan.size(),
                                   percent(result.all_infeasible, result.plan.size()))}},
       {{"reason", "designs", "first design"}, {}}};
@@ -216,7 +216,9 @@ Section best_section(const SweepView& view) {
   } else {
     const auto& front = view.front();
     section.title = "Pareto front";
-    section.text = "Designs of which no other is as good in all outputs sought and better in one.";
+    section.text =
+        "Pareto front: designs that no other design equals in all outputs sought and exceeds in "
+        "one.";
     section.facts = {{"on the front", fmt::format("{} designs", front.size())}};
     for (const std::size_t i : thinned(front.size(), kBestRows)) designs.push_back(front[i]);
     if (designs.size() < front.size())
@@ -232,8 +234,9 @@ namespace {
 Section checks_section(const SweepResult& result) {
   Section section{
       "Recomputed by " + other_model(result),
-      "Designs chosen by their numbers alone. A difference is over the scale of its output, the "
-      "peak of the curve over the turn. An infeasible design agrees where both models refuse it.",
+      "Designs chosen by a hash of their numbers. A difference is over the scale of its output, "
+      "the peak of the curve over the turn. An infeasible design agrees where both models refuse "
+      "it.",
       {{"agree", fmt::format("{} of {}", agreeing(result), result.checks.size())},
        {"tolerance", fmt::format("{:g} of the scale", result.tolerance)}},
       {{"output", "designs compared", "largest difference over its scale", "of design"}, {}}};
@@ -325,7 +328,7 @@ std::vector<std::string> sweep_answers(const SweepResult& result) {
   }
   if (view.sought() > 1)
     answers.push_back(fmt::format(
-        "Trade-off: {} designs of {} are not beaten in all {} outputs sought (Pareto front).",
+        "Trade-off: {} designs of {} are not dominated in the {} outputs sought (Pareto front).",
         view.front().size(), view.designs(), view.sought()));
   if (result.every > 1)
     answers.push_back(
@@ -348,8 +351,8 @@ report::Document sweep_document(const SweepResult& result, const report::Lines& 
       result.checks.empty()
           ? "Outputs of every design by one model. Nothing was compared: --check SHARE has designs "
             "recomputed by the other."
-          : "Outputs of every design by one model; that the other agrees where it was asked says "
-            "that the equations are solved correctly, not that a pump would do so.";
+          : "Outputs of every design by one model. Agreement of the other model at the checked "
+            "designs verifies that the equations are solved correctly; it does not validate them.";
   document.runs.emplace();
   document.runs->push_back(plan_section(result, view));
   document.runs->push_back(outputs_section(view));

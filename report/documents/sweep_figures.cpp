@@ -87,7 +87,7 @@ class Figures {
       text += (text.empty() ? "At " : ", ") + view_.variable(k).name() + " " +
               value_text(view_.variable(k), view_.levels(k)[view_.home()[k]]);
     }
-    return text.empty() ? "" : text + ", next to the case's own. ";
+    return text.empty() ? "" : text + ", nearest to the value of the case. ";
   }
 
   static std::string limit_text(std::size_t shown, std::size_t all, const char* what) {
@@ -143,7 +143,7 @@ class Figures {
     ascending(m);
     note += others_text({a, b});
     if (columns.size() < view_.levels(a).size() || rows.size() < view_.levels(b).size())
-      note += "Not every level is drawn. ";
+      note += "Only some contour levels are drawn. ";
     if (gaps) note += "Hatched: infeasible, with the reason where pointed at.";
     add(fmt::format("map_{}_{}_{}", a + 1, b + 1, k + 1),
         fmt::format("{} over {} and {}", view_.output(k).name, view_.variable(a).name(),

@@ -88,9 +88,9 @@ report::Section teeth_section(const TeethComparison& teeth, const PumpParameters
   report::Section section;
   section.title = "Teeth in contact";
   section.text =
-      "What the pairs of teeth do to each other, at rest under the torque that carries the block: "
-      "flank + pushes the block towards +psi, flank - towards -psi. Each model finds contact and "
-      "shares on its own.";
+      "Forces of the tooth pairs in static equilibrium under the torque that drives the block: "
+      "flank + pushes the block towards +psi, flank - towards -psi. Each model computes contact "
+      "and load shares independently.";
   const Extent error = extent(teeth.analytic, "transmission_error_um");
   const analytic::BevelTeeth shape(pump);
   const analytic::BevelGeometry& at = shape.geometry();
@@ -173,12 +173,12 @@ std::vector<report::Figure> teeth_figures(const TeethComparison& teeth,
              "Transmission error: the shaft ahead of the block, along the line of action", "um",
              {"transmission_error_um"}),
       {"contact_path",
-       "Path of contact at O4's distance: beside the plane in which involutes touch", "",
+       "Path of contact at the distance of O4: offset from the plane of action of involutes", "",
        report::ScatterFigure{{"along the line of action, from O4", "mm"},
-                             {"beside the plane of action", "um"},
+                             {"offset from the plane of action", "um"},
                              {path_of(teeth.analytic, pump, 0), path_of(teeth.multibody, pump, 1)}},
-       "Involutes touch in one plane, a great circle seen from O2; octoids beside it. Of loaded "
-       "pairs: in corner contact they leave the path."}};
+       "Involutes touch in one plane through O2; octoids touch outside it. Of loaded pairs: in "
+       "corner contact they leave the path."}};
 }
 
 }  // namespace bentaxis::study

@@ -13,10 +13,9 @@ std::vector<std::string> advice_texts(const TimingStudy& study) {
   std::vector<std::string> texts;
   for (const TimingAdvice& advice : study.advice)
     texts.push_back(advice.row.quantity + ": " +
-                    (advice.change
-                         ? "change " + advice.change->text(advice.row) + "."
-                         : "no single key of the plate, notches, kidneys or suction pressure makes "
-                           "it better by a tenth."));
+                    (advice.change ? "change " + advice.change->text(advice.row) + "."
+                                   : "no single key of plate, notches, kidneys or suction pressure "
+                                     "improves it by a tenth."));
   return texts;
 }
 
@@ -24,13 +23,14 @@ void add_advice(report::Document& document, const TimingStudy& study) {
   if (document.verdict) report::append(document.verdict->answers, advice_texts(study));
   report::Section section{
       "What to change in the timing",
-      "Each verdict beyond its limit with the smallest change of one key that brings it within the "
-      "limit and nothing else beyond, found by computing the pump anew with each change; where "
-      "there is none, the change that helps most. Several keys at once: bentaxis optimise.",
+      "Each quantity that exceeds its limit, with the smallest change of one key that brings it "
+      "within the limit without exceeding another limit. The pump is computed again for each "
+      "change; where there is no such change, the one that helps most is given. Several keys at "
+      "once: bentaxis optimise.",
       {{"trials", fmt::format("{}", study.trials)},
        {"that could not be computed", fmt::format("{}", study.failed)}},
       {{"verdict", "key", "from", "to", "value before", "value after", "unit", "within its limit",
-        "volumetric efficiency, %", "then beyond"},
+        "volumetric efficiency, %", "then exceeded"},
        {}}};
   for (const TimingAdvice& advice : study.advice) {
     if (!advice.change) {

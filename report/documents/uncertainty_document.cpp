@@ -30,9 +30,8 @@ std::string in_words(const UncertainOutput& o, double level) {
 std::string left_out_text(const UncertaintyResult& result) {
   const std::size_t without = result.sampled.infeasible.size(), all = result.options.samples;
   return fmt::format(
-      "{} of {} samples are no pump that can be computed and are left out ({:.3g} %): all "
-      "statistics are those of the other samples alone, and their deviation is not that of the "
-      "stated distributions",
+      "{} of {} samples are infeasible pumps and are left out ({:.3g} %): all statistics are those "
+      "of the other samples alone, and their deviation is not that of the stated distributions",
       without, all, 100 * static_cast<double>(without) / static_cast<double>(all));
 }
 
@@ -128,7 +127,7 @@ Section first_order_section(const UncertaintyResult& result) {
       "Law of propagation of uncertainty (JCGM 100, 5.1 and 5.2): value at the parameters' means, "
       "combined standard uncertainty from derivatives there and covariances. Where it differs from "
       "Monte Carlo by more than the latter's standard error, the output is not linear over the "
-      "width of what is not known; Monte Carlo then counts.",
+      "range of uncertainty; Monte Carlo is then valid.",
       result.sampled.infeasible.empty()
           ? report::Lines{}
           : report::
@@ -151,7 +150,7 @@ Section first_order_section(const UncertaintyResult& result) {
 
 Section contributions_section(const UncertaintyResult& result) {
   Section section{
-      "Where it comes from, to first order",
+      "Contributions of the parameters, to first order",
       "Derivative by differences over half and a quarter of the standard deviation, "
       "extrapolated; its error is what the extrapolation changed. Contribution: "
       "derivative x standard deviation of the parameter.",
@@ -186,7 +185,7 @@ std::string sobol_left_out_text(const UncertaintyResult& result) {
   const std::size_t without = result.sobol.left_out;
   if (without == 0) return "0";
   return fmt::format(
-      "{} of {} ({:.3g} %), one of whose points is no pump: the indices are those of the other "
+      "{} of {} ({:.3g} %), one of whose points is infeasible: the indices are those of the other "
       "points alone, among which the parameters are no longer independent",
       without, result.options.sobol,
       100 * static_cast<double>(without) / static_cast<double>(result.options.sobol));
@@ -230,8 +229,9 @@ report::Figure contributions_figure(const UncertaintyResult& result, std::size_t
       bars.bars.push_back({result.variables.variables[i].name(), size, -size,
                            result.variables.distributions[i].text() + ": " +
                                fmt::format("{:+.3g} {}", of(i), output.unit)});
-  return {fmt::format("contributions_{}", o + 1), output.name + ": what makes it uncertain", "",
-          bars, "One standard deviation of each parameter, to first order; longest first."};
+  return {fmt::format("contributions_{}", o + 1),
+          output.name + ": contributions to its uncertainty", "", bars,
+          "One standard deviation of each parameter, to first order; longest first."};
 }
 
 report::Figure sobol_figure(const UncertaintyResult& result, std::size_t o) {
@@ -283,7 +283,7 @@ void add_left_out(report::Document& document, const UncertaintyResult& result) {
   const auto without = static_cast<double>(result.sampled.infeasible.size());
   Section reasons{
       "Samples that are no pump",
-      "Left out of everything above: it holds for the pumps that there can be.",
+      "Left out of all results above: these apply to the feasible pumps.",
       {{"samples",
         fmt::format("{} of {}", result.sampled.infeasible.size(), result.options.samples)},
        {"share, %",
@@ -297,7 +297,7 @@ void add_left_out(report::Document& document, const UncertaintyResult& result) {
   document.runs->push_back(std::move(reasons));
 
   Section kept{
-      "Parameters of the samples that are left",
+      "Parameters of the remaining samples",
       "Leaving samples out changes the distributions of the parameters: where mean or "
       "standard deviation of the samples that are left differ from the stated ones by more "
       "than their standard errors, mean, standard deviation and quantiles of the outputs "
@@ -320,9 +320,9 @@ Section bands_section(const UncertaintyResult& result) {
   const double level = result.options.level;
   Section section{
       "Bands on reactions",
-      fmt::format("Quantiles of {} samples at each angle by itself: {} of the pumps lie within "
-                  "there. Fewer stay within it all through the turn: that share stands in the "
-                  "table. An edge is known within its interval of 95 %, by order statistics.",
+      fmt::format("Pointwise quantiles of {} samples: at each angle {} of the pumps are inside. "
+                  "Fewer are inside throughout the turn: the table gives this share. An edge is "
+                  "known within its interval of 95 %, by order statistics.",
                   result.options.samples - result.sampled.infeasible.size(), percent(level)),
       {},
       {{"channel", "unit", "peak of the vector", "largest half width", "of peak, %",
@@ -365,15 +365,14 @@ std::vector<report::Figure> band_figures(const UncertaintyResult& result) {
 
 report::Document uncertainty_document(const UncertaintyResult& result, const report::Lines& program,
                                       const study::CaseDescription& description) {
-  report::Document document = study::case_document(
-      description, result.the_case.name + ": what is not known exactly", program);
+  report::Document document =
+      study::case_document(description, result.the_case.name + ": uncertain parameters", program);
   document.verdict = report::Verdict{std::nullopt, headline(result), "Uncertainty"};
   document.verdict->answers = answers_of(result);
-  document.meaning =
-      "What the stated distributions of parameters do to the results of the " +
-      study::to_string(result.options.model) +
-      " model. Nothing is said of what the model leaves out, nor of parameters without a "
-      "distribution.";
+  document.meaning = "Effect of the stated distributions of parameters on the results of the " +
+                     study::to_string(result.options.model) +
+                     " model. Effects that the model leaves out and parameters without a "
+                     "distribution are not included.";
   document.runs.emplace();
   document.runs->push_back(parameters_section(result));
   document.figures.emplace();

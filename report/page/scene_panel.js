@@ -206,7 +206,7 @@ function pumpInSpace(report, data, scene) {
     if (!view) {
       const still = document.querySelector("#picture svg");
       frame.classList.add("flat");
-      frame.replaceChildren(el("p.empty", {}, "This browser draws no WebGL here, so the pump stands still; "
+      frame.replaceChildren(el("p.empty", {}, "This browser draws no WebGL here, so the pump is shown as still pictures; "
         + "slider and tables work all the same."), ...(still ? [el("div.scroll.pump")] : []));
       if (still) frame.lastElementChild.append(still.cloneNode(true));
       [views.node, cutting.node, names.node, common.node, speed, play, lengths.parentElement].forEach(n => n && (n.hidden = true));

@@ -47,8 +47,8 @@ function pumpHead({ plausibility }) {
   picture.append(document.querySelector("#picture svg").cloneNode(true));
   return el("div", {},
     !list(plausibility.warnings).length ? null : el("ul.warnings", {}, plausibility.warnings.map(w =>
-      el("li", {}, el("strong", {}, "Doubtful: " + w.code), el("span", {}, w.text)))),
-    !list(plausibility.meant).length ? null : el("p.hint", {}, "Doubtful, and meant: "
+      el("li", {}, el("strong", {}, "Implausible: " + w.code), el("span", {}, w.text)))),
+    !list(plausibility.meant).length ? null : el("p.hint", {}, "Implausible, stated as intended: "
       + plausibility.meant.map(w => `${w.code} (${w.reason})`).join("; ")),
     picture);
 }

@@ -117,7 +117,7 @@ void mark_leaving(pugi::xml_node root, const Scale& x, const Scale& y, const Cur
                                {"d", fmt::format("M{} {}l5 {}h-10z", px(at), px(end), up ? 8 : -8)},
                                {"fill", curve.colour}});
     node.append_child("title").text() =
-        fmt::format("beyond the axis: {} at {}", short_number(curve.y[*furthest]),
+        fmt::format("outside the axis: {} at {}", short_number(curve.y[*furthest]),
                     short_number(curve.x[*furthest]))
             .c_str();
     furthest.reset();

@@ -437,7 +437,7 @@ void Picture::draw_joints() {
   v.paper("against the shaft axis: x1 right, y1 up", {left, 36}, "small");
   v.paper("joint circle Ra " + mm_text(g_.joint_circle_radius) + " mm", {left, bottom_ + 24});
   v.paper(fmt::format("pitch circle d {} mm{}", mm_text(p_.gear.pitch_diameter),
-                      gear_is_far() ? " (beyond the picture)" : ""),
+                      gear_is_far() ? " (outside the picture)" : ""),
           {left, bottom_ + 42});
 }
 

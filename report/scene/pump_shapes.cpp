@@ -226,7 +226,7 @@ void Shapes::plate() {
     return;
   }
   if (!fits) {
-    shapes_.note += "; the plate's ports are beyond the picture";
+    shapes_.note += "; the plate's ports are outside the picture";
     return;
   }
   port(p_.port_plate->delivery, Look::delivery);
@@ -241,8 +241,8 @@ void Shapes::bearings() {
   for (const bool tapered : {true, false}) {
     const double z = tapered ? p_.bearings.tapered_z : p_.bearings.cylindrical_z;
     if (o_.is_far(z)) {
-      shapes_.note += tapered ? "; the tapered bearing is beyond the picture"
-                              : "; the cylindrical bearing is beyond the picture";
+      shapes_.note += tapered ? "; the tapered bearing is outside the picture"
+                              : "; the cylindrical bearing is outside the picture";
       continue;
     }
     // The tapered one leans.
@@ -299,7 +299,7 @@ report::Mesh teeth(const BevelTooth& tooth, double apex_z, double up, double ahe
 
 void Shapes::gear() {
   if (o_.is_far(o_.gear_radius)) {
-    shapes_.note += "; the gears are beyond the picture";
+    shapes_.note += "; the gears are outside the picture";
     return;
   }
   // The cone of the shaft's gear opens from O2 towards -z1, that of the block's towards +z2.
@@ -343,7 +343,7 @@ void Shapes::gear() {
 void Shapes::pin() {
   // It stands on the axis of the block.
   if (o_.is_far(p_.block.pin_z)) {
-    shapes_.note += "; the pin is beyond the picture";
+    shapes_.note += "; the pin is outside the picture";
     return;
   }
   const auto on_axis = [&](double z) {

@@ -53,11 +53,11 @@ std::string broken(const Distribution& d) {
     case Shape::normal:
       return n[1] > 0 ? "" : "the standard deviation must be > 0";
     case Shape::uniform:
-      return n[0] < n[1] ? "" : "the low end must be below the high end";
+      return n[0] < n[1] ? "" : "the lower limit must be below the upper limit";
     case Shape::triangular:
       return n[0] <= n[1] && n[1] <= n[2] && n[0] < n[2]
                  ? ""
-                 : "the most likely value must lie between a low and a high end";
+                 : "the mode must lie between the lower and the upper limit";
     case Shape::lognormal:
       break;
   }
@@ -151,7 +151,7 @@ Distribution distribution(const std::string& text, const std::string& what,
     if (more) rest.erase(0, comma + 1);
   }
   if (about && word == "relative" && numbers.size() == 1) {
-    if (*about == 0) fail("is a part of a value that is 0: give normal(standard deviation)");
+    if (*about == 0) fail("is relative to a value that is 0: give normal(standard deviation)");
     word = "normal";
     numbers = {*about, numbers[0] * std::abs(*about)};
   } else if (about && word == "normal" && numbers.size() == 1) {
@@ -204,7 +204,7 @@ void UncertainVariables::correlate(const std::vector<Pair>& pairs) {
       const double pivot = factor[j * n + j];
       const bool possible = i == j ? rest > -kRoundOff : pivot > 0 || std::abs(rest) < 1e-6;
       if (!possible)
-        throw InputError("[uncertainty] correlation: no numbers have all of these correlations (" +
+        throw InputError("[uncertainty] correlation: these correlations are inconsistent (" +
                          name_of(i) + " contradicts those before it)");
       if (i == j)
         factor[i * n + j] = rest > kRoundOff ? std::sqrt(rest) : 0;
@@ -248,8 +248,8 @@ UncertainVariables uncertain_variables(const Case& the_case) {
   const UncertaintyData& data = the_case.uncertainty;
   if (data.parameters.empty())
     throw InputError(the_case.file.string() +
-                     ": needs [uncertainty]: what is not known exactly, "
-                     "\"pump.tilt_deg\" = \"normal(40, 0.1)\"; or give it by --vary");
+                     ": needs [uncertainty]: distributions of parameters, \"pump.tilt_deg\" = "
+                     "\"normal(40, 0.1)\"; or give it by --vary");
   UncertainVariables all;
   const auto place_of = [&](const std::string& name) {
     const auto found = std::find_if(all.variables.begin(), all.variables.end(),
@@ -267,7 +267,7 @@ UncertainVariables uncertain_variables(const Case& the_case) {
       }
     }();
     if (variable.discrete())
-      throw InputError(what + ": is a whole number or a word: it cannot be uncertain");
+      throw InputError(what + ": is a whole number or a word: it cannot have a distribution");
     const Distribution found = distribution(p.distribution, what, variable.value(the_case));
     const NumberRange range = variable.range(the_case);
     const bool bounded = found.shape == Shape::uniform || found.shape == Shape::triangular;

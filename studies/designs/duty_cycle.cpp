@@ -65,7 +65,7 @@ DutyCycle read_duty_cycle(const std::filesystem::path& file, const Case& base) {
     columns.push_back(c);
   }
   if (share == table.header.size())
-    throw InputError(file.string() + ": has no column share, the part of the time");
+    throw InputError(file.string() + ": has no column share, the share of the time");
   if (table.rows.empty()) throw InputError(file.string() + ": has no row");
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     DutyCycle::Row row;

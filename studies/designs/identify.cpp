@@ -266,7 +266,7 @@ DataModel::DataModel(Case base, IdentificationData data, bool kernel) {
   made->data = std::move(data);
   IdentificationData& all = made->data;
   if (all.unknowns.empty())
-    throw InputError("identify: nothing is unknown: [[unknown]] in the data, or --unknown");
+    throw InputError("identify: nothing is unknown: [[unknown]] in the data, or --vary");
   std::set<std::string> names;
   for (const Unknown& u : all.unknowns)
     if (!names.insert(u.name()).second) throw InputError(u.name() + ": is unknown twice");

@@ -228,7 +228,7 @@ LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<cons
   fit.x.assign(start.begin(), start.end());
   fit.residuals.resize(problem.residuals);
   if (!problem.evaluate(fit.x, fit.residuals))
-    throw ComputationError("least squares: nothing can be computed at the start");
+    throw ComputationError("least squares: the model cannot be computed at the start");
   std::vector<double> units(n), u(n);
   for (std::size_t i = 0; i < n; ++i) {
     units[i] = size_of(problem, i, fit.x[i]);
@@ -264,7 +264,7 @@ LeastSquaresFit least_squares(const LeastSquaresProblem& problem, std::span<cons
   fit.iterations = static_cast<int>(summary.iterations.size());
   fit.jacobian.resize(problem.residuals * n);
   if (!problem.evaluate(fit.x, fit.residuals) || !derivatives_of(problem, fit.x, fit.jacobian))
-    throw ComputationError("least squares: nothing can be computed at the solution");
+    throw ComputationError("least squares: the model cannot be computed at the solution");
   fit.sum_of_squares = sum_of_squares(fit.residuals);
   finish(problem, units, options, fit);
   return fit;

@@ -140,7 +140,7 @@ struct Hdf5File::Implementation {
         file(open(path)),
         reason_type(text_type()) {
     const Handle root(H5Gopen2(*file, "/", H5P_DEFAULT), H5Gclose);
-    attribute(*root, "title", "designs of a pump and what was computed of them");
+    attribute(*root, "title", "designs of a pump and their computed outputs");
     attribute(*root, "case", record.case_text);
     attribute(*root, "plan", record.plan);
     for (const auto& [name, content] : record.curves) attribute(*root, name.c_str(), content);
@@ -211,7 +211,7 @@ void Hdf5File::finish(const std::vector<SweepCheck>& checks) {
   Implementation& it = *implementation_;
   if (!checks.empty()) {
     const Handle parent = group(*it.file, "checks");
-    attribute(*parent, "meaning", "designs that the other model computed too");
+    attribute(*parent, "meaning", "designs that were also computed by the other model");
     attribute(*parent, "tolerance", kCheckTolerance);
     std::vector<double> designs;
     for (const SweepCheck& c : checks) designs.push_back(static_cast<double>(c.design));

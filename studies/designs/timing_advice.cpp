@@ -73,8 +73,8 @@ std::string TimingChange::text(const TimingRow& row) const {
       fmt::format("{} {} -> {}: {:.3g} -> {:.3g} {}{}; volumetric efficiency {:+.2g} %",
                   variable.name(), number_text(std::round(from * 1e4) / 1e4),
                   number_text(std::round(to * 1e4) / 1e4), value_before, value_after, row.unit,
-                  within ? ", within its limit" : ", still beyond", efficiency_change);
-  if (!worse.empty()) text += fmt::format("; then beyond: {}", fmt::join(worse, ", "));
+                  within ? ", within its limit" : ", still exceeded", efficiency_change);
+  if (!worse.empty()) text += fmt::format("; then exceeded: {}", fmt::join(worse, ", "));
   return text;
 }
 

@@ -164,8 +164,8 @@ std::string validation_text(const Validation& v) {
                         of(v.curves, [](const ValidationCurve& curve) { return curve.worst; }));
   if (const std::size_t without = v.uncertainty.sampled.infeasible.size(); without > 0)
     text += fmt::format(
-        "; {} of {} samples are no pump that can be computed and are left out: u_input is that of "
-        "the other samples alone",
+        "; {} of {} samples are infeasible pumps and are left out: u_input is that of the other "
+        "samples alone",
         without, v.uncertainty.options.samples);
   return text;
 }

@@ -80,7 +80,7 @@ Variable::Variable(const std::string& name, const Case& base) : name_(name) {
   }
   const Parameter& p = *parameter_;
   if (std::holds_alternative<TextField>(p.field) || std::holds_alternative<CurveField>(p.field))
-    throw InputError(name + ": is no number, word or flag: it cannot vary");
+    throw InputError(name + ": is not a number, word or flag: it cannot vary");
   if (std::holds_alternative<FlagField>(p.field)) words_ = {"false", "true"};
   if (std::holds_alternative<ChoiceField>(p.field)) words_ = p.words;
   integer_ = std::holds_alternative<IntegerField>(p.field);
@@ -89,7 +89,7 @@ Variable::Variable(const std::string& name, const Case& base) : name_(name) {
     throw InputError(name + ": is not in this case: give it a value there or by --set, then it " +
                      "can vary");
   if (!is_active(*table_, p, standard_registry(), base) || !bentaxis::value_of(p, base))
-    throw InputError(name + ": changes nothing in this case" +
+    throw InputError(name + ": has no effect in this case" +
                      (p.active.words.empty()
                           ? std::string()
                           : ": needs [" + p.active.table + "] " + to_text(p.active)));
@@ -109,7 +109,7 @@ NumberRange Variable::range(const Case& the_case) const {
 
 double Variable::value(const Case& the_case) const {
   const auto value = bentaxis::value_of(*parameter_, the_case);
-  if (!value) throw InputError(name_ + ": is not there in this case");
+  if (!value) throw InputError(name_ + ": does not exist in this case");
   if (const auto* number = std::get_if<double>(&*value)) return *number;
   if (const auto* number = std::get_if<int>(&*value)) return *number;
   if (const auto* flag = std::get_if<bool>(&*value)) return *flag ? 1 : 0;
@@ -127,7 +127,7 @@ void Variable::put(Case& the_case, double value) const {
     const auto index = static_cast<std::size_t>(value);
     if (value < 0 || index >= words_.size())
       throw InputError(name_ + " = " + number_text(value) +
-                       ": must be the place of a word, from 0");
+                       ": must be the index of a word, from 0");
     store(p, the_case,
           words_.size() == 2 && std::holds_alternative<FlagField>(p.field) ? Value(index == 1)
                                                                            : Value(words_[index]));
@@ -169,7 +169,8 @@ Family::Family(Case base, std::vector<Variable> variables)
     : base_(std::move(base)), variables_(std::move(variables)) {
   std::set<std::string> names;
   for (const Variable& v : variables_)
-    if (!names.insert(v.name()).second) throw InputError(v.name() + ": varies twice");
+    if (!names.insert(v.name()).second)
+      throw InputError(v.name() + ": is specified more than once");
   const auto pair_of = [](const std::string& name) {
     return end_of(name) < 0 ? name : name.substr(0, name.size() - 2);
   };

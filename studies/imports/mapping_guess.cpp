@@ -81,7 +81,7 @@ class Guesser {
     }
     if (!best)
       throw InputError(table_.file.string() +
-                       ": no column follows any of the model's curves; is it of this case?");
+                       ": no column resembles a curve of the model; is it a record of this case?");
     take_turn(best->angle);
     return finish(*best);
   }
@@ -147,7 +147,7 @@ class Guesser {
         continue;
       }
       if (runs_along(table_, c)) {
-        ignored_.emplace_back(table_.header[c], "runs along with the angle");
+        ignored_.emplace_back(table_.header[c], "is proportional to the angle");
         continue;
       }
       has_curve[c] = true;
@@ -697,9 +697,9 @@ MappingGuess Guesser::finish(const Found& found) {
         ours != nullptr && (m.cost < kNoChannel || m.signs_differ || (by_name && m.cost < 2.5));
     if (fits && taken.insert(ours->name).second) return true;
     for (const std::size_t column : columns)
-      guess.ignored.emplace_back(
-          table_.header[column],
-          fits ? "like another column, looks like " + ours->name : "no channel has this curve");
+      guess.ignored.emplace_back(table_.header[column],
+                                 fits ? "like another column, looks like " + ours->name
+                                      : "no channel has a similar curve");
     return false;
   };
 
@@ -767,7 +767,7 @@ MappingGuess Guesser::finish(const Found& found) {
   }
   if (pairings.empty())
     throw InputError(table_.file.string() +
-                     ": no column follows any of the model's curves; is it of this case?");
+                     ": no column resembles a curve of the model; is it a record of this case?");
 
   // The phase: the best one, then the roundest that is as good. By logarithms, so that the curves
   // which fit decide and not the one that does not.
@@ -815,9 +815,8 @@ MappingGuess Guesser::finish(const Found& found) {
         pairing.columns.size() > 1 && scale > 0 ? without_signs / scale : proposal.correlation;
     proposal.difference = std::sqrt(square_difference(pairing, phase).value_or(0));
     if (proposal.difference > kNoChannel)
-      proposal.remark = pairing.columns.size() > 1
-                            ? "differs by its signs, or only its name says so"
-                            : "its name says so, its curve does not";
+      proposal.remark = pairing.columns.size() > 1 ? "signs differ, or only the name matches"
+                                                   : "the name matches, the curve does not";
     if (!ours_constant && !(followed >= kMinCorrelation)) {
       for (const std::size_t column : pairing.columns) {
         guess.ignored.emplace_back(
@@ -835,9 +834,8 @@ MappingGuess Guesser::finish(const Found& found) {
   }
   if (guess.proposals.empty())
     throw InputError(table_.file.string() +
-                     ": no column follows any of the model's curves with a "
-                     "correlation of at least " +
-                     number_text(kMinCorrelation) + "; is it of this case?");
+                     ": no column resembles a curve of the model with a correlation of at least " +
+                     number_text(kMinCorrelation) + "; is it a record of this case?");
   std::stable_sort(guess.proposals.begin(), guess.proposals.end(),
                    [](const auto& x, const auto& y) { return x.difference > y.difference; });
   for (const auto& [column, why] : guess.ignored) curve.ignored.push_back(column);

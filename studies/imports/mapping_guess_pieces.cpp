@@ -261,8 +261,8 @@ std::vector<AngleMap> angle_choices(const ForeignTable& table, double degrees_pe
   if (by_rank.empty())
     throw InputError(table.file.string() +
                      ": no column can be the shaft's angle or the time of a whole turn: it must "
-                     "rise or fall strictly over at least 330 deg, and the gap to the end of the "
-                     "turn must be at most 2.5 steps wide (is the file truncated?)");
+                     "increase or decrease strictly over at least 330 deg, and the gap to the end "
+                     "of the turn must be at most 2.5 steps wide (is the file truncated?)");
   return by_rank.begin()->second;
 }
 

@@ -43,7 +43,7 @@ void replace_all(std::string& text, const std::string& old, const std::string& n
 
 void must_be_new(const fs::path& folder) {
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-    throw InputError(folder.string() + ": exists and is not empty; --out must name a new folder");
+    throw InputError(folder.string() + ": exists and is not empty; --out must be a new directory");
 }
 
 // A TOML text in quotes.
@@ -113,23 +113,14 @@ std::string curve_text(const MappingGuess& guess) {
   const std::string unrecognised =
       guess.unrecognised.empty()
           ? ""
-          : "# Not recognised, although a name or size says a channel: " +
+          : "# Not recognised, although a name or size suggests a channel: " +
                 list_text(guess.unrecognised) + ". Map these, or leave them in ignore.\n";
   std::string text = fmt::format(
-      "[[curve]]\n"
-      "file = {}\n"
-      "{}points = {}\n"
-      "guessed = true  # every report says what was assumed; take the line away once you have "
-      "checked it\n"
-      "{}ignore = {}  # columns that stand for no result\n"
-      "\n"
-      "# theta_deg = sign x column (in degrees) + offset_deg; theta = 0 where piston 1 is deepest "
-      "in.\n"
-      "[curve.angle]\n"
-      "column = {}\n"
-      "unit = {}  # deg, rad, mrad, turn, gon; s, ms, us, min with the speed of the case\n"
-      "sign = {}\n"
-      "offset_deg = {}\n",
+      "[[curve]]\nfile = {}\n{}points = {}\nguessed = true  # every report lists the assumptions; "
+      "remove this line once you have checked them\n{}ignore = {}  # columns that stand for no "
+      "result\n\n# theta_deg = sign x column (in degrees) + offset_deg; theta = 0 where piston 1 "
+      "is deepest in.\n[curve.angle]\ncolumn = {}\nunit = {}  # deg, rad, mrad, turn, gon; s, ms, "
+      "us, min with the speed of the case\nsign = {}\noffset_deg = {}\n",
       toml_text(curve.file.filename()),
       curve.sheet.empty() ? "" : "sheet = " + toml_text(curve.sheet) + "\n", curve.points,
       unrecognised, list_text(curve.ignored), toml_text(curve.angle.column),
@@ -237,7 +228,7 @@ std::vector<fs::path> make_reference(const Case& the_case, bool changed, const f
   must_be_new(out);
   const std::string curve_name = curve.filename();
   if (curve_name == "case.toml" || curve_name == "description.toml")
-    throw InputError(curve.string() + ": a curve must not be named so");
+    throw InputError(curve.string() + ": is a reserved name; rename the curve file");
   NewFolder folder(out);
   std::vector<fs::path> names;
   const auto add = [&](const fs::path& name, const std::string& content) {
@@ -249,7 +240,8 @@ std::vector<fs::path> make_reference(const Case& the_case, bool changed, const f
   for (const auto& file : changed ? std::vector<fs::path>{} : files_of(the_case)) {
     if (fs::absolute(file).lexically_normal().parent_path() !=
         fs::absolute(the_case.file).lexically_normal().parent_path())
-      throw InputError(file.string() + ": must lie beside the case to be copied with it");
+      throw InputError(file.string() +
+                       ": must be in the directory of the case to be copied with it");
     add(file.filename(), bytes_of(file));
   }
   add(curve_name, bytes_of(curve));
@@ -326,7 +318,7 @@ GoldenUpdate update_golden(const ReferenceDescription& description,
     if (table.rows() != static_cast<std::size_t>(curve.points))
       throw InputError((description.folder / "description.toml").string() +
                        ": points = " + std::to_string(curve.points) + ", but the case now gives " +
-                       std::to_string(table.rows()) + " rows: change it there first");
+                       std::to_string(table.rows()) + " rows: change the case first");
     const std::string text = to_csv(table);
     if (text == bytes_of(curve.file)) continue;
     std::string what;

@@ -91,8 +91,7 @@ class Connector {
     const bool to_unit = input != nullptr && has_column(from);
     if (to_pump && to_unit)
       throw InputError(option +
-                       ": is not clear: both the pump and the unit have such an input and "
-                       "such an output");
+                       ": is ambiguous: both the pump and the FMU have such an input and output");
     if (!to_pump && !to_unit) refuse_unknown(option, to, from);
     if (is_made(to_pump, to)) throw InputError(option + ": \"" + to + "\" is connected already");
     if (to_pump) {
@@ -109,15 +108,15 @@ class Connector {
     std::vector<std::string> inputs;
     for (const PumpInput& input : pump_inputs()) inputs.emplace_back(input.name);
     if (input_named(to) != nullptr && variable(to, "input") == nullptr)
-      throw InputError(fmt::format("{}: the unit has no output \"{}\": it has {}", option, from,
+      throw InputError(fmt::format("{}: the FMU has no output \"{}\": it has {}", option, from,
                                    first_of(names("output"))));
     if (variable(to, "input") != nullptr)
       throw InputError(
           fmt::format("{}: the pump has no column \"{}\": it has those of its tables ({})", option,
                       from, first_of(pump_.columns)));
     throw InputError(
-        fmt::format("{}: neither the pump nor the unit has an input \"{}\": the pump's are {}; the "
-                    "unit's: {}",
+        fmt::format("{}: neither the pump nor the FMU has an input \"{}\": those of the pump are "
+                    "{}; those of the FMU: {}",
                     option, to, first_of(inputs), first_of(names("input"))));
   }
 
@@ -148,7 +147,7 @@ class Connector {
   void check_drive() const {
     if (is_made(true, "drive_torque") && is_made(true, "drive_speed"))
       throw InputError(place_ +
-                       ": is not clear: its outputs drive_torque and drive_speed would both turn "
+                       ": is ambiguous: its outputs drive_torque and drive_speed would both turn "
                        "the shaft; choose one by --connect drive_torque=NAME or drive_speed=NAME");
     if (is_made(true, "drive_acceleration") && !is_made(true, "drive_speed"))
       throw InputError(place_ + ": drive_acceleration without drive_speed: connect both");
@@ -156,13 +155,13 @@ class Connector {
       return;
     for (const PumpInput& input : pump_inputs())
       if (variable(input.name, "output") != nullptr)
-        throw InputError(fmt::format("{}: nothing of it acts on the pump: {}: {}", place_,
-                                     input.name, why_not_taken(input.name)));
+        throw InputError(fmt::format("{}: no output acts on the pump: {}: {}", place_, input.name,
+                                     why_not_taken(input.name)));
     std::vector<std::string> inputs;
     for (const PumpInput& input : pump_inputs()) inputs.emplace_back(input.name);
     throw InputError(fmt::format(
-        "{}: nothing of it acts on the pump: connect an output ({}) by --connect to one of {}",
-        place_, first_of(names("output")), first_of(inputs)));
+        "{}: no output acts on the pump: connect an output ({}) by --connect to one of {}", place_,
+        first_of(names("output")), first_of(inputs)));
   }
 
   void add(const PumpInput& input, const fmu::UnitVariable& output, const std::string& what,
@@ -197,8 +196,8 @@ class Connector {
     if (v.unit.empty()) return other;
     if (!v.measure)
       throw InputError(
-          fmt::format("{}: the unit \"{}\" of \"{}\" has no BaseUnit in "
-                      "modelDescription.xml, and is none that is known by name",
+          fmt::format("{}: the unit \"{}\" of \"{}\" has no BaseUnit in modelDescription.xml and "
+                      "its name is unknown",
                       what, v.unit, v.name));
     if (!fmu::same_quantity(*v.measure, other))
       throw InputError(

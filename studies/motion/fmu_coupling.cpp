@@ -187,7 +187,7 @@ void UnitCoupling::find_parameters(const std::vector<std::string>& wanted) {
       std::string names;
       for (const auto& other : unit_->description().variables)
         if (other.causality == "parameter") names += (names.empty() ? "" : ", ") + other.name;
-      throw InputError(option + ": the unit has no such parameter: it has " +
+      throw InputError(option + ": the FMU has no such parameter: it has " +
                        (names.empty() ? "none" : names));
     }
     parameters_.emplace_back(*v, *value);

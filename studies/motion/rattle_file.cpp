@@ -176,7 +176,7 @@ std::vector<RattleRow> RattleFile::read() {
   std::string title, from;
   std::getline(in, title);
   std::getline(in, from);
-  if (title != kTitle) fail("is no unfinished rattle map");
+  if (title != kTitle) fail("is not an unfinished rattle map");
   if (from != "# " + from_)
     fail("its rows are of another case, version or set of options (" +
          from.substr(from.size() > 2 ? 2 : 0) + "; now " + from_ + ")");
@@ -187,7 +187,7 @@ std::vector<RattleRow> RattleFile::read() {
     if (!read_row(in, from_, row)) fail(which + " is damaged");
     if (std::any_of(rows.begin(), rows.end(),
                     [&](const RattleRow& other) { return other.delivery_bar == row.delivery_bar; }))
-      fail(which + " is of " + number_text(row.delivery_bar) + " bar, as an earlier row is");
+      fail(which + " is of " + number_text(row.delivery_bar) + " bar, which is a duplicate row");
     rows.push_back(std::move(row));
   }
   for (const RattleRow& row : rows) text_ += text_of(row, from_);

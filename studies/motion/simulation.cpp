@@ -319,9 +319,10 @@ class Study {
       run = integrate(first, tolerance, "tighter");
     }
     r_.integration_change = apart(run, loose);
-    r_.checks.push_back({to_string(first),
-                         "error of the integration, of what is allowed: from another tolerance", "",
-                         error(), 0, 1, 1});
+    r_.checks.push_back(
+        {to_string(first),
+         "integration error over the tolerance: from a run with another integrator tolerance", "",
+         error(), 0, 1, 1});
     add_effort(first, kLooser * tolerance, loose, r_.integration_change);
     add_effort(first, tolerance, run, r_.integration_change / kChangeOverError);
     if (r_.choice.unit) note_coupling(first, run);
@@ -509,7 +510,8 @@ class Study {
       before = std::move(*r_.multibody);
     }
     r_.multibody_choice = fmt::format(
-        "{}, accuracy {:.2g}: by what a looser run changes its error is {:.1e} of what is allowed",
+        "{}, accuracy {:.2g}: integration error, estimated from a run with looser accuracy, {:.1e} "
+        "of the tolerance",
         name, tight, left);
   }
 
@@ -610,7 +612,7 @@ class Study {
       const double tolerance = model == Model::analytic && !pump_
                                    ? kAnalyticError
                                    : std::max(r_.choice.error, r_.choice.accuracy.value_or(0));
-      r_.checks.push_back({to_string(model), "work less energy gained", "J",
+      r_.checks.push_back({to_string(model), "work less change of energy", "J",
                            record.worst_work_residual, 0, work, tolerance});
       constexpr double kPowerTolerance = 1e-8;
       const std::size_t balance = table.find("power_balance_W");
@@ -691,7 +693,7 @@ std::string periodic_headline(const SimulationResult& r) {
       fmt::format("{:.6g} rpm, {}", motion.speed / kRadPerSecondPerRpm,
                   motion.multipliers.empty()
                       ? "without states that could be disturbed"
-                      : fmt::format("{}: of a disturbance {:.3g} is left after an N-th of a turn",
+                      : fmt::format("{}: a disturbance is multiplied by {:.3g} per N-th of a turn",
                                     motion.stable() ? "stable" : "unstable",
                                     std::abs(motion.multipliers.front())));
   if (r.choice.only)
@@ -749,22 +751,23 @@ std::string SimulationResult::headline() const {
                        number_text(ready.the_case.drive->duration), to_string(*choice.only),
                        agrees() ? "balance" : "do not balance. " + failed_check_text(*this));
   if (worst() == nullptr)
-    return "Nothing can be judged: from the start a disturbance of the wanted error changes the "
-           "motion altogether";
+    return "The models cannot be compared: a disturbance of the size of the wanted error changes "
+           "the motion completely from the start";
   const GroupDifference& w = *worst();
   const std::string sensitive =
       judged_until_s < (1 - kOneTime) * ready.the_case.drive->duration
           ? fmt::format(
-                ". Later than {:.4g} s nothing is judged: disturbances grow {:.0e} times by the "
-                "end",
+                ". Results after {:.4g} s are not compared: disturbances are amplified {:.0e} "
+                "times by the end",
                 judged_until_s, growth.back())
-          : fmt::format("; disturbances of the start grow {:.3g} times", growth.back());
+          : fmt::format("; disturbances of the initial state are amplified {:.3g} times",
+                        growth.back());
   const bool check_fails = w.of_allowed <= 1 && !agrees();
   std::string text = fmt::format(
-      "{}: largest difference {:.1e} of peak ({}, at {:.4g} s), {:.2g} of what is "
-      "allowed ({:g} of peak, grown as disturbances grow){}",
+      "{}: largest difference {:.1e} of peak ({}, at {:.4g} s), {:.2g} of the tolerance ({:g} of "
+      "peak times the measured amplification of disturbances){}",
       check_fails ? failed_check_text(*this) + ". The motions agree"
-      : agrees()  ? "Both models move alike"
+      : agrees()  ? "The trajectories agree"
                   : "The models differ",
       w.in_time, w.group, w.time_s, w.of_allowed, choice.error, sensitive);
   if (!agrees() && !check_fails && compare::failed_check(checks) != nullptr)
@@ -778,19 +781,17 @@ PreparedCase prepare_simulation(Case the_case, const SimulationChoice& choice,
   drive_of(the_case);
   const bool hydraulic = the_case.pressure.kind == PressureKind::hydraulic;
   if (!hydraulic && choice.oil == OilInTime::periodic)
-    throw InputError(
-        "--oil periodic changes nothing: the pressure of the case is not \"hydraulic\"");
+    throw InputError("--oil periodic has no effect: the pressure of the case is not \"hydraulic\"");
   if (choice.steady) {
     if (choice.unit)
       throw InputError(
-          "--steady: not with --fmu: what a unit does need not repeat itself; simulate from the "
-          "start");
+          "--steady: not possible with --fmu, because an FMU need not be periodic; simulate from "
+          "the start");
     refuse_course(the_case);
     if (the_case.pump.gear.contact == ToothContact::teeth)
       throw InputError(
-          "--steady: with [gear] contact = \"teeth\" the motion repeats itself after a whole turn "
-          "at "
-          "best, and the search is for an N-th of one: simulate from the start");
+          "--steady: with [gear] contact = \"teeth\" the period is at least one turn, but --steady "
+          "searches for a period of an N-th of a turn: simulate from the start");
     // From rest the search would have no period to begin with: it begins at the speed of
     // [operation].
     if (the_case.drive->start_speed == 0.0) the_case.drive->start_speed.reset();

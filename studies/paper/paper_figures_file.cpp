@@ -33,7 +33,7 @@ PaperAxis read_axis(TableReader in, const std::string& quantity, const std::stri
     if (axis.range && (range.first > axis.range->first || range.second < axis.range->second))
       in.fail("axis", "must hold its labels");
     axis.range = range;
-    if (axis.why.empty()) in.fail("why", "must say how the axis is known beyond its labels");
+    if (axis.why.empty()) in.fail("why", "must say how the axis is known outside its labels");
   }
   if (!axis.range && axis.why.empty()) in.fail("why", "must say why the axis is not known");
   in.finish();
@@ -179,7 +179,7 @@ PaperFigures read_paper_figures(const std::filesystem::path& file) {
     const std::string id = list.figures.back().id();
     for (std::size_t i = 0; i + 1 < list.figures.size(); ++i)
       if (list.figures[i].id() == id)
-        throw InputError(fmt::format("{}:{}: figure {} is there twice", file.string(), line, id));
+        throw InputError(fmt::format("{}:{}: figure {} is a duplicate", file.string(), line, id));
   }
   if (list.figures.empty()) in.fail("figure", "at least one [[figure]] is needed");
   for (TableReader& item : in.tables("left_out")) {

@@ -19,8 +19,8 @@ const BearingRatings& rated(const Case& the_case) {
                      (b.tapered
                           ? "cylindrical_dynamic_rating_kN, cylindrical_static_rating_kN"
                           : "tapered_dynamic_rating_kN, tapered_static_rating_kN, tapered_Y") +
-                     ": must all be given: the life of the bearings follows from their ratings, "
-                     "as in cases/bap63_bearing_life.toml");
+                     ": must all be given: the rating life is computed from them, as in "
+                     "cases/bap63_bearing_life.toml");
   return b;
 }
 
@@ -105,13 +105,13 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
   const OfAngle load = [](const BearingLoads& l, std::size_t k) { return l.equivalent[k]; };
   const OfAngle load0 = [](const BearingLoads& l, std::size_t k) { return l.equivalent0[k]; };
   scan({Bearing::tapered, "pulled", "thrust seats the tapered bearing: Rb1_z1 >= 0",
-        "it takes thrust one way only; its life is computed from the magnitude and says "
-        "nothing there"},
+        "it takes thrust in one direction only; its life is computed from the magnitude and is not "
+        "meaningful there"},
        axial, axial);
   const double per_radial = 1 / (2 * b.tapered->axial_factor);
   scan(
-      {Bearing::tapered, "seated", "thrust exceeds what the taper itself makes: Fa >= Fr/(2Y)",
-       "without a bearing opposed to it fewer than half of the rollers carry; P is too small "
+      {Bearing::tapered, "seated", "thrust exceeds the induced thrust of the taper: Fa >= Fr/(2Y)",
+       "without an opposed bearing fewer than half of the rollers carry load; P is too small "
        "there"},
       [&](const BearingLoads& l, std::size_t k) { return l.axial[k] - per_radial * l.radial[k]; },
       axial);
@@ -119,20 +119,20 @@ std::vector<LifeLimit> limits_of(const BearingRatings& b, const std::vector<Life
     const BearingRating& rating = rating_of(b, bearing);
     scan(
         {bearing, "smallest", "load enough for the rollers to roll: P >= 0.02 C",
-         "rollers may slide instead of rolling: wear that no rating life counts"},
+         "rollers may slide: wear that the rating life does not include"},
         [&](const BearingLoads& l, std::size_t k) {
           return l.equivalent[k] - kSmallestLoad * rating.dynamic_rating;
         },
         load);
     scan(
-        {bearing, "largest", "load within what ISO 281 holds for: P <= 0.5 C",
-         "the rating life is too long there"},
+        {bearing, "largest", "load within the range of ISO 281: P <= 0.5 C",
+         "the computed rating life is too long there"},
         [&](const BearingLoads& l, std::size_t k) {
           return kLargestLoad * rating.dynamic_rating - l.equivalent[k];
         },
         load);
     scan(
-        {bearing, "static", "no lasting dents: P0 <= C0", "rollers leave dents at standstill"},
+        {bearing, "static", "no lasting dents: P0 <= C0", "permanent indentations at standstill"},
         [&](const BearingLoads& l, std::size_t k) {
           return rating.static_rating - l.equivalent0[k];
         },

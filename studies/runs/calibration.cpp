@@ -151,10 +151,11 @@ VerifiedRun run_to_error(const Case& the_case, const Assumptions& assumptions,
     double& accuracy = result.calibration.chosen.accuracy;
     const int index = index_of(accuracy);
     if (index == kTightest)
-      throw ComputationError(fmt::format(
-          "{}: the whole run's error is {:.1e} of peak ({}) at accuracy {}, asked was {:g}",
-          name_of(result.calibration.chosen.integrator), result.error.worst,
-          result.error.worst_channel, number_text(accuracy), asked));
+      throw ComputationError(
+          fmt::format("{}: the error of the whole run is {:.1e} of peak ({}) at accuracy {}, the "
+                      "wanted error was {:g}",
+                      name_of(result.calibration.chosen.integrator), result.error.worst,
+                      result.error.worst_channel, number_text(accuracy), asked));
     accuracy = kAccuracies[index + 1];
   }
 }

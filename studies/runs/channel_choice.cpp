@@ -66,7 +66,7 @@ multibody::Scene ChannelChoice::scene_for(const ChannelLayout& layout,
     if (!multibody::computes(*asked, channel))
       throw InputError("--scene " + multibody::scene_names()[static_cast<std::size_t>(*asked)] +
                        " does not compute " + channel.name +
-                       ", which --channels asks for; leave --scene out or take full");
+                       ", which --channels asks for; leave --scene out or use --scene full");
   return *asked;
 }
 

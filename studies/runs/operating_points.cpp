@@ -30,7 +30,7 @@ void require_pressure_asked_for(const Case& the_case) {
   if (the_case.hydraulics && the_case.hydraulics->load &&
       the_case.hydraulics->load->sets_pressure())
     throw InputError(the_case.file.string() +
-                     ": [load] sets the delivery pressure: there is no other to compute");
+                     ": [load] sets the delivery pressure: it cannot be varied");
 }
 
 void require_hydraulic(const Case& the_case) {

@@ -23,18 +23,18 @@ namespace {
 void check(const RunOptions& options) {
   const bool integrated = options.way == Way::integrated;
   if (options.model == Model::analytic && integrated)
-    throw InputError("the analytic model has no time to integrate over: it is run driven only");
+    throw InputError("the analytic model does not integrate in time: it is run driven only");
   if (options.target && !integrated)
     throw InputError("only an integrated run of the multibody model has an error to choose");
   if (integrated && (options.scene.scene != multibody::Scene::full ||
                      options.scene.method == multibody::Method::residual))
     throw InputError(
-        "scenes and ways to find reactions are for driven runs: an integrated run is of the full "
+        "scenes and methods for reactions are for driven runs: an integrated run is of the full "
         "pump, by its equations of motion");
   if (options.budget && (integrated || options.scene.scene != multibody::Scene::full))
-    throw InputError("a torque budget is of a driven run of the full pump");
+    throw InputError("a torque budget needs a driven run of the full pump");
   if (options.teeth && (integrated || options.scene.scene != multibody::Scene::full))
-    throw InputError("what teeth do is of a driven run of the full pump");
+    throw InputError("tooth results need a driven run of the full pump");
 }
 
 // What lies in memory of every number of a model's table when most does: the tables, columns sorted
@@ -74,7 +74,7 @@ void require_memory(const Case& the_case, Kept kept, Way way) {
       fmt::format("[operation] samples_per_revolution = {}{}", operation.samples_per_revolution,
                   integrated ? fmt::format(", revolutions = {}", operation.revolutions) : ""),
       std::string("lower samples_per_revolution") + (integrated ? " or revolutions" : "") +
-          ", or take run --model analytic, which writes row by row");
+          ", or use run --model analytic, which writes row by row");
 }
 
 void require_memory(const Case& the_case, const DriveSpec& drive, std::size_t models) {

@@ -260,7 +260,7 @@ std::string of_ports(const Facts& f, const Text& text) {
 }
 
 std::string no_body_has_it(const Facts& f) {
-  return fmt::format("no body of {:.4g} kg in a bore of {:.4g} mm over {:.4g} mm has it",
+  return fmt::format("not possible for a body of {:.4g} kg in a bore of {:.4g} mm over {:.4g} mm",
                      f.pump.piston.mass, mm(f.bore), mm(f.piston_span));
 }
 
@@ -320,25 +320,25 @@ struct Check {
 
 const Check kChecks[] = {
     // Main dimensions
-    {"pump-size", "Ra below {0:g} or above {1:g} mm: no bent-axis pump has this size", "pump",
+    {"pump-size", "Ra below {0:g} or above {1:g} mm: no bent-axis pump is of this size", "pump",
      "joint_circle_radius_mm"},
-    {"tilt-in-radians", "0 < tilt < 1 deg. 0 is a limit, and meant",
+    {"tilt-in-radians", "0 < tilt < 1 deg. 0 is an idealisation and accepted",
      [](const Facts& f) { return f.g.tilt != 0 && deg(f.g.tilt) < 1; },
      [](const Facts& f) {
        const double tilt = deg(f.g.tilt);
        return fmt::format("tilt_deg = {:.6g} is below 1 deg: in radians it would be {:.4g} deg",
                           tilt, deg(tilt));
      }},
-    {"tilt-beyond-45", "tilt above 46 deg: bent-axis pumps end at 45",
+    {"tilt-beyond-45", "tilt above 46 deg: bent-axis pumps have at most 45",
      [](const Facts& f) {
        return outside("tilt_deg", deg(f.g.tilt), 0, 46, "deg",
-                      fmt::format("bent-axis pumps end at 45 deg; measured from the other axis it "
-                                  "would be {:.4g}",
+                      fmt::format("bent-axis pumps have at most 45 deg; measured from the other "
+                                  "axis it would be {:.4g}",
                                   90 - deg(f.g.tilt)));
      }},
     {"radii-exchanged",
-     "Rd > Ra, and exchanged the pistons would tilt less: the joints' circle is seen as an ellipse "
-     "of half axes Ra and Ra cos(tilt), and the bores lie between the two",
+     "Rd > Ra, and exchanged the pistons would tilt less: the projection of the joint circle is an "
+     "ellipse with half axes Ra and Ra cos(tilt), and the bores should lie between the two",
      [](const Facts& f) { return f.g.bore_circle_radius > f.g.joint_circle_radius; },
      [](const Facts& f) -> std::string {
        const Geometry& g = f.g;
@@ -366,8 +366,8 @@ const Check kChecks[] = {
                                 {kDiameter, kTenth, kMicrometres}));
      }},
     {"bores-touch",
-     "the wall between neighbouring bores would bear more than 1000 MPa: highest pressure x bore "
-     "/ wall, or is thinner than 2 % of the bore",
+     "the stress in the wall between neighbouring bores would exceed 1000 MPa: highest pressure x "
+     "bore / wall, or is thinner than 2 % of the bore",
      [](const Facts& f) { return f.g.pistons >= 3 && f.g.bore_diameter < f.spacing; },
      [](const Facts& f) -> std::string {
        const double wall = f.spacing - f.g.bore_diameter;
@@ -391,7 +391,7 @@ const Check kChecks[] = {
                                   f.g.pistons, mm(f.g.bore_circle_radius)),
                       {kRadius, kCentimetres, kInches, kMetres});
      }},
-    {"axis-offset", "b beyond +-Ra/2",
+    {"axis-offset", "b outside +-Ra/2",
      [](const Facts& f) {
        const double most = mm(f.g.joint_circle_radius) / 2;
        return outside(f, "pump", "axis_offset_mm", -most, most,
@@ -406,7 +406,7 @@ const Check kChecks[] = {
        return fmt::format(
            "the pistons tilt up to {:.3g} deg in their bores: over a stroke of {:.4g} mm a shank "
            "of half the bore's diameter allows {:.3g} (joint_circle_radius_mm = {:.6g}, "
-           "bore_circle_radius_mm = {:.6g} where Ra (1 + cos tilt)/2 = {:.4g} tilts them least, "
+           "bore_circle_radius_mm = {:.6g} where Ra (1 + cos tilt)/2 = {:.4g} minimises the tilt, "
            "axis_offset_mm = {:.6g}, piston_length_mm = {:.6g})",
            deg(f.derived.largest_tilt), mm(f.derived.stroke), deg(most),
            mm(f.g.joint_circle_radius), mm(f.g.bore_circle_radius),
@@ -425,16 +425,17 @@ const Check kChecks[] = {
            {kTenth, kCentimetres, kInches, kMicrometres, kMetres});
      }},
     // Gear
-    {"gear-inside-bores", "d/2 < Rd + Dpi/2: the teeth would stand in the bores",
+    {"gear-inside-bores", "d/2 < Rd + Dpi/2: the teeth would intersect the bores",
      [](const Facts& f) {
        return outside(f, "gear", "pitch_diameter_mm", mm(2 * f.bores_radius), HUGE_VAL,
-                      "the teeth would stand within the bores, which reach to this diameter",
+                      "the teeth would intersect the bores, which reach to this diameter",
                       {kRadius, kCentimetres, kInches, kMetres});
      }},
     {"gear-large", "d/2 > 3 (Rd + Dpi/2)",
      [](const Facts& f) {
        return outside(f, "gear", "pitch_diameter_mm", 0, mm(6 * f.bores_radius),
-                      "three times what encloses the bores", {kDiameter, kTenth, kMicrometres});
+                      "three times the enclosing diameter of the bores",
+                      {kDiameter, kTenth, kMicrometres});
      }},
     {"pressure-angle", "0 < pressure angle < {0:g} deg, or > {1:g} deg", "gear",
      "pressure_angle_deg", [](const Facts& f) { return f.pump.gear.pressure_angle != 0; }},
@@ -443,7 +444,7 @@ const Check kChecks[] = {
        const int count = f.pump.gear.teeth->count;
        return outside(fmt::format("tooth_number = {}: module", count),
                       mm(f.pump.gear.pitch_diameter) / count, 1, 12, "mm",
-                      "teeth that carry a block are cut with 2 to 8 mm");
+                      "synchronising gears have 2 to 8 mm");
      }},
     {"tooth-shape",
      "backlash above a tenth of the module, tip relief or crowning above a fiftieth, run-out above "
@@ -473,12 +474,13 @@ const Check kChecks[] = {
      [](const Facts& f) {
        const auto one = [&](const char* key) {
          return outside(f, "bearings", key, -HUGE_VAL, -mm(f.g.joint_circle_radius) / 4,
-                        "the shaft leaves the joints towards -z1, the pistons stand at +z1",
+                        "the shaft extends from the joints towards -z1, the pistons towards +z1",
                         {kSign, kMetres, kCentimetres});
        };
        return first_of({one("tapered_z_mm"), one("cylindrical_z_mm")});
      }},
-    {"bearings-exchanged", "the tapered bearing is the farther one from the joints",
+    {"bearings-exchanged",
+     "the tapered bearing is farther from the joints than the cylindrical one",
      [](const Facts& f) {
        const Bearings& b = f.pump.bearings;
        return b.tapered_z < b.cylindrical_z && b.cylindrical_z <= 0;
@@ -489,16 +491,16 @@ const Check kChecks[] = {
            "tapered bearing, which takes the thrust, sits next to the pistons",
            mm(f.pump.bearings.tapered_z), mm(f.pump.bearings.cylindrical_z));
      }},
-    {"bearings-close", "bearings less than Ra/4 apart: there is no room for two",
+    {"bearings-close", "bearings less than Ra/4 apart: two do not fit",
      [](const Facts& f) -> std::string {
        const double apart = std::abs(f.pump.bearings.tapered_z - f.pump.bearings.cylindrical_z);
        if (apart >= f.g.joint_circle_radius / 4) return "";
        return fmt::format(
            "tapered_z_mm and cylindrical_z_mm are {:.3g} mm apart, less than a quarter of Ra = "
-           "{:.4g}: there is no room for two bearings",
+           "{:.4g}: two bearings do not fit",
            mm(apart), mm(f.g.joint_circle_radius));
      }},
-    {"bearing-far", "the nearer bearing beyond 5 Ra or the farther beyond 10 Ra",
+    {"bearing-far", "the nearer bearing farther than 5 Ra or the other farther than 10 Ra",
      [](const Facts& f) {
        const Bearings& b = f.pump.bearings;
        const bool tapered_nearer = std::abs(b.tapered_z) < std::abs(b.cylindrical_z);
@@ -521,21 +523,20 @@ const Check kChecks[] = {
                       {kTenth, kHundredth, kGrams});
      }},
     {"piston-too-light",
-     "piston mass below 6 % of that cylinder (a hollow one of aluminium); 0 is a limit, and meant "
-     "where pressure forces exceed the inertia of a steel piston ten times",
+     "piston mass below 6 % of that cylinder (a hollow one of aluminium); 0 is an idealisation, "
+     "accepted where pressure forces exceed the inertia of a steel piston ten times",
      [](const Facts& f) -> std::string {
        const double steel = kSteel * f.area * f.piston_span;
        const double omega = f.speed * kRadPerSecondPerRpm;
        const double inertia = steel / 3 * f.g.joint_circle_radius * square(omega);
        const double push = f.highest * f.area;
        if (f.pump.piston.mass == 0)
-         return push >= 10 * inertia
-                    ? ""
-                    : fmt::format(
-                          "[piston] mass_kg = 0 where inertia matters: a steel piston "
-                          "would be pushed with {:.3g} N at {:.4g} rpm, pressure pushes "
-                          "with {:.3g} N",
-                          inertia, f.speed, push);
+         return push >= 10 * inertia ? ""
+                                     : fmt::format(
+                                           "[piston] mass_kg = 0 where inertia matters: the "
+                                           "inertia force of a steel piston would be {:.3g} N at "
+                                           "{:.4g} rpm, the pressure force is {:.3g} N",
+                                           inertia, f.speed, push);
        return outside(f, "piston", "[piston] mass_kg", kLightest * steel, HUGE_VAL,
                       "a hollow piston of aluminium weighs this",
                       {kTenfold, {100, "a hundred times too small?"}, kTons});
@@ -572,7 +573,7 @@ const Check kChecks[] = {
                       m * m / (2 * kPi * 1.1 * kSteel * f.piston_span) * 1e6,
                       m * square(f.bore / 2) * 1e6, no_body_has_it(f), kOfInertia);
      }},
-    {"piston-spin", "spin beyond +-2.5 x speed: shaft and block, which drag it round, turn slower",
+    {"piston-spin", "spin above +-2.5 x speed: shaft and block, which drag it round, turn slower",
      [](const Facts& f) { return f.real; },
      [](const Facts& f) {
        return outside(
@@ -583,7 +584,7 @@ const Check kChecks[] = {
     // Shaft and block
     {"shaft-mass",
      "shaft mass outside 0.12 .. 4 times a steel cylinder of radius Ra + Dpi/2 to the farther "
-     "bearing; 0 is a limit, and meant",
+     "bearing; 0 is an idealisation and accepted",
      has_shaft_mass,
      [](const Facts& f) {
        const double size =
@@ -594,7 +595,8 @@ const Check kChecks[] = {
            kOfMass);
      }},
     {"shaft-centre-of-mass",
-     "shaft's centre of mass at z1 > -Ra/5, or beyond twice the farther bearing", has_shaft_mass,
+     "shaft's centre of mass at z1 > -Ra/5, or farther than twice the farther bearing",
+     has_shaft_mass,
      [](const Facts& f) {
        return outside(f, "shaft", "[shaft] centre_of_mass_z_mm", -2 * mm(f.shaft_reach),
                       -mm(f.g.joint_circle_radius) / 5,
@@ -608,14 +610,14 @@ const Check kChecks[] = {
      },
      [](const Facts& f) {
        const double m = f.pump.shaft.mass, ra = f.g.joint_circle_radius;
-       return outside(f, "shaft", "[shaft] axial_inertia_kg_mm2",
-                      m * m / (2 * kPi * kSteel * (2 * f.shaft_reach + ra)) * 1e6,
-                      m * square(2.5 * ra) * 1e6,
-                      fmt::format("no shaft of {:.4g} kg and this size has it", m), kOfInertia);
+       return outside(
+           f, "shaft", "[shaft] axial_inertia_kg_mm2",
+           m * m / (2 * kPi * kSteel * (2 * f.shaft_reach + ra)) * 1e6, m * square(2.5 * ra) * 1e6,
+           fmt::format("not possible for a shaft of {:.4g} kg and this size", m), kOfInertia);
      }},
     {"block-mass",
      "block mass outside 0.1 .. 1.2 times a steel cylinder of radius Rd + Dpi and length b1 + "
-     "stroke; 0 is a limit, and meant",
+     "stroke; 0 is an idealisation and accepted",
      has_block_mass,
      [](const Facts& f) {
        const double size = kSteel * kPi * square(f.g.bore_circle_radius + f.bore) * f.block_length;
@@ -628,7 +630,7 @@ const Check kChecks[] = {
      [](const Facts& f) {
        return outside(f, "block", "[block] centre_of_mass_z_mm", mm(f.g.piston_length) / 10,
                       mm(f.block_length + f.bore),
-                      "the block stands around the pistons' heads, along +z2", kOfLength);
+                      "the block is around the piston heads, along +z2", kOfLength);
      }},
     {"block-inertia",
      "I_c of a block: below a steel rod of that mass and the block's length, or above m (Rd + "
@@ -641,7 +643,8 @@ const Check kChecks[] = {
        return outside(f, "block", "[block] axial_inertia_kg_mm2",
                       m * m / (2 * kPi * kSteel * f.block_length) * 1e6,
                       m * square(f.g.bore_circle_radius + f.bore) * 1e6,
-                      fmt::format("no block of {:.4g} kg and this size has it", m), kOfInertia);
+                      fmt::format("not possible for a block of {:.4g} kg and this size", m),
+                      kOfInertia);
      }},
     {"pin-position", "pin at z2 < 0.15 (b1 + stroke), or > b1 + stroke + 2 Dpi: outside the block",
      [](const Facts& f) {
@@ -663,20 +666,19 @@ const Check kChecks[] = {
                        {1. / f.g.pistons, "of all bores?"}});
      }},
     {"spring-force",
-     "spring above what a coil spring between the bores bears at 1000 MPa, or below a tenth of the "
-     "block's weight; 0 is a limit, and meant",
+     "spring above the force of a coil spring between the bores at 1000 MPa, or below a tenth of "
+     "the block's weight; 0 is an idealisation and accepted",
      [](const Facts& f) { return f.pump.block.spring_force != 0; },
      [](const Facts& f) {
        // Of outer radius r and index 4: wire 2 r/5, mean diameter 8 r/5; F = pi d^3 tau / (8 D).
        const double r = std::max(f.g.bore_circle_radius - f.bore / 2, 0.1 * f.g.bore_circle_radius);
        const double most = kPi * 0.005 * square(r) * kYield;
        const double weight = f.pump.block.mass * 9.81;
-       return outside(
-           f, "block", "spring_force_N", std::min(0.1 * weight, most), most,
-           fmt::format("a coil spring of {:.3g} mm between the bores bears {:.3g} N, the "
-                       "block weighs {:.3g} N",
-                       2 * mm(r), most, weight),
-           {kTenth, kTenfold, {1e3, "in kN?"}, kThousandth});
+       return outside(f, "block", "spring_force_N", std::min(0.1 * weight, most), most,
+                      fmt::format("a coil spring of {:.3g} mm between the bores has at most {:.3g} "
+                                  "N, the block weighs {:.3g} N",
+                                  2 * mm(r), most, weight),
+                      {kTenth, kTenfold, {1e3, "in kN?"}, kThousandth});
      }},
     // Friction
     {"piston-friction",
@@ -713,13 +715,15 @@ const Check kChecks[] = {
            ct, 100 * (1 - ct));
      }},
     {"regularization",
-     "v_reg above a tenth of the joints' speed omega Ra: friction hardly acts fully",
+     "v_reg above a tenth of the joints' speed omega Ra: Coulomb friction does not reach its full "
+     "value",
      [](const Facts& f) { return f.pump.friction.piston_coulomb != 0 && f.speed != 0; },
      [](const Facts& f) {
-       return outside(f, "friction", "regularization_m_per_s", 0,
-                      f.speed * kRadPerSecondPerRpm * f.g.joint_circle_radius / 10,
-                      "a tenth of the speed of the joints: Coulomb friction would hardly act fully",
-                      {{1e-3, "in mm/s?"}, kTenth});
+       return outside(
+           f, "friction", "regularization_m_per_s", 0,
+           f.speed * kRadPerSecondPerRpm * f.g.joint_circle_radius / 10,
+           "a tenth of the speed of the joints: Coulomb friction would not reach its full value",
+           {{1e-3, "in mm/s?"}, kTenth});
      }},
     // Operation
     {"speed-in-rad-per-s",
@@ -763,17 +767,18 @@ const Check kChecks[] = {
      [](const Facts& f) {
        const auto one = [](const char* key, double p) {
          return outside(key, bar(p), -HUGE_VAL, bar(kMaxPressure), "bar",
-                        "hydraulic pumps end at 500 bar", {kPascals, kKilopascals, kPsi, kTenth});
+                        "hydraulic pumps have at most 500 bar",
+                        {kPascals, kKilopascals, kPsi, kTenth});
        };
        return first_of({one("delivery_bar", f.ports.delivery), one("suction_bar", f.ports.suction),
                         f.turn && f.the_case.pressure.kind == PressureKind::curve
                             ? one("[pressure] file: its highest", f.turn->highest_pressure)
                             : std::string()});
      }},
-    {"pressure-low", "0 < delivery < 3 bar. 0 is no load, and meant",
+    {"pressure-low", "0 < delivery < 3 bar. 0 is no load and accepted",
      [](const Facts& f) { return f.ports.delivery > 0; },
      [](const Facts& f) {
-       return outside(f, "pressure", "delivery_bar", 3, HUGE_VAL, "next to no load",
+       return outside(f, "pressure", "delivery_bar", 3, HUGE_VAL, "almost no load",
                       {{100, "in units of 100 bar?"}, {1000, "in kbar?"}});
      }},
     {"delivery-below-suction", "delivery pressure below suction pressure",
@@ -792,7 +797,7 @@ const Check kChecks[] = {
          return fmt::format("suction_bar = {:.6g}: pressures are gauge; absolute?", suction);
        return implausible(f, "pressure", "suction_bar");
      }},
-    {"transition", "0 < transition < {0:g} deg (0 is a step, and meant), or > {1:g} deg",
+    {"transition", "0 < transition < {0:g} deg (0 is a step and accepted), or > {1:g} deg",
      "pressure", "transition_deg",
      [](const Facts& f) {
        const PressureSpec& p = f.the_case.pressure;
@@ -800,7 +805,7 @@ const Check kChecks[] = {
      }},
     {"pressure-phase",
      "the pressure on a piston does less than 0.6 of the ideal work (delivery - suction) x A x "
-     "stroke over a turn: it does not act while the chamber shrinks (180 .. 360 deg)",
+     "stroke over a turn: it does not act while the chamber volume decreases (180 .. 360 deg)",
      [](const Facts& f) {
        return f.turn && f.ports.delivery - f.ports.suction >= kPascalPerBar &&
               f.derived.stroke >= 0.01 * f.g.joint_circle_radius && !(f.turn->work_ratio >= 0.6);
@@ -809,9 +814,8 @@ const Check kChecks[] = {
        const bool ideal = f.the_case.pressure.kind == PressureKind::ideal;
        const double start = f.the_case.pressure.delivery_start_deg;
        return fmt::format(
-           "{}: the pressure does {:.3g} of the ideal work over a turn; chambers shrink from 180 "
-           "to "
-           "360 deg{}",
+           "{}: the pressure does {:.3g} of the ideal work over a turn; chamber volumes decrease "
+           "from 180 to 360 deg{}",
            ideal ? fmt::format("delivery_start_deg = {:.6g}", start) : "[pressure] file",
            f.turn->work_ratio,
            ideal ? guess(start, 150, 210, {kRadians})
@@ -837,7 +841,7 @@ const Check kChecks[] = {
      }},
     // Port plate
     {"lands-off-bores",
-     "the bore circle lies outside r1 .. r4, or the groove r2 .. r3 reaches beyond Rd -+ Dpi/2",
+     "the bore circle lies outside r1 .. r4, or the groove r2 .. r3 extends outside Rd -+ Dpi/2",
      [](const Facts& f) { return f.pump.port_plate.has_value(); },
      [](const Facts& f) -> std::string {
        const PortPlate& p = *f.pump.port_plate;
@@ -925,9 +929,9 @@ const Check kChecks[] = {
            f.pump.block.spring_force, f.turn->press_force);
      }},
     {"film-force-outside",
-     "the film force would act beyond r4 in more than 25 % of the turn: the block tips",
+     "the film force would act outside r4 in more than 25 % of the turn: the block tips",
      [](const Facts& f) -> std::string {
-       const auto* limit = violated(f, "(xh, yh) beyond r4", kOutsideShare);
+       const auto* limit = violated(f, "(xh, yh) outside r4", kOutsideShare);
        if (limit == nullptr) return "";
        return fmt::format(
            "the film force acts outside of the plate (r4 = {:.4g} mm) in {:.3g} % of the turn, up "
@@ -937,15 +941,14 @@ const Check kChecks[] = {
      }},
     {"tooth-force-flank",
      "one flank, and Rcs < 0 in more than 5 % of the turn, but at standstill: the other flank "
-     "would carry",
+     "would be loaded",
      [](const Facts& f) { return f.speed != 0 && f.pump.gear.flanks != Flanks::two; },
      [](const Facts& f) -> std::string {
        const auto* limit = violated(f, "Rcs < 0", kShareOfTurn);
        if (limit == nullptr) return "";
        return fmt::format(
            "the tooth force is on the other flank in {:.3g} % of the turn, worst {:.4g} N at "
-           "{:.4g} "
-           "deg: the block runs ahead of the shaft (block_viscous_Nm_per_rpm = {:.4g} holds it "
+           "{:.4g} deg: the block leads the shaft (block_viscous_Nm_per_rpm = {:.4g} holds it "
            "back)",
            100 * limit->violated_share, limit->worst, limit->theta_deg,
            f.pump.friction.block_viscous * kRadPerSecondPerRpm);
@@ -1066,9 +1069,8 @@ std::vector<PlausibilityWarning> stated(const Case& the_case) {
     const std::string where = the_case.file.string() + ": [plausibility] meant: ";
     if (!is_code(code) && !is_timing_code(code))
       throw InputError(where + "\"" + code +
-                       "\" is no check (docs/plausibility.md and docs/hydraulics.md list them); "
-                       "must be \"CODE: reason; "
-                       "CODE: reason\"");
+                       "\" is not the code of a check (docs/plausibility.md and docs/hydraulics.md "
+                       "list them); must be \"CODE: reason; CODE: reason\"");
     if (reason.empty())
       throw InputError(where + "\"" + code + "\" needs a reason: \"" + code + ": why\"");
     list.push_back({code, "", reason});
@@ -1118,7 +1120,7 @@ std::string stated_reason(const Case& the_case, const std::string& code) {
 }
 
 std::string plausibility_markdown() {
-  std::string text = "| name | doubtful |\n|---|---|\n";
+  std::string text = "| name | warns of |\n|---|---|\n";
   for (const Check& check : kChecks)
     text += fmt::format("| `{}` | {} |\n", check.code, check.words());
   return text;

@@ -50,7 +50,7 @@ std::vector<Warning> state_doubts(const Case& the_case, const States& states) {
   add(warnings, states, "states-teeth-apart", [&](std::size_t row) -> std::string {
     const double lag = states.motion[row].theta_deg - states.motion[row].psi_deg;
     if (std::abs(lag) <= kTeethApartDeg) return "";
-    return fmt::format("theta - psi = {:.4g} deg: no teeth are that far apart", lag);
+    return fmt::format("theta - psi = {:.4g} deg: gear teeth cannot be that far out of phase", lag);
   });
   if (!states.time.empty())
     add(warnings, states, "states-against-time", [&](std::size_t row) -> std::string {
@@ -66,8 +66,9 @@ std::vector<Warning> state_doubts(const Case& the_case, const States& states) {
       const bool shaft = off(before.theta_deg, now.theta_deg, before.shaft_speed, now.shaft_speed);
       if (!shaft && !off(before.psi_deg, now.psi_deg, before.block_speed, now.block_speed))
         return "";
-      return fmt::format("since the state before, {:.4g} s ago, {} has not moved as {} says",
-                         seconds, shaft ? "theta_deg" : "psi_deg", shaft ? "theta_rpm" : "psi_rpm");
+      return fmt::format(
+          "the change of {1} since the previous state, {0:.4g} s ago, contradicts {2}", seconds,
+          shaft ? "theta_deg" : "psi_deg", shaft ? "theta_rpm" : "psi_rpm");
     });
   return warnings;
 }

@@ -77,8 +77,8 @@ TimingRow below(const std::string& code, const std::vector<hydraulics::Stretch>&
   r.text = fmt::format("{:.3g} % of the turn below {:.4g} bar", r.value / 3.6, bar(pressure));
   if (r.flagged) {
     r.theta_deg = s.chamber_least_deg;
-    r.text +=
-        fmt::format("; least {:.4g} bar at {:.4g} deg", bar(s.chamber_least), s.chamber_least_deg);
+    r.text += fmt::format("; minimum {:.4g} bar at {:.4g} deg", bar(s.chamber_least),
+                          s.chamber_least_deg);
   }
   return r;
 }
@@ -109,7 +109,7 @@ TimingRow backflow(const hydraulics::Timing& t, double stroke) {
   hold(r, cm3(std::max(kBackflow * t.filling, kMinBackflow * stroke)));
   if (t.backflow > 0) r.theta_deg = t.largest_backflow_deg;
   r.text = fmt::format(
-      "fastest {:.4g} l/min at {:.4g} deg; to bring a full chamber to delivery pressure takes "
+      "maximum {:.4g} l/min at {:.4g} deg; to bring a full chamber to delivery pressure takes "
       "{:.3g} cm3",
       t.largest_backflow / kLitrePerMinute, t.largest_backflow_deg, cm3(t.filling));
   return r;
@@ -166,14 +166,15 @@ std::string angles_text(const TimingRow& r) {
 
 const std::vector<TimingQuantity>& timing_quantities() {
   static const std::vector<TimingQuantity> all = {
-      {"below-saturation", "chamber below saturation pressure: air comes out", "deg per turn"},
-      {"below-vapour", "chamber below vapour pressure: oil boils", "deg per turn"},
+      {"below-saturation", "chamber below saturation pressure: dissolved air is released",
+       "deg per turn"},
+      {"below-vapour", "chamber below vapour pressure: cavitation with oil vapour", "deg per turn"},
       {"ports-connected", "chamber open to both ports", "deg per turn"},
       {"connected-area", "largest opening from port to port through a chamber", "mm2"},
       {"short-circuit", "oil from the delivery to the suction port", "cm3 per chamber and turn"},
       {"backflow", "oil from the delivery port into a chamber", "cm3 per chamber and turn"},
       {"trapped-oil", "chamber closed to both ports: pressure above mean delivery", "bar"},
-      {"overshoot", "greatest chamber pressure above mean delivery", "bar"},
+      {"overshoot", "maximum chamber pressure above mean delivery", "bar"},
       {"filling", "stroke lost by incomplete filling", "% of a stroke"},
       {"suction-speed", "largest speed at which no chamber falls below a pressure", "rpm", true},
       {"filling-speed", "largest speed at which the chambers fill", "rpm", true}};
@@ -267,7 +268,7 @@ SuctionSpeed search_speed(const Case& the_case, SuctionSpeed found, const Margin
   if (!(the_case.operation.speed_rpm > 0))
     throw InputError(the_case.file.string() +
                      ": [operation] speed_rpm = " + number_text(the_case.operation.speed_rpm) +
-                     ": must be > 0 for a speed at which suction follows");
+                     ": must be > 0 to find the largest speed with complete filling");
   Case at = the_case;
   at.hydraulics->curve_error = std::max(at.hydraulics->curve_error, kSpeedCurveError);
   at.pressure.points = 0;
@@ -378,7 +379,7 @@ TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found) {
   r.flagged = found.rpm ? *found.rpm < own : found.searched_from < own;
   r.meant = stated_reason(the_case, r.code);
   const std::string range =
-      fmt::format("every speed from {:.4g} to {:.4g} rpm", found.searched_from, found.searched_to);
+      fmt::format("all speeds from {:.4g} to {:.4g} rpm", found.searched_from, found.searched_to);
   if (found.filling) {
     const std::string limit = percent_of_stroke(found.limit);
     r.text = found.rpm ? fmt::format("up to it incomplete filling costs at most {}", limit)

@@ -44,8 +44,8 @@ std::string small_components(const compare::Comparison& comparison) {
                         c->allowed / c->own_peak);
   if (text.empty()) return text;
   return fmt::format(
-      "below {:g} of the peak of their vector, to which differences are held, so that errors up to "
-      "these pass: {}",
+      "below {:g} of the peak of their vector, to which differences are relative, so that errors "
+      "up to these shares are not noticed: {}",
       compare::kSmallComponent, text);
 }
 
@@ -393,7 +393,7 @@ void Maker::hold_to_reference() {
       });
   if (!r.with->other_case.empty())
     r.warnings.push_back(
-        {"the curves are of another case", r.with->name + ": " + r.with->other_case});
+        {"the curves belong to another case", r.with->name + ": " + r.with->other_case});
 }
 
 void Maker::warn() {
@@ -593,7 +593,7 @@ std::optional<DifferenceCause> ComparisonResult::cause() const {
 
 std::string ComparisonResult::headline() const {
   if (const auto* gap = comparison.incomplete())
-    return fmt::format("The two models cannot be said to agree: {} of {}.", gap->gap,
+    return fmt::format("Agreement of the two models cannot be shown: {} of {}.", gap->gap,
                        gap->channel.name);
   const auto found = cause();
   const std::string because = found ? " " + found->text : "";
@@ -605,8 +605,8 @@ std::string ComparisonResult::headline() const {
                          split ? split->tolerance : budget->comparison.tolerance, because);
   if (teeth && channels_agree && !split && !teeth->comparison.agrees()) {
     if (const auto* gap = teeth->comparison.incomplete())
-      return fmt::format("The teeth of the two models cannot be said to agree: {} of {}.", gap->gap,
-                         gap->channel.name);
+      return fmt::format("Agreement of the teeth of the two models cannot be shown: {} of {}.",
+                         gap->gap, gap->channel.name);
     if (const auto* apart = teeth->comparison.failed())
       return fmt::format("The teeth of the two models differ: {} (tolerance {:g}).{}",
                          where_in_words(*apart), teeth->comparison.tolerance, because);
@@ -626,8 +626,8 @@ std::string ComparisonResult::headline() const {
                                      compare::scale_in_words(*worst));
   if (split)
     return fmt::format(
-        "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak is "
-        "left (tolerance {:g}).",
+        "{} The models make different assumptions and differ by up to {}. {}, {:.1e} of peak "
+        "remains (tolerance {:g}).",
         agrees() ? "Explained." : "Not explained.", where,
         agrees() ? "After accounting for each assumption" : "Each assumption accounted for",
         split->largest_rest(), split->tolerance);

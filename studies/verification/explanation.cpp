@@ -30,7 +30,7 @@ const ExplainingChange* Explanation::cause() const {
 }
 
 std::string Explanation::text() const {
-  if (!reason.empty()) return "No parameter was looked for that explains the difference: " + reason;
+  if (!reason.empty()) return "No explanation was searched for: " + reason;
   const ExplainingChange* const found = cause();
   if (found == nullptr) {
     std::string text =
@@ -44,7 +44,7 @@ std::string Explanation::text() const {
     return text + ").";
   }
   std::string text = fmt::format(
-      "{} {} {:g} % of the difference; what stays is at most {:.2g} of peak ({})",
+      "{} {} {:g} % of the difference; the rest is at most {:.2g} of peak ({})",
       change_text(*found), found->parameters.size() == 1 ? "explains" : "together explain",
       percent(found->share), found->rest_over_peak, found->rest_channel);
   std::vector<std::string> same, others;
@@ -61,7 +61,7 @@ std::string Explanation::text() const {
                          : fmt::format("; alone {}", fmt::join(others, ", "));
   text += ".";
   if (!same.empty())
-    text += fmt::format(" Or, not to be told apart from these data: {}.", fmt::join(same, ", "));
+    text += fmt::format(" These data do not distinguish it from: {}.", fmt::join(same, ", "));
   return text;
 }
 

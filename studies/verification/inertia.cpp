@@ -95,8 +95,8 @@ Case without_loads(Case the_case) {
 Case at_speed(Case the_case, double speed_rpm) {
   if (speed_rpm == 0 || !std::isfinite(speed_rpm))
     throw InputError(
-        "--speeds: each speed must be a finite number other than 0: at standstill "
-        "there is no inertia force");
+        "--speeds: each speed must be a finite number other than 0: at rest there is no inertia "
+        "force");
   the_case.operation.speed_rpm = speed_rpm;
   return the_case;
 }
@@ -213,10 +213,10 @@ std::vector<Lumping> lumpings(const Case& the_case, double speed_rpm) {
   if (keeps_centre >= 0 && keeps_centre <= 1)
     result.push_back(with_fraction("keeps the centre of mass, chi = 1 - s_G/b1", keeps_centre));
   result.push_back(with_fraction(
-      "least error of Rs",
+      "minimum error of Rs",
       numerics::smallest_at([&](double chi) { return with_fraction("", chi).error_rs; }, 0, 1)));
   result.push_back(with_fraction(
-      "least error of Rc",
+      "minimum error of Rc",
       numerics::smallest_at([&](double chi) { return with_fraction("", chi).error_rc; }, 0, 1)));
   if (three_masses(bare.pump).exists)
     result.push_back(error_of("three point masses (dynamically_equivalent)", bare,

@@ -71,8 +71,8 @@ std::vector<std::string> rounding_warnings(const std::vector<RoundingLine>& line
   for (const RoundingLine& line : lines)
     if (is_worth_a_warning(line.total()))
       warnings.push_back(fmt::format(
-          "{} is known to {} of its peak only: rounding of {} to double, at {:g} deg", line.group,
-          loss_text(line.total()),
+          "{} is accurate to {} of its peak only: rounding of {} to double, at {:g} deg",
+          line.group, loss_text(line.total()),
           line.arithmetic > line.inputs || line.input.empty() ? "intermediate results" : line.input,
           line.theta_deg));
   return warnings;
@@ -115,12 +115,12 @@ std::vector<std::string> multibody_warnings(const Case& the_case,
       groups += fmt::format("{}{} {}", groups.empty() ? "" : ", ", group, loss_text(loss));
   if (groups.empty()) return {};
   return {fmt::format(
-      "the multibody model's reactions are known to these shares of their peaks only: {} (what "
-      "moving every input by one unit in the last place changes); {}",
+      "the reactions of the multibody model are accurate to these shares of their peaks only: {} "
+      "(changes when every input changes by one unit in the last place); {}",
       groups,
       multibody::method_for(the_case.pump, scene.method) == multibody::Method::multipliers
           ? "Simbody's constraint multipliers may be the cause: try --reactions residual"
-          : "the analytic model loses less")};
+          : "the analytic model is more accurate here")};
 }
 
 std::vector<std::string> multibody_warnings(const Case& the_case, const Assumptions& assumptions,

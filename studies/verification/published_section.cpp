@@ -106,10 +106,9 @@ std::optional<compare::PublishedTable> published_section(const std::filesystem::
   if (!printed) return std::nullopt;
   compare::PublishedSection section =
       judge_case(printed->numbers, analytic, multibody, progress_of);
-  const std::string text = printed->numbers.name + ": " + printed->source + ". " +
-                           section.summary.text() +
-                           " A window is the range of a figure's axis, which the curve must not "
-                           "leave; it is not the curve.";
+  const std::string text =
+      printed->numbers.name + ": " + printed->source + ". " + section.summary.text() +
+      " A window is the axis range of a figure; the curve must stay within it.";
   return compare::PublishedTable{text, std::move(section)};
 }
 

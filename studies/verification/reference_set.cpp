@@ -20,7 +20,7 @@ std::vector<ReferencePlace> references_below(const fs::path& root) {
     if (name == ".") name = fs::absolute(folder / ".").lexically_normal().parent_path().filename();
     if (has_control_characters(name, true))
       throw InputError(without_control_characters(folder.string()) +
-                       ": the name of this folder holds a control character");
+                       ": the name of this directory contains a control character");
     places.push_back({folder, name.generic_string()});
   }
   return places;

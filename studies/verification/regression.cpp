@@ -102,7 +102,7 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
     if (judgement.resampled)
       outcome.notes.push_back(fmt::format(
           "{}: the reference has other angles than the case and was resampled, which adds an error "
-          "of up to {:.1e} of peak; around each angle that is allowed on top",
+          "of up to {:.1e} of peak; this is added to the tolerance around each angle",
           model, judgement.resampling_error));
     const double seconds = stopwatch.seconds();
     auto lines = group_lines(judgement);
@@ -122,7 +122,7 @@ void hold_to_curves(const compare::ReferenceDescription& description, const Case
   }
   if (!any) {
     outcome.state = std::max(outcome.state, Outcome::State::differs);
-    outcome.error = "nothing was compared: no column of the reference stands for a result";
+    outcome.error = "nothing was compared: no column of the reference is a result";
   }
 }
 
@@ -194,7 +194,7 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
       compare::check_files(description, {});
       const auto published = compare::read_published(description.numbers);
       outcome.notes.push_back(fmt::format(
-          "{} printed numbers and windows read; they are judged in the report of compare",
+          "{} printed numbers and windows read; they are compared in the report of compare",
           published.numbers.size()));
     } else {
       const ReferenceCases cases(description, progress_of);
@@ -221,11 +221,11 @@ Outcome hold(const ReferencePlace& place, const PartProgress& progress_of) {
 compare::ReferenceDescription reference_in(const std::filesystem::path& folder) {
   const auto places = references_below(folder);
   if (places.size() != 1)
-    throw InputError(fmt::format("{}: holds {} references; name the folder of one", folder.string(),
-                                 places.size()));
+    throw InputError(fmt::format("{}: contains {} references; name the directory of one",
+                                 folder.string(), places.size()));
   auto description = compare::read_description(places[0].folder, places[0].name);
   if (description.kind == compare::ReferenceKind::published)
-    throw InputError(folder.string() + ": holds printed numbers and no curves");
+    throw InputError(folder.string() + ": contains printed numbers but no curves");
   return description;
 }
 
@@ -386,7 +386,7 @@ std::string summary(const std::vector<Outcome>& outcomes) {
   if (unusable > 0) text += fmt::format(", {} cannot be used", unusable);
   if (failed > 0) text += fmt::format(", {} could not be computed", failed);
   text += fmt::format("; {} groups of channels compared", groups);
-  if (published > 0) text += "; published numbers were read and are judged by compare";
+  if (published > 0) text += "; published numbers were read and are compared by compare";
   return text + ".";
 }
 

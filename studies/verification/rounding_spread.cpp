@@ -55,9 +55,9 @@ std::map<std::string, double> rounding_spread(const Case& the_case, const Result
     }
   }
   if (spread.empty())
-    throw NoEstimate("what rounding decides could not be estimated: all " + std::to_string(kDraws) +
-                     " copies with inputs moved by one unit in the last place were refused (" +
-                     refusal + ")");
+    throw NoEstimate(
+        "the effect of rounding could not be estimated: all " + std::to_string(kDraws) +
+        " copies with inputs moved by one unit in the last place were refused (" + refusal + ")");
   return spread;
 }
 

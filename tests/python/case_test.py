@@ -22,6 +22,15 @@ class CaseTest(ModuleTest):
                               else (0.0, 0.0), tuple)
         self.assertEqual(case.name, case["name"])
 
+    def test_shipped_cases_are_read_by_name(self):
+        titles = bentaxis.cases()
+        self.assertEqual(sorted(titles), sorted(file.stem for file in CASES.glob("*.toml")))
+        case = bentaxis.read_case("bap63_rated")
+        self.assertEqual(case, bentaxis.read_case(CASES / "bap63_rated.toml"))
+        self.assertEqual(case.name, titles["bap63_rated"])
+        self.assertIn('did you mean "bap63_rated"?',
+                      self.refused(bentaxis.InputError, lambda: bentaxis.read_case("bap63_ratd")))
+
     def test_every_key_has_a_value_and_is_documented(self):
         case = self.case("bap63_rated_hydraulic")
         self.assertGreater(len(case), 60)

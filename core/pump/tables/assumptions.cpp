@@ -20,8 +20,8 @@ Table assumptions_table(const std::string& model) {
                             model + " model: inertia of the pistons, as in `[piston]`"),
                      choice("gear", FIELD((c.*kModel).gear), {"mesh", "imposed"}, "mesh",
                             model +
-                                " model: how the block is carried round: by the tooth force, or by "
-                                "a speed imposed on its own joint, as in the paper's ADAMS run")},
+                                " model: how the block is driven: by the tooth force, or by a "
+                                "speed imposed on the block's joint, as in the paper's ADAMS run")},
       .rules = {{.key = "inertia", .after = "gear", .broken = [](const Case& c) {
                    return piston_inertia_refusal((c.*kModel).inertia, c.pump);
                  }}}};
@@ -35,8 +35,8 @@ Table multibody_assumptions_table() {
   Table table = assumptions_table<&Case::multibody>("multibody");
   table.parameters.push_back(
       choice("flank_shape", FIELD(c.multibody.flanks), {"involute", "octoid"}, "involute",
-             "of [gear] contact = \"teeth\": spherical involutes, as the analytic model has them, "
-             "or octoids, which a plane flank of a crown gear envelops",
+             "of [gear] contact = \"teeth\": spherical involutes, as in the analytic model, or "
+             "octoids, which a plane flank of a crown gear generates",
              {.active = kTeeth}));
   return table;
 }

@@ -30,26 +30,26 @@ std::vector<Parameter> rating_parameters(const std::string& bearing, const Part*
 // How radial and axial load count together. Of a contact angle a, Y = 0.4 cot a, e = 1.5 tan a and
 // Y0 = 0.22 cot a (ISO 281, ISO 76): Y alone says the rest.
 std::vector<Parameter> tapered_factors() {
-  return {
-      number("tapered_Y", "Y", FIELD(c.ratings.tapered->axial_factor), kNoUnit, kPositive,
-             kRequired, "axial load factor",
-             {.practice = "0.7..2.1", .part = &kTaperedRating, .in_fmu = InFmu::absent}),
-      number("tapered_e", "e", FIELD(c.ratings.tapered->ratio_limit), kNoUnit, kPositive,
-             {.computed = [](const Case& c) -> std::optional<Value> {
-                return 0.6 / c.ratings.tapered->axial_factor;
-              },
-              .words = "0.6 / `tapered_Y`"},
-             "Fa / Fr up to which the axial load does not count",
-             {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
-      number("tapered_X", "X", FIELD(c.ratings.tapered->radial_factor), kNoUnit, {0, 1}, {0.4},
-             "radial load factor above that", {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
-      number("tapered_Y0", "Y0", FIELD(c.ratings.tapered->static_axial_factor), kNoUnit,
-             kNotNegative,
-             {.computed = [](const Case& c) -> std::optional<Value> {
-                return 0.55 * c.ratings.tapered->axial_factor;
-              },
-              .words = "0.55 `tapered_Y`"},
-             "static axial load factor", {.part = &kTaperedRating, .in_fmu = InFmu::absent})};
+  return {number("tapered_Y", "Y", FIELD(c.ratings.tapered->axial_factor), kNoUnit, kPositive,
+                 kRequired, "axial load factor",
+                 {.practice = "0.7..2.1", .part = &kTaperedRating, .in_fmu = InFmu::absent}),
+          number("tapered_e", "e", FIELD(c.ratings.tapered->ratio_limit), kNoUnit, kPositive,
+                 {.computed = [](const Case& c) -> std::optional<Value> {
+                    return 0.6 / c.ratings.tapered->axial_factor;
+                  },
+                  .words = "0.6 / `tapered_Y`"},
+                 "limit of Fa / Fr up to which the axial load is ignored (factor e)",
+                 {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
+          number("tapered_X", "X", FIELD(c.ratings.tapered->radial_factor), kNoUnit, {0, 1}, {0.4},
+                 "radial load factor above that limit",
+                 {.part = &kTaperedRating, .in_fmu = InFmu::absent}),
+          number("tapered_Y0", "Y0", FIELD(c.ratings.tapered->static_axial_factor), kNoUnit,
+                 kNotNegative,
+                 {.computed = [](const Case& c) -> std::optional<Value> {
+                    return 0.55 * c.ratings.tapered->axial_factor;
+                  },
+                  .words = "0.55 `tapered_Y`"},
+                 "static axial load factor", {.part = &kTaperedRating, .in_fmu = InFmu::absent})};
 }
 
 }  // namespace
@@ -58,8 +58,7 @@ Table bearings_table() {
   Table table{
       .name = "bearings",
       .meaning =
-          "places of the bearings on the shaft axis, and where their life is asked for their "
-          "ratings",
+          "positions of the bearings on the shaft axis, and their ratings for the rating life",
       .differentiable = always,
       .parameters = {number("tapered_z_mm", "z_C1", FIELD(c.pump.bearings.tapered_z), kMillimetres,
                             kAny, kRequired,

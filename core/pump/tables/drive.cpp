@@ -27,30 +27,32 @@ Table drive_table() {
   return {
       .name = "drive",
       .meaning =
-          "what turns the shaft in `bentaxis simulate`, and for how long; other commands leave it "
-          "aside",
+          "what drives the shaft in `bentaxis simulate`, and for how long; other commands do not "
+          "use it",
       .part = &kDrive,
       .parameters =
-          {choice("kind", FIELD(c.drive->kind), {"speed", "torque", "motor"}, "speed",
-                  "the shaft's speed is given; a torque turns it; or a rotor turns it through a "
-                  "coupling, Td = K_c (phi - theta) + D_c (phi' - theta')"),
-           text("file",
-                curve_at(PLACE(c.drive->curve.file), {.drive = [](Case& c) { return &*c.drive; }}),
-                "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case file, at "
-                "least 4 points from a time <= 0 on: the speed or the torque over time instead; of "
-                "a motor `speed_rpm,torque_Nm`, its torque over its speed; empty: none"),
+          {choice(
+               "kind", FIELD(c.drive->kind), {"speed", "torque", "motor"}, "speed",
+               "speed: the speed of the shaft is given; torque: a torque acts on it; motor: a "
+               "rotor drives it through a coupling, Td = K_c (phi - theta) + D_c (phi' - theta')"),
+           text(
+               "file",
+               curve_at(PLACE(c.drive->curve.file), {.drive = [](Case& c) { return &*c.drive; }}),
+               "CSV `time_s,speed_rpm` or `time_s,torque_Nm`, path relative to the case file, at "
+               "least 4 points, the first at a time <= 0: the speed or the torque over time "
+               "instead; of a motor `speed_rpm,torque_Nm`, its torque over its speed; empty: none"),
            number(
                "torque_Nm", "T0", FIELD(c.drive->torque), {"Nm"}, kAny,
                {.computed = [](const Case& c) -> std::optional<Value> {
                   if (c.drive->curve.time.empty()) return std::nullopt;
                   return 0.0;
                 },
-                .words = "required, but beside a `file`"},
-               "of the drive, or of a motor at the speed of `[operation]`; unused beside a `file`",
+                .words = "required where there is no `file`"},
+               "of the drive, or of a motor at the speed of `[operation]`; not used with a `file`",
                {.active = kGivenTorque}),
            number("torque_slope_Nm_s_per_rad", "s_T", FIELD(c.drive->motor->torque_slope),
                   {"Nm s/rad"}, kAny, {0.0},
-                  "the motor's torque is T0 - s_T (phi' - omega), beside a `file` it is unused",
+                  "the motor's torque is T0 - s_T (phi' - omega), not used with a `file`",
                   {.part = &kMotorData}),
            number("rotor_inertia_kg_m2", "J_m", FIELD(c.drive->motor->rotor_inertia), {"kg m2"},
                   kPositive, kRequired, "of the rotor, at the angle phi", {.part = &kMotorData}),
@@ -60,7 +62,7 @@ Table drive_table() {
                   {"Nm s/rad"}, kNotNegative, {0.0}, "of the coupling", {.part = &kMotorData}),
            number("start_rpm", "", FIELD(c.drive->start_speed), kRotation, kAny,
                   {.words = "`speed_rpm`"},
-                  "speed of every body at the start, not beside a given speed; from 0 the coupling "
+                  "speed of every body at the start, not with a given speed; from 0 the coupling "
                   "is unwound",
                   {.part = &kStartSpeed}),
            number("duration_s", "", FIELD(c.drive->duration), {"s"}, kPositive, kRequired,

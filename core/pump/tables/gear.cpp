@@ -38,7 +38,7 @@ std::optional<Value> modules_of(const Case& c, double modules) {
 Table gear_table() {
   return {
       .name = "gear",
-      .meaning = "bevel gear pair that carries the block round",
+      .meaning = "bevel gear pair that drives the block",
       .differentiable = always,
       .parameters =
           {number("pitch_diameter_mm", "d = m Z", FIELD(c.pump.gear.pitch_diameter), kMillimetres,
@@ -51,28 +51,29 @@ Table gear_table() {
                                  "teeth are cut at 14.5 to 30 deg",
                                  {slips::kRadians, {2, "half of it?"}}}}),
            choice("contact", FIELD(c.pump.gear.contact), {"rigid", "compliant", "teeth"}, "rigid",
-                  "rigid: block and shaft turn alike in motion; compliant: the flanks give way, "
-                  "with backlash between them (motion.md); teeth: straight bevel teeth that touch "
-                  "where they are (teeth.md)",
+                  "rigid: block and shaft have the same angle at all times; compliant: compliant "
+                  "contact with backlash (motion.md); teeth: resolved contact of straight bevel "
+                  "teeth (teeth.md)",
                   {.changes_model = true}),
            choice("flanks", FIELD(c.pump.gear.flanks), {"one", "two"},
                   {.computed = [](const Case& c) -> std::optional<Value> {
                      return std::string(c.pump.gear.is_compliant() ? "two" : "one");
                    },
                    .words = "one; two where `contact` is not rigid"},
-                  "one: as the paper prints, one line of action for either sign of the force; two: "
-                  "the flank that is pushed carries, and the separating part of its force always "
-                  "pushes the gears apart"),
+                  "one: one line of action for either sign of the force, as printed in the paper; "
+                  "two: the flank that is pushed carries, and the separating part of its force "
+                  "always pushes the gears apart"),
            number("stiffness_N_per_um", "k_F", FIELD(c.pump.gear.compliance->stiffness), kStiffness,
                   kPositive, kRequired, "force of a flank at an approach of 1 um",
                   {.part = &kCompliance}),
            number("stiffness_exponent", "n_F", FIELD(c.pump.gear.compliance->exponent), kNoUnit,
-                  {1, 3}, {1.0}, "power of the approach with which the force grows",
+                  {1, 3}, {1.0}, "exponent of the contact force over the approach",
                   {.practice = "lines 1, points 1.5, ADAMS' default 2.2", .part = &kCompliance}),
            number("dissipation_s_per_m", "c_d",
                   kept_at(kOfEither<&ToothCompliance::dissipation, &ToothData::dissipation>,
                           "c.pump.gear.dissipation"),
-                  {"s/m"}, kNotNegative, {0.0}, "growth of the force with the speed of approach",
+                  {"s/m"}, kNotNegative, {0.0},
+                  "increase of the force with the approach speed (dissipation)",
                   {.part = &kGiving}),
            number("backlash_um", "j",
                   kept_at(kOfEither<&ToothCompliance::backlash, &ToothData::backlash>,
@@ -93,19 +94,20 @@ Table gear_table() {
                    .words = "1.25 modules"},
                   "of the gaps under the pitch cone, at O4", {.part = &kToothData}),
            number("tip_relief_um", "C_a", FIELD(c.pump.gear.teeth->tip_relief), kMicrometres,
-                  kNotNegative, {0.0}, "material that the tips lack, along the line of action",
+                  kNotNegative, {0.0},
+                  "tip relief: material removed at the tips, along the line of action",
                   {.part = &kToothData}),
            number("tip_relief_height_mm", "", FIELD(c.pump.gear.teeth->relief_height), kMillimetres,
                   kPositive,
                   {.computed = [](const Case& c) { return modules_of(c, 0.5); },
                    .words = "half a module"},
-                  "from the tip down to where its relief begins; it grows with the square of the "
-                  "way from there",
+                  "length of the tip relief, from the tip down; it increases with the square of "
+                  "the distance from its start",
                   {.part = &kToothData}),
            number("lead_crowning_um", "C_b", FIELD(c.pump.gear.teeth->lead_crowning), kMicrometres,
                   kNotNegative, {0.0},
-                  "by how much a pair of flanks is farther apart at both ends than in the middle "
-                  "of the face width: a parabola",
+                  "crowning: gap between a pair of flanks at both ends of the face width, "
+                  "parabolic, 0 in the middle",
                   {.part = &kToothData}),
            number("youngs_modulus_GPa", "E", FIELD(c.pump.gear.teeth->youngs_modulus), kGigapascal,
                   kPositive, {206.0}, "of the teeth",
@@ -116,13 +118,11 @@ Table gear_table() {
                   "root radius over the radius of the hub's bore, of the equivalent spur gear: "
                   "what the foundation's deflection depends on",
                   {.part = &kToothData}),
-           number(
-               "shaft_runout_um", "", FIELD(c.pump.gear.teeth->shaft.runout), kMicrometres, kAny,
-               {0.0},
-               "amplitude of the material that the flanks of the shaft's teeth lack, once a turn",
-               {.part = &kToothData}),
+           number("shaft_runout_um", "", FIELD(c.pump.gear.teeth->shaft.runout), kMicrometres, kAny,
+                  {0.0}, "amplitude of the eccentricity of the shaft's flanks, once per turn",
+                  {.part = &kToothData}),
            number("shaft_runout_deg", "", FIELD(c.pump.gear.teeth->shaft.runout_angle), kAngle,
-                  kAny, {0.0}, "where they lack most, from tooth 1 in the order of the teeth",
+                  kAny, {0.0}, "position of its maximum, from tooth 1 in the order of the teeth",
                   {.part = &kToothData}),
            number("block_runout_um", "", FIELD(c.pump.gear.teeth->block.runout), kMicrometres, kAny,
                   {0.0}, "the same of the block's teeth", {.part = &kToothData}),
@@ -132,34 +132,33 @@ Table gear_table() {
                 curve_at(PLACE(c.pump.gear.teeth->error_file),
                          {.teeth = [](Case& c) { return &*c.pump.gear.teeth; }}),
                 "CSV `tooth,shaft_um,block_um`, path relative to the case file, a line for each "
-                "tooth: how far it stands ahead of its place, towards +theta or +psi, along the "
-                "line of action; empty: 0",
+                "tooth: how far it is ahead of its nominal position, towards +theta or +psi, along "
+                "the line of action; empty: 0",
                 {.part = &kToothData})},
-      .rules =
-          {after("flanks",
-                 [](const Case& c) {
-                   const Gear& gear = c.pump.gear;
-                   return gear.is_compliant() && gear.flanks == Flanks::one
-                              ? std::string(
-                                    "teeth that give way have two flanks: must be \"two\" beside "
-                                    "contact = \"compliant\" or \"teeth\"")
-                              : std::string();
-                 }),
-           at_end("contact", [](const Case& c) {
-             const ToothContact contact = c.pump.gear.contact;
-             if (contact == ToothContact::compliant && !c.pump.gear.compliance)
-               return std::string("needs stiffness_N_per_um");
-             if (contact == ToothContact::teeth && !c.pump.gear.teeth)
-               return std::string("needs tooth_number and face_width_mm");
-             // The cone distance grows as 1/tilt, and with it the round-off of contact
-             // points.
-             constexpr double kMinTilt = 1e-4 * kRadPerDegree;
-             if (contact == ToothContact::teeth && c.pump.geometry.tilt < kMinTilt)
-               return std::string(
-                   "bevel teeth need [pump] tilt_deg >= 0.0001: nearly parallel axes meet too "
-                   "far away for the contact of teeth to be computed");
-             return std::string();
-           })}};
+      .rules = {after("flanks",
+                      [](const Case& c) {
+                        const Gear& gear = c.pump.gear;
+                        return gear.is_compliant() && gear.flanks == Flanks::one
+                                   ? std::string(
+                                         "compliant teeth have two flanks: must be \"two\" with "
+                                         "contact = \"compliant\" or \"teeth\"")
+                                   : std::string();
+                      }),
+                at_end("contact", [](const Case& c) {
+                  const ToothContact contact = c.pump.gear.contact;
+                  if (contact == ToothContact::compliant && !c.pump.gear.compliance)
+                    return std::string("needs stiffness_N_per_um");
+                  if (contact == ToothContact::teeth && !c.pump.gear.teeth)
+                    return std::string("needs tooth_number and face_width_mm");
+                  // The cone distance grows as 1/tilt, and with it the round-off of contact
+                  // points.
+                  constexpr double kMinTilt = 1e-4 * kRadPerDegree;
+                  if (contact == ToothContact::teeth && c.pump.geometry.tilt < kMinTilt)
+                    return std::string(
+                        "bevel teeth need [pump] tilt_deg >= 0.0001: nearly parallel axes meet too "
+                        "far away to compute the contact of teeth");
+                  return std::string();
+                })}};
 }
 
 }  // namespace bentaxis::tables

@@ -104,7 +104,7 @@ std::string vacuum_refusal(const Case& c) {
   if (c.pressure.kind != PressureKind::hydraulic) return "";  // present and unused
   return c.pressure.ports.suction > -c.hydraulics->atmosphere
              ? ""
-             : "must exceed -suction_bar of [pressure]: no absolute pressure is below zero";
+             : "must exceed -suction_bar of [pressure]: an absolute pressure cannot be negative";
 }
 
 // What opens one port of [hydraulics]. `kPlateArc`: that of [port_plate].
@@ -161,7 +161,7 @@ std::vector<Parameter> port_parameters(const std::string& name) {
                curve_at(PLACE((*c.hydraulics.*kPort).table.file),
                         {.opening = [](Case& c) { return &(*c.hydraulics.*kPort).table; }}),
                "CSV `theta_deg,area_mm2`, path relative to the case file: the opening over the "
-               "chamber's angle in place of all other parts of the " +
+               "chamber's angle which replaces all other parts of the " +
                    name + " port; empty: none")};
 }
 
@@ -215,7 +215,7 @@ Table hydraulics_table() {
                                    {6.89476e-3, "in psi?"},
                                    slips::kTenfold}}}),
             number("air_percent", "x", FIELD(c.hydraulics->air_share), kPercent, {0, 50, true},
-                   {0.5}, "entrained air by volume at P0",
+                   {0.5}, "volume fraction of entrained air at P0",
                    {.practice = "0.2..2",
                     .plausible = {0.02,
                                   15,
@@ -227,13 +227,13 @@ Table hydraulics_table() {
             number("atmosphere_bar", "P0", FIELD(c.hydraulics->atmosphere), kBar, {0.1, 10},
                    {1.01325}, "absolute, where gauge pressure is 0",
                    {.range_words = "[0.1, 10], above -`suction_bar`",
-                    .plausible = {0.5,
-                                  1.2,
-                                  "it is 1.013 at the sea and 0.54 at 5000 m; a charged "
-                                  "tank is suction_bar",
-                                  {{10, "in MPa?"}}}}),
+                    .plausible =
+                        {0.5,
+                         1.2,
+                         "1.013 at sea level, 0.54 at 5000 m; a charged tank is set by suction_bar",
+                         {{10, "in MPa?"}}}}),
             number("bulk_modulus_slope", "K'", FIELD(c.hydraulics->bulk_modulus_slope), kNoUnit,
-                   kAny, {0.0}, "growth of the oil's bulk modulus with pressure, K + K' (P - P0)",
+                   kAny, {0.0}, "increase of the oil's bulk modulus with pressure, K + K' (P - P0)",
                    {.range_here = [](const Case& c) -> std::optional<NumberRange> {
                       const HydraulicData& data = *c.hydraulics;
                       return NumberRange{
@@ -243,15 +243,14 @@ Table hydraulics_table() {
                     .practice = "mineral oil: 9..12"}),
             choice("cavitation", FIELD(c.hydraulics->cavitation),
                    {"ignored", "equilibrium", "rate"}, "ignored",
-                   "ignored: entrained air only; equilibrium: dissolved air comes out by Henry's "
-                   "law, and bubbles hold vapour; rate: likewise, but it takes time"),
+                   "ignored: entrained air only; equilibrium: dissolved air is released by Henry's "
+                   "law, and bubbles hold vapour; rate: likewise, with time constants"),
             number("air_release_ms", "tau_r", FIELD(c.hydraulics->release_time), kMilliseconds,
-                   {1e-3, 1e9}, {10.0}, "time constant with which dissolved air comes out",
+                   {1e-3, 1e9}, {10.0}, "time constant of the release of dissolved air",
                    {.practice = "some milliseconds where the oil is stirred, to seconds",
                     .active = kAirTakesTime}),
             number("air_dissolution_ms", "tau_d", FIELD(c.hydraulics->dissolution_time),
-                   kMilliseconds, {1e-3, 1e9}, {100.0},
-                   "time constant with which it dissolves again",
+                   kMilliseconds, {1e-3, 1e9}, {100.0}, "time constant of its dissolution",
                    {.practice = "some 10 times longer", .active = kAirTakesTime}),
             number("dissolved_air_percent", "y", FIELD(c.hydraulics->dissolved_air), kPercent,
                    {0, 100}, {9.0}, "volume at P0 of the air dissolved at saturation, of the oil's",
@@ -266,8 +265,8 @@ Table hydraulics_table() {
                  .practice = "mineral oil at 60 deg C: below 0.001"}),
             number("saturation_bar", "Ps", FIELD(c.hydraulics->saturation_pressure), kBar, kAny,
                    {0.0},
-                   "gauge pressure below which dissolved air comes out: that at which the oil lay "
-                   "with air",
+                   "gauge pressure below which dissolved air is released: that at which the oil "
+                   "was saturated with air",
                    {.range_here = [](const Case& c) -> std::optional<NumberRange> {
                       const HydraulicData& data = *c.hydraulics;
                       return NumberRange{in_file_unit(data.vapour_pressure - data.atmosphere, kBar),
@@ -315,7 +314,8 @@ Table hydraulics_table() {
                    {.practice = "0.6..0.7",
                     .plausible = {0.3, 1, "edges have 0.6 to 0.7, a nozzle 1", {slips::kTenfold}}}),
             number("transition_pressure_bar", "p_cr", FIELD(c.hydraulics->transition_pressure),
-                   kBar, kPositive, {0.1}, "below it the orifices are about linear",
+                   kBar, kPositive, {0.1},
+                   "below it the orifice flow is about linear in the pressure difference",
                    {.practice = "regularisation"}),
             number("leakage_l_per_min_per_bar", "G", FIELD(c.hydraulics->leakage), kLeakage,
                    kNotNegative, {0.002}, "of each chamber to the case, laminar",
@@ -337,10 +337,10 @@ Table hydraulics_table() {
             number("delivery_volume_l", "", FIELD(c.hydraulics->delivery_volume), kLitres,
                    kPositive, {0.5}, "between pump and load, or delivery line"),
             number("tolerance", "", FIELD(c.hydraulics->tolerance), kNoUnit, {1e-12, 1e-4}, {1e-10},
-                   "relative error of pressure per step of the time integration at first"),
+                   "initial relative tolerance of the pressure per step of the time integration"),
             number("curve_error", "", FIELD(c.hydraulics->curve_error), kNoUnit, {1e-9, 1e-2},
                    {1e-7},
-                   "largest error of the curve that the models get, of its peak: `tolerance` is "
+                   "largest error of the pressure curve, relative to its peak: `tolerance` is "
                    "tightened until the estimate of it is smaller",
                    {.in_fmu = InFmu::absent})}}),
       .rules = joined<Rule>(

@@ -9,7 +9,7 @@ const Part kGaps = part_of_hydraulics<&HydraulicData::gaps>();
 std::string oil_refusal(const Case& c) {
   return find(c, &HydraulicData::gaps) == nullptr || find(c, &HydraulicData::oil) != nullptr
              ? ""
-             : "needs the table [oil]: gaps leak by viscosity";
+             : "needs the table [oil]: leakage through gaps depends on the viscosity";
 }
 
 std::string gap_length_refusal(const Case& c) {
@@ -38,7 +38,8 @@ std::string ring_slot_refusal(const Case& c) {
 Table leakage_table() {
   return {
       .name = "leakage",
-      .meaning = "gaps from each chamber to the case, beside `leakage_l_per_min_per_bar`; 0: none",
+      .meaning =
+          "gaps from each chamber to the case, in addition to `leakage_l_per_min_per_bar`; 0: none",
       .part = &kGaps,
       .in_fmu = InFmu::tunable,
       .parameters =
@@ -50,17 +51,18 @@ Table leakage_table() {
                   {.range_words = "> 0 with a gap"}),
            choice("piston_gap_kind", choice_at(PLACE(c.hydraulics->gaps->engaged)),
                   {"land", "engaged"}, "land",
-                  "a land that moves with the piston, of the same length always; or what of the "
-                  "piston is in the bore: the length is then the least, at the outer dead centre, "
-                  "and grows by the piston's way in"),
+                  "a land that moves with the piston and has a constant length; or the part of the "
+                  "piston inside the bore: the length is then the minimum, at the outer dead "
+                  "centre, and increases as the piston moves in"),
            number("eccentricity", "eps", FIELD(c.hydraulics->gaps->eccentricity), kNoUnit, {0, 1},
-                  {0.0}, "of the piston in its bore, over the radial gap; 1: it touches"),
+                  {0.0},
+                  "eccentricity of the piston in its bore over the radial gap; 1: it touches"),
            number("plate_gap_um", "h_p", FIELD(c.hydraulics->gaps->plate_gap), kMicrometres,
                   {0, 1000}, {0.0},
                   "between block and port plate, over the lands of `[port_plate]`",
                   {.practice = "5..15"}),
            number("ring_slot_um", "h_r", FIELD(c.hydraulics->gaps->ring_slot_height), kMicrometres,
-                  {0, 1000}, {0.0}, "slot that a piston ring leaves at its joint"),
+                  {0, 1000}, {0.0}, "slot at the joint of a piston ring"),
            number("ring_slot_width_mm", "b_r", FIELD(c.hydraulics->gaps->ring_slot_width),
                   kMillimetres, kNotNegative, {0.0}, "of that slot, across the flow"),
            number("ring_slot_length_mm", "l_r", FIELD(c.hydraulics->gaps->ring_slot_length),

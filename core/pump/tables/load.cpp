@@ -27,18 +27,18 @@ std::string share_refusal(const Case& c) {
 Table load_table() {
   return {
       .name = "load",
-      .meaning = "what the pump delivers against; an orifice where there is no such table",
+      .meaning = "load of the pump; an orifice where there is no such table",
       .part = &kLoad,
       .in_fmu = InFmu::tunable,
       .parameters =
-          {choice(
-               "kind", FIELD(c.hydraulics->load->kind),
-               {"orifice", "laminar", "relief_valve", "constant_pressure", "flow"}, "orifice",
-               "orifice and laminar: of the size that gives the mean `delivery_bar`, or of that "
-               "given, then the pressure follows; relief_valve: likewise by its cracking pressure; "
-               "constant_pressure: a line held at `delivery_bar`; flow: takes a given flow"),
+          {choice("kind", FIELD(c.hydraulics->load->kind),
+                  {"orifice", "laminar", "relief_valve", "constant_pressure", "flow"}, "orifice",
+                  "orifice and laminar: sized for the mean `delivery_bar`; or of the given size, "
+                  "then the pressure follows; relief_valve: likewise by its cracking pressure; "
+                  "constant_pressure: a line held at `delivery_bar`; flow: takes a given flow"),
            number("cracking_bar", "p_c", FIELD(c.hydraulics->load->cracking_pressure), kBar,
-                  {0, 10000}, {0.0}, "pressure at which the valve begins to open; 0: sought",
+                  {0, 10000}, {0.0},
+                  "pressure at which the valve begins to open; 0: computed from `delivery_bar`",
                   {.active = kReliefValve}),
            number("opening_mm2_per_bar", "k_v", FIELD(c.hydraulics->load->opening),
                   kAreaPerPressure, kPositive, {1.0},
@@ -47,24 +47,25 @@ Table load_table() {
            number("full_area_mm2", "", FIELD(c.hydraulics->load->full_area), kSquareMillimetres,
                   kPositive, {100.0}, "area of the valve fully open", {.active = kAnyRelief}),
            number("area_mm2", "a", FIELD(c.hydraulics->load->area), kSquareMillimetres,
-                  kNotNegative, {0.0}, "of the orifice; 0: sought", {.active = kOrifice}),
+                  kNotNegative, {0.0}, "of the orifice; 0: computed from `delivery_bar`",
+                  {.active = kOrifice}),
            number("conductance_l_per_min_per_bar", "G_L", FIELD(c.hydraulics->load->conductance),
-                  kLeakage, kNotNegative, {0.0}, "of the laminar load; 0: sought",
-                  {.active = kLaminar}),
+                  kLeakage, kNotNegative, {0.0},
+                  "of the laminar load; 0: computed from `delivery_bar`", {.active = kLaminar}),
            number("relief_bar", "p_r", FIELD(c.hydraulics->load->relief_pressure), kBar, {0, 10000},
-                  {0.0}, "cracking pressure of a relief valve beside the load; 0: none",
+                  {0.0}, "cracking pressure of a relief valve in parallel to the load; 0: none",
                   {.active = kBesideRelief}),
            text("file",
                 curve_at(PLACE(c.hydraulics->load->share.file),
                          {.share = [](Case& c) { return &c.hydraulics->load->share; }}),
-                "CSV `time_s,share`, path relative to the case file, at least 4 points from a time "
-                "<= 0 on: in `bentaxis simulate` the load's size (of a relief valve its cracking "
-                "pressure) is times that; other commands leave it aside; empty: none",
+                "CSV `time_s,share`, path relative to the case file, at least 4 points, the first "
+                "at a time <= 0: in `bentaxis simulate` the load's size (of a relief valve its "
+                "cracking pressure) is multiplied by it; other commands do not use it; empty: none",
                 {.active = kAnyRelief}),
            number("flow_l_per_min", "Q", FIELD(c.hydraulics->load->flow), kLitresPerMinute,
                   kNotNegative, kRequired,
-                  "taken whatever the pressure, at the density in the tank; the pressure follows, "
-                  "and `delivery_bar` is where its search starts",
+                  "taken at any pressure, at the density in the tank; the pressure follows, and "
+                  "its computation starts at `delivery_bar`",
                   {.range_words = "> 0, below displacement x speed", .active = kGivenFlow})},
       .rules = {after("file", share_refusal)}};
 }

@@ -30,7 +30,7 @@ Table loop_table() {
                   kSquareMillimetres, kPositive, {50.0}, "of each check valve, fully open"),
            number("charge_opening_bar", "", FIELD(c.hydraulics->loop->opening), kBar, {1e-3, 1000},
                   {1.0},
-                  "pressure difference over which its area grows from 0 to that, in proportion")},
+                  "pressure difference over which its area increases linearly from 0 to that")},
       .rules = {at_end("volume_l", loop_refusal)}};
 }
 

@@ -33,7 +33,7 @@ Table oil_table() {
                              .practice = "ISO VG 46, viscosity index 100: 6.8"}),
                      number("pressure_viscosity_per_GPa", "alpha_mu",
                             FIELD(c.hydraulics->oil->pressure_viscosity), kPerGigapascal, {0, 100},
-                            {20.0}, "viscosity grows as exp(alpha_mu p)",
+                            {20.0}, "viscosity increases as exp(alpha_mu p)",
                             {.practice = "mineral oil: 15..25"})},
       .rules = {after("viscosity_100C_cSt", viscosity_refusal)}};
 }

@@ -27,12 +27,13 @@ Table operation_table() {
                                  slips::kTenfold,
                                  slips::kThousandfold}}}),
           number("revolutions", "", FIELD(c.operation.revolutions), kNoUnit, kCount, {1},
-                 "of an integrated run", {.plausible = {0, 1e4, "every turn is alike"}}),
+                 "of an integrated run", {.plausible = {0, 1e4, "all turns are equal"}}),
           number("samples_per_revolution", "", FIELD(c.operation.samples_per_revolution), kNoUnit,
-                 kCount, {720}, "angles of a turn, equally far apart",
+                 kCount, {720}, "equally spaced angles per turn",
                  {.also = {"samples", "steps_per_revolution", "angles", "points_per_turn"},
-                  .plausible = {6, 1e6,
-                                "a turn is seen from 6 angles on; 1e6 are every second of arc"}})}};
+                  .plausible = {
+                      6, 1e6,
+                      "at least 6 angles resolve a turn; 1e6 are about one per second of arc"}})}};
 }
 
 }  // namespace bentaxis::tables

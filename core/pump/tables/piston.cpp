@@ -24,7 +24,7 @@ Table piston_table() {
            number("mass_kg", "m_pi", FIELD(c.pump.piston.mass), kKilograms, kNotNegative, kRequired,
                   "mass of a piston"),
            number("joint_mass_fraction", "chi", FIELD(c.pump.piston.joint_mass_fraction), kNoUnit,
-                  {0, 1}, {0.5}, "lumped: share of the mass at A; mA = chi m, mB = (1 - chi) m",
+                  {0, 1}, {0.5}, "lumped: fraction of the mass at A; mA = chi m, mB = (1 - chi) m",
                   {.plausible = {0.1,
                                  0.9,
                                  "the centre of mass would lie next to A or B",

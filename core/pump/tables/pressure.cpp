@@ -29,8 +29,8 @@ Table pressure_table() {
                   "`[hydraulics]`",
                   {.changes_model = true}),
            number("suction_bar", "p_s", FIELD(c.pressure.ports.suction), kBar, kAny, kRequired,
-                  "suction pressure; ideal: in the chambers; always: in the port, where it loads "
-                  "the lands",
+                  "suction pressure; in the port, where it loads the lands; with `ideal` also in "
+                  "the chambers",
                   {.also = {"inlet", "inlet_pressure", "low_pressure", "p_low", "p1", "tank",
                             "intake"},
                    .differentiable = always,
@@ -39,7 +39,7 @@ Table pressure_table() {
                                  "absolute vacuum is at -1.013, charged circuits reach 30",
                                  {slips::kPascals, slips::kKilopascals, slips::kTenth}}}),
            number("delivery_bar", "p_d", FIELD(c.pressure.ports.delivery), kBar, kAny, kRequired,
-                  "delivery pressure, likewise; hydraulic: the mean asked for, 0 is an open line",
+                  "delivery pressure, likewise; hydraulic: the wanted mean, 0 is an open line",
                   {.also = {"outlet", "outlet_pressure", "discharge", "discharge_pressure",
                             "high_pressure", "p_high", "p2", "load_pressure"},
                    .range_here = [](const Case& c) -> std::optional<NumberRange> {
@@ -49,12 +49,12 @@ Table pressure_table() {
                    .range_words = "hydraulic: [0, 10000]",
                    .differentiable = always}),
            number("points", "", FIELD(c.pressure.points), kNoUnit, {0, 100000}, {0},
-                  "0: both models get the computed curve, within `curve_error`; otherwise a "
-                  "periodic cubic spline through as many of its points per turn, as the paper gave "
-                  "ADAMS 800; its error is in the report",
+                  "0: both models use the computed curve, within `curve_error`; otherwise a "
+                  "periodic cubic spline through this number of points per turn (800 in the paper "
+                  "for ADAMS); its error is in the report",
                   {.range_words = "0 or [16, 100000]",
                    .active = kHydraulic,
-                   .plausible = {.low = 90, .why = "a port opens within some degrees"}}),
+                   .plausible = {.low = 90, .why = "a port opens within a few degrees"}}),
            number("transition_deg", "w_t", FIELD(c.pressure.transition_deg), kDegrees, {0, 180},
                   kRequired, "width of each rise and fall; 0 is a step",
                   {.active = kIdeal,

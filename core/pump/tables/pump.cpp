@@ -42,7 +42,7 @@ Table pump_table() {
                             "flange_radius"},
                    .plausible = {4,
                                  250,
-                                 "no pump has this size",
+                                 "no pump is of this size",
                                  {slips::kMetres, slips::kInches, slips::kCentimetres,
                                   slips::kMicrometres, slips::kTenth}}}),
            number("bore_circle_radius_mm", "Rd", FIELD(c.pump.geometry.bore_circle_radius),

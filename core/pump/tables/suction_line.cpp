@@ -20,7 +20,7 @@ Table suction_line_table() {
                  {0.1, 1e4}, kRequired, "inside"),
           number("loss_coefficient", "zeta", FIELD(c.hydraulics->suction_line->loss), kNoUnit,
                  kNotNegative, {1.0},
-                 "pressure lost over the dynamic pressure in the pipe; laminar friction is added "
+                 "pressure loss over the dynamic pressure in the pipe; laminar friction is added "
                  "where there is `[oil]`",
                  {.practice = "entry 0.5, bend 0.3, filter more"}),
           number("volume_l", "V_s", FIELD(c.hydraulics->suction_line->volume), kLitres, kPositive,

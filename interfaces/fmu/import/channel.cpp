@@ -32,7 +32,7 @@ struct Vanished {};
 std::string end_in_words(const Returned& end) {
   std::string text;
   if (end.outcome == Outcome::not_made) {
-    text = "no process can be made for the FMU: " + std::generic_category().message(end.status);
+    text = "no process can be started for the FMU: " + std::generic_category().message(end.status);
   } else if (end.outcome == Outcome::exited) {
     text = "the FMU ended its process, by exit status " + std::to_string(end.status);
   } else if (end.outcome == Outcome::lost_channel) {
@@ -43,7 +43,7 @@ std::string end_in_words(const Returned& end) {
     text = "the FMU ended by signal " +
            (name != nullptr ? "SIG" + std::string(name) : std::to_string(end.status)) +
            (meaning != nullptr ? " (" + std::string(meaning) + ")" : "");
-    if (end.status == SIGKILL) text += ", from itself, from outside or because memory ran out";
+    if (end.status == SIGKILL) text += ", raised by itself, from outside or because memory ran out";
   }
   const std::string said = said_last(end.log);
   if (!said.empty()) text += "; it logged: " + said;
@@ -97,8 +97,8 @@ Returned Channel::call(const Call& call) {
     case Outcome::lost_channel:
       fail(what, end_in_words(returned));
     case Outcome::exception:
-      fail(what, "a C++ exception came out of the FMU" +
-                     (returned.text.empty() ? "" : ": " + returned.text));
+      fail(what,
+           "the FMU threw a C++ exception" + (returned.text.empty() ? "" : ": " + returned.text));
     default:
       return returned;
   }
@@ -196,7 +196,7 @@ void Channel::give_up_in_time(const Call& call) {
   shutdown(channel_, SHUT_WR);
   const auto end = receive_until(Clock::now() + kTimeToDie, false);
   const std::size_t index = end ? end->index : 0;
-  std::string why = "the FMU has not come back after " + number_text(limits_.call_seconds) +
+  std::string why = "the FMU has not returned after " + number_text(limits_.call_seconds) +
                     " s, the longest time that one call may take (--fmu-timeout)";
   if (end && !end->log.empty()) why += "; it logged: " + said_last(end->log);
   if (end && !end->text.empty()) why += "; it printed: " + end->text;

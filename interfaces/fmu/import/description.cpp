@@ -68,7 +68,7 @@ class Reader {
     std::string text = node.attribute(key).value();
     if (has_control_characters(text, false) || !is_utf8(text))
       fail("<" + std::string(node.name()) + "> " + key + " = \"" +
-           without_control_characters(text) + "\": holds a control character, or is no UTF-8");
+           without_control_characters(text) + "\": contains a control character or is not UTF-8");
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
     return text;

@@ -24,18 +24,18 @@ std::filesystem::path library_of(const std::filesystem::path& file, const Unpack
                                  const UnitDescription& description) {
   const std::string place = file.string() + ": ";
   if (description.identifier.empty())
-    throw InputError(place +
-                     (description.exchange_identifier.empty()
-                          ? "modelDescription.xml has no <CoSimulation>"
-                          : "is for model exchange alone: export it for co-simulation, which "
-                            "brings its own solver"));
+    throw InputError(
+        place +
+        (description.exchange_identifier.empty()
+             ? "modelDescription.xml has no <CoSimulation>"
+             : "is for model exchange only: export it for co-simulation, which includes a solver"));
   const std::string name =
       "binaries/" + platform_folder(description.version) + "/" + description.identifier + ".so";
   std::filesystem::path library = unpacked.folder() / name;
   if (!std::filesystem::exists(library))
     throw InputError(place + "has no " + name +
                      (unpacked.platforms().empty()
-                          ? ", nor binaries for another machine"
+                          ? " and none for another platform"
                           : ": its binaries are for " + joined(unpacked.platforms())));
   return library;
 }

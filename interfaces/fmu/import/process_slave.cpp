@@ -141,7 +141,7 @@ class ProcessSlave : public Slave {
     const std::string& what = asked.names.front();
     constexpr int kPending = 5;  // of FMI 2
     if (returned.status == kPending)
-      fail(what, "the FMU steps on by itself: that is not supported");
+      fail(what, "the FMU continues the step asynchronously: not supported");
     const bool ends = (returned.flags & process::kTerminates) != 0;
     if (ends && version_ == 2) fail(what, "the FMU ends the simulation");
     check(asked, returned);
@@ -176,7 +176,7 @@ class ProcessSlave : public Slave {
     const Returned version = call(simple(Task::version, "GetVersion"));
     if (version.outcome == Outcome::no_function)
       throw InputError(unit_ + ": its library has no function " + version.text +
-                       ", which the standard asks for");
+                       ", which the standard requires");
     if (version.text.rfind(std::to_string(version_) + ".", 0) != 0)
       throw InputError(unit_ + ": its library is of FMI " + version.text + ", its description of " +
                        std::to_string(version_) + ".0");

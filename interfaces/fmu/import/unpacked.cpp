@@ -65,14 +65,14 @@ Unpacked::Unpacked(const fs::path& archive, std::uint64_t most,
                    const std::function<void(const fs::path& folder)>& made)
     : file_(archive) {
   if (!fs::exists(archive)) fail(archive, "does not exist");
-  if (fs::is_directory(archive)) fail(archive, "is a folder: must be a .fmu");
+  if (fs::is_directory(archive)) fail(archive, "is a directory: must be a .fmu file");
   if (!fs::is_regular_file(archive))
     fail(archive, "is a pipe, a socket or a device: an FMU must be a regular file");
   if (fs::file_size(archive) > most)
     fail(archive, "is larger than " + std::to_string(most >> 20U) + " MiB");
   std::string pattern = (fs::absolute(fs::temp_directory_path()) / "bentaxis-fmu-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr)
-    fail(pattern, "a folder to unpack a unit into cannot be made");
+    fail(pattern, "the directory for the unpacked FMU cannot be made");
   folder_ = pattern;
   try {
     if (made) made(folder_);
@@ -96,7 +96,7 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
   const std::unique_ptr<zip_t, Close> archive(
       source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY, nullptr));
   if (!archive) zip_source_free(source);
-  if (!archive) fail(file, "is no zip archive, or a damaged one: must be a .fmu");
+  if (!archive) fail(file, "is not a zip archive, or it is damaged: must be a .fmu file");
   const zip_int64_t entries = zip_get_num_entries(archive.get(), 0);
   if (entries > kMaxEntries)
     fail(file, "has " + std::to_string(entries) + " entries: at most " +
@@ -108,7 +108,8 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
     const std::string name = raw != nullptr ? raw : "";
     if (has_control_characters(name, true))
       fail(file, "entry \"" + without_control_characters(name) + "\": holds a control character");
-    if (!stays_inside(name)) fail(file, "entry \"" + name + "\" would be unpacked elsewhere");
+    if (!stays_inside(name))
+      fail(file, "entry \"" + name + "\" would be unpacked outside of its directory");
     if (constexpr std::string_view kBinaries = "binaries/"; name.rfind(kBinaries, 0) == 0) {
       const std::string platform =
           name.substr(kBinaries.size(), name.find('/', kBinaries.size()) - kBinaries.size());
@@ -134,11 +135,12 @@ void Unpacked::unpack(const fs::path& file, std::uint64_t most) {
       out.write(piece.data(), count);
     }
     out.close();
-    if (failed || !out) fail(target, "cannot be written: is there room for the unpacked unit?");
+    if (failed || !out)
+      fail(target, "cannot be written: is there disk space for the unpacked FMU?");
   }
   fs::create_directories(folder_ / "resources");
   if (!fs::is_regular_file(folder_ / kDescription))
-    fail(file, "is no .fmu: it has no modelDescription.xml");
+    fail(file, "is not an FMU: it has no modelDescription.xml");
   if (fs::file_size(folder_ / kDescription) > kLargestDescription)
     fail(file, "modelDescription.xml is larger than " + std::to_string(kLargestDescription >> 20U) +
                    " MiB");

@@ -29,11 +29,11 @@ std::string meaning_of(const Channel& channel) {
 }  // namespace
 
 std::vector<FlagRule> flag_rules(const Machine& machine) {
-  std::vector<FlagRule> rules = {{Flag::inertia,
-                                  {"inertia_reactions_valid", "",
-                                   "false where drive_speed has changed and drive_acceleration was "
-                                   "never given: inertia forces and Td are then those of the old "
-                                   "acceleration"}}};
+  std::vector<FlagRule> rules = {
+      {Flag::inertia,
+       {"inertia_reactions_valid", "",
+        "false where drive_speed has changed and drive_acceleration was never given: inertia "
+        "forces and Td then use the former acceleration"}}};
   if (machine.mechanics->compliant())
     rules.push_back({Flag::contact, {"tooth_contact", "", "a flank of the teeth touches"}});
   rules.push_back(
@@ -50,9 +50,10 @@ std::vector<FlagRule> flag_rules(const Machine& machine) {
   if (machine.oil->limits()) {
     rules.push_back(
         {Flag::saturation,
-         {"cavitation", "", "pressure in a chamber below that at which dissolved air comes out"}});
+         {"cavitation", "",
+          "pressure in a chamber below the saturation pressure (dissolved air is released)"}});
     rules.push_back(
-        {Flag::vapour, {"vapour", "", "pressure in a chamber below that at which oil boils"}});
+        {Flag::vapour, {"vapour", "", "pressure in a chamber below the vapour pressure"}});
   }
   return rules;
 }

@@ -126,7 +126,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(
     fmi3LogMessageCallback log, fmi3ClockUpdateCallback /*clock_update*/,
     fmi3LockPreemptionCallback /*lock*/, fmi3UnlockPreemptionCallback /*unlock*/) {
   log_to(log, environment, logging_on)
-      .say(Status::error, std::string(__func__) + ": there is no scheduled execution of this unit");
+      .say(Status::error, std::string(__func__) + ": this FMU has no scheduled execution");
   return nullptr;
 }
 
@@ -376,5 +376,5 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 time, fmi3Float64 step,
 
 fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference /*clock*/,
                                       fmi3Float64 /*time*/) {
-  return refuse(instance, __func__, "there is no scheduled execution of this unit");
+  return refuse(instance, __func__, "this FMU has no scheduled execution");
 }

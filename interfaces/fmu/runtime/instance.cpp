@@ -48,7 +48,7 @@ Instance::Instance(const std::filesystem::path& resources, const std::string& to
     : kind_(kind), log_(std::move(log)), resources_(read_resources(resources)) {
   if (token != resources_.token)
     throw Refused("the token " + shown(token, 100) +
-                  " is that of another unit than its resources: " + resources_.token);
+                  " is that of another FMU than its resources: " + resources_.token);
   variables_ = variables_of(resources_.the_case, resources_.choice);
   for (const Variable& it : variables_)
     first_parameters_.push_back(it.role == Role::parameter ? it.start.value() : 0);

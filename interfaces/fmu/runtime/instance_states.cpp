@@ -25,7 +25,7 @@ SavedState Instance::present() const {
 const SavedState& Instance::known_state(void* state) const {
   const auto found = saved_.find(state);
   if (state == nullptr || found == saved_.end())
-    throw Refused("the state is none that this instance has given, or it has been freed");
+    throw Refused("the state was not returned by this instance, or it has been freed");
   return *found->second;
 }
 
@@ -35,8 +35,8 @@ void Instance::put_state(void** place, SavedState state) {
     const auto found = saved_.find(*place);
     if (found == saved_.end())
       throw Refused(
-          "the state to be written is none that this instance has given; a new one is "
-          "asked for by a null pointer");
+          "the state to be written was not returned by this instance; a null pointer asks for a "
+          "new one");
     *found->second = std::move(state);
     return;
   }
@@ -116,10 +116,10 @@ void Instance::deserialize(const char* bytes, std::size_t size, void** state) {
   const unsigned foreign =
       kind_ == Kind::co_simulation ? unsigned{kEvent} | kContinuous : unsigned{kStep};
   if (one_mode && (read.mode & foreign) != 0)
-    throw InputError("the bytes are a state of the other kind of instance");
+    throw InputError("the bytes are a state of the other interface type");
   const bool runs = (read.mode & kRunning) != 0;
   if (!one_mode || read.parameters.size() != variables_.size() || (runs && !read.started))
-    throw InputError("the bytes are no state of this unit");
+    throw InputError("the bytes are not a state of this FMU");
   put_state(state, std::move(read));
 }
 

@@ -105,7 +105,7 @@ void Instance::require_settable(const Variable& it, double value) const {
     const bool pressure = it.input == Input::suction || it.input == Input::delivery;
     if (least && value < *least)
       say(">= " + number_text(*least) +
-          (pressure ? " Pa (gauge): no absolute pressure is below zero" : ""));
+          (pressure ? " Pa (gauge): an absolute pressure cannot be negative" : ""));
     return;
   }
   const Parameter& parameter = parameter_of(standard_registry(), it.table, it.key);
@@ -171,14 +171,15 @@ void Instance::derivative(const Reference* unknowns, std::size_t unknown_count,
   for (std::size_t i = 0; i < unknown_count; ++i) {
     const Variable& it = variable(unknowns[i]);
     if (it.role != Role::output && it.role != Role::derivative && it.role != Role::state)
-      throw Refused(it.name + " is no unknown: derivatives are of outputs and of rates of states");
+      throw Refused(it.name +
+                    " is not an unknown: derivatives are of outputs and of state derivatives");
     open = open || it.role != Role::output;
     of.push_back(&it);
   }
   for (std::size_t i = 0; i < known_count; ++i) {
     const Variable& it = variable(knowns[i]);
     if (it.boolean || (it.role != Role::input && it.role != Role::state))
-      throw Refused(it.name + " is no known: derivatives are by inputs and states");
+      throw Refused(it.name + " is not a known: derivatives are with respect to inputs and states");
     if (!std::isfinite(seed[i])) throw Refused("the seed of " + it.name + " is not finite");
     open = open || it.role != Role::input;
     by.push_back(&it);

@@ -67,7 +67,7 @@ class Reader {
 
  private:
   [[noreturn]] static void refuse() {
-    throw InputError("the bytes of a state are not of this layout");
+    throw InputError("the bytes of a state do not have this layout");
   }
   void take(std::size_t size) {
     if (size > left_) refuse();
@@ -129,12 +129,12 @@ SavedState state_of(const char* bytes, std::size_t size, const std::string& toke
   const std::string head = std::string(kTag) + token + "\n";
   std::uint64_t sum = 0;
   if (size < head.size() + sizeof(sum) || std::string_view(bytes, kTag.size()) != kTag)
-    throw InputError("the bytes are no state of a unit of this version");
+    throw InputError("the bytes are not a state of an FMU of this version");
   if (std::string_view(bytes, head.size()) != head)
-    throw InputError("the bytes are a state of another unit");
+    throw InputError("the bytes are a state of another FMU");
   std::memcpy(&sum, bytes + size - sizeof(sum), sizeof(sum));
   if (sum != checksum(bytes, size - sizeof(sum)))
-    throw InputError("the bytes of a state have changed: their checksum is another");
+    throw InputError("the bytes of a state have changed: the checksum differs");
   Reader reader(bytes + head.size(), size - head.size() - sizeof(sum));
   SavedState state;
   go_through_state(reader, state);

@@ -122,8 +122,8 @@ class List {
       add_input(Input::speed, "drive_speed", "rad/s", "speed of the shaft, positive about +z1",
                 first.speed);
       add_input(Input::acceleration, "drive_acceleration", "rad/s2",
-                "acceleration of the shaft, from which the speed goes on between two points of "
-                "communication; without it inertia forces of a changing speed are missing",
+                "acceleration of the shaft, used to extrapolate the speed between two "
+                "communication points; without it inertia forces of a changing speed are missing",
                 first.acceleration);
     }
     if (takes.torque)
@@ -139,8 +139,8 @@ class List {
     if (takes.delivery) bound_pressure(the_case);
     if (takes.load_share) {
       add_input(Input::load_share, "load_share", "",
-                "share of the load's size: of an orifice's area, a laminar load's conductance, a "
-                "motor's flow or the opening of a valve",
+                "fraction of the size of the load: of an orifice's area, a laminar load's "
+                "conductance, a motor's flow or the opening of a valve",
                 first.load_share);
       all_.back().least = 0;
       if (!the_case.hydraulics->load.value_or(LoadData()).share.time.empty())

@@ -16,11 +16,11 @@ namespace foreign {
 
 ForeignTable read_workbook(const std::filesystem::path& file, const std::string& /*content*/,
                            const std::string& /*sheet*/) {
-  throw InputError(file.string() + ": a unit reads no workbooks: its curves must be CSV");
+  throw InputError(file.string() + ": an FMU reads no workbooks: its curves must be CSV");
 }
 ForeignTable read_matlab(const std::filesystem::path& file, const std::string& /*content*/,
                          const std::string& /*wanted*/) {
-  throw InputError(file.string() + ": a unit reads no .mat files: its curves must be CSV");
+  throw InputError(file.string() + ": an FMU reads no .mat files: its curves must be CSV");
 }
 
 }  // namespace foreign

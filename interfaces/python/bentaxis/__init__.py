@@ -1,7 +1,7 @@
 """Reaction forces of bent-axis piston pumps by two independent models.
 
     import bentaxis
-    case = bentaxis.read_case(bentaxis.data_folder() + "/bap63_rated.toml")
+    case = bentaxis.read_case("bap63_rated")
     comparison = bentaxis.compare(case)
     print(comparison.headline)
     comparison.report("out")

@@ -14,52 +14,51 @@ __version__: str
 
 
 class Case:
-    """A pump, how it runs and the pressure in its chambers, as a case file says. A mapping from the keys of the
-    file, "pump.tilt_deg", to values in the file's units. Computations work on a copy made when they are
-    called."""
+    """A case: pump, operating point and chamber pressure. A mapping from the keys of the case file, such as
+    "pump.tilt_deg", to values in the units of the file. Each computation uses a copy made at the call."""
 
     def __getitem__(self, key: str) -> Any:
         """Value of a parameter in the file's unit; None where it has none in this case."""
 
     def __setitem__(self, key: str, value: _Value) -> None:
-        """Changes a parameter as if its file said so: it is held to its range, and defaults that follow from it
-        follow."""
+        """Changes a parameter as if its file said so: its range is checked, and defaults that depend on it are
+        updated."""
 
     def update(self, changes: Optional[Mapping[str, _Value]]) -> None:
-        """Changes several parameters together: for those that are refused alone. All or none."""
+        """Changes several parameters at once, where single changes would be refused. All are changed or none."""
 
     def __contains__(self, key: str) -> bool:
         """Whether a parameter has a value in this case."""
 
     def keys(self) -> list[str]:
-        """Parameters that have something to do in this case."""
+        """Keys of the parameters that are active in this case."""
 
     def __iter__(self) -> Iterator[str]:
-        """Over keys()."""
+        """Iterates over keys()."""
 
     def __len__(self) -> int:
-        """Of keys()."""
+        """Number of keys()."""
 
     def items(self) -> list[Tuple[str, Any]]:
         """Keys with their values."""
 
     def validate(self) -> None:
-        """Holds every parameter to its range and all to each other; raises InputError."""
+        """Checks the range of every parameter and their consistency; raises InputError."""
 
     def doubts(self) -> list[Doubt]:
-        """What is possible but hardly meant, as docs/plausibility.md says."""
+        """Plausibility warnings of the case (docs/plausibility.md)."""
 
     def summary(self) -> str:
         """The pump in a line: displacement, flow, torque, speed, pressure."""
 
     def write(self, path: _Path) -> None:
-        """Writes a case file that reads back as this case."""
+        """Writes a case file; reading it gives the same case."""
 
     def text(self) -> str:
-        """What write() writes."""
+        """Text of the case file."""
 
     def copy(self) -> Case:
-        """A case of its own."""
+        """Copy of the case."""
 
     def __copy__(self) -> Case:
         """As copy()."""
@@ -83,7 +82,7 @@ class Case:
 
 
 class Channel:
-    """One scalar result: of what, on which body, by which body, at which point, in which frame and unit."""
+    """One scalar result: quantity, body, acting body, point, frame and unit."""
 
     @property
     def name(self) -> str:
@@ -99,11 +98,11 @@ class Channel:
 
     @property
     def equation(self) -> str:
-        """Of Roccatello and Nervegna (2009)."""
+        """Equation of Roccatello and Nervegna (2009)."""
 
     @property
     def piston(self) -> int:
-        """From 1; 0 where it belongs to none."""
+        """Piston, from 1; 0 where the channel belongs to none."""
 
     @property
     def axis(self) -> str:
@@ -115,11 +114,11 @@ class Channel:
 
     @property
     def on_body(self) -> str:
-        """Body that it acts on."""
+        """Body on which it acts."""
 
     @property
     def by_body(self) -> str:
-        """Body that it comes from."""
+        """Body that exerts it."""
 
     @property
     def point(self) -> str:
@@ -138,16 +137,15 @@ class Channel:
 
 
 class ChannelComparison:
-    """How far apart both models are in one channel. Differences are multibody minus analytic, in the channel's
-    unit."""
+    """Difference of the two models in one channel: multibody minus analytic, in the unit of the channel."""
 
     @property
     def name(self) -> str:
-        """Of the channel."""
+        """Name of the channel."""
 
     @property
     def channel(self) -> Channel:
-        """What it is."""
+        """Meaning of the parameter."""
 
     @property
     def verdict(self) -> str:
@@ -155,7 +153,7 @@ class ChannelComparison:
 
     @property
     def judged(self) -> bool:
-        """Whether it counts for the verdict."""
+        """Whether the channel counts for the verdict."""
 
     @property
     def peak(self) -> float:
@@ -175,7 +173,7 @@ class ChannelComparison:
 
     @property
     def theta_of_largest_deg(self) -> float:
-        """Angle of the shaft there."""
+        """Angle of the shaft at the largest difference."""
 
     @property
     def rms(self) -> float:
@@ -198,19 +196,19 @@ class ChannelComparison:
 
 
 class Check:
-    """What must vanish, over a whole table."""
+    """A check: a quantity that must be zero in every row of a table."""
 
     @property
     def table(self) -> str:
-        """Of which model."""
+        """Model of the table."""
 
     @property
     def name(self) -> str:
-        """What must vanish."""
+        """Quantity that must be zero."""
 
     @property
     def worst(self) -> float:
-        """Its largest magnitude."""
+        """Largest magnitude of the quantity."""
 
     @property
     def unit(self) -> str:
@@ -218,7 +216,7 @@ class Check:
 
     @property
     def relative(self) -> float:
-        """The same over its scale."""
+        """Largest magnitude over its scale."""
 
     @property
     def holds(self) -> bool:
@@ -226,12 +224,12 @@ class Check:
 
 
 class Comparison:
-    """Both models on one case, and how far they are apart."""
+    """Results of both models on one case, and their differences."""
 
     @property
     def agrees(self) -> bool:
-        """The verdict: every difference is within tolerance, or what no assumption explains is, and every check
-        holds."""
+        """Verdict: every difference, less what stated assumptions explain, is within tolerance, and every check
+        is passed."""
 
     @property
     def headline(self) -> str:
@@ -239,7 +237,7 @@ class Comparison:
 
     @property
     def text(self) -> str:
-        """All that the program prints."""
+        """Text that the program prints."""
 
     @property
     def tolerance(self) -> float:
@@ -255,7 +253,7 @@ class Comparison:
 
     @property
     def groups(self) -> dict[str, ChannelComparison]:
-        """By group of channels that share a peak, the one furthest apart."""
+        """For each group of channels with a common peak, the channel with the largest difference."""
 
     @property
     def analytic(self) -> Table:
@@ -267,15 +265,15 @@ class Comparison:
 
     @property
     def pressure(self) -> Optional[Table]:
-        """What the hydraulic model found; None where the case gives its pressure."""
+        """Results of the hydraulic model; None where the pressure is given by the case."""
 
     @property
     def checks(self) -> list[Check]:
-        """What must vanish in each model."""
+        """Checks of each model."""
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the case and the results, which was warned of."""
+        """Warnings about the case and the results."""
 
     def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes report.html, report.json and the curves as the program does; returns their paths."""
@@ -289,7 +287,7 @@ class ComputationError(RuntimeError):
 
 
 class Doubt:
-    """A value, or values together, that are hardly meant."""
+    """A plausibility warning: a value, or a combination of values, that is implausible."""
 
     @property
     def code(self) -> str:
@@ -301,23 +299,23 @@ class Doubt:
 
     @property
     def reason(self) -> str:
-        """Why it is meant all the same, where the case says."""
+        """Reason why the value is intended, where the case gives one."""
 
     def __repr__(self) -> str:
         """Name and text."""
 
 
 class DoubtWarning(UserWarning):
-    """A result can be computed but is doubtful: digits that rounding takes, a port's timing beyond its limits,
-    states that are hardly meant."""
+    """A result was computed, but with a warning: digits lost to round-off, port timing outside its limits,
+    implausible states."""
 
 
 class GroupDifference:
-    """How far apart the models are in a group of channels, over its peak."""
+    """Difference of the models in a group of channels, relative to its peak."""
 
     @property
     def group(self) -> str:
-        """Which channels."""
+        """Group of channels."""
 
     @property
     def unit(self) -> str:
@@ -329,7 +327,7 @@ class GroupDifference:
 
     @property
     def in_time(self) -> float:
-        """At equal times, largest."""
+        """Largest difference at equal times."""
 
     @property
     def time_s(self) -> float:
@@ -337,15 +335,15 @@ class GroupDifference:
 
     @property
     def over_angle(self) -> float:
-        """At equal angles of the shaft."""
+        """Largest difference at equal angles of the shaft."""
 
     @property
     def of_allowed(self) -> float:
-        """Largest difference over what is allowed then: 1 is the limit."""
+        """Largest difference over the tolerance at that time: 1 is the limit."""
 
 
 class Identification:
-    """What data say about a pump."""
+    """Result of an identification: parameters of a pump determined from data."""
 
     @property
     def unknowns(self) -> list[str]:
@@ -353,7 +351,7 @@ class Identification:
 
     @property
     def values(self) -> dict[str, float]:
-        """What they were found to be."""
+        """Identified values."""
 
     @property
     def deviations(self) -> dict[str, float]:
@@ -362,16 +360,16 @@ class Identification:
 
     @property
     def intervals(self) -> dict[str, Tuple[float, float]]:
-        """95 % limits by their profiles; empty with fit_only and where the fit is refuted. Right only where the
-        stated uncertainties are."""
+        """95 % limits from profile likelihoods; empty with fit_only and where the fit is refuted. Valid only if
+        the stated uncertainties are."""
 
     @property
     def sum_of_squares(self) -> float:
-        """Of all residuals over their uncertainties: chi-square."""
+        """Chi-square: sum of squares of all residuals over their uncertainties."""
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Data that count less what was fitted to them; 0: the fit cannot be tested."""
+        """Degrees of freedom: number of data less number of fitted values; 0: the fit cannot be tested."""
 
     @property
     def p_value(self) -> Optional[float]:
@@ -403,11 +401,11 @@ class Identification:
 
     @property
     def words(self) -> list[str]:
-        """What is determined only together with what, or not at all."""
+        """Unknowns that are determined only in combination, or not at all."""
 
     @property
     def text(self) -> str:
-        """All that the program prints."""
+        """Text that the program prints."""
 
     @property
     def case(self) -> Case:
@@ -418,23 +416,22 @@ class Identification:
         """Reactions over the turn with their bands; None with fit_only and where the fit is refuted."""
 
     def report(self, folder: _Path) -> list[pathlib.Path]:
-        """Writes what the program writes; returns the files' paths."""
+        """Writes the same files as the program; returns their paths."""
 
     def __repr__(self) -> str:
-        """How many unknowns."""
+        """Number of unknowns."""
 
 
 class InputError(ValueError):
-    """An input cannot be used: a file, a key, an argument. One line that names it, its value and what is
-    allowed, in the words of the program."""
+    """An input (file, key or argument) cannot be used. The message names it, its value and what is allowed."""
 
 
 class Minimum:
-    """A point at which the sum of squares is smallest nearby."""
+    """A local minimum of the sum of squares."""
 
     @property
     def values(self) -> list[float]:
-        """Of the unknowns, in their order."""
+        """Values of the unknowns, in their order."""
 
     @property
     def sum_of_squares(self) -> float:
@@ -442,19 +439,19 @@ class Minimum:
 
     @property
     def starts(self) -> int:
-        """How many led there."""
+        """Number of starts that ended there."""
 
 
 class Outcome:
-    """What one reference came to."""
+    """Result for one reference."""
 
     @property
     def name(self) -> str:
-        """Of the reference."""
+        """Name of the reference."""
 
     @property
     def kind(self) -> str:
-        """What kind of reference it is."""
+        """Kind of the reference."""
 
     @property
     def state(self) -> str:
@@ -466,7 +463,7 @@ class Outcome:
 
     @property
     def groups(self) -> list[ReferenceGroup]:
-        """What was found of each group of channels of each model."""
+        """Result for each group of channels of each model."""
 
     @property
     def explanation(self) -> str:
@@ -474,10 +471,10 @@ class Outcome:
 
     @property
     def notes(self) -> list[str]:
-        """What else there is to know."""
+        """Further remarks."""
 
     def result(self, model: str) -> Optional[Table]:
-        """What a model gave; None where it was not run."""
+        """Results of a model; None where it was not run."""
 
     def reference(self, model: str) -> Optional[Table]:
         """The reference at the same angles."""
@@ -499,19 +496,19 @@ class Parameter:
 
     @property
     def meaning(self) -> str:
-        """What it is."""
+        """Meaning of the parameter."""
 
     @property
     def range(self) -> str:
-        """What it may be."""
+        """Allowed values."""
 
     @property
     def words(self) -> list[str]:
-        """Of a choice: its words."""
+        """Allowed words, for a choice."""
 
 
 class PeriodicMotion:
-    """A motion that repeats itself."""
+    """A periodic motion."""
 
     @property
     def period_s(self) -> float:
@@ -527,23 +524,23 @@ class PeriodicMotion:
 
     @property
     def error(self) -> float:
-        """How far a state is off, of its scale."""
+        """Largest error of a state, relative to its scale."""
 
     @property
     def multipliers(self) -> list[complex]:
-        """Floquet's, largest magnitude first."""
+        """Floquet multipliers, largest magnitude first."""
 
     @property
     def stable(self) -> bool:
-        """Whether disturbances die away."""
+        """Whether disturbances decay."""
 
 
 class PlausibilityWarning(DoubtWarning):
-    """A case is valid but implausible: a value, or values together, as Case.doubts() lists them."""
+    """A case is valid but implausible: a plausibility warning, as listed by Case.doubts()."""
 
 
 class ReferenceGroup:
-    """A group of channels of one model, held against one reference."""
+    """Comparison of a group of channels of one model with one reference."""
 
     @property
     def reference(self) -> str:
@@ -551,15 +548,15 @@ class ReferenceGroup:
 
     @property
     def kind(self) -> str:
-        """What kind of reference that is."""
+        """Kind of the reference."""
 
     @property
     def model(self) -> str:
-        """Of which model."""
+        """Name of the model."""
 
     @property
     def group(self) -> str:
-        """Which channels."""
+        """Group of channels."""
 
     @property
     def compared(self) -> int:
@@ -567,11 +564,11 @@ class ReferenceGroup:
 
     @property
     def missing(self) -> int:
-        """Number of those the reference has not."""
+        """Number of channels that the reference does not have."""
 
     @property
     def failed(self) -> int:
-        """Number of those that differ."""
+        """Number of channels that differ."""
 
     @property
     def verdict(self) -> str:
@@ -579,30 +576,30 @@ class ReferenceGroup:
 
     @property
     def text(self) -> str:
-        """Where it is worst and what that looks like."""
+        """Channel and angle of the largest difference, and its likely kind."""
 
     def __repr__(self) -> str:
-        """What it is and its verdict."""
+        """Group and verdict."""
 
 
 class Regression:
-    """Both models held to stored curves."""
+    """Comparison of both models with stored curves."""
 
     @property
     def agrees(self) -> bool:
-        """Whether all do."""
+        """Whether all references agree."""
 
     @property
     def summary(self) -> str:
-        """All in a sentence."""
+        """Summary in one sentence."""
 
     @property
     def text(self) -> str:
-        """All that the program prints."""
+        """Text that the program prints."""
 
     @property
     def outcomes(self) -> list[Outcome]:
-        """What each reference came to."""
+        """Result for each reference."""
 
     def write_junit(self, path: _Path) -> None:
         """Writes a JUnit file for CI."""
@@ -612,11 +609,11 @@ class Regression:
 
 
 class Simulation:
-    """Motion in time by both models, or by one alone, and how far they are apart."""
+    """Motion in time by both models, or by one, and their differences."""
 
     @property
     def agrees(self) -> bool:
-        """Whether both models agree; of one model alone: whether its checks hold."""
+        """Whether both models agree; of one model: whether its checks are passed."""
 
     @property
     def headline(self) -> str:
@@ -624,19 +621,19 @@ class Simulation:
 
     @property
     def text(self) -> str:
-        """All that the program prints."""
+        """Text that the program prints."""
 
     @property
     def analytic(self) -> Optional[Table]:
-        """What the analytic model found, over time; None where it was not asked."""
+        """Results of the analytic model over time; None where it was not run."""
 
     @property
     def multibody(self) -> Optional[Table]:
-        """What the multibody model found; None where it was not asked."""
+        """Results of the multibody model; None where it was not run."""
 
     @property
     def oil_analytic(self) -> Optional[Table]:
-        """What the oil does; None where it does not follow the motion."""
+        """Results of the oil; None where it does not follow the motion."""
 
     @property
     def oil_multibody(self) -> Optional[Table]:
@@ -644,7 +641,7 @@ class Simulation:
 
     @property
     def teeth_analytic(self) -> Optional[Table]:
-        """What the teeth do; None where the contact is none of teeth."""
+        """Results of the teeth; None without resolved tooth contact."""
 
     @property
     def teeth_multibody(self) -> Optional[Table]:
@@ -652,7 +649,7 @@ class Simulation:
 
     @property
     def periodic_analytic(self) -> Optional[PeriodicMotion]:
-        """The motion it settles to; None where it was not asked for."""
+        """Periodic motion; None where it was not requested."""
 
     @property
     def periodic_multibody(self) -> Optional[PeriodicMotion]:
@@ -660,19 +657,20 @@ class Simulation:
 
     @property
     def groups(self) -> list[GroupDifference]:
-        """How far apart the models are."""
+        """Differences of the models."""
 
     @property
     def checks(self) -> list[Check]:
-        """What must vanish."""
+        """Checks: quantities that must be zero."""
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the case and the motion, which was warned of."""
+        """Warnings about the case and the motion."""
 
     @property
     def judged_until_s(self) -> float:
-        """Later a disturbance of the wanted error would change results altogether."""
+        """Time up to which results are compared; after it a disturbance of the wanted error is amplified too
+        much."""
 
     def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes report.html, report.json and the curves as the program does; returns their paths."""
@@ -683,34 +681,34 @@ class Simulation:
 
 class Sweep(Table):
     """A table of designs: parameters that vary, in the units of the case file, and outputs. A choice is the
-    place of its word, from 0."""
+    index of its word, from 0."""
 
     @property
     def infeasible(self) -> dict[int, str]:
-        """Why designs have no outputs, by their rows."""
+        """Reasons why designs have no outputs, by row."""
 
     @property
     def checks(self) -> list[SweepCheck]:
-        """Designs that the other model computed too."""
+        """Designs that were also computed by the other model."""
 
     @property
     def agrees(self) -> bool:
-        """Whether all that were checked do."""
+        """Whether all checked designs agree."""
 
     @property
     def headline(self) -> str:
-        """What came out, in a line."""
+        """Summary in one line."""
 
     @property
     def seconds(self) -> float:
-        """What the computation took."""
+        """Elapsed time of the computation."""
 
     def report(self, folder: _Path) -> list[pathlib.Path]:
         """Writes report.html, report.json and sweep.csv as the program does; returns their paths."""
 
 
 class SweepCheck:
-    """A design that the other model computed too."""
+    """A design that was also computed by the other model."""
 
     @property
     def design(self) -> int:
@@ -718,24 +716,24 @@ class SweepCheck:
 
     @property
     def own(self) -> list[float]:
-        """Outputs of the sweep's model."""
+        """Outputs by the model of the sweep."""
 
     @property
     def values(self) -> list[float]:
-        """Outputs of the other one."""
+        """Outputs by the other model."""
 
     @property
     def scales(self) -> list[float]:
-        """What differences are over; 0: not compared."""
+        """Scales that differences are relative to; 0: not compared."""
 
     @property
     def agrees(self) -> bool:
-        """Whether both refuse it or all outputs are within 1e-9 of their scales."""
+        """Whether all outputs agree within 1e-9 of their scales, or both models refuse the design."""
 
 
 class Table:
-    """Columns of numbers by name. They are looks at the memory that the computation filled: nothing is copied,
-    nothing can be written, and it stays as long as any array does. NaN: not computed."""
+    """Columns of numbers by name. Arrays are read-only views of the memory of the computation, which is kept as
+    long as any view exists; nothing is copied. NaN: not computed."""
 
     def __getitem__(self, name: str) -> _NDArray[numpy.float64]:
         """A column as an array; its name may lack the unit and, of a quantity of one component, the axis:
@@ -755,18 +753,18 @@ class Table:
 
     @property
     def names(self) -> list[str]:
-        """Names of the columns; the first says where a row is, by angle or time."""
+        """Names of the columns; the first is the angle or the time of a row."""
 
     @property
     def name(self) -> str:
-        """Who computed it."""
+        """Model that computed it."""
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
         """All columns as one array, row by row, in the order of `names`; a copy."""
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the case or the results, which was warned of."""
+        """Warnings about the case or the results."""
 
     @property
     def values(self) -> _NDArray[numpy.float64]:
@@ -780,57 +778,62 @@ class Table:
         """Unit of a column."""
 
     def meaning(self, name: str) -> str:
-        """What a column is: on which body, by which, where, in which frame."""
+        """Description of a column: body, acting body, point, frame."""
 
     def channel(self, name: str) -> Optional[Channel]:
-        """The same by parts; None where it is no result of a model."""
+        """Description of a column as an object; None where it is not a result of a model."""
 
     def to_pandas(self) -> pandas.DataFrame:
         """A pandas.DataFrame over angle or time, units in its attrs. Needs pandas."""
 
     def write_csv(self, path: _Path) -> None:
-        """Writes the file that the program writes: the shortest text that reads back to the same numbers."""
+        """Writes the same CSV file as the program: the shortest text that reads back to the same numbers."""
 
     def __repr__(self) -> str:
         """Name and size."""
 
 
+def cases() -> dict[str, str]:
+    """Names of the cases that come with bentaxis, with their titles; read_case() takes a name."""
+
+
 def compare(case: Case, multibody: Optional[Mapping[str, _Value]] = None, *, analytic: Optional[Mapping[str, _Value]] = None, multibody_case: Optional[Case] = None, channels: Union[str, Sequence[str], None] = None, tolerance: Optional[float] = None) -> Comparison:
-    """Runs both models over one turn and compares them. `multibody`, `analytic`: what a model assumes instead of
-    what the case says, {"piston_friction": False, "gear": "imposed"}: the difference is then taken apart.
-    `multibody_case`: another case for the multibody model. `channels`: only these."""
+    """Runs both models over one turn and compares them. `multibody`, `analytic`: assumptions of a model that
+    override the case, {"piston_friction": False, "gear": "imposed"}: the difference is then split by
+    assumption. `multibody_case`: another case for the multibody model. `channels`: only these."""
 
 
 def data_folder(name: str = 'cases') -> str:
-    """Folder of what comes with bentaxis: "cases" or "reference_data"."""
+    """Directory of files that come with bentaxis: "cases" or "reference_data"."""
 
 
 def identify(case: Case, data: Union[_Path, Sequence[_Path]], unknowns: Optional[Mapping[str, Tuple[float, float]]] = None, *, starts: int = 8, seed: int = 1, steps: int = 2000, draws: int = 400, measured: float = 0.01, fit_only: bool = False, threads: int = 0) -> Identification:
     """Determines parameters from printed numbers, windows and records (docs/identification.md). `data`: a file
-    or several. `unknowns`: further ones, lowest and highest value by name. `fit_only`: least squares alone,
-    without profiles, posterior and leaving out. Needs a build with Ceres."""
+    or several. `unknowns`: further unknowns, minimum and maximum by name. `fit_only`: least squares only,
+    without profiles, posterior and leave-one-out. Needs a build with Ceres."""
 
 
 def parameter(key: str) -> Parameter:
-    """What is known of a parameter: unit, symbol, meaning, range."""
+    """Unit, symbol, meaning and range of a parameter."""
 
 
 def parameters() -> list[str]:
-    """Every key that a case file may have."""
+    """All keys that a case file may have."""
 
 
 def parse_case(text: str, path: _Path = 'case.toml') -> Case:
-    """The same of a text; `path` stands in messages and says where files are that it names."""
+    """Reads a case from a text. `path` appears in messages, and files named in the text are found from its
+    directory."""
 
 
 def read_case(path: _Path, changes: Optional[Mapping[str, _Value]] = None) -> Case:
-    """Reads a case file. Files that it names are found from it, wherever the program goes later. `changes`: as
-    if the file said so."""
+    """Reads a case file, or the shipped case of this name (cases()). Files that the case names are found from
+    its own directory. `changes`: as if the file said so."""
 
 
 def regress(folder: Optional[_Path] = None, filter: str = '') -> Regression:
-    """Holds both models to the references of a folder, or to those that come with bentaxis. `filter`: only those
-    whose name contains it."""
+    """Compares both models with the references in a directory, or with those that come with bentaxis. `filter`:
+    only references whose name contains this text."""
 
 
 def run(case: Case, model: str = 'analytic', channels: Union[str, Sequence[str], None] = None) -> Table:
@@ -844,9 +847,9 @@ def run_states(case: Case, states: Union[_Path, Mapping[str, _Array]], model: st
 
 
 def simulate(case: Case, model: Optional[str] = None, *, error: float = 1e-06, oil: str = 'coupled', steady: bool = False) -> Simulation:
-    """Integrates the motion of shaft and block in time, as [drive] of the case says, by both models or by one.
-    `error`: wanted error of every reaction, of its peak, in [1e-10, 0.1]. `oil`, of a hydraulic case:
-    "coupled" or "periodic". `steady`: the motion that repeats itself, and its stability."""
+    """Integrates the motion of shaft and block in time, with the drive in [drive] of the case, by both models or
+    by one. `error`: wanted error of every reaction, relative to its peak, in [1e-10, 0.1]. `oil`, of a
+    hydraulic case: "coupled" or "periodic". `steady`: the periodic motion and its stability."""
 
 
 def sweep(case: Case, vary: Mapping[str, Union[str, float, bool, Sequence[_Value], _Array]], outputs: Union[str, Sequence[str], None], *, sampling: str = 'grid', samples: int = 0, seed: int = 1, model: str = 'analytic', check: float = 0.0, minimise: Union[str, Sequence[str], None] = None, maximise: Union[str, Sequence[str], None] = None, threads: int = 0) -> Sweep:
@@ -857,4 +860,4 @@ def sweep(case: Case, vary: Mapping[str, Union[str, float, bool, Sequence[_Value
 
 
 def versions() -> list[Tuple[str, str]]:
-    """Name and version of everything that results depend on."""
+    """Names and versions of all software that results depend on."""

@@ -37,7 +37,7 @@ struct Varying {
   double all = 0;                ///< used where `each` is null
 };
 
-/// How a block turns that moves on its own.
+/// Motion of a block that is not locked to the shaft.
 struct BlockMotion {
   Varying psi, omega, omega_dot;
 };

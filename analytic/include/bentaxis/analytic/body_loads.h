@@ -16,7 +16,7 @@ namespace bentaxis::analytic {
 /// Loads of one body after the other: pistons, block, shaft. Reactions are those that the model
 /// finds, oil, friction and film those it finds them from; inertia is masses (point masses where
 /// pistons are lumped or dynamically equivalent) times accelerations and the rate of the angular
-/// momentum about the centre of mass, where it acts. No load is what others leave over, so that
+/// momentum about the centre of mass, where it acts. No load is found by subtraction, so that
 /// their sums check the equilibrium.
 ///
 /// On a piston Rs, Rc, Fp, Fpf, Pp, inertia; on the block of every piston Rc, Fpf, Ftp, then Fh and

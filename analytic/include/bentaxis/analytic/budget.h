@@ -12,7 +12,7 @@ namespace bentaxis::analytic {
 
 /// For a given motion every reaction is linear in the loads. So each cause's part of Td and of the
 /// torque on the block is what (31)-(33), (38), (43) and (57) give where that load acts alone: no
-/// part is found as what others leave over. Where the bore forces do not act at B their work on the
+/// part is found by subtraction. Where the bore forces do not act at B their work on the
 /// play is a cause of its own, of every load's share less it. Teeth pass on every part at the ratio
 /// of their torques on shaft and block, which is not quite 1 where a tip's edge carries.
 class BudgetModel {

@@ -41,7 +41,7 @@ class DerivativeModel {
   /// @param values       at least layout().reactions() long; Rcs is not_computed() where the block
   ///                     speed is imposed
   /// @param derivatives  directions() times as long, direction by direction
-  /// @throws InputError where a size does not fit or the block moves on its own
+  /// @throws InputError where a size does not fit or the block is not locked to the shaft
   void reactions(const Instant& instant, std::span<const Instant> rates, std::span<double> values,
                  std::span<double> derivatives) const;
 

@@ -53,8 +53,8 @@ class Model {
   void reactions(const Instant& instant, std::vector<long double>& values) const;
 
   /// Like reactions(), and the derived, input and check channels too: layout().size() values.
-  /// power_residual is not_computed() where the block moves on its own and the shaft is at rest.
-  /// @param checks  where not null: what general motion is judged by
+  /// power_residual is not_computed() where the block is not locked and the shaft is at rest.
+  /// @param checks  where not null: checks of a general motion
   /// @param teeth   as of reactions()
   void evaluate(const Instant& instant, std::vector<double>& values, MotionChecks* checks = nullptr,
                 TeethAction* teeth = nullptr) const;

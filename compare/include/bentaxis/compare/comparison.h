@@ -1,4 +1,4 @@
-// Compares two result tables channel by channel. Knows columns, units and scale groups; no physics.
+// Compares two result tables channel by channel. Uses columns, units and scale groups; no physics.
 #pragma once
 
 #include <functional>
@@ -94,7 +94,7 @@ struct Options {
   std::function<bool(const Channel& channel, std::size_t row)> may_be_missing;
 };
 
-/// Least scale of a group, as a share of the largest load of the case. A group whose peak is
+/// Minimum scale of a group, as a share of the largest load of the case. A group whose peak is
 /// smaller is what is left of loads that cancel, and carries their error: judged over its own peak
 /// the round-off of the loads would differ. With the tolerance of two exact models, 1e-9, this
 /// allows 1e-12 of the loads: five times the largest error of either model against curves of 50
@@ -117,11 +117,11 @@ struct Comparison {
 
   /// Something was compared, nothing differs and nothing is incomplete.
   bool agrees() const;
-  /// The first judged channel that lacks a value it should have; nullptr if there is none.
+  /// The first channel of the verdict that lacks a value it should have; nullptr if there is none.
   const ChannelComparison* incomplete() const;
-  /// The judged channel that differs and is furthest beyond what is allowed; nullptr if none does.
+  /// The channel of the verdict that exceeds its tolerance most; nullptr if none does.
   const ChannelComparison* failed() const;
-  /// failed(), or where none differs the judged channel with the largest difference over its peak;
+  /// failed(), or where none differs the channel with the largest difference over its peak;
   /// nullptr if none was compared.
   const ChannelComparison* worst() const;
   /// The channel with the largest difference, of those that `of` picks and that are compared or
@@ -157,10 +157,10 @@ struct Check {
   bool holds() const { return relative() <= tolerance; }
 };
 
-/// The check that is furthest beyond its tolerance; nullptr where all hold.
+/// The check that exceeds its tolerance most; nullptr where all are passed.
 const Check* failed_check(const std::vector<Check>& checks);
 
-/// Judges every check channel of a table, the pistons' together.
+/// Compares every check channel of a table with its scale, the pistons' together.
 /// @param scales  per unit
 std::vector<Check> judge_checks(const ResultTable& table, const ZeroScales& scales,
                                 double tolerance);

@@ -1,5 +1,5 @@
 // Printed numbers as data: what a publication says about a pump, and how results stand against it
-// (reference_data/published). Knows expressions over columns and named facts of a case; no physics.
+// (reference_data/published). Uses expressions over columns and named facts of a case; no physics.
 #pragma once
 
 #include <filesystem>
@@ -55,7 +55,7 @@ struct PublishedNumber {
   std::string condition;  ///< name, or "" where the case does not matter
   std::string variant;    ///< name, or ""
   std::string minus;      ///< a variant whose number is taken off, or ""
-  std::string study;      ///< the study that can judge it; "" is a comparison of two models
+  std::string study;      ///< the study that computes it; "" is a comparison of two models
   std::string unit;
   std::string note;
   std::string not_comparable;  ///< why no result can be held to it, or ""

@@ -127,7 +127,8 @@ double degrees_per(const std::string& angle_unit);
 double seconds_per(const std::string& time_unit);
 
 /// Folders with a description at or below `root`, in the order of their names.
-/// @throws InputError where root is no folder, holds no description, or a folder holds files but no
+/// @throws InputError where root is not a directory, has no description, or a folder holds files
+/// but no
 ///         description (README.md, folders named "generator", for people, and folders with a
 ///         catalogue.toml, of other commands, are left alone).
 std::vector<std::filesystem::path> find_references(const std::filesystem::path& root);

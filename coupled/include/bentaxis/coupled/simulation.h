@@ -26,8 +26,8 @@ struct PumpOutputs {
   double operator[](const std::string& name) const;
 };
 
-/// A partner outside that acts on the pump, and is told of it, from one communication point to the
-/// next.
+/// A partner outside that acts on the pump and receives its values from one communication point to
+/// the next.
 struct Exchange {
   double step = 0;  ///< s, between communication points; the first is 0
   /// Called at each of them before the end with what the pump tells there, under what acted until
@@ -49,8 +49,8 @@ struct Options {
 
 /// Integrates states of motion and of the oil together, by variable-order BDF (CVODE) with Newton's
 /// method. Steps end at every edge of the port openings, at every touch and leaving of a flank, at
-/// every knot of a curve over time; rows are read from the integrator's own polynomial. Energies
-/// and masses are integrated along.
+/// every breakpoint of a curve over time; rows are read from the integrator's own polynomial.
+/// Energies and masses are integrated along.
 /// @param name  of the model, for the table
 /// @throws ComputationError naming the time where the motion cannot be followed, or not within a
 ///         bounded number of steps; what the partner of an exchange throws

@@ -1,4 +1,4 @@
-// What the teeth do while a pump runs, from one stretch of time to the next.
+// Contact of the teeth while a pump runs, by intervals of time.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace bentaxis::coupled {
 
-/// Of a stretch of time.
+/// Of an interval of time.
 struct ToothStretch {
   double duration = 0;     ///< s
   double apart = 0;        ///< s without touch of a flank
@@ -19,10 +19,10 @@ struct ToothStretch {
   double impulse = 0;      ///< Ns, integral of the magnitude of the tooth force
   int separations = 0;     ///< flanks that left
   int impacts = 0;         ///< touches as fast as an impact
-  double largest_hit = 0;  ///< Ns, of impacts whose flanks left again in the stretch
+  double largest_hit = 0;  ///< Ns, of impacts whose flanks left again in the interval
 };
 
-/// Both stretches as one.
+/// Both intervals as one.
 ToothStretch operator+(const ToothStretch& a, const ToothStretch& b);
 
 /// Follows motion and oil as simulate() does, without rows. The largest force is that at the ends

@@ -27,7 +27,7 @@ struct Summary {
   double leakage = 0;                ///< m3/s, mean, of all chambers
   double delivery_mean = 0, delivery_least = 0,
          delivery_greatest = 0;  ///< Pa, of the delivery volume
-  /// (greatest - least)/mean of a flow averaged over a quarter of a degree, so that what passes in
+  /// (max - min)/mean of a flow averaged over a quarter of a degree, so that what passes in
   /// the instant at which a port opens does not decide it.
   double flow_ripple = 0;  ///< of the flow to the load, what the user's line sees
   double port_flow_ripple =

@@ -38,13 +38,13 @@ struct Timing {
   /// Closed to both ports.
   struct Trapped {
     Stretch where;
-    double swept = 0;  ///< m3, largest less least volume of the stretch
+    double swept = 0;  ///< m3, maximum less minimum volume of the interval
     double greatest = 0, greatest_deg = 0;
     double least = 0, least_deg = 0;
   };
   std::vector<Trapped> trapped;
 
-  /// The end of suction: where the chamber's longest stretch open to the suction port alone ends,
+  /// The end of suction: where the chamber's longest interval open to the suction port alone ends,
   /// because that port closes or the delivery port opens.
   struct Filled {
     double at_deg = 0;

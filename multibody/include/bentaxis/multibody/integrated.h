@@ -33,7 +33,8 @@ struct IntegrationOptions {
   double accuracy = 1e-6;  ///< Simbody's relative accuracy per step; not the achieved error
 };
 
-/// Worst errors at the samples of a stretch of an integrated run, and the work lost until its end.
+/// Worst errors at the samples of an interval of an integrated run, and the work lost until its
+/// end.
 struct WorstErrors {
   double position_error = 0;  ///< m, largest of all constraint equations
   double velocity_error = 0;  ///< m/s (rad/s for the speed of the shaft)

@@ -320,7 +320,7 @@ struct Verdict {
   std::vector<std::string> answers = {};
 };
 
-/// Values that are possible but hardly meant.
+/// Plausibility warnings of the case.
 struct DoubtRow {
   std::string code, text;
   std::string reason;  ///< why they are meant, or ""

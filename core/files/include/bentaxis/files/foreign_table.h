@@ -32,7 +32,7 @@ struct ForeignTable : NumericTable {
 /// - MATLAB (.mat, versions 4 to 7.3): vectors and columns of matrices of the same length, in
 ///   structures too; names from a cell array of as many texts.
 /// @param sheet  name of the sheet or variable to take; "" = the first with a table
-/// @throws InputError naming file, line or cell, and what stands there
+/// @throws InputError naming file, line or cell, and its content
 ForeignTable read_table(const std::filesystem::path& file, const std::string& sheet = "");
 /// The same of a content that was read from `file`.
 ForeignTable table_of(const std::string& content, const std::filesystem::path& file,

@@ -18,7 +18,7 @@ struct BearingRating {
 struct TaperedRating : BearingRating {
   double axial_factor = 0;         ///< Y
   double ratio_limit = 0;          ///< e: up to Fa / Fr = e the axial load does not count
-  double radial_factor = 0;        ///< X, beyond e
+  double radial_factor = 0;        ///< X, above e
   double static_axial_factor = 0;  ///< Y0
 };
 

@@ -61,7 +61,7 @@ struct Case {
   Assumptions analytic;                     ///< what the analytic model assumes in this case
   Assumptions multibody;                    ///< what the multibody model assumes
   UncertaintyData uncertainty;              ///< empty where nothing is said
-  std::string meant;                ///< reasons for doubtful values: "CODE: reason; CODE: reason"
+  std::string meant;  ///< reasons for implausible values: "CODE: reason; CODE: reason"
   std::vector<InputEntry> entries;  ///< as read from a file; empty for a case made in memory
   std::vector<InputFile> inputs;    ///< that the case was read from, each with what was read
 };

@@ -23,7 +23,7 @@ struct MotorData {
 };
 
 /// A speed or torque over time, or a motor's torque over its speed, from a file: piecewise cubic
-/// through its points, monotone between them, and constant beyond its ends.
+/// through its points, monotone between them, and constant outside its ends.
 struct TimeCurve {
   std::filesystem::path file;
   std::vector<double> time;   ///< s, or rad/s of a motor; strictly increasing; empty: no curve

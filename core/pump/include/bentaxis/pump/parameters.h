@@ -37,7 +37,7 @@ enum class Flanks {
 /// What lies between the teeth.
 enum class ToothContact {
   rigid,      ///< nothing: in motion the block turns as the shaft does
-  compliant,  ///< flanks that give way, with backlash between them
+  compliant,  ///< compliant flanks with backlash
   teeth,      ///< straight bevel teeth: where they are, they touch
 };
 
@@ -193,10 +193,10 @@ struct PumpParameters {
   double gravity = 9.80665;  ///< m/s2, along -y1
 };
 
-/// How the block is carried round.
+/// How the block is driven.
 enum class BlockDrive {
   mesh,     ///< the shaft drives it by the tooth force R_cs along z4 at O4
-  imposed,  ///< its speed is imposed on its own joint, as in the paper's ADAMS run; no R_cs
+  imposed,  ///< its speed is imposed on its joint, as in the paper's ADAMS run; no R_cs
 };
 
 /// What a model takes into account beyond the raw description. Two models may differ here; the

@@ -28,7 +28,7 @@ inline constexpr Slip kMetres{1000, "in metres?"}, kCentimetres{10, "in centimet
     kPascals{1e-5, "in pascals?"}, kKilopascals{1e-2, "in kPa?"};
 }  // namespace slips
 
-/// In the file's unit. A value outside is possible, and doubtful.
+/// In the file's unit. A value outside is possible, but implausible.
 struct PlausibleRange {
   double low = -HUGE_VAL, high = HUGE_VAL;
   std::string why = {};  ///< as the end of a message

@@ -1,4 +1,4 @@
-// How much a slice of a tooth gives way: an input that both models share, stated in docs/teeth.md.
+// Flexibility of a slice of a tooth: an input that both models share, stated in docs/teeth.md.
 #pragma once
 
 #include <array>

@@ -44,7 +44,7 @@ struct Instant {
   bool locked() const { return shaft == block; }
 };
 
-/// @throws InputError naming `model` where the block moves on its own: for models of a block that
+/// @throws InputError naming `model` where the block is not locked: for models of a block that
 /// is locked to the shaft.
 void require_locked(const Instant& instant, const char* model);
 

@@ -18,7 +18,7 @@ namespace bentaxis {
 enum MotionIndex : std::size_t {
   kTurn,         ///< theta less the start's speed times time, rad; 0 where the speed is given
   kTurnRate,     ///< rad/s, likewise
-  kLag,          ///< theta - psi, rad, where the gear gives way
+  kLag,          ///< theta - psi, rad, with compliant contact
   kLagRate,      ///< rad/s
   kTwist,        ///< of the coupling, phi - theta, rad
   kTwistRate,    ///< rad/s
@@ -54,7 +54,7 @@ class Mechanics {
   /// Angles and speeds; accelerations are not filled in.
   virtual AxisMotion shaft(double time, const MotionVector& y) const = 0;
   virtual AxisMotion block(double time, const MotionVector& y) const = 0;
-  /// Of a flank (+1: the shaft pushes the block towards +psi, -1) where the gear gives way, m;
+  /// Of a flank (+1: the shaft pushes the block towards +psi, -1) with compliant contact, m;
   /// below 0: the gap; and its rate, m/s. Of teeth the largest of any pair and slice.
   virtual double approach(double time, const MotionVector& y, int flank) const = 0;
   virtual double approach_rate(double time, const MotionVector& y, int flank) const = 0;

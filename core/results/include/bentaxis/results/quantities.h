@@ -52,7 +52,7 @@ enum class Repeat {
   X(yh, "yh", once, "y", "mm", derived, "xh_yh", "S2", "block", "port-plate film", "from z2", \
     "(53)", "point where Fh acts") \
   X(Tcs, "Tcs", once, "z", "Nm", derived, "Tcs", "S2", "block", "shaft (gear) or imposed drive", \
-    "about z2", "(57)", "torque that carries the block round") \
+    "about z2", "(57)", "torque that drives the block") \
   X(pressure, "p", per_piston, "-", "bar", input, "p", "", "piston #", "oil", "B#", "(24)", \
     "chamber pressure, gauge") \
   X(zB, "zB", per_piston, "z", "mm", derived, "zB", "S2", "piston #", "", "B#", "(11)", \

@@ -25,10 +25,10 @@ struct TimingRow {
   double value = 0;
   std::string unit;
   std::optional<double> limit = std::nullopt;
-  bool flagged = false;                                ///< beyond the limit
+  bool flagged = false;                                ///< exceeds the limit
   std::optional<double> theta_deg = std::nullopt;      ///< chamber angle of the value
-  std::vector<std::pair<double, double>> angles = {};  ///< stretches of chamber angles it is about
-  std::string meant = {};  ///< why it is beyond, where the case says so, or ""
+  std::vector<std::pair<double, double>> angles = {};  ///< intervals of chamber angles it is about
+  std::string meant = {};  ///< why it is intended, where the case says so, or ""
   std::string text = {};
   std::string bound = {};  ///< "> 12000": what is known of a value that was not found
 };

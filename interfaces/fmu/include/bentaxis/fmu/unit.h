@@ -37,7 +37,7 @@ struct UnitSummary {
   std::size_t outputs = 0, states = 0, indicators = 0, parameters = 0;
   std::optional<double> start_torque;  ///< Nm, of the input drive_torque, where there is one
   std::string no_start_torque;  ///< why the mean torque of the operating point is not known; then 0
-  std::string glibc;            ///< the least version that its library needs: "2.35"
+  std::string glibc;            ///< the minimum version that its library needs: "2.35"
 };
 /// @throws InputError as unit_archive
 UnitSummary unit_summary(const Case& the_case, const UnitOptions& options);

@@ -58,7 +58,7 @@ struct GoldenUpdate {
   bool rewritten = false;
   std::string text;
 };
-/// Rewrites the curves of one golden reference that differ beyond its tolerance.
+/// Rewrites the curves of one golden reference that differ by more than its tolerance.
 GoldenUpdate update_golden(const compare::ReferenceDescription& description,
                            const PartProgress& progress_of = silent());
 

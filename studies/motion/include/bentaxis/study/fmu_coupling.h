@@ -1,4 +1,4 @@
-// A drive or load from a unit of others (FMI 2.0, 3.0), coupled to the pump in a simulation.
+// A drive or load from an imported FMU (FMI 2.0, 3.0), coupled to the pump in a simulation.
 #pragma once
 
 #include <cstddef>

@@ -114,9 +114,10 @@ struct SimulationResult {
   std::vector<CouplingChange> coupling;      ///< with a unit, in the judged time, largest first
   std::string multibody_choice;              ///< how Simbody's accuracy was found
 
-  /// Allowed difference at a row, of peak: the wanted error, grown as disturbances grow.
+  /// Allowed difference at a row, of peak: the wanted error times the amplification of
+  /// disturbances.
   double allowed(std::size_t row) const { return choice.error * growth[row]; }
-  const GroupDifference* worst() const;  ///< nearest to or furthest beyond what is allowed
+  const GroupDifference* worst() const;  ///< largest difference over its tolerance
   /// Time that a model needs for an error, between its efforts; not_computed() where none of them
   /// reached it.
   double seconds_for(Model model, double error) const;

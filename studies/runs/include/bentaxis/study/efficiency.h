@@ -33,10 +33,11 @@ struct Efficiencies {
   double overall = 0;          ///< PumpPower::useful over the power of the drive
 
   // Of ISO 4409, by volume flow at delivery conditions: overall_iso = volumetric_iso x mechanical.
-  double volumetric_iso = 0;  ///< volume flow to the load at delivery pressure over the ideal flow
-  double mechanical = 0;      ///< hydraulic-mechanical: V dp / 2 pi over the mean drive torque,
-                              ///< where power goes in and pressure is raised
-  double overall_iso = 0;     ///< that volume flow x dp over the power of the drive
+  double volumetric_iso =
+      0;  ///< volume flow to the load, at mean delivery pressure, over the ideal flow
+  double mechanical = 0;   ///< hydraulic-mechanical: V dp / 2 pi over the mean drive torque,
+                           ///< where power goes in and pressure is raised
+  double overall_iso = 0;  ///< that volume flow x dp over the power of the drive
 };
 
 /// What an efficiency is called, wherever it is stated.

@@ -6,9 +6,9 @@
 
 namespace bentaxis::study {
 
-/// Memory that this process can still get, bytes: the least of what the machine has available, what
-/// its control group (a container, a batch job) leaves it, and what the limit of its address space
-/// (ulimit -v) leaves. Infinite where nothing of this is known.
+/// Memory that this process can still get, bytes: the minimum of what the machine has available,
+/// what its control group (a container, a batch job) leaves it, and what the limit of its address
+/// space (ulimit -v) leaves. Infinite where nothing of this is known.
 /// @param root  where the system's folders proc and sys are
 double available_memory(const std::filesystem::path& root = "/");
 

@@ -1,4 +1,4 @@
-// What of a case is possible but hardly meant: a tilt in radians, millimetres given as metres,
+// Input plausibility checks of a case: a tilt in radians, millimetres given as metres,
 // radii exchanged. Limits follow from the geometry and physics of the given pump.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace bentaxis::study {
 
-/// A value, or values together, that are hardly meant.
+/// A plausibility warning: a value or a combination of values.
 struct PlausibilityWarning {
   std::string code;    ///< stable short name: "tilt-in-radians"
   std::string text;    ///< one line: the key with its value, the limit and its reason
@@ -44,7 +44,7 @@ Plausibility plausibility(const Case& the_case);
 /// @throws InputError as above
 std::string stated_reason(const Case& the_case, const std::string& code);
 
-/// All checks as a Markdown table: name, and what is held to be doubtful.
+/// All checks as a Markdown table: name, and what it warns of.
 std::string plausibility_markdown();
 /// Names of all checks.
 std::vector<std::string> plausibility_codes();

@@ -1,4 +1,4 @@
-// What of given states is possible but hardly meant.
+// Plausibility checks of given states.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace bentaxis::study {
 
-/// Looks at states as a file gave them; each warning is about the first state that is doubtful and
+/// Looks at states as a file gave them; each warning is about the first implausible state and
 /// says how many are:
 /// - "states-vacuum": a chamber or port below absolute zero
 /// - "states-teeth-apart": block and shaft further apart than teeth let them be

@@ -1,4 +1,4 @@
-// What the ports' timing does to a pump, each with its angle, its limit and whether it is beyond.
+// Effects of the port timing, each with its angle, its limit and whether it exceeds it.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 namespace bentaxis::study {
 
 /// The verdicts that docs/hydraulics.md, "Timing", defines, in its order. `meant` is the reason
-/// that `[plausibility] meant` of the case gives for one beyond its limit.
+/// that `[plausibility] meant` of the case gives for one that exceeds its limit.
 /// @throws InputError where `[plausibility] meant` is wrong
 std::vector<TimingRow> timing_rows(const Case& the_case, const hydraulics::SteadyState& state);
 
@@ -26,7 +26,7 @@ struct TimingQuantity {
 };
 const std::vector<TimingQuantity>& timing_quantities();
 
-/// Those beyond their limits without a reason.
+/// Those that exceed their limits without a reason.
 std::vector<Warning> timing_warnings(const std::vector<TimingRow>& rows);
 
 /// Says that computed chamber pressures are less accurate than `curve_error` of their cases allows;
@@ -66,7 +66,7 @@ SuctionSpeed suction_speed(const Case& the_case, double limit, const Progress& p
 /// @throws ComputationError also where no chamber is ever open to the suction port alone
 SuctionSpeed filling_speed(const Case& the_case, const Progress& progress = {});
 
-/// As one more verdict: beyond its limit where it is below the speed of the case.
+/// As one more verdict: exceeded where it is below the speed of the case.
 TimingRow suction_speed_row(const Case& the_case, const SuctionSpeed& found);
 
 }  // namespace bentaxis::study

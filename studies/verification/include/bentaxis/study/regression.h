@@ -22,7 +22,8 @@ struct GroupLine {
   int compared = 0, missing = 0, failed = 0;  ///< numbers of channels
   double seconds = 0;
 
-  /// The channel nearest to failing or furthest beyond; nullptr where nothing was compared.
+  /// The channel with the largest difference over its tolerance; nullptr where nothing was
+  /// compared.
   const compare::ReferenceChannel* worst() const;
   bool is_missing() const { return compared == 0 && failed == 0; }
   std::string verdict() const;
@@ -52,7 +53,8 @@ struct Outcome {
 
   /// What was found of a channel of a model; nullptr where it was not compared.
   const compare::ReferenceChannel* find(const std::string& model, const std::string& channel) const;
-  /// The line of a group nearest to failing or furthest beyond; nullptr where nothing was compared.
+  /// The line of a group with the largest difference over its tolerance; nullptr where nothing was
+  /// compared.
   const GroupLine* worst_line(const std::string& group) const;
 };
 

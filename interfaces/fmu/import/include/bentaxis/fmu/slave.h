@@ -1,4 +1,4 @@
-// Functional Mock-up Units of others (FMI 2.0, 3.0) for co-simulation: unpacked, read, run.
+// Imported Functional Mock-up Units (FMI 2.0, 3.0) for co-simulation: unpacked, read, run.
 #pragma once
 
 #include <array>
