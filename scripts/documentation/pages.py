@@ -1,36 +1,30 @@
-"""The pages of the site: what mkdocs.yml names, README.md, and every file of the repository that one of them links to.
+"""The pages of the site: what mkdocs.yml names, README.md, docs/, and every file of the repository that one of them links to.
 
 They are collected in the repository's own layout, so that their links need no change.
 """
-import os
 import pathlib
-import re
 import shutil
-import urllib.parse
 
 import yaml
 
+from . import links
+
 GENERATED = pathlib.PurePosixPath("docs/reference")  # made by scripts/build_site; not in the repository
-FENCE = re.compile(r"^( *)(`{3,}|~{3,}).*?^\1\2`*~*[ \t]*$", re.MULTILINE | re.DOTALL)
-CODE = re.compile(r"(?<!`)(`+)(?!`).+?(?<!`)\1(?!`)", re.DOTALL)
-COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
-LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\[\]]*\])*\]\(\s*<?([^()\s>]*(?:\([^()\s]*\)[^()\s>]*)*)>?(?:\s+\"[^\"]*\")?\s*\)")
-IMAGE = re.compile(r"<(?:img|source)\b[^>]*\bsrc=\"([^\"]+)\"")
-ANCHOR = re.compile(r"<a\b[^>]*\bhref=\"([^\"]+)\"")
 
 
 class _Loader(yaml.SafeLoader):
-    """mkdocs.yml has tags of mkdocs; what they stand for is not needed here."""
+    """mkdocs.yml has tags of mkdocs and Python; what they stand for is not needed here."""
 
 
 _Loader.add_constructor("!ENV", lambda loader, node: None)
+_Loader.add_multi_constructor("tag:yaml.org,2002:python/", lambda loader, suffix, node: None)
 
 
 def navigation(root):
     """The paths that mkdocs.yml names in `nav`, in their order."""
     def paths(node):
         if isinstance(node, str):
-            yield node
+            yield pathlib.PurePosixPath(node)
         elif isinstance(node, list):
             for item in node:
                 yield from paths(item)
@@ -41,46 +35,13 @@ def navigation(root):
     return list(paths(yaml.load((root / "mkdocs.yml").read_text(encoding="utf-8"), _Loader)["nav"]))
 
 
-def without_code(text):
-    """The text with blocks of code, inline code and comments blanked; lines stay where they are."""
-    def blank(match):
-        return re.sub(r"[^\n]", " ", match[0])
-
-    for pattern in (FENCE, COMMENT, CODE):
-        text = pattern.sub(blank, text)
-    return text
-
-
-def links(text):
-    """(line, target) of every link and picture of a page."""
-    text = without_code(text)
-    found = []
-    for pattern in (LINK, IMAGE, ANCHOR):
-        for match in pattern.finditer(text):
-            found.append((text.count("\n", 0, match.start()) + 1, match[1]))
-    return sorted(found)
-
-
-def is_external(target):
-    return re.match(r"[a-z][a-z0-9+.-]*:|//", target, re.IGNORECASE) is not None
-
-
-def local_path(page, target):
-    """The file that a link of `page` names, relative to the root; None for links out of the repository or within the page."""
-    path = urllib.parse.unquote(target.split("#")[0].split("?")[0])
-    if is_external(target) or not path:
-        return None
-    return pathlib.PurePosixPath(os.path.normpath(page.parent / path))
-
-
 def sources(root):
     """Every file of the repository that the site holds, and what is wrong with it: ([paths], ["page:line: what"])."""
-    todo = [pathlib.PurePosixPath(path) for path in navigation(root)]
-    todo += [pathlib.PurePosixPath(file.relative_to(root).as_posix()) for file in sorted((root / "docs").rglob("*.md"))]
-    done, wrong = [], []
-    seen = set()
+    named = [page for page in navigation(root) if GENERATED not in page.parents]
+    todo = named + [pathlib.PurePosixPath(file.relative_to(root).as_posix()) for file in sorted((root / "docs").rglob("*.md"))]
+    done, wrong, seen = [], [], set()
     for page in todo:  # grows
-        if page in seen or GENERATED in page.parents:
+        if page in seen:
             continue
         seen.add(page)
         if not (root / page).is_file():
@@ -89,15 +50,19 @@ def sources(root):
         done.append(page)
         if page.suffix != ".md":
             continue
-        for line, target in links((root / page).read_text(encoding="utf-8")):
-            path = local_path(page, target)
+        if page.parts[0] == "docs" and page not in named:
+            wrong.append(f"{page}: is not in the navigation of mkdocs.yml")
+        for line, target in links.of_markdown((root / page).read_text(encoding="utf-8")):
+            path = links.local_path(page, target)
             if path is None:
                 continue
             if GENERATED in path.parents:
                 wrong.append(f"{page}:{line}: link to {path}, which only the site has: write `bentaxis COMMAND`, which the site links")
             elif path.parts[:1] == ("..",) or not (root / path).exists():
                 wrong.append(f"{page}:{line}: link to {target}: no such file")
-            elif (root / path).is_file():
+            elif (root / path).is_dir():
+                wrong.append(f"{page}:{line}: link to {target}: a folder is no page; link to a file in it")
+            else:
                 todo.append(path)
     return done, wrong
 

@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+"""The documentation site as a reader sees it: three pages opened from the folder in headless Chromium, wide and narrow.
+
+usage: site_test.py SITE [options of unittest]
+
+No script complains, nothing but files is loaded, equations are typeset, the search finds, the navigation is there.
+With BENTAXIS_SCREENSHOTS=DIR the pages are also saved there as pictures. Without Chromium: exit status 77.
+"""
+import os
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "scripts"))
+sys.dont_write_bytecode = True
+from documentation.browser import Browser, find  # noqa: E402
+
+WIDTHS = (1280, 420)
+PAGES = ("index.html", "docs/theory.html", "docs/reference/commands/compare.html")
+# What is typed, and a page that must be among the first results.
+QUERIES = {"cavitation": "hydraulics", "sweep": "sweep", "tapered": "bearing"}
+NO_CHROMIUM = 77
+
+SITE = None  # set in main
+
+
+class SiteTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser().__enter__()
+        cls.addClassCleanup(cls.browser.__exit__, None, None, None)
+
+    def open(self, page, width):
+        self.browser.open(SITE / page, width)
+        folder = os.environ.get("BENTAXIS_SCREENSHOTS")
+        if folder:
+            self.browser.wait_for("document.fonts.status === 'loaded'")
+            self.browser.picture(pathlib.Path(folder) / f"site_{page.replace('/', '_').removesuffix('.html')}_{width}.png")
+
+    def assert_clean(self):
+        self.assertEqual(self.browser.complaints, [])
+        foreign = [url for url in self.browser.requests if not url.startswith((SITE.as_uri() + "/", "data:", "blob:", "about:"))]
+        self.assertEqual(foreign, [])
+
+    def test_pages_load_without_complaint(self):
+        for page in PAGES:
+            for width in WIDTHS:
+                with self.subTest(page=page, width=width):
+                    self.open(page, width)
+                    self.assertTrue(self.browser.wait_for("document.documentElement.classList.contains('js')"))
+                    self.assertGreater(self.browser.evaluate("document.querySelector('article').innerText.length"), 200)
+                    # Nothing is wider than the window; what is wide scrolls within the page.
+                    self.assertLessEqual(self.browser.evaluate("document.scrollingElement.scrollWidth"), width)
+                    self.assert_clean()
+
+    def test_equations_are_typeset(self):
+        self.open("docs/theory.html", 1280)
+        equations = self.browser.evaluate("document.querySelectorAll('.arithmatex').length")
+        self.assertGreater(equations, 0)
+        typeset = self.browser.wait_for(
+            f"(n => n >= {equations} && n)([...document.querySelectorAll('.arithmatex')].filter(e => e.querySelector('.katex-html')).length)")
+        self.assertEqual(typeset, equations)
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.katex-error').length"), 0)
+        # In KaTeX's own fonts, which come with the site.
+        self.assertTrue(self.browser.wait_for("document.fonts.check('16px KaTeX_Main')"))
+        self.assert_clean()
+
+    def test_the_search_finds(self):
+        for width in WIDTHS:
+            for query, expected in QUERIES.items():
+                with self.subTest(width=width, query=query):
+                    self.open("index.html", width)
+                    if width < 960:  # the field is behind its button
+                        self.browser.evaluate("document.querySelector('label[for=__search]').click()")
+                    self.browser.evaluate("document.querySelector('.md-search__input').focus()")
+                    self.browser.type(query)
+                    found = self.browser.wait_for("(l => l.length && l)([...document.querySelectorAll('.md-search-result__link')].map(a => a.href))")
+                    self.assertTrue(found, "no results")
+                    self.assertTrue(any(expected in url for url in found[:5]), found[:5])
+                    self.assertTrue(all(url.startswith(SITE.as_uri() + "/") for url in found), found)
+                    self.assert_clean()
+
+    def test_a_word_that_is_nowhere_is_not_found(self):
+        self.open("index.html", 1280)
+        self.browser.evaluate("document.querySelector('.md-search__input').focus()")
+        self.browser.type("xyzzyq")
+        self.assertTrue(self.browser.wait_for("/^No /.test(document.querySelector('.md-search-result__meta').innerText)"))
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.md-search-result__link').length"), 0)
+
+    def test_the_navigation_is_there(self):
+        shown = """[...document.querySelectorAll('nav a, nav label')].filter(e => e.checkVisibility({checkVisibilityCSS: true})
+            && e.getBoundingClientRect().width > 0 && e.getBoundingClientRect().left >= 0 && e.getBoundingClientRect().right <= innerWidth)
+            .map(e => e.innerText.trim())"""
+        sections = ["Start", "Tutorials", "How-to", "Reference", "Theory", "Verification", "For developers"]
+        for width in WIDTHS:
+            with self.subTest(width=width):
+                self.open("index.html", width)
+                if width < 1220:  # behind the button of three lines
+                    self.browser.evaluate("document.querySelector('label[for=__drawer]').click()")
+                found = self.browser.wait_for(f"(l => {sections}.every(s => l.includes(s)) && l)({shown})") or self.browser.evaluate(shown)
+                for section in sections:
+                    self.assertIn(section, found)
+                folder = os.environ.get("BENTAXIS_SCREENSHOTS")
+                if folder:
+                    self.browser.picture(pathlib.Path(folder) / f"site_navigation_{width}.png")
+
+
+def main():
+    global SITE
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    SITE = pathlib.Path(sys.argv.pop(1)).resolve()
+    if not (SITE / "index.html").exists():
+        sys.exit(f"site_test: no site in {SITE}: run scripts/build_site")
+    if find() is None:
+        print("site_test: Chromium is not installed")
+        sys.exit(NO_CHROMIUM)
+    unittest.main()
+
+
+if __name__ == "__main__":
+    main()
