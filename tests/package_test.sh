@@ -17,6 +17,10 @@ for file in ./usr/bin/bentaxis ./usr/include/bentaxis/analytic/model.h ./usr/lib
     ./usr/share/bash-completion/completions/bentaxis ./usr/share/doc/bentaxis/copyright ./usr/share/doc/bentaxis/changelog.Debian.gz ./usr/share/doc/bentaxis/LICENSE ./usr/share/doc/bentaxis/docs/theory.md; do
   grep -qxF "$file" content || { echo "not in the package: $file"; exit 1; }
 done
+# With the site goes its search; pages that were built without it lack nothing else.
+if grep -qxF ./usr/share/doc/bentaxis/site/index.html content; then
+  grep -qxF ./usr/share/doc/bentaxis/site/assets/search_index.js content || { echo "the site lacks its search"; exit 1; }
+fi
 # Nothing of the tests, nothing outside of /usr.
 if grep -E '_test|\.pyc$|/tests/' content || grep -vE '^\./(usr/.*)?$' content; then
   echo "in the package, and should not be"

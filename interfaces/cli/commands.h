@@ -27,6 +27,7 @@ Command add_blocktorque_command(CommandParser program);
 Command add_calibrate_command(CommandParser program);
 Command add_completion_command(CommandParser program);
 Command add_compare_command(CommandParser program);
+Command add_docs_command(CommandParser program);
 Command add_fig34_command(CommandParser program);
 Command add_fmu_command(CommandParser program);
 Command add_hardcases_command(CommandParser program);

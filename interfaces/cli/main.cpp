@@ -103,7 +103,7 @@ int run_program(int argc, char** argv) {
       add_life_command(program),        add_identify_command(program),
       add_index_command(program),       add_paper_command(program),
       add_fmu_command(program),         add_init_command(program),
-      add_outputs_command(program)};
+      add_outputs_command(program),     add_docs_command(program)};
   return guarded([&]() -> int {
     refuse_control_characters(argc, argv);
     if (!parser.parse(argc, argv)) return kDone;

@@ -1,6 +1,5 @@
 """The generated pages of the site's reference: commands, case keys, plausibility codes, JSON, Python, C++."""
 import ast
-import json
 import pathlib
 import re
 import subprocess
@@ -12,32 +11,51 @@ def output(*command, **options):
     return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True, **options).stdout
 
 
+def cell(text):
+    """Text within a table."""
+    return re.sub(r"([|<>*_`])", r"\\\1", text)
+
+
 # ---------------------------------------------------------------- commands
 
+def command_groups(help_text):
+    """[(heading, [(name, line)])] of the commands that a help text lists, in one group or several."""
+    groups, heading = [], None
+    for line in re.sub(r"\n {10,}", " ", help_text).split("\n"):
+        head = re.fullmatch(r"([A-Z]\S.*):", line)
+        row = re.match(r"  ([a-z][a-z0-9]*)\s{2,}(\S.*)$", line)
+        if head:
+            heading = head[1]
+        elif row and heading not in (None, "Options", "Positionals"):
+            if not groups or groups[-1][0] != heading:
+                groups.append((heading, []))
+            groups[-1][1].append((row[1], row[2]))
+        elif line and not line.startswith(" "):
+            heading = None
+    return groups
+
+
 def subcommands(help_text):
-    """(name, line) of the commands below that a help text lists."""
-    at = help_text.find("Subcommands:")
-    if at < 0:
-        return []
-    return re.findall(r"^  ([a-z0-9]+)\s{2,}(\S.*)$", re.sub(r"\n {10,}", " ", help_text[at:]), re.MULTILINE)
+    """(name, line) of all of them."""
+    return [row for _, rows in command_groups(help_text) for row in rows]
 
 
 def command_pages(program):
     """{path below docs/reference: text}: a page per command and the index."""
-    pages = {}
     top = output(program, "--help")
-    rows = []
-    for name, what in subcommands(top):
-        help_text = output(program, name, "--help")
-        text = f"{NOTE}# bentaxis {name}\n\n```text\n{help_text.rstrip()}\n```\n"
-        for below, _ in subcommands(help_text):
-            text += f"\n## bentaxis {name} {below}\n\n```text\n{output(program, name, below, '--help').rstrip()}\n```\n"
-        pages[f"commands/{name}.md"] = text
-        rows.append(f"| [`bentaxis {name}`](commands/{name}.md) | {what.replace('|', chr(92) + '|')} |")
-    if not rows:
+    pages, index = {}, f"{NOTE}# Commands\n"
+    for heading, commands in command_groups(top):
+        index += f"\n## {heading}\n\n| command | what it does |\n|---|---|\n"
+        for name, what in commands:
+            help_text = output(program, name, "--help")
+            text = f"{NOTE}# bentaxis {name}\n\n```text\n{help_text.rstrip()}\n```\n"
+            for below, _ in subcommands(help_text):
+                text += f"\n## bentaxis {name} {below}\n\n```text\n{output(program, name, below, '--help').rstrip()}\n```\n"
+            pages[f"commands/{name}.md"] = text
+            index += f"| [`bentaxis {name}`](commands/{name}.md) | {cell(what)} |\n"
+    if not pages:
         raise RuntimeError("`bentaxis --help` lists no commands: the form of the help has changed")
-    pages["commands.md"] = (f"{NOTE}# Commands\n\n| command | what it does |\n|---|---|\n" + "\n".join(rows)
-                            + f"\n\n## bentaxis --help\n\n```text\n{top.rstrip()}\n```\n")
+    pages["commands.md"] = index + f"\n## bentaxis --help\n\n```text\n{top.rstrip()}\n```\n"
     return pages
 
 
@@ -91,7 +109,7 @@ def cpp_page(headers):
     for module, files in headers.items():
         text += f"\n## bentaxis/{module}\n\n| header | what it is |\n|---|---|\n"
         for file, brief in files:
-            text += f"| `bentaxis/{module}/{file}` | {brief.replace('|', chr(92) + '|')} |\n"
+            text += f"| `bentaxis/{module}/{file}` | {cell(brief)} |\n"
     return text
 
 
@@ -132,6 +150,7 @@ JAVADOC_AUTOBRIEF = YES
 MARKDOWN_SUPPORT = YES
 QUIET = YES
 WARN_IF_UNDOCUMENTED = NO
+WARN_IF_INCOMPLETE_DOC = NO
 HAVE_DOT = NO
 CLASS_GRAPH = NO
 VERBATIM_HEADERS = NO
@@ -151,11 +170,29 @@ BUILTIN_STL_SUPPORT = YES
     return done.stderr.splitlines()
 
 
+# ---------------------------------------------------------------- licences
+
+# Debian packages of which parts are in the site.
+PARTS = {"mkdocs-material": "theme, icons and search (with lunr and RxJS)", "libjs-katex": "typesetting of equations", "fonts-katex": "fonts of the equations",
+         "doxygen": "styles and scripts of the C++ pages"}
+
+
+def parts_page():
+    text = f"{NOTE}# Parts of this site\n\nThe pages are bentaxis', under the Apache License 2.0. The site holds parts of these programs, each under its own licence.\n"
+    for package, what in PARTS.items():
+        file = pathlib.Path("/usr/share/doc") / package / "copyright"
+        if not file.is_file():
+            raise RuntimeError(f"{file}: no licence of {package}, of which the site has {what}")
+        text += f"\n## {package}\n\n{what[0].upper() + what[1:]}.\n\n````text\n{file.read_text(encoding='utf-8').rstrip()}\n````\n"
+    return text
+
+
 def write(root, program, docs):
     """Writes all of them below docs/reference."""
     pages = command_pages(program)
     pages["plausibility_codes.md"] = plausibility_page(program)
     pages["python.md"] = python_page(root)
+    pages["parts.md"] = parts_page()
     pages["cpp.md"] = cpp_page(public_headers(root))
     for path, text in pages.items():
         file = docs / "reference" / path

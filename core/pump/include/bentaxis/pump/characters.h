@@ -12,7 +12,7 @@ namespace bentaxis {
 /// @param spaces  tab, line feed and carriage return count too
 bool has_control_characters(const std::string& text, bool spaces);
 
-/// A text with its control characters as \u001B, on one line. What stands for no character is
+/// A text with its control characters as `\u001B`, on one line. What stands for no character is
 /// escaped where a terminal could take it for a control character.
 /// @param spaces  tab and line feed are escaped too
 std::string without_control_characters(const std::string& text, bool spaces = true);

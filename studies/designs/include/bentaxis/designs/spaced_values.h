@@ -7,7 +7,7 @@
 
 namespace bentaxis::designs {
 
-/// One number, FROM:TO:STEP, or FROM:TO:#N for N of them, both ends among them.
+/// One number, FROM:TO:STEP, or `FROM:TO:#N` for N of them, both ends among them.
 /// @param what   whose value it is, for messages: "--speeds"
 /// @param unit   of the numbers, for messages
 /// @param least  no number may be smaller; at most `most` values
