@@ -9,6 +9,7 @@ With BENTAXIS_SCREENSHOTS=DIR the pages are also saved there as pictures. Withou
 import os
 import pathlib
 import sys
+import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "scripts"))
@@ -32,10 +33,14 @@ class SiteTest(unittest.TestCase):
 
     def open(self, page, width):
         self.browser.open(SITE / page, width)
+        self.save(f"{page.replace('/', '_').removesuffix('.html')}_{width}")
+
+    def save(self, name):
         folder = os.environ.get("BENTAXIS_SCREENSHOTS")
         if folder:
             self.browser.wait_for("document.fonts.status === 'loaded'")
-            self.browser.picture(pathlib.Path(folder) / f"site_{page.replace('/', '_').removesuffix('.html')}_{width}.png")
+            time.sleep(0.5)  # what moves in comes to rest
+            self.browser.picture(pathlib.Path(folder) / f"site_{name}.png")
 
     def assert_clean(self):
         self.assertEqual(self.browser.complaints, [])
@@ -54,16 +59,19 @@ class SiteTest(unittest.TestCase):
                     self.assert_clean()
 
     def test_equations_are_typeset(self):
-        self.open("docs/theory.html", 1280)
-        equations = self.browser.evaluate("document.querySelectorAll('.arithmatex').length")
-        self.assertGreater(equations, 0)
-        typeset = self.browser.wait_for(
-            f"(n => n >= {equations} && n)([...document.querySelectorAll('.arithmatex')].filter(e => e.querySelector('.katex-html')).length)")
-        self.assertEqual(typeset, equations)
-        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.katex-error').length"), 0)
-        # In KaTeX's own fonts, which come with the site.
-        self.assertTrue(self.browser.wait_for("document.fonts.check('16px KaTeX_Main')"))
-        self.assert_clean()
+        pages = [page.relative_to(SITE).as_posix() for page in sorted(SITE.rglob("*.html")) if 'class="arithmatex"' in page.read_text(encoding="utf-8")]
+        self.assertNotEqual(pages, [])
+        for page in pages:
+            with self.subTest(page=page):
+                self.open(page, 1280)
+                equations = self.browser.evaluate("document.querySelectorAll('.arithmatex').length")
+                typeset = self.browser.wait_for(
+                    f"(n => n >= {equations} && n)([...document.querySelectorAll('.arithmatex')].filter(e => e.querySelector('.katex-html')).length)")
+                self.assertEqual(typeset, equations)
+                self.assertEqual(self.browser.evaluate("document.querySelectorAll('.katex-error').length"), 0)
+                # In KaTeX's own fonts, which come with the site.
+                self.assertTrue(self.browser.wait_for("document.fonts.check('16px KaTeX_Main')"))
+                self.assert_clean()
 
     def test_the_search_finds(self):
         for width in WIDTHS:
@@ -88,21 +96,28 @@ class SiteTest(unittest.TestCase):
         self.assertEqual(self.browser.evaluate("document.querySelectorAll('.md-search-result__link').length"), 0)
 
     def test_the_navigation_is_there(self):
-        shown = """[...document.querySelectorAll('nav a, nav label')].filter(e => e.checkVisibility({checkVisibilityCSS: true})
-            && e.getBoundingClientRect().width > 0 && e.getBoundingClientRect().left >= 0 && e.getBoundingClientRect().right <= innerWidth)
-            .map(e => e.innerText.trim())"""
+        # What a reader can click: the topmost element at its middle.
+        shown = """[...document.querySelectorAll('nav a, nav label')].filter(e => {
+              const box = e.getBoundingClientRect();
+              const top = document.elementFromPoint(box.left + box.width / 2, box.top + box.height / 2);
+              return top && (e.contains(top) || top.contains(e) && top.closest('nav'));
+            }).map(e => e.innerText.trim())"""
         sections = ["Start", "Tutorials", "How-to", "Reference", "Theory", "Verification", "For developers"]
         for width in WIDTHS:
             with self.subTest(width=width):
                 self.open("index.html", width)
-                if width < 1220:  # behind the button of three lines
+                if width < 1220:  # behind the button of three lines, one level up
+                    self.assertNotIn("Reference", self.browser.evaluate(shown))
                     self.browser.evaluate("document.querySelector('label[for=__drawer]').click()")
+                    self.browser.evaluate("[...document.querySelectorAll('.md-nav__title')].find(e => e.innerText.trim() === 'Start').click()")
                 found = self.browser.wait_for(f"(l => {sections}.every(s => l.includes(s)) && l)({shown})") or self.browser.evaluate(shown)
                 for section in sections:
                     self.assertIn(section, found)
-                folder = os.environ.get("BENTAXIS_SCREENSHOTS")
-                if folder:
-                    self.browser.picture(pathlib.Path(folder) / f"site_navigation_{width}.png")
+                self.save(f"navigation_{width}")
+                # One click further is a page.
+                self.browser.evaluate("[...document.querySelectorAll('nav a, nav label')].filter(e => e.innerText.trim() === 'Theory').pop().click()")
+                self.assertTrue(self.browser.wait_for("[...document.querySelectorAll('nav a')].some(e => e.href.endsWith('docs/theory.html'))"))
+                self.assert_clean()
 
 
 def main():

@@ -1,29 +1,41 @@
-"""Hooks of mkdocs: `bentaxis COMMAND` in a page links to the reference page of that command."""
+"""Hooks of mkdocs: inline code that names a command or a key of the case file links to its place in the generated reference."""
 import pathlib
 import posixpath
 import re
 
-COMMAND_PAGES = "docs/reference/commands/"
-# Inline code outside of links and headings: <code>bentaxis compare CASE</code>
-LINKED = re.compile(r"<a\b.*?</a>|<h[1-6]\b.*?</h[1-6]>|<pre\b.*?</pre>|<code>bentaxis ([a-z0-9]+)\b([^<]*)</code>", re.DOTALL)
+COMMANDS = "docs/reference/commands/"
+KEYS = "docs/reference/case_keys"
+ANCHOR = re.compile(r'<a id="([\w.]+)">')
+# Inline code outside of links, headings and blocks: <code>bentaxis compare CASE</code>, <code>pump.tilt_deg</code>
+LINKED = re.compile(r"<a\b.*?</a>|<h[1-6]\b.*?</h[1-6]>|<pre\b.*?</pre>|"
+                    r"<code>(?:bentaxis (?P<command>[a-z0-9]+)\b[^<]*|(?P<key>[a-z]\w*\.\w+)(?:\s*=[^<]*)?)</code>", re.DOTALL)
 
-_commands = set()
+_commands, _keys = set(), set()
 
 
 def on_files(files, config):
     _commands.clear()
-    _commands.update(pathlib.PurePosixPath(file.src_uri).stem for file in files
-                     if file.src_uri.startswith(COMMAND_PAGES) and file.src_uri.endswith(".md"))
+    _keys.clear()
+    for file in files:
+        if file.src_uri.startswith(COMMANDS) and file.src_uri.endswith(".md"):
+            _commands.add(pathlib.PurePosixPath(file.src_uri).stem)
+        elif file.src_uri == KEYS + ".md":
+            _keys.update(ANCHOR.findall(pathlib.Path(file.abs_src_path).read_text(encoding="utf-8")))
     return files
 
 
 def on_page_content(html, page, config, files):
+    here = page.file.dest_uri
+
     def linked(match):
-        command = match[1]
-        target = f"{COMMAND_PAGES}{command}.html"
-        if command not in _commands or page.file.dest_uri == target:
+        if match["command"] in _commands:
+            target, anchor = f"{COMMANDS}{match['command']}.html", ""
+        elif match["key"] in _keys:
+            target, anchor = KEYS + ".html", "#" + match["key"]
+        else:
             return match[0]
-        path = posixpath.relpath(target, posixpath.dirname(page.file.dest_uri) or ".")
-        return f'<a href="{path}">{match[0]}</a>'
+        if target == here:
+            return match[0]
+        return f'<a href="{posixpath.relpath(target, posixpath.dirname(here) or ".")}{anchor}">{match[0]}</a>'
 
     return LINKED.sub(linked, html)

@@ -1,5 +1,6 @@
 """The generated pages of the site's reference: commands, case keys, plausibility codes, JSON, Python, C++."""
 import ast
+import json
 import pathlib
 import re
 import subprocess
@@ -57,6 +58,28 @@ def command_pages(program):
         raise RuntimeError("`bentaxis --help` lists no commands: the form of the help has changed")
     pages["commands.md"] = index + f"\n## bentaxis --help\n\n```text\n{top.rstrip()}\n```\n"
     return pages
+
+
+# ---------------------------------------------------------------- case keys
+
+def case_keys_page(program):
+    """Every key of a case file, each with an anchor: #pump.tilt_deg."""
+    schema = json.loads(output(program, "schema"))["properties"]
+    tables = ["top"] + [name for name, value in schema.items() if "properties" in value]
+    text = (f"{NOTE}# Case keys\n\nEvery key of a [case file](../case_file.md), by table. The same from the program: `bentaxis schema --markdown TABLE`, "
+            "and `bentaxis schema` as a JSON Schema for editors.\n")
+    count = 0
+    for table in tables:
+        below = [f"{table}.{name}" for name, value in schema.get(table, {}).get("properties", {}).items() if "properties" in value]
+        for name in [table] + below:
+            printed = output(program, "schema", "--markdown", name)
+            prefix = "" if name == "top" else name + "."
+            rows, found = re.subn(r"^\| (`(\w+)`)", lambda match: f'| <a id="{prefix}{match[2]}"></a>{match[1]}', printed, flags=re.MULTILINE)
+            count += found
+            text += f"\n## {'Above all tables' if name == 'top' else f'[{name}]'}\n\n{rows}"
+    if count < 100:
+        raise RuntimeError(f"only {count} keys of case files were found: the form of `bentaxis schema` has changed")
+    return text
 
 
 # ---------------------------------------------------------------- plausibility codes
@@ -190,6 +213,7 @@ def parts_page():
 def write(root, program, docs):
     """Writes all of them below docs/reference."""
     pages = command_pages(program)
+    pages["case_keys.md"] = case_keys_page(program)
     pages["plausibility_codes.md"] = plausibility_page(program)
     pages["python.md"] = python_page(root)
     pages["parts.md"] = parts_page()
