@@ -72,7 +72,8 @@ std::string manual(const CommandInfo& program, const std::string& footer) {
   for (const CommandInfo& command : program.commands)
     text += section("bentaxis " + command.name, command);
   return text + ".SH EXIT STATUS\n.nf\n" + roff(footer) + "\n.fi\n" +
-         ".SH SEE ALSO\nbentaxis docs opens the documentation. Its pages are also in share/doc/bentaxis, "
+         ".SH SEE ALSO\nbentaxis docs opens the documentation. Its pages are also in "
+         "share/doc/bentaxis, "
          "beginning with README.md.\n";
 }
 
