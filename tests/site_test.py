@@ -21,6 +21,11 @@ PAGES = ("index.html", "docs/theory.html", "docs/reference/commands/compare.html
 # What is typed, and a page that must be among the first results.
 QUERIES = {"cavitation": "hydraulics", "sweep": "sweep", "tapered": "bearing"}
 NO_CHROMIUM = 77
+# Equations whose number begins before their last part ends.
+OVERLAPS = """[...document.querySelectorAll('.katex-display .katex-html')].filter(line => {
+  const tag = line.querySelector(':scope > .tag'), last = [...line.querySelectorAll(':scope > .base')].pop();
+  return tag && last && tag.getBoundingClientRect().left < last.getBoundingClientRect().right;
+}).map(line => line.innerText.slice(0, 60))"""
 
 SITE = None  # set in main
 
@@ -69,6 +74,11 @@ class SiteTest(unittest.TestCase):
                     f"(n => n >= {equations} && n)([...document.querySelectorAll('.arithmatex')].filter(e => e.querySelector('.katex-html')).length)")
                 self.assertEqual(typeset, equations)
                 self.assertEqual(self.browser.evaluate("document.querySelectorAll('.katex-error').length"), 0)
+                # No number is written over its equation, wide or narrow.
+                for width in WIDTHS:
+                    self.browser.resize(width)
+                    self.assertTrue(self.browser.wait_for("document.documentElement.dataset.equations === 'ready'"))
+                    self.assertEqual(self.browser.evaluate(OVERLAPS), [])
                 # In KaTeX's own fonts, which come with the site.
                 self.assertTrue(self.browser.wait_for("document.fonts.check('16px KaTeX_Main')"))
                 self.assert_clean()

@@ -123,13 +123,17 @@ class Browser:
         """Opens a file in a window of that width and waits until it is loaded. Complaints and requests start anew."""
         self.requests.clear()
         self.complaints.clear()
-        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.resize(width, height)
         # A page of the same address is not loaded again for another anchor.
         self.call("Page.navigate", url="about:blank")
         url = pathlib.Path(file).resolve().as_uri()
         self.call("Page.navigate", url=url)
         if not self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps(url)}"):
             raise RuntimeError(f"{file} does not load")
+
+    def resize(self, width, height=900):
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
     def type(self, text):
         for letter in text:

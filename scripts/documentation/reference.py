@@ -98,8 +98,25 @@ def documented(node):
 
 def signature(node, source):
     text = ast.get_source_segment(source, node)
-    head = text[:text.index(":\n")] if ":\n" in text else text.split("\n")[0].rstrip(":")
-    return re.sub(r"\s+", " ", head)
+    head = re.sub(r"\s+", " ", text[:text.index(":\n")] if ":\n" in text else text.split("\n")[0].rstrip(":"))
+    if len(head) <= 80:
+        return head
+    # An argument per line.
+    arguments = ",\n    ".join(ast.unparse(argument) for argument in _arguments(node.args))
+    result = f" -> {ast.unparse(node.returns)}" if node.returns else ""
+    return f"def {node.name}(\n    {arguments},\n){result}"
+
+
+def _arguments(arguments):
+    """Each argument as a list of its own, defaults with it, as ast.unparse writes it."""
+    def one(argument, default):
+        return ast.arguments(posonlyargs=[], args=[argument], kwonlyargs=[], kw_defaults=[], defaults=[default] if default else [], vararg=None, kwarg=None)
+
+    defaults = [None] * (len(arguments.args) - len(arguments.defaults)) + list(arguments.defaults)
+    yield from (one(argument, default) for argument, default in zip(arguments.args, defaults))
+    if arguments.kwonlyargs:
+        yield ast.Name("*")
+    yield from (one(argument, default) for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults))
 
 
 def python_page(root):
@@ -110,14 +127,14 @@ def python_page(root):
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
     text += "\n## Functions\n"
     for node in functions:
-        text += f"\n### {node.name} {{#{node.name}}}\n\n```python\n{signature(node, source)}\n```\n\n{documented(node)}\n"
+        text += f"\n### `{node.name}` {{#{node.name}}}\n\n```python\n{signature(node, source)}\n```\n\n{documented(node)}\n"
     text += "\n## Classes\n"
     for node in classes:
-        text += f"\n### {node.name} {{#{node.name}}}\n\n{documented(node)}\n"
+        text += f"\n### `{node.name}` {{#{node.name}}}\n\n{documented(node)}\n"
         for member in node.body:
             if isinstance(member, ast.FunctionDef):
                 kind = " (property)" if any(isinstance(d, ast.Name) and d.id == "property" for d in member.decorator_list) else ""
-                text += (f"\n#### {node.name}.{member.name}{kind} {{#{node.name}.{member.name}}}\n\n"
+                text += (f"\n#### `{node.name}.{member.name}`{kind} {{#{node.name}.{member.name.strip('_')}}}\n\n"
                          f"```python\n{signature(member, source)}\n```\n\n{documented(member)}\n")
     if not functions or not classes:
         raise RuntimeError("the Python stub holds no functions or no classes")
