@@ -114,7 +114,8 @@ class BlocksTest(unittest.TestCase):
 
     def test_commands_in_other_blocks_are_found(self):
         self.assertEqual(len(self.wrong_words("```text\nbentaxis run x\n```\n")), 1)
-        self.assertEqual(len(self.wrong_words("```\nanything\n```\n")), 1)
+        self.assertEqual(len(self.wrong_words("```\nbentaxis run x\n```\n")), 1)
+        self.assertEqual(self.wrong_words("```\na = b\n```\n"), [])
         self.assertEqual(self.wrong_words("```toml\n[pump]\n```\n"), [])
 
 

@@ -152,8 +152,6 @@ def wrong_words(page, text, blocks, commands):
             wrong += [f"{block.where}: {what}" for what in filter(None, map(commands.wrong, calls(block.text)))]
         elif block.language not in ("sh", "python") and re.search(r"^\s*(\$ )?bentaxis [a-z]", block.text, re.MULTILINE):
             wrong.append(f"{block.where}: this block holds commands: write ```sh and, below, ```text for what they print")
-        elif block.language == "":
-            wrong.append(f"{block.where}: a block without a language: write ```sh, ```text, ```toml ..")
     plain = links.FENCE.sub(links.blanked, links.COMMENT.sub(links.blanked, text))
     for match in INLINE.finditer(plain):
         for what in filter(None, map(commands.wrong, calls(match[1]))):

@@ -71,7 +71,9 @@ def case_keys_page(program):
     count = 0
     for table in tables:
         below = [f"{table}.{name}" for name, value in schema.get(table, {}).get("properties", {}).items() if "properties" in value]
-        for name in [table] + below:
+        children = schema.get(table, {}).get("properties", {})
+        own = [table] if table == "top" or len(below) < len(children) else []
+        for name in own + below:
             printed = output(program, "schema", "--markdown", name)
             prefix = "" if name == "top" else name + "."
             rows, found = re.subn(r"^\| (`(\w+)`)", lambda match: f'| <a id="{prefix}{match[2]}"></a>{match[1]}', printed, flags=re.MULTILINE)
