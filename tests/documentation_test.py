@@ -109,8 +109,8 @@ class BlocksTest(unittest.TestCase):
 
     def test_pictures_that_blocks_make(self):
         page = self.folder / "page.md"
-        page.write_text("```text\n![no](x.svg) <!-- made by x.svg -->\n```\n![a](pictures/a.svg) <!-- made by figures/b.svg -->\n![c](c.svg)\n")
-        self.assertEqual(blocks.pictures(page), [(4, self.folder / "pictures/a.svg", "figures/b.svg")])
+        page.write_text("`![no](x.svg) <!-- made by x.svg -->`\n```text\n![no](x.svg) <!-- made by x.svg -->\n```\n![a](pictures/a.svg) <!-- made by figures/b.svg -->\n![c](c.svg)\n")
+        self.assertEqual(blocks.pictures(page), [(5, self.folder / "pictures/a.svg", "figures/b.svg")])
 
     def test_commands_in_other_blocks_are_found(self):
         self.assertEqual(len(self.wrong_words("```text\nbentaxis run x\n```\n")), 1)

@@ -166,7 +166,7 @@ PICTURE = re.compile(r"!\[[^\]]*\]\(([^()\s]+)\)[ \t]*<!-- made by (\S+) -->")
 
 def pictures(file):
     """(line, picture, file in the scratch folder) of the pictures of a page that its own blocks make."""
-    text = links.FENCE.sub(links.blanked, file.read_text(encoding="utf-8"))
+    text = links.CODE.sub(links.blanked, links.FENCE.sub(links.blanked, file.read_text(encoding="utf-8")))
     return [(text.count("\n", 0, match.start()) + 1, file.parent / match[1], match[2]) for match in PICTURE.finditer(text)]
 
 
