@@ -151,7 +151,7 @@ class AnswersTest(unittest.TestCase):
     def test_references(self):
         """What differs is said first, the worst before the others; what agrees says how near it is to its limit."""
         for name, change in (("good", ()), ("bad", ("--set", "piston.mass_kg=0.0918")), ("worse", ("--set", "pump.tilt_deg=41"))):
-            made = subprocess.run([PROGRAM, "reference", "golden", self.case("bap63_rated"), "--samples", "36", *change, "--out",
+            made = subprocess.run([PROGRAM, "reference", "golden", self.case("bap63_rated"), "--angles", "36", *change, "--out",
                                    f"data/{name}"], cwd=self.folder, capture_output=True, text=True, timeout=300)
             self.assertEqual(made.returncode, 0, made.stderr)
             for file in (self.folder / "data" / name).rglob("case.toml"):  # the pump as it should be
