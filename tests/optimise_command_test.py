@@ -9,6 +9,7 @@ import json
 import math
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -169,6 +170,73 @@ values = "20:26"
             self.assertIn("batches were there already", done.stderr)
         self.run_program(*options, case=case, out=self.folder / "whole")
         self.assertEqual((self.out / "evaluations.csv").read_bytes(), (self.folder / "whole" / "evaluations.csv").read_bytes())
+
+    def test_an_interrupted_refinement_goes_on(self):
+        options = ["--vary", "pump.tilt_deg=20:42", "--vary", "pump.bore_diameter_mm=18:26", "--minimise", "hydraulics.delivery_ripple_bar",
+                   "--subject-to", "displacement_cm3 >= 50", "--population", "8", "--generations", "0", "--restarts", "1"]
+        case = REPO / "cases" / "bap63_rated_hydraulic.toml"
+        running = subprocess.Popen(self.command(*options, case=case), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        parts = self.out / "sweep.parts"
+        end = time.monotonic() + SECONDS
+        while len(list(parts.glob("block-*"))) < 4 and running.poll() is None and time.monotonic() < end:
+            time.sleep(0.01)
+        running.send_signal(signal.SIGINT)
+        _, said = running.communicate(timeout=SECONDS)
+        self.assertEqual(running.returncode, INTERRUPTED, said)
+        self.assertRegex(said, r"1 of 1 batches and \d+ single designs are in .*: --resume goes on from them")
+        done = self.run_program(*options, "--resume", case=case)
+        self.assertRegex(done.stderr, r"1 batches and \d+ single designs were there already")
+        self.assertFalse(parts.exists())
+        self.run_program(*options, case=case, out=self.folder / "whole")
+        self.assertEqual((self.out / "evaluations.csv").read_bytes(), (self.folder / "whole" / "evaluations.csv").read_bytes())
+
+    def test_quantiles_are_those_of_uncertainty(self):
+        case = self.folder / "case.toml"
+        case.write_text(self.case.read_text() + '\n[uncertainty]\n"pump.bore_diameter_mm" = "normal(0.05)"\n"pressure.delivery_bar" = "relative(0.01)"\n')
+        options = ["--vary", "pump.tilt_deg=25:42", "--minimise", "q95:peak:Rb1", "--subject-to", "q5:displacement_cm3 >= 50",
+                   "--samples", "200", "--population", "8", "--generations", "4", "--restarts", "1"]
+        done = self.run_program(*options, case=case)
+        self.assertIn("least q95:peak:Rb1 (chosen_1.toml)", done.stdout)
+        chosen = rows_of(self.out / "front.csv")[0]
+        subprocess.run([PROGRAM, "uncertainty", self.out / "chosen_1.toml", "--set", "operation.samples_per_revolution=36", "--output",
+                        "peak:Rb1,displacement_cm3", "--samples", "200", "--level", "0.9", "--out", self.folder / "u"],
+                       check=True, capture_output=True, timeout=SECONDS)
+        stated = {row["output"]: row for row in rows_of(self.folder / "u" / "uncertainty.csv")}
+        self.assertTrue(math.isclose(float(chosen["q95:peak:Rb1"]), float(stated["peak:Rb1"]["high"]), rel_tol=1e-12))
+        self.assertTrue(math.isclose(float(chosen["q5:displacement_cm3"]), float(stated["displacement_cm3"]["low"]), rel_tol=1e-12))
+        report = json.loads((self.out / "report.json").read_text())
+        facts = [fact for section in report["runs"] for fact in section["facts"]]
+        self.assertTrue(any("200 samples of [uncertainty]" in str(fact) for fact in facts))
+        self.assertIn("needs [uncertainty]", self.refused_again("--vary", "pump.tilt_deg=25:42", "--minimise", "q95:peak:Rb1"))
+
+    def refused_again(self, *options):
+        shutil.rmtree(self.out)
+        return self.refused(*options)
+
+    def test_random_and_grid_search_stand_beside_it(self):
+        done = self.run_program(*FRONT)
+        report = json.loads((self.out / "report.json").read_text())
+        table = next(s for s in report["runs"] if s["title"] == "Against random and grid search")["table"]
+        self.assertEqual([row[0] for row in table["rows"]], ["optimise", "random", "grid"])
+        volume = table["columns"].index("volume, %")
+        self.assertEqual(table["rows"][0][volume], 100)
+        evaluated = len(rows_of(self.out / "evaluations.csv"))
+        self.assertEqual([row[1] for row in table["rows"][:2]], [evaluated, evaluated])
+        self.assertIn(f"For comparison: random search with {evaluated} designs dominates ", done.stdout)
+        done = self.run_program(*FRONT, "--comparison", "no", out=self.folder / "without")
+        self.assertNotIn("For comparison", done.stdout)
+        self.assertEqual((self.out / "front.csv").read_bytes(), (self.folder / "without" / "front.csv").read_bytes())
+
+    def test_a_search_that_does_not_fit_into_memory_is_refused(self):
+        command = self.command("--vary", "pump.tilt_deg=25:42", "--minimise", "peak:Rb1", "--population", 100000, "--generations", 900,
+                               "--restarts", 1)
+        size = 4 << 30  # its address space; the designs would take some 9 GB
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=SECONDS,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size)))
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertIn("90100000 designs", done.stderr)
+        self.assertIn("lower --population, --generations or --restarts", done.stderr)
+        self.assertFalse(self.out.exists())
 
     def test_two_processes_find_what_one_finds(self):
         mpirun = shutil.which("mpirun")

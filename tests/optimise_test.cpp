@@ -14,8 +14,11 @@
 
 #include "bentaxis/designs/evaluator.h"
 #include "bentaxis/designs/pareto.h"
+#include "bentaxis/designs/robust.h"
+#include "bentaxis/designs/uncertainty.h"
 #include "bentaxis/files/case_file.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/units.h"
 #include "support.h"
 
 namespace bentaxis::designs {
@@ -387,6 +390,249 @@ TEST_F(FolderTest, ThreadsAndProcessesChangeNothing) {
   second.join();
   EXPECT_EQ(found[0], found[1]);
   EXPECT_EQ(found[0], front_csv(optimiser.run({}, {})));
+}
+
+// ---- Quantiles under [uncertainty]
+
+constexpr double kBoreDeviation = 0.05;          // mm
+constexpr double kScore95 = 1.6448536269514722;  // of a standard normal number
+
+Case uncertain_bore() {
+  Case base = rated();
+  base.uncertainty.parameters = {{"pump.bore_diameter_mm", "normal(0.05)"}};
+  return base;
+}
+
+// The displacement goes with the square of the bore: where it is so large.
+double bore_of(double displacement, const Case& base) {
+  const Evaluator own(Family(base, {}), {output("displacement_cm3", base)});
+  return Variable("pump.bore_diameter_mm", base).value(base) *
+         std::sqrt(displacement / own.outputs_at({})[0]);
+}
+
+TEST(QuantileEvaluatorTest, IsTheQuantileOfANormalDistribution) {
+  const Case base = uncertain_bore();
+  const double bore = Variable("pump.bore_diameter_mm", base).value(base);
+  constexpr std::size_t kSamples = 20000;
+  for (const auto& [share, score] :
+       {std::pair{0.95, kScore95}, {0.5, 0.0}, {0.05, -kScore95}, {0.8, 0.8416212335729143}}) {
+    const QuantileEvaluator of(base, {}, {{output("displacement_cm3", base), share}}, kSamples, 1,
+                               study::Model::analytic);
+    std::vector<double> found(1);
+    ASSERT_EQ(of.evaluate({}, found), "");
+    // Four standard errors of a quantile: sqrt(share (1 - share) / samples) over the density.
+    const double density = std::exp(-score * score / 2) / std::sqrt(2 * kPi);
+    const double allowed = 4 * std::sqrt(share * (1 - share) / kSamples) / density;
+    EXPECT_NEAR((bore_of(found[0], base) - bore) / kBoreDeviation, score, allowed) << share;
+  }
+}
+
+TEST(QuantileEvaluatorTest, IsWhatUncertaintyStates) {
+  const Case base = uncertain_bore();
+  const std::vector<Output> outputs = {output("peak:Rb1", base), output("displacement_cm3", base)};
+  const UncertaintyResult stated = uncertainty(
+      base, {.outputs = outputs, .samples = 200, .seed = 3, .level = 0.9, .curves = false});
+  OptimiseRequest request = small({{"pump.tilt_deg", "20:42"}});
+  request.minimise = {"q95:peak:Rb1"};
+  request.outputs = {"q5:displacement_cm3", "displacement_cm3"};
+  request.samples = 200;
+  request.search.seed = 3;
+  request.search.generations = 0;
+  const Optimisation found = run(base, request);
+  EXPECT_EQ(found.plan.designs.outputs[0].name, "q95:peak:Rb1");
+  EXPECT_NEAR(found.own.values[0] / stated.outputs[0].spread.high.value, 1, 1e-12);
+  EXPECT_NEAR(found.own.values[1] / stated.outputs[1].spread.low.value, 1, 1e-12);
+  EXPECT_NEAR(found.own.values[2] / stated.outputs[1].nominal, 1, 1e-12);
+}
+
+// The largest bore of whose pumps 95 % stay below a displacement lies 1.645 standard deviations
+// below the bore that has it.
+TEST(OptimiseTest, AQuantileAsConstraintKeepsTheDistanceOfItsScore) {
+  const Case base = uncertain_bore();
+  OptimiseRequest request = small({{"pump.bore_diameter_mm", "18:26"}});
+  request.maximise = {"displacement_cm3"};
+  request.subject_to = {"q95:displacement_cm3 <= 60"};
+  request.samples = 2000;
+  const Optimisation found = run(base, request);
+  ASSERT_EQ(found.chosen.size(), 1U);
+  const double bore = value(found, found.chosen[0].design, 0);
+  const double margin = (bore_of(60, base) - bore) / kBoreDeviation;
+  const double density = std::exp(-kScore95 * kScore95 / 2) / std::sqrt(2 * kPi);
+  EXPECT_NEAR(margin, kScore95, 4 * std::sqrt(0.95 * 0.05 / 2000) / density);
+  // The same random numbers for all designs: a sample's own score to the digit.
+  std::vector<double> own(1);
+  const QuantileEvaluator of(base, {}, {{output("displacement_cm3", base), 0.95}}, 2000, 1,
+                             study::Model::analytic);
+  ASSERT_EQ(of.evaluate({}, own), "");
+  const double case_bore = Variable("pump.bore_diameter_mm", base).value(base);
+  EXPECT_NEAR(margin, (bore_of(own[0], base) - case_bore) / kBoreDeviation, 1e-3);
+  // Without uncertainty the bore itself.
+  request.subject_to = {"displacement_cm3 <= 60"};
+  const Optimisation sharp = run(base, request);
+  EXPECT_NEAR(value(sharp, sharp.chosen.at(0).design, 0), bore_of(60, base), 1e-4);
+}
+
+TEST(OptimiseTest, QuantilesThatCannotBeAreRefused) {
+  const Case base = uncertain_bore();
+  const auto of = [](const Case& the_case, const std::string& name, std::size_t samples = 100) {
+    OptimiseRequest request = small({{"pump.bore_diameter_mm", "20:26"}});
+    request.search.generations = 0;
+    request.minimise = {name};
+    request.samples = samples;
+    return refusal([&] { run(the_case, request); });
+  };
+  EXPECT_EQ(of(base, "q95:peak:Rb1"), "");
+  EXPECT_THAT(of(rated(), "q95:peak:Rb1"), HasSubstr("needs [uncertainty]"));
+  for (const char* share : {"q0:peak:Rb1", "q100:peak:Rb1", "q-5:peak:Rb1"})
+    EXPECT_THAT(of(base, share), HasSubstr("above 0 and below 100")) << share;
+  EXPECT_THAT(of(base, "q:peak:Rb1"), HasSubstr("no statistic q"));
+  EXPECT_THAT(of(base, "q95:peak:Rbx"), HasSubstr("Rbx"));
+  EXPECT_THAT(of(base, "q95:peak:Rb1", 20), HasSubstr("--samples 20"));
+  Case fixed = base;
+  fixed.uncertainty.parameters[0].distribution = "normal(22.5, 0.05)";
+  EXPECT_THAT(of(fixed, "q95:peak:Rb1"), HasSubstr("does not follow its value"));
+}
+
+TEST(OptimiseTest, ASampleWithoutValuesTakesTheDesignsQuantile) {
+  Case base = rated();
+  base.uncertainty.parameters = {{"pump.tilt_deg", "normal(3)"}};
+  OptimiseRequest request = small({{"pump.tilt_deg", "30:60"}});
+  request.minimise = {"q95:peak:Rb1"};
+  request.search.generations = 2;
+  const Optimisation found = run(base, request);
+  // Tilts near the largest that the joints allow have samples beyond it.
+  ASSERT_FALSE(found.designs.infeasible.empty());
+  EXPECT_GT(found.feasible(), 0U);
+  bool said = false;
+  for (const auto& [design, reason] : found.designs.infeasible)
+    said =
+        said || reason.find("of 100 samples of [uncertainty] have no values") != std::string::npos;
+  EXPECT_TRUE(said);
+}
+
+// ---- Evaluations that fail, refinements that go on, searches beside it
+
+TEST(OptimiseTest, EvaluationsThatFailAreNamedAndTheOthersCount) {
+  OptimiseRequest request = small({{"pump.piston_length_mm", "1:60"}});
+  request.minimise = {"peak:Rb1"};
+  const Optimisation found = run(rated(), request);
+  EXPECT_GT(found.designs.infeasible.size(), 0U);
+  EXPECT_GT(found.feasible(), 0U);
+  ASSERT_EQ(found.chosen.size(), 1U);
+  for (const auto& [design, reason] : found.designs.infeasible) {
+    EXPECT_FALSE(reason.empty());
+    EXPECT_TRUE(std::isnan(result(found, design, 0)));
+    EXPECT_TRUE(std::isinf(found.violations[design]));
+  }
+}
+
+// Not by the kernel: each design takes a run.
+OptimiseRequest slow_request() {
+  OptimiseRequest request = small({{"pump.tilt_deg", "20:42"}, {"pump.bore_diameter_mm", "18:26"}});
+  request.search = {.population = 8, .generations = 1, .restarts = 1};
+  request.minimise = {"rms:budget.Td_inertia"};
+  request.subject_to = {"displacement_cm3 >= 50"};
+  return request;
+}
+
+TEST_F(FolderTest, ARefinementGoesOnWithTheDesignsThatItHas) {
+  const Case base = rated();
+  const Optimiser optimiser(base, optimise_plan(slow_request(), base));
+  const Optimisation whole = optimiser.run({}, {});
+  const std::size_t refined = whole.search.evaluations.back();
+  ASSERT_GT(refined, 12U);
+  EXPECT_TRUE(whole.comparisons.empty());  // by default of the closed form alone
+  const SweepParts parts(path, optimiser.record("test"));
+  OptimiseWork work;
+  work.parts = &parts;
+  {
+    const RunLock lock = parts.begin();
+    struct Stop {};
+    int told = 0;
+    EXPECT_THROW(optimiser.run(work,
+                               [&](double part) {
+                                 if (part >= 1 && ++told > 12) throw Stop();
+                               }),
+                 Stop);
+  }
+  EXPECT_EQ(parts.count(), optimiser.batches());
+  const std::size_t kept = parts.count_singles();
+  EXPECT_GT(kept, 0U);
+  EXPECT_LT(kept, refined);
+  work.resume = true;
+  const RunLock lock = parts.begin();
+  const Optimisation resumed = optimiser.run(work, {});
+  EXPECT_EQ(resumed.kept, optimiser.batches());
+  EXPECT_EQ(resumed.kept_singles, kept);
+  EXPECT_EQ(evaluations_csv(resumed), evaluations_csv(whole));
+  EXPECT_EQ(parts.count_singles(), refined);
+  EXPECT_EQ(optimiser.run(work, {}).kept_singles, refined);
+  parts.remove(optimiser.batches());
+  EXPECT_FALSE(fs::exists(path));
+}
+
+TEST(OptimiseTest, IsComparedWithAsManyDesignsAtRandomAndOnAGrid) {
+  const Case base = rated();
+  OptimiseRequest request = small({{"pump.tilt_deg", "10:42"}, {"pump.bore_diameter_mm", "18:26"}});
+  request.minimise = {"peak:Rb1"};
+  request.subject_to = {"displacement_cm3 >= 50"};
+  const Optimisation found = run(base, request);
+  ASSERT_EQ(found.comparisons.size(), 2U);
+  EXPECT_EQ(found.comparisons[0].name, "random");
+  EXPECT_EQ(found.comparisons[0].evaluations, found.evaluated());
+  EXPECT_EQ(found.comparisons[1].name, "grid");
+  EXPECT_LE(found.comparisons[1].evaluations, found.evaluated());
+  EXPECT_GT(2 * found.comparisons[1].evaluations, found.evaluated());
+  // The same designs, one by one.
+  SearchProblem problem;
+  problem.low = {10, 18};
+  problem.high = {42, 26};
+  problem.whole = {false, false};
+  const Evaluator own(
+      Family(base, {Variable("pump.tilt_deg", base), Variable("pump.bore_diameter_mm", base)}),
+      {output("peak:Rb1", base), output("displacement_cm3", base)});
+  const double best = result(found, found.chosen.at(0).design, 0);
+  for (const SearchComparison& other : found.comparisons) {
+    const std::vector<double> points = other.name == "grid"
+                                           ? grid_search_points(problem, found.evaluated())
+                                           : random_search_points(problem, found.evaluated(), 1);
+    ASSERT_EQ(points.size(), 2 * other.evaluations);
+    double least = INFINITY;
+    std::size_t feasible = 0;
+    for (std::size_t i = 0; i < points.size(); i += 2) {
+      const Evaluation one = own.evaluate(std::span(points).subspan(i, 2));
+      if (!one.feasible() || !(one.values[1] >= 50)) continue;
+      ++feasible;
+      least = std::min(least, one.values[0]);
+    }
+    EXPECT_EQ(other.feasible, feasible);
+    EXPECT_EQ(other.best.at(0), least);
+    EXPECT_GE(other.best.at(0), best);
+  }
+  request.comparison = SearchComparisonChoice::no;
+  EXPECT_TRUE(run(base, request).comparisons.empty());
+  // Of several objectives by the volume of the front: less than the search has.
+  OptimiseRequest front = front_request();
+  for (const SearchComparison& other : run(base, front).comparisons) {
+    EXPECT_GT(other.share_of_front, 0.5) << other.name;
+    EXPECT_LT(other.share_of_front, 1) << other.name;
+  }
+}
+
+TEST_F(FolderTest, AnotherNumberOfSamplesIsAnotherStudy) {
+  const Case base = uncertain_bore();
+  OptimiseRequest request = small({{"pump.tilt_deg", "20:42"}});
+  request.minimise = {"q95:peak:Rb1"};
+  const auto identity = [&] {
+    return Optimiser(base, optimise_plan(request, base)).record("test").identity;
+  };
+  const std::string before = identity();
+  EXPECT_EQ(identity(), before);
+  request.samples = 200;
+  EXPECT_NE(identity(), before);
+  request.samples = 100;
+  request.minimise = {"q90:peak:Rb1"};
+  EXPECT_NE(identity(), before);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "bentaxis/designs/pareto.h"
 #include "bentaxis/pump/error.h"
@@ -239,6 +240,44 @@ TEST(SearchTest, RefusesImpossibleOptions) {
   EXPECT_THROW(search(problem.problem, {}, {.restarts = 0}), InputError);
   problem.problem.high = {0};
   EXPECT_THROW(search(problem.problem, {}, {}), InputError);
+}
+
+TEST(SearchPoints, FillTheRangesWithNoMoreThanWasAskedFor) {
+  SearchProblem problem;
+  problem.low = {0, -1, 2};
+  problem.high = {1, 1, 4};
+  problem.whole = {false, false, true};  // of three values
+  const std::vector<double> points = grid_search_points(problem, 100);
+  // 5 x 6 x 3 or 6 x 5 x 3: one value more of any variable would be too many.
+  ASSERT_EQ(points.size(), 3U * 90);
+  std::set<double> first, second, third;
+  for (std::size_t i = 0; i < points.size(); i += 3) {
+    first.insert(points[i]);
+    second.insert(points[i + 1]);
+    third.insert(points[i + 2]);
+  }
+  EXPECT_EQ(first.size() * second.size(), 30U);
+  EXPECT_EQ(third, (std::set<double>{2, 3, 4}));
+  EXPECT_EQ(*first.begin(), 0);
+  EXPECT_EQ(*first.rbegin(), 1);
+  EXPECT_EQ(*second.begin(), -1);
+  EXPECT_EQ(*second.rbegin(), 1);
+  EXPECT_EQ(grid_search_points(problem, 1), (std::vector<double>{0.5, 0, 3}));
+
+  const std::vector<double> drawn = random_search_points(problem, 3000, 7);
+  ASSERT_EQ(drawn.size(), 9000U);
+  EXPECT_EQ(drawn, random_search_points(problem, 3000, 7));
+  EXPECT_NE(drawn, random_search_points(problem, 3000, 8));
+  double mean = 0;
+  std::size_t low = 0;
+  for (std::size_t i = 0; i < drawn.size(); i += 3) {
+    EXPECT_TRUE(drawn[i] >= 0 && drawn[i] <= 1 && std::abs(drawn[i + 1]) <= 1);
+    EXPECT_TRUE(drawn[i + 2] == 2 || drawn[i + 2] == 3 || drawn[i + 2] == 4);
+    mean += drawn[i] / 3000;
+    low += drawn[i + 2] == 2 ? 1 : 0;
+  }
+  EXPECT_NEAR(mean, 0.5, 5 * 0.289 / std::sqrt(3000.0));
+  EXPECT_NEAR(static_cast<double>(low), 1000, 5 * std::sqrt(3000 * 2.0 / 9));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct Options {
   ReportPlace place;
   std::vector<std::string> vary;
   std::string study, conditions;
-  int population = 64, generations = 50, restarts = 2, seed = 1, threads = 0;
+  int population = 64, generations = 50, restarts = 2, seed = 1, threads = 0, samples = 100;
   bool no_refinement = false, resume = false;
   designs::OptimiseRequest request;
 };
@@ -51,6 +51,8 @@ designs::OptimiseRequest request_of(const Options& options, const CommandParser&
         {"--generations", options.generations, &search.generations},
         {"--restarts", options.restarts, &search.restarts}})
     if (command.given(name)) *to = static_cast<std::size_t>(value);
+  if (command.given("--samples")) request.samples = static_cast<std::size_t>(options.samples);
+  if (command.given("--comparison")) request.comparison = options.request.comparison;
   if (command.given("--seed")) search.seed = static_cast<std::uint64_t>(options.seed);
   if (options.no_refinement) search.refine = false;
   return request;
@@ -85,17 +87,24 @@ int optimise(const Options& options, const CommandParser& command, const Ranks& 
   work.sum = [&ranks](std::span<double> numbers) { ranks.add_up(numbers); };
   const auto say_kept = [&] {
     if (!first) return;
-    if (const std::size_t kept = parts.count(); kept > 0)
-      std::fprintf(stderr, "bentaxis: %zu of %zu batches are in %s: --resume goes on from them\n",
-                   kept, optimiser.batches(), parts.folder().c_str());
-    else
+    if (const std::size_t kept = parts.count(); kept > 0) {
+      const std::size_t singles = parts.count_singles();
+      std::fprintf(
+          stderr, "bentaxis: %zu of %zu batches%s are in %s: --resume goes on from them\n", kept,
+          optimiser.batches(),
+          singles > 0 ? (" and " + std::to_string(singles) + " single designs").c_str() : "",
+          parts.folder().c_str());
+    } else
       parts.remove(0);
   };
   try {
     const designs::Optimisation found = optimiser.run(work, progress_of("optimise"));
     if (!first) return kDone;
     if (options.resume)
-      std::fprintf(stderr, "bentaxis: %zu batches were there already\n", found.kept);
+      std::fprintf(stderr, "bentaxis: %zu batches%s were there already\n", found.kept,
+                   found.kept_singles > 0
+                       ? (" and " + std::to_string(found.kept_singles) + " single designs").c_str()
+                       : "");
     std::vector<TextFile> files = designs::chosen_cases(found);
     files.emplace_back("front.csv", designs::front_csv(found));
     files.emplace_back("evaluations.csv", designs::evaluations_csv(found));
@@ -167,6 +176,15 @@ Command add_optimise_command(CommandParser program) {
               "seed of the random number generator; of the first search, the next ones count on")
       .integer_in(0, 2147483647)
       .text("NUMBER [1]");
+  command
+      .option(
+          "--samples", options->samples,
+          "number of samples that are drawn; of [uncertainty], for each quantile of each design")
+      .integer_in(1, designs::kMaxSamples)
+      .text("NUMBER [100]");
+  command.choice("--comparison", request.comparison, {"fast", "yes", "no"},
+                 "random and grid search with as many designs beside it: fast: where designs are "
+                 "evaluated by the closed form");
   command.choice("--model", request.model, {"analytic", "multibody"}, "model that computes");
   command.flag("--no-refinement", options->no_refinement,
                "leave out the improvement of the best designs by gradients");

@@ -7,6 +7,8 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
+#include "bentaxis/study/derived_displacement.h"
+#include "bentaxis/study/displacement_section.h"
 #include "bentaxis/study/operating_points.h"
 #include "bentaxis/study/pressure_document.h"
 #include "commands.h"
@@ -18,12 +20,14 @@
 namespace bentaxis::cli {
 namespace {
 
+constexpr int kMaxTestPoints = 100;  // speeds, pressures of a test of the displacement
+
 struct Options {
   CaseOption the_case;
   ReportPlace place;
-  std::string overlay, published, delivery, suction_speed;
+  std::string overlay, published, delivery, suction_speed, test_speeds, test_pressures;
   int transient = 0;
-  bool advise = false;
+  bool advise = false, derived_displacement = false;
 };
 
 constexpr const char* kFilling = "filling";  // of --suction-speed
@@ -38,6 +42,33 @@ double suction_limit(const std::string& text, const HydraulicData& data) {
         "--suction-speed " + text +
         ": must be filling, saturation, vapour or a gauge pressure in bar, above absolute zero");
   return pascals(*value);
+}
+
+// Speeds (rpm) and pressures (bar) of a test of the displacement.
+struct DisplacementTest {
+  std::vector<double> speeds, pressures;
+};
+
+std::optional<DisplacementTest> displacement_test(const Options& options, const Case& the_case) {
+  if (!options.derived_displacement) {
+    if (!options.test_speeds.empty() || !options.test_pressures.empty())
+      throw InputError("--test-speeds and --test-pressures need --derived-displacement");
+    return std::nullopt;
+  }
+  study::require_pressure_asked_for(the_case);
+  constexpr double kMinSpeed = 1;  // rpm
+  DisplacementTest test = {study::usual_test_speeds(the_case),
+                           study::usual_test_pressures(the_case)};
+  if (!options.test_speeds.empty())
+    test.speeds = designs::spaced_values("--test-speeds", options.test_speeds, "rpm", kMinSpeed,
+                                         kMaxTestPoints);
+  if (!options.test_pressures.empty())
+    test.pressures = designs::spaced_values("--test-pressures", options.test_pressures, "bar", 0,
+                                            kMaxTestPoints);
+  if (test.pressures.size() < 2)
+    throw InputError("--test-pressures " + options.test_pressures +
+                     ": must be two pressures at least");
+  return test;
 }
 
 int pressure(const Options& options) {
@@ -56,6 +87,7 @@ int pressure(const Options& options) {
   std::optional<double> limit;
   if (!options.suction_speed.empty() && options.suction_speed != kFilling)
     limit = suction_limit(options.suction_speed, *read.hydraulics);
+  const auto test = displacement_test(options, read);
   ReportFolders folders(options.place);
 
   const study::OperatingPoint point = study::run_point(std::move(read), progress_of);
@@ -78,6 +110,13 @@ int pressure(const Options& options) {
   if (second)
     study::add_overlay(document, point, study::run_point(std::move(*second), progress_of));
   std::vector<TextFile> curves = study::pressure_csv(point, power);
+  std::optional<study::DisplacementStudy> displacement;
+  if (test) {
+    displacement = study::displacement_study(point.the_case(), test->speeds, test->pressures,
+                                             progress_of("derived displacement"));
+    study::add_displacement(document, *displacement);
+    curves.emplace_back("derived_displacement.csv", to_csv(*displacement));
+  }
   std::optional<study::TorqueCurve> curve;
   if (!pressures.empty()) {
     curve = study::torque_curve(point.the_case(), pressures, progress_of("torque curve"));
@@ -96,10 +135,12 @@ int pressure(const Options& options) {
 
   std::string text = study::pressure_text(point, power, document);
   if (published) text += "\n" + study::text_of(document.published->section);
+  if (displacement) text += "\n" + study::displacement_text(*displacement);
   if (curve) text += "\n" + torque_curve_text(*curve);
   print_result(text, paths);
   const bool held = !published || document.published->section.calibrated();
-  const int status = held ? kDone : kOutOfTolerance;
+  int status = held ? kDone : kOutOfTolerance;
+  if (displacement) status = status_of_series(status, displacement->failed, displacement->asked);
   return curve ? status_of_series(status, curve->failed, pressures.size()) : status;
 }
 
@@ -132,6 +173,17 @@ Command add_pressure_command(CommandParser program) {
       "--advise", options->advise,
       "also which key to change, and by how much, for each timing verdict beyond its limit: "
       "some 70 operating points");
+  command.flag("--derived-displacement", options->derived_displacement,
+               "also the displacement as test rigs derive it from flows (ISO 8426, Toet, Wilson, "
+               "zero-pressure line) against the geometric one: a test of 30 operating points");
+  command
+      .option("--test-speeds", options->test_speeds,
+              "its speeds, in rpm; without it five from a fifth to the whole of the case's")
+      .text("FROM:TO:STEP|FROM:TO:#N");
+  command
+      .option("--test-pressures", options->test_pressures,
+              "its delivery pressures, in bar; without it six from 5 to 100 % of the case's")
+      .text("FROM:TO:STEP|FROM:TO:#N");
   command
       .option("--transient", options->transient, "also the transient from rest over so many turns")
       .integer_in(1, 1000)

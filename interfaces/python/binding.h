@@ -13,6 +13,7 @@ void add_simulation(pybind11::module_& module);
 void add_comparison(pybind11::module_& module);
 void add_regression(pybind11::module_& module);
 void add_sweep(pybind11::module_& module);
+void add_optimisation(pybind11::module_& module);
 void add_identification(pybind11::module_& module);
 
 }  // namespace bentaxis::python

@@ -16,6 +16,7 @@ PYBIND11_MODULE(_bentaxis, module) {
   add_simulation(module);
   add_regression(module);
   add_sweep(module);
+  add_optimisation(module);
   add_identification(module);
   add_report(module);
   module.attr("__name__") = "bentaxis._bentaxis";

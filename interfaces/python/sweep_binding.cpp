@@ -26,19 +26,6 @@ struct Sweep : Table {
   std::shared_ptr<const designs::SweepResult> result;
 };
 
-// Values as a command line has them: "20:40:5", or those of a list with commas between them.
-std::string values_text(const std::string& name, const py::handle& values) {
-  if (py::isinstance<py::str>(values)) return values.cast<std::string>();
-  const auto one = [&](const py::handle& value) {
-    return py::isinstance<py::str>(value) ? value.cast<std::string>() : toml_of(value, name);
-  };
-  if (!py::isinstance<py::iterable>(values)) return one(values);
-  std::string text;
-  for (const py::handle value : py::reinterpret_borrow<py::object>(values))
-    text += (text.empty() ? "" : ",") + one(value);
-  return text;
-}
-
 Sweep shown(std::shared_ptr<const designs::SweepResult> result) {
   Sweep sweep;
   const std::size_t n = result->plan.varied.size(), m = result->plan.outputs.size();

@@ -104,6 +104,18 @@ std::vector<std::pair<std::string, py::object>> items_of(const py::handle& mappi
   return items;
 }
 
+std::string values_text(const std::string& name, const py::handle& values) {
+  if (py::isinstance<py::str>(values)) return values.cast<std::string>();
+  const auto one = [&](const py::handle& value) {
+    return py::isinstance<py::str>(value) ? value.cast<std::string>() : toml_of(value, name);
+  };
+  if (!py::isinstance<py::iterable>(values)) return one(values);
+  std::string text;
+  for (const py::handle value : py::reinterpret_borrow<py::object>(values))
+    text += (text.empty() ? "" : ",") + one(value);
+  return text;
+}
+
 py::object python_of(const Value& value) {
   return std::visit(
       [](const auto& held) -> py::object {

@@ -41,6 +41,9 @@ std::string toml_of(const pybind11::handle& value, const std::string& what);
 /// Items of a mapping; none of None. @throws InputError
 std::vector<std::pair<std::string, pybind11::object>> items_of(const pybind11::handle& mapping,
                                                                const std::string& what);
+/// Values of a parameter that varies, as a command line has them: "20:40:5", or those of a list
+/// with commas between them.
+std::string values_text(const std::string& name, const pybind11::handle& values);
 pybind11::object python_of(const Value& value);
 
 }  // namespace bentaxis::python

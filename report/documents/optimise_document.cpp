@@ -110,6 +110,74 @@ std::optional<double> largest_improvement(const Optimisation& found) {
   return largest;
 }
 
+// Best value of an objective among the designs that keep all constraints.
+double best_value(const Optimisation& found, std::size_t output) {
+  double best = NAN;
+  const int direction = found.plan.designs.direction[output];
+  for (std::size_t i = 0; i < found.evaluated(); ++i) {
+    if (found.violations[i] > 0) continue;
+    const double value = measured(found, i, output);
+    if (!(direction * (value - best) <= 0)) best = value;
+  }
+  return best;
+}
+
+// Random and grid search at as many evaluations, by the same evaluator.
+report::Section comparison_section(const Optimisation& found) {
+  report::Section section;
+  section.title = "Against random and grid search";
+  section.text =
+      "The same evaluations spent otherwise: designs drawn at random, and a grid with as many "
+      "values of each parameter as they allow. Volume: what the front dominates below the worst "
+      "point of the front found, of that of the front found; a search may be lucky above 100 %. "
+      "Time: of the evaluations; the search itself takes more.";
+  section.table.columns = {"search", "designs", "keep all constraints"};
+  const auto sought = objectives(found);
+  for (const std::size_t k : sought) {
+    const Output& o = found.plan.designs.outputs[k];
+    section.table.columns.push_back("best " + o.name + (o.unit.empty() ? "" : ", " + o.unit));
+  }
+  section.table.columns.emplace_back("volume, %");
+  section.table.columns.emplace_back("time, s");
+  const auto number = [](double value) {
+    return is_computed(value) ? report::Cell(value) : report::Cell();
+  };
+  std::vector<report::Cell> own = {"optimise", static_cast<long>(found.evaluated()),
+                                   static_cast<long>(found.feasible())};
+  for (const std::size_t k : sought) own.push_back(number(best_value(found, k)));
+  own.push_back(found.shares_of_front.empty() ? report::Cell() : report::Cell(100.0));
+  own.emplace_back(found.evaluation_seconds);
+  section.table.rows.push_back(std::move(own));
+  for (const SearchComparison& other : found.comparisons) {
+    std::vector<report::Cell> row = {other.name, static_cast<long>(other.evaluations),
+                                     static_cast<long>(other.feasible)};
+    for (const double best : other.best) row.push_back(number(best));
+    row.push_back(is_computed(other.share_of_front) ? report::Cell(100 * other.share_of_front)
+                                                    : report::Cell());
+    row.emplace_back(other.seconds);
+    section.table.rows.push_back(std::move(row));
+  }
+  return section;
+}
+
+// "Random search with as many designs ..", for the answers.
+std::string comparison_text(const Optimisation& found) {
+  std::string text;
+  const auto sought = objectives(found);
+  for (const SearchComparison& other : found.comparisons) {
+    const Output& o = found.plan.designs.outputs[sought.front()];
+    const std::string result =
+        other.feasible == 0  ? std::string("finds no design that keeps all constraints")
+        : sought.size() == 1 ? fmt::format("comes to {}", with_unit(other.best.front(), o))
+        : is_computed(other.share_of_front)
+            ? fmt::format("dominates {:.3g} % of the front's volume", 100 * other.share_of_front)
+            : fmt::format("comes to {} {}", o.name, with_unit(other.best.front(), o));
+    text += fmt::format("{} search with {} designs {}",
+                        text.empty() ? other.name : ", " + other.name, other.evaluations, result);
+  }
+  return text;
+}
+
 report::Section chosen_section(const Optimisation& found) {
   const SweepPlan& plan = found.plan.designs;
   report::Section section;
@@ -234,6 +302,8 @@ std::vector<std::string> optimise_answers(const Optimisation& found) {
     sure += fmt::format("{}gradients improve the best value of an objective by {:.2g} % at most",
                         sure.empty() ? "" : ", and ", 100 * *most);
   if (!sure.empty()) answers.push_back("How sure: " + sure + ".");
+  if (!found.comparisons.empty())
+    answers.push_back("For comparison: " + comparison_text(found) + ".");
   return answers;
 }
 
@@ -280,6 +350,11 @@ report::Document optimise_document(const Optimisation& found, const report::Line
           fmt::format("{} to {}", one.distribution.numbers[0], one.distribution.numbers[1]);
   }
   varied.facts = {{"model", study::to_string(found.plan.designs.model)}};
+  if (found.plan.robust())
+    varied.facts.emplace_back(
+        "quantiles", fmt::format("of {} samples of [uncertainty] for each design, the same random "
+                                 "numbers for all designs",
+                                 found.plan.samples));
   for (const Constraint& c : found.plan.constraints)
     varied.facts.emplace_back("constraint", found.plan.text(c));
   if (!found.plan.conditions.file.empty()) {
@@ -293,6 +368,7 @@ report::Document optimise_document(const Optimisation& found, const report::Line
   document.runs->push_back(std::move(varied));
   document.runs->push_back(outputs_section(view));
   document.runs->push_back(sureness_section(found));
+  if (!found.comparisons.empty()) document.runs->push_back(comparison_section(found));
   if (!found.designs.infeasible.empty())
     document.runs->push_back(infeasible_section(found.designs, view));
   document.figures = sweep_figures(view);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "bentaxis/numerics/object_pool.h"
@@ -39,7 +40,8 @@ struct Evaluator::Implementation {
   // Of a case that is valid.
   void find(Scratch& scratch, std::span<double> results) const {
     if (scratch.turn && scratch.turn->find(scratch.the_case, results)) return;
-    const std::vector<double> found = outputs_of(outputs, study::prepare(scratch.the_case), model);
+    std::optional<study::PreparedCase> ready;
+    const std::vector<double> found = outputs_of(outputs, scratch.the_case, ready, model);
     std::copy(found.begin(), found.end(), results.begin());
   }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "bentaxis/designs/points.h"
@@ -241,14 +242,16 @@ struct DataModel::Implementation {
   }
 
   void read_off(const State& state, const Case& the_case, std::span<double> results) const {
-    study::PreparedCase ready = study::prepare(the_case);
+    std::optional<study::PreparedCase> prepared;
     if (!state.outputs.empty()) {
-      const std::vector<double> values = outputs_of(state.outputs, ready, kModel);
+      const std::vector<double> values = outputs_of(state.outputs, the_case, prepared, kModel);
       std::size_t next = 0;
       for (const std::size_t i : state.data)
         if (data.data[i].output) results[places[i]] = values[next++];
     }
     if (!state.table) return;
+    if (!prepared) prepared.emplace(study::prepare(the_case));
+    study::PreparedCase& ready = *prepared;
     compare::PublishedRun run;
     Assumptions assumptions = the_case.analytic;
     study::apply_variant(state.variant, ready.the_case, assumptions);

@@ -10,6 +10,7 @@
 
 #include "bentaxis/designs/evaluator.h"
 #include "bentaxis/designs/pareto.h"
+#include "bentaxis/designs/robust.h"
 #include "bentaxis/designs/sensitivity.h"
 #include "bentaxis/files/csv_rows.h"
 #include "bentaxis/files/input_log.h"
@@ -80,16 +81,41 @@ SearchVariable search_variable(const Varied& varied) {
   return {std::ceil(from), std::floor(to), true};
 }
 
-// An output with the row that "@N" behind its name asks for; what is computed for it is added to
-// the plan.
+// The share that "q95:" before the name of an output asks for, which is taken from the name.
+std::optional<double> quantile_in(std::string& name) {
+  const std::size_t colon = name.find(':');
+  if (colon == std::string::npos || !name.starts_with('q')) return std::nullopt;
+  const std::string percent = name.substr(1, colon - 1);
+  const auto number = number_in(percent);
+  if (!number) return std::nullopt;
+  if (!(*number > 0 && *number < 100))
+    throw InputError("output " + name + ": q" + percent +
+                     ": must be above 0 and below 100, in percent of the pumps of a design");
+  name.erase(0, colon + 1);
+  return *number / 100;
+}
+
+// An output with the quantile that "q95:" before its name asks for and the row that "@N" behind it
+// does; what is computed for it is added to the plan.
 std::pair<Output, OptimisePlan::Taken> taken_of(const std::string& text, OptimisePlan& plan,
                                                 const Case& base) {
   const std::size_t at = text.rfind('@');
-  Output wanted = output(text.substr(0, at), base);
+  std::string name = text.substr(0, at);
+  const std::optional<double> quantile = quantile_in(name);
+  Output wanted = output(name, base);
   OptimisePlan::Taken taken;
-  const auto found = std::find(plan.computed.begin(), plan.computed.end(), wanted);
-  taken.from = static_cast<std::size_t>(found - plan.computed.begin());
-  if (found == plan.computed.end()) plan.computed.push_back(wanted);
+  while (taken.from < plan.computed.size() &&
+         !(plan.computed[taken.from] == wanted && plan.quantiles[taken.from] == quantile))
+    ++taken.from;
+  if (taken.from == plan.computed.size()) {
+    plan.computed.push_back(wanted);
+    plan.quantiles.push_back(quantile);
+  }
+  if (quantile) {
+    wanted.name = fmt::format("q{:g}:{}", 100 * *quantile, wanted.name);
+    wanted.meaning = fmt::format("{:g} % of the pumps under [uncertainty] stay below: {}",
+                                 100 * *quantile, wanted.meaning);
+  }
   if (at != std::string::npos) {
     const auto row = number_in(text.substr(at + 1));
     const std::size_t rows = plan.conditions.rows.size();
@@ -113,6 +139,11 @@ std::string OptimisePlan::text(const Constraint& constraint) const {
   const Output& output = designs.outputs[constraint.output];
   return output.name + (constraint.at_most ? " <= " : " >= ") + number_text(constraint.limit) +
          (output.unit.empty() ? "" : " " + output.unit);
+}
+
+bool OptimisePlan::robust() const {
+  return std::any_of(quantiles.begin(), quantiles.end(),
+                     [](const auto& share) { return share.has_value(); });
 }
 
 std::size_t OptimisePlan::evaluations() const {
@@ -140,6 +171,9 @@ OptimiseRequest read_optimise_request(const std::filesystem::path& file) {
   search.seed = static_cast<std::uint64_t>(
       top.integer("seed", 0, std::numeric_limits<int>::max(), static_cast<int>(search.seed)));
   search.refine = top.flag("refine", search.refine);
+  count("samples", 1, kMaxSamples, request.samples);
+  request.comparison = static_cast<SearchComparisonChoice>(
+      top.choice("comparison", {"fast", "yes", "no"}, static_cast<int>(request.comparison)));
   for (TableReader& one : top.tables("vary")) {
     const std::string name = one.text("parameter");
     request.vary.emplace_back(name, one.text("values"));
@@ -154,6 +188,8 @@ OptimisePlan optimise_plan(const OptimiseRequest& request, const Case& base) {
     throw InputError("optimise: name what is sought, as in --minimise peak:Rb1");
   OptimisePlan plan;
   plan.search = request.search;
+  plan.samples = request.samples;
+  plan.comparison = request.comparison;
   const SearchOptions& search = plan.search;
   if (static_cast<double>(search.restarts) * static_cast<double>(search.generations + 1) *
           static_cast<double>(search.population) >
@@ -208,8 +244,9 @@ struct Optimiser::Implementation {
   Case base;
   OptimisePlan plan;
   std::vector<SearchVariable> variables;
-  std::vector<std::size_t> objectives;  // outputs with a direction
-  Evaluator evaluator;                  // of designs and conditions
+  std::vector<std::size_t> objectives;         // outputs with a direction
+  Evaluator evaluator;                         // of designs and conditions
+  std::optional<QuantileEvaluator> quantiles;  // of these, where quantiles are asked for
   Evaluation own;
   std::vector<double> scales;  // of constraints
 
@@ -228,8 +265,16 @@ struct Optimiser::Implementation {
     for (const Varied& varied : plan.designs.varied) variables.push_back(search_variable(varied));
     for (std::size_t k = 0; k < plan.designs.direction.size(); ++k)
       if (plan.designs.direction[k] != 0) objectives.push_back(k);
-    // Designs with their outputs twice, and a reason each.
-    const double numbers = static_cast<double>(variables.size() + 2 * outputs());
+    if (plan.robust()) {
+      std::vector<QuantileOutput> wanted;
+      for (std::size_t k = 0; k < computed(); ++k)
+        if (plan.quantiles[k]) wanted.push_back({plan.computed[k], *plan.quantiles[k]});
+      quantiles.emplace(base, evaluator.family().variables(), std::move(wanted), plan.samples,
+                        plan.search.seed, plan.designs.model);
+    }
+    // Designs with their outputs twice, their costs, constraints and violation, and a reason each.
+    const double numbers = static_cast<double>(variables.size() + 2 * outputs() +
+                                               objectives.size() + plan.constraints.size() + 1);
     study::require_memory(
         static_cast<double>(plan.evaluations()) * (numbers * sizeof(double) + sizeof(std::string)),
         fmt::format("optimise: {} designs of {} variables and {} outputs", plan.evaluations(),
@@ -277,6 +322,16 @@ struct Optimiser::Implementation {
     return x;
   }
 
+  // Quantiles in the places of what they are of. @return why there are none
+  std::string put_quantiles(std::span<const double> values, std::span<double> raw) const {
+    std::vector<double> found(computed());  // as many as there may be
+    const std::string why = quantiles->evaluate(values, found);
+    auto next = found.begin();
+    for (std::size_t k = 0; k < computed(); ++k)
+      if (plan.quantiles[k]) raw[k] = *next++;
+    return why;
+  }
+
   // Outputs of one design at every operating point, row by row. @return why it has none
   std::string compute(std::span<const double> values, std::span<double> raw) const {
     std::string reason;
@@ -287,6 +342,7 @@ struct Optimiser::Implementation {
       const auto here = raw.subspan(row * computed(), computed());
       std::string why;
       evaluator.evaluate(1, all, here, {&why, 1});
+      if (why.empty() && quantiles) why = put_quantiles(all, here);
       if (!why.empty() && reason.empty())
         reason = rows() == 1 ? why : plan.conditions.name_of(row) + ": " + why;
     }
@@ -297,7 +353,7 @@ struct Optimiser::Implementation {
   // The same of several designs.
   void compute(std::span<const double> values, std::span<double> raw,
                std::span<std::string> reasons) const {
-    if (rows() == 1 && plan.conditions.variables.empty())
+    if (rows() == 1 && plan.conditions.variables.empty() && !quantiles)
       return evaluator.evaluate(reasons.size(), values, raw, reasons);
     const std::size_t n = variables.size(), m = rows() * computed();
     for (std::size_t i = 0; i < reasons.size(); ++i)
@@ -360,7 +416,8 @@ struct Optimiser::Implementation {
 
   // Exact derivatives where every one of them is.
   bool differentiate(std::span<const double> x, std::span<double> jacobian) const {
-    if (!evaluator.fast() || rows() != 1 || !plan.conditions.variables.empty()) return false;
+    if (!evaluator.fast() || rows() != 1 || !plan.conditions.variables.empty() || quantiles)
+      return false;
     for (const SearchVariable& v : variables)
       if (v.whole) return false;
     Case here = base;
@@ -402,31 +459,89 @@ class Batches {
   Batches(const OptimiseWork& work, std::size_t piece, Compute compute)
       : work_(work), piece_(piece), compute_(std::move(compute)) {}
 
-  // @param keep  whether it has the size of those that are kept
-  SweepBlock make(std::vector<double> values, std::size_t designs, std::size_t numbers, bool keep,
+  // A batch of the size of all.
+  SweepBlock make(std::vector<double> values, std::size_t designs, std::size_t numbers,
                   const std::function<void()>& tick) {
     SweepBlock block;
     block.first = next_ * designs;
     block.designs = designs;
     block.values = std::move(values);
-    if (keep) {
-      const std::size_t number = next_++;
-      if (work_.parts != nullptr && work_.resume)
-        if (auto found = work_.parts->read(number);
-            all_have(found && found->values == block.values)) {
-          ++kept_;
-          return std::move(*found);
-        }
-      fill(block, numbers, tick);
-      if (work_.parts != nullptr && work_.rank == 0) work_.parts->keep(number, block);
-      return block;
+    const std::size_t number = next_++;
+    if (auto found = found_in(number, block.values); all_have(found.has_value())) {
+      ++kept_;
+      return std::move(*found);
     }
     fill(block, numbers, tick);
+    keep(number, block);
+    return block;
+  }
+
+  // Designs outside of batches, each of which is kept by itself where `keeps`.
+  SweepBlock make_singles(std::vector<double> values, std::size_t designs, std::size_t numbers,
+                          bool keeps, const std::function<void()>& tick) {
+    SweepBlock block;
+    block.designs = designs;
+    block.values = std::move(values);
+    if (!keeps || work_.parts == nullptr) {
+      fill(block, numbers, tick);
+      return block;
+    }
+    const BlockLayout& layout = work_.parts->record().layout;
+    const std::size_t width = block.values.size() / designs;
+    block.results.resize(designs * numbers);
+    block.reasons.resize(designs);
+    const auto take = [&](std::size_t i, const SweepBlock& from, std::size_t place) {
+      std::copy_n(from.results.begin() + static_cast<std::ptrdiff_t>(place * numbers), numbers,
+                  block.results.begin() + static_cast<std::ptrdiff_t>(i * numbers));
+      block.reasons[i] = from.reasons[place];
+    };
+    SweepBlock missing;
+    std::vector<std::size_t> places;
+    const std::size_t first = next_single_;
+    next_single_ += designs;
+    for (std::size_t i = 0; i < designs; ++i) {
+      const auto from = block.values.begin() + static_cast<std::ptrdiff_t>(i * width);
+      const std::vector<double> here(from, from + static_cast<std::ptrdiff_t>(width));
+      const auto found = found_in(layout.blocks() + first + i, here);
+      if (all_have(found.has_value())) {
+        ++kept_singles_;
+        take(i, *found, 0);
+      } else {
+        places.push_back(i);
+        missing.values.insert(missing.values.end(), here.begin(), here.end());
+      }
+    }
+    missing.designs = places.size();
+    if (places.empty()) return block;
+    fill(missing, numbers, tick);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      take(places[k], missing, k);
+      SweepBlock single;
+      single.first = layout.designs + first + places[k];
+      single.designs = 1;
+      const auto from = missing.values.begin() + static_cast<std::ptrdiff_t>(k * width);
+      single.values.assign(from, from + static_cast<std::ptrdiff_t>(width));
+      const auto result = missing.results.begin() + static_cast<std::ptrdiff_t>(k * numbers);
+      single.results.assign(result, result + static_cast<std::ptrdiff_t>(numbers));
+      single.reasons = {missing.reasons[k]};
+      keep(layout.blocks() + first + places[k], single);
+    }
     return block;
   }
   std::size_t kept() const { return kept_; }
+  std::size_t kept_singles() const { return kept_singles_; }
 
  private:
+  // What an earlier run has kept under this number, where it is of these values.
+  std::optional<SweepBlock> found_in(std::size_t number, const std::vector<double>& values) const {
+    if (work_.parts == nullptr || !work_.resume) return std::nullopt;
+    auto found = work_.parts->read(number);
+    if (found && found->values != values) found.reset();
+    return found;
+  }
+  void keep(std::size_t number, const SweepBlock& block) const {
+    if (work_.parts != nullptr && work_.rank == 0) work_.parts->keep(number, block);
+  }
   // All processes take a batch from the folder, or none does.
   bool all_have(bool one) const {
     double count = one ? 1 : 0;
@@ -460,7 +575,7 @@ class Batches {
   const OptimiseWork& work_;
   std::size_t piece_;
   Compute compute_;
-  std::size_t next_ = 0, kept_ = 0;
+  std::size_t next_ = 0, kept_ = 0, next_single_ = 0, kept_singles_ = 0;
 };
 
 // Of a design that another process computed, or an earlier run: NaN says that there are no values.
@@ -497,16 +612,22 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
     if (progress)
       progress(std::min(1.0, static_cast<double>(designs.designs) / static_cast<double>(all)));
   };
-  problem.evaluate = [&](std::size_t count, std::span<const double> points,
-                         std::span<double> results) {
+  const auto block_at = [&](std::size_t count, std::span<const double> points, bool batch) {
     std::vector<double> values;
     for (std::size_t i = 0; i < count; ++i) {
       const auto one = values_at(points.subspan(i * n, n));
       values.insert(values.end(), one.begin(), one.end());
     }
-    const bool keep = count == plan.search.population && designs.designs < all;
+    // Of the closed form a design takes less time than its file.
+    return batch ? batches.make(std::move(values), count, rows() * computed(), tell)
+                 : batches.make_singles(std::move(values), count, rows() * computed(),
+                                        !evaluator.fast(), tell);
+  };
+  problem.evaluate = [&](std::size_t count, std::span<const double> points,
+                         std::span<double> results) {
     const Stopwatch evaluation;
-    SweepBlock block = batches.make(std::move(values), count, rows() * computed(), keep, tell);
+    SweepBlock block =
+        block_at(count, points, count == plan.search.population && designs.designs < all);
     found.evaluation_seconds += evaluation.seconds();
     for (std::size_t i = 0; i < count; ++i) {
       const auto raw = std::span<const double>(block.results)
@@ -533,7 +654,6 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
   std::vector<double> start;
   for (const Varied& varied : plan.designs.varied) start.push_back(varied.variable.value(base));
   found.search = search(problem, point_of(start), plan.search);
-  found.kept = batches.kept();
   designs.all_infeasible = designs.infeasible.size();
   designs.plan.samples = designs.designs;
   if (std::all_of(found.violations.begin(), found.violations.end(),
@@ -573,28 +693,71 @@ Optimisation Optimiser::Implementation::run(const OptimiseWork& work,
                                        [&](auto a, auto b) { return distance(a) < distance(b); })});
   }
   constexpr std::size_t kMaxVolume = 3;
-  if (!front.empty() && problem.objectives <= kMaxVolume) {
-    const auto volume_of = [&](std::size_t from, std::size_t to) {
-      std::vector<double> costs;
-      for (std::size_t i = from; i < to; ++i) {
-        if (found.violations[i] > 0) continue;
-        for (std::size_t k = 0; k < problem.objectives; ++k) {
-          const double width = high[k] - low[k];
-          costs.push_back(width > 0 ? (cost(i, k) - low[k]) / width : cost(i, k) - low[k]);
-        }
+  const bool has_volume = !front.empty() && problem.objectives <= kMaxVolume;
+  // Of costs, `width` numbers apart, of the points from .. to - 1 that are allowed.
+  const auto volume_of = [&](std::span<const double> costs, std::span<const double> violations) {
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < violations.size(); ++i) {
+      if (violations[i] > 0) continue;
+      for (std::size_t k = 0; k < problem.objectives; ++k) {
+        const double width = high[k] - low[k], above = costs[i * problem.numbers() + k] - low[k];
+        shares.push_back(width > 0 ? above / width : above);
       }
-      // A tenth beyond its worst point, so that the ends of the front count.
-      return hypervolume(costs, std::vector<double>(problem.objectives, 1.1));
-    };
-    const double whole = volume_of(0, designs.designs);
+    }
+    // A tenth beyond its worst point, so that the ends of the front count.
+    return hypervolume(shares, std::vector<double>(problem.objectives, 1.1));
+  };
+  const double whole = has_volume ? volume_of(numbers, found.violations) : not_computed();
+  if (has_volume) {
     std::size_t from = 0;
     for (std::size_t i = 0; i < plan.search.restarts; ++i) {
-      const std::size_t to = from + found.search.evaluations[i];
-      found.shares_of_front.push_back(volume_of(from, to) / whole);
-      from = to;
+      const std::size_t count = found.search.evaluations[i], width = problem.numbers();
+      found.shares_of_front.push_back(
+          volume_of(std::span<const double>(numbers).subspan(from * width, count * width),
+                    std::span<const double>(found.violations).subspan(from, count)) /
+          whole);
+      from += count;
     }
   }
   designs.seconds = watch.seconds();
+  if (plan.comparison == SearchComparisonChoice::yes ||
+      (plan.comparison == SearchComparisonChoice::fast && evaluator.fast()))
+    for (const bool is_grid : {false, true}) {
+      const std::vector<double> points =
+          is_grid ? grid_search_points(problem, designs.designs)
+                  : random_search_points(problem, designs.designs, plan.search.seed);
+      SearchComparison one;
+      one.name = is_grid ? "grid" : "random";
+      one.evaluations = points.size() / n;
+      one.best.assign(problem.objectives, not_computed());
+      std::vector<double> costs(one.evaluations * problem.numbers()), violations;
+      const Stopwatch evaluation;
+      for (std::size_t from = 0; from < one.evaluations; from += plan.search.population) {
+        const std::size_t count = std::min(plan.search.population, one.evaluations - from);
+        const SweepBlock block =
+            block_at(count, std::span<const double>(points).subspan(from * n, count * n), false);
+        for (std::size_t i = 0; i < count; ++i) {
+          const std::size_t width = rows() * computed();
+          const auto row =
+              std::span<double>(costs).subspan((from + i) * problem.numbers(), problem.numbers());
+          numbers_of(std::span<const double>(block.results).subspan(i * width, width), row);
+          violations.push_back(violation(problem, row));
+          if (violations.back() > 0) continue;
+          ++one.feasible;
+          for (std::size_t k = 0; k < problem.objectives; ++k) {
+            const double value = -plan.designs.direction[objectives[k]] * row[k];
+            if (!is_computed(one.best[k]) ||
+                plan.designs.direction[objectives[k]] * (value - one.best[k]) > 0)
+              one.best[k] = value;
+          }
+        }
+      }
+      one.seconds = evaluation.seconds();
+      one.share_of_front = has_volume ? volume_of(costs, violations) / whole : not_computed();
+      found.comparisons.push_back(std::move(one));
+    }
+  found.kept = batches.kept();
+  found.kept_singles = batches.kept_singles();
   return found;
 }
 
@@ -616,6 +779,7 @@ SweepRecord Optimiser::record(const std::string& program) const {
       record.identity + "\noptimise " + search_libraries() +
       fmt::format("\n{} {} {} {}", it.plan.search.population, it.plan.search.generations,
                   it.plan.search.restarts, it.plan.search.seed);
+  if (it.plan.robust()) all += fmt::format("\nsamples {}", it.plan.samples);
   for (std::size_t k = 0; k < it.plan.designs.outputs.size(); ++k)
     all += fmt::format("\n{}", it.plan.designs.direction[k]);
   for (const Constraint& c : it.plan.constraints) all += "\n" + it.plan.text(c);
@@ -628,7 +792,7 @@ SweepRecord Optimiser::record(const std::string& program) const {
   record.plan.replace(record.plan.find(record.identity), record.identity.size(), identity);
   record.identity = identity;
   record.layout = {it.plan.evaluations(), it.plan.search.population, it.variables.size(),
-                   it.rows() * it.computed()};
+                   it.rows() * it.computed(), true};
   return record;
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include "bentaxis/analytic/budget.h"
@@ -16,7 +19,9 @@
 #include "bentaxis/results/channels.h"
 #include "bentaxis/study/bearing_life.h"
 #include "bentaxis/study/efficiency.h"
+#include "bentaxis/study/motion_answers.h"
 #include "bentaxis/study/plausibility.h"
+#include "bentaxis/study/simulation.h"
 #include "bentaxis/study/timing.h"
 
 namespace bentaxis::designs {
@@ -122,6 +127,46 @@ bool has_ratings(const Case& the_case) {
   return the_case.ratings.tapered && the_case.ratings.cylindrical;
 }
 
+struct MotionEntry {
+  const char *name, *unit, *meaning;
+  bool of_oil;  // of the delivery pressure
+  double (*value)(const study::MotionAnswers&);
+};
+const MotionEntry kMotion[] = {
+    {"reached_s", "s", "time at which the shaft has made 95 % of the change of its speed, for good",
+     false, [](const study::MotionAnswers& a) { return a.reached_s.value_or(not_computed()); }},
+    {"last_rpm", "rpm", "speed of the shaft at the end", false,
+     [](const study::MotionAnswers& a) { return a.last_rpm; }},
+    {"peak_torque_Nm", "Nm", "drive torque Td of the largest magnitude, with its sign", false,
+     [](const study::MotionAnswers& a) { return a.largest_torque; }},
+    {"peak_torque_s", "s", "time of the drive torque of the largest magnitude", false,
+     [](const study::MotionAnswers& a) { return a.largest_torque_s; }},
+    {"drive_work_J", "J", "energy from the drive", false,
+     [](const study::MotionAnswers& a) { return a.drive_work; }},
+    {"peak_delivery_bar", "bar", "highest delivery pressure", true,
+     [](const study::MotionAnswers& a) {
+       return a.delivery ? a.delivery->highest_bar : not_computed();
+     }},
+    {"peak_delivery_s", "s", "time of the highest delivery pressure", true,
+     [](const study::MotionAnswers& a) {
+       return a.delivery ? a.delivery->highest_s : not_computed();
+     }},
+    {"end_delivery_bar", "bar", "mean delivery pressure over the last tenth of the time", true,
+     [](const study::MotionAnswers& a) {
+       return a.delivery ? a.delivery->end_bar : not_computed();
+     }},
+    {"overshoot_bar", "bar",
+     "highest delivery pressure less its mean over the last tenth of the time", true,
+     [](const study::MotionAnswers& a) {
+       return a.delivery ? a.delivery->highest_bar - a.delivery->end_bar : not_computed();
+     }},
+    {"beyond_plate_percent", "%",
+     "share of the rows in which the film force acts beyond the port plate", false,
+     [](const study::MotionAnswers& a) {
+       return a.beyond_plate ? 100 * a.beyond_plate->share : 0;
+     }},
+};
+
 // Keys of the limits of validity, and units and meanings of what is held to them.
 struct ValidityEntry {
   const char *key, *unit, *meaning;
@@ -188,6 +233,11 @@ std::vector<Output> single_outputs(const Case& base) {
         "number of verdicts on the timing of the ports beyond their limits, without a stated "
         "reason");
   }
+  if (base.drive)
+    for (const MotionEntry& e : kMotion)
+      if (is_hydraulic(base) || !e.of_oil)
+        add(Source::motion, "motion.", e.name, e.unit,
+            std::string("of the simulation in time: ") + e.meaning);
   if (has_ratings(base))
     for (const LifeEntry& e : kLives) add(Source::life, "life.", e.name, e.unit, e.meaning);
   return all;
@@ -197,11 +247,16 @@ std::vector<Output> single_outputs(const Case& base) {
 std::string lacking(const std::string& name, const Case& base) {
   if (name.starts_with("life.") && !has_ratings(base))
     return "needs ratings of both bearings in [bearings]";
+  if (name.starts_with("motion.") && !base.drive)
+    return "needs [drive], as in cases/bap63_start_up.toml";
   const auto& lines = study::efficiency_lines();
-  const bool of_oil = name.starts_with("hydraulics.") || name.starts_with("timing.") ||
-                      std::any_of(lines.begin(), lines.end(), [&](const auto& e) {
-                        return name == std::string("efficiency.") + e.key;
-                      });
+  const bool of_motion_of_oil = std::any_of(
+      std::begin(kMotion), std::end(kMotion),
+      [&](const MotionEntry& e) { return e.of_oil && name == std::string("motion.") + e.name; });
+  const bool of_oil =
+      of_motion_of_oil || name.starts_with("hydraulics.") || name.starts_with("timing.") ||
+      std::any_of(lines.begin(), lines.end(),
+                  [&](const auto& e) { return name == std::string("efficiency.") + e.key; });
   return of_oil && !is_hydraulic(base) ? "needs [pressure] kind = \"hydraulic\"" : "";
 }
 
@@ -341,6 +396,7 @@ class Turn {
       case Source::hydraulics:
       case Source::timing:
       case Source::plausibility:
+      case Source::motion:
         break;
     }
     return not_computed();
@@ -404,33 +460,79 @@ double timing_value(const Output& o, const std::vector<TimingRow>& rows) {
 
 }  // namespace
 
-std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::PreparedCase& ready,
-                               study::Model model) {
+namespace {
+
+// As `simulate --model MODEL` states them.
+study::MotionAnswers motion_of(const Case& the_case, study::Model model) {
+  study::SimulationChoice choice;
+  choice.only = model;
+  const study::SimulationResult found =
+      study::simulate(study::prepare_simulation(the_case, choice), choice);
+  return study::motion_answers(model == study::Model::analytic ? *found.analytic : *found.multibody,
+                               the_case);
+}
+
+double motion_value(const Output& o, const study::MotionAnswers& answers) {
+  for (const MotionEntry& e : kMotion)
+    if (o.item == e.name) return e.value(answers);
+  return not_computed();
+}
+
+// @param prepared  the case made ready, which costs what it takes where it is asked for first
+std::vector<double> values_of(const std::vector<Output>& outputs, const Case& the_case,
+                              const std::function<const study::PreparedCase&()>& prepared,
+                              study::Model model) {
   std::optional<Turn> turn;
+  std::optional<study::MotionAnswers> motion;
   std::vector<TimingRow> timing;
   std::vector<double> values;
   const auto is = [](Source source) {
     return [source](const Output& o) { return o.source == source; };
   };
   const bool budget = std::any_of(outputs.begin(), outputs.end(), is(Source::budget));
+  // A design whose turn cannot be computed has no outputs at all; a simulation may do without one.
+  if (std::none_of(outputs.begin(), outputs.end(), is(Source::motion))) prepared();
   for (const Output& o : outputs) {
     if (o.source == Source::derived) {
-      values.push_back(derived_value(o, ready.the_case.pump.geometry));
+      values.push_back(derived_value(o, the_case.pump.geometry));
     } else if (o.source == Source::hydraulics) {
       values.push_back(not_computed());
-      for (const hydraulics::Line& line : hydraulics::lines(*ready.hydraulics))
+      for (const hydraulics::Line& line : hydraulics::lines(*prepared().hydraulics))
         if (line.key == o.item) values.back() = line.value;
     } else if (o.source == Source::timing) {
-      if (timing.empty()) timing = study::timing_rows(ready.the_case, *ready.hydraulics);
+      if (timing.empty()) timing = study::timing_rows(prepared().the_case, *prepared().hydraulics);
       values.push_back(timing_value(o, timing));
     } else if (o.source == Source::plausibility) {
-      values.push_back(static_cast<double>(study::plausibility(ready.the_case).warnings.size()));
+      values.push_back(
+          static_cast<double>(study::plausibility(prepared().the_case).warnings.size()));
+    } else if (o.source == Source::motion) {
+      if (!motion) motion = motion_of(the_case, model);
+      values.push_back(motion_value(o, *motion));
     } else {
-      if (!turn) turn.emplace(ready, model, budget);
+      if (!turn) turn.emplace(prepared(), model, budget);
       values.push_back(turn->value(o));
     }
   }
   return values;
+}
+
+}  // namespace
+
+std::vector<double> outputs_of(const std::vector<Output>& outputs, const Case& the_case,
+                               std::optional<study::PreparedCase>& ready, study::Model model) {
+  return values_of(
+      outputs, the_case,
+      [&]() -> const study::PreparedCase& {
+        if (!ready) ready.emplace(study::prepare(the_case));
+        return *ready;
+      },
+      model);
+}
+
+std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::PreparedCase& ready,
+                               study::Model model) {
+  return values_of(
+      outputs, ready.the_case, [&]() -> const study::PreparedCase& { return ready; }, model);
 }
 
 }  // namespace bentaxis::designs

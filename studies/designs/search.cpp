@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bentaxis/designs/points.h"
 #include "bentaxis/pump/error.h"
 
 #ifdef BENTAXIS_HAS_SEARCH
@@ -20,8 +21,6 @@
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 #include <pagmo/utils/hypervolume.hpp>
-
-#include "bentaxis/designs/points.h"
 #endif
 
 namespace bentaxis::designs {
@@ -33,6 +32,65 @@ double violation(const SearchProblem& problem, std::span<const double> results) 
     if (k >= problem.objectives) sum += std::max(0.0, results[k]);
   }
   return sum;
+}
+
+namespace {
+
+// A point by its shares of the ranges, in (0, 1).
+void append_point(const SearchProblem& problem, std::span<const double> shares,
+                  std::vector<double>& points) {
+  for (std::size_t k = 0; k < problem.variables(); ++k) {
+    const double width = problem.high[k] - problem.low[k];
+    points.push_back(problem.whole[k] ? problem.low[k] + std::floor(shares[k] * (width + 1))
+                                      : problem.low[k] + shares[k] * width);
+  }
+}
+
+}  // namespace
+
+std::vector<double> random_search_points(const SearchProblem& problem, std::size_t count,
+                                         std::uint64_t seed) {
+  const auto drawn = random(problem.variables(), count, seed);
+  std::vector<double> points, shares(problem.variables());
+  for (std::size_t i = 0; i < count; ++i) {
+    drawn->point(i, shares);
+    append_point(problem, shares, points);
+  }
+  return points;
+}
+
+std::vector<double> grid_search_points(const SearchProblem& problem, std::size_t count) {
+  const std::size_t n = problem.variables();
+  std::vector<std::size_t> values(n, 1);
+  std::size_t all = 1;
+  // One value more for the variable that has fewest, as long as that leaves no more than `count`.
+  for (;;) {
+    std::size_t next = n;
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool more = !problem.whole[k] ||
+                        static_cast<double>(values[k]) < problem.high[k] - problem.low[k] + 1;
+      if (more && (next == n || values[k] < values[next])) next = k;
+    }
+    if (next == n || all / values[next] * (values[next] + 1) > count) break;
+    all = all / values[next] * (values[next] + 1);
+    ++values[next];
+  }
+  std::vector<std::vector<double>> axes;
+  for (std::size_t k = 0; k < n; ++k) {
+    std::vector<double> axis;
+    for (std::size_t i = 0; i < values[k]; ++i) {
+      const double share =
+          values[k] == 1 ? 0.5 : static_cast<double>(i) / static_cast<double>(values[k] - 1);
+      const double value = problem.low[k] + share * (problem.high[k] - problem.low[k]);
+      axis.push_back(problem.whole[k] ? std::round(value) : value);
+    }
+    axes.push_back(std::move(axis));
+  }
+  const auto crossed = grid(std::move(axes));
+  std::vector<double> points(crossed->size() * n);
+  for (std::size_t i = 0; i < crossed->size(); ++i)
+    crossed->point(i, std::span(points).subspan(i * n, n));
+  return points;
 }
 
 #ifdef BENTAXIS_HAS_SEARCH
@@ -123,11 +181,7 @@ std::vector<double> first_points(const SearchProblem& problem, std::span<const d
   std::vector<double> share(n);
   for (std::size_t i = 0; points.size() < count * n; ++i) {
     even->point(i, share);
-    for (std::size_t k = 0; k < n; ++k) {
-      const double width = problem.high[k] - problem.low[k];
-      points.push_back(problem.whole[k] ? problem.low[k] + std::floor(share[k] * (width + 1))
-                                        : problem.low[k] + share[k] * width);
-    }
+    append_point(problem, share, points);
   }
   return points;
 }

@@ -107,6 +107,8 @@ Scale scale_of(const Output& o, const Case& base) {
     case Source::hydraulics:
     case Source::timing:
     case Source::plausibility:
+    case Source::motion:  // integrated to an error of its own, to which `simulate` holds both
+                          // models
       break;
   }
   return {};
@@ -174,11 +176,11 @@ struct Sweep::Implementation {
     c.reason = study::reason_of([&] {
       Case made = base;
       evaluator.family().make(values, made);
-      const study::PreparedCase ready = study::prepare(made);
+      std::optional<study::PreparedCase> ready = study::prepare(made);
       const bool analytic = plan.model == study::Model::analytic;
-      c.values = outputs_of(plan.outputs, ready,
+      c.values = outputs_of(plan.outputs, made, ready,
                             analytic ? study::Model::multibody : study::Model::analytic);
-      c.scales = scales_in(ready, c);
+      c.scales = scales_in(*ready, c);
     });
     return c;
   }

@@ -18,6 +18,7 @@
 #include "bentaxis/files/whole_file.h"
 #include "bentaxis/numerics/parallel_for.h"
 #include "bentaxis/pump/error.h"
+#include "bentaxis/pump/number.h"
 #include "bentaxis/pump/registry.h"
 #include "bentaxis/study/reporting.h"
 
@@ -38,10 +39,12 @@ std::optional<std::string> content_of(const fs::path& file) {
   return read_input_file_if_there(file, {"a file of a sweep", kLargestReport});
 }
 
+constexpr const char* kBlock = "block-";
+
 fs::path file_of(const fs::path& folder, std::size_t block) {
   std::string number = std::to_string(block);
   number.insert(0, number.size() < 6 ? 6 - number.size() : 0, '0');
-  return folder / ("block-" + number + ".bin");
+  return folder / (kBlock + number + ".bin");
 }
 
 // Numbers and texts one behind the other.
@@ -182,9 +185,11 @@ std::string program_in(const SweepRecord& record) {
 }  // namespace
 
 bool BlockLayout::fits(std::size_t number, const SweepBlock& block) const {
-  if (number >= blocks()) return false;
-  const std::size_t first = number * block_size;
-  if (block.first != first || block.designs != std::min(block_size, designs - first) ||
+  const bool single = number >= blocks();
+  if (single && !singles) return false;
+  const std::size_t first = single ? designs + (number - blocks()) : number * block_size;
+  if (block.first != first ||
+      block.designs != (single ? 1 : std::min(block_size, designs - first)) ||
       block.values.size() != block.designs * variables ||
       block.results.size() != block.designs * outputs || block.reasons.size() != block.designs)
     return false;
@@ -294,17 +299,33 @@ std::vector<std::size_t> SweepParts::misplaced(const std::vector<std::size_t>& a
   return found;
 }
 
-std::size_t SweepParts::count() const {
-  std::size_t blocks = 0;
+std::vector<std::size_t> SweepParts::numbers() const {
+  std::vector<std::size_t> all;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored))
-    if (entry.path().extension() == ".bin") ++blocks;
-  return blocks;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
+    const std::string name = entry.path().stem();
+    if (entry.path().extension() != ".bin" || !name.starts_with(kBlock)) continue;
+    if (const auto number = number_in(name.substr(std::string(kBlock).size())))
+      all.push_back(static_cast<std::size_t>(*number));
+  }
+  return all;
+}
+
+std::size_t SweepParts::count() const { return numbers().size() - count_singles(); }
+
+std::size_t SweepParts::count_singles() const {
+  if (!record_.layout.singles) return 0;
+  const auto all = numbers();
+  return static_cast<std::size_t>(std::count_if(
+      all.begin(), all.end(), [&](std::size_t n) { return n >= record_.layout.blocks(); }));
 }
 
 void SweepParts::remove(std::size_t blocks) const {
   std::error_code ignored;
   for (std::size_t i = 0; i < blocks; ++i) fs::remove(file_of(folder_, i), ignored);
+  if (record_.layout.singles)
+    for (const std::size_t number : numbers())
+      if (number >= record_.layout.blocks()) fs::remove(file_of(folder_, number), ignored);
   for (const auto& [name, content] : record_.curves) fs::remove(folder_ / name, ignored);
   fs::remove(folder_ / kCaseFile, ignored);
   fs::remove(folder_ / kPlanFile, ignored);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "bentaxis/designs/points.h"
@@ -34,12 +35,14 @@ class Designs {
   std::size_t before_curves() const { return options_.outputs.size() + options_.further.count; }
 
   std::vector<double> of(const Case& the_case) const {
-    const study::PreparedCase ready = study::prepare(the_case);
-    std::vector<double> all = outputs_of(options_.outputs, ready, options_.model);
+    std::optional<study::PreparedCase> prepared;
+    std::vector<double> all = outputs_of(options_.outputs, the_case, prepared, options_.model);
     for (std::size_t o = 0; o < all.size(); ++o)
       if (!is_computed(all[o]))
         throw InputError("output " + options_.outputs[o].name + ": is not computed");
     if (rows_ == 0 && options_.further.count == 0) return all;
+    if (!prepared) prepared.emplace(study::prepare(the_case));
+    const study::PreparedCase& ready = *prepared;
     const ResultTable table = study::run_turn(ready, options_.model);
     all.resize(before_curves());
     if (options_.further.count > 0)

@@ -20,6 +20,50 @@ uncertainty = 1
 """
 
 
+class OptimiseTest(ModuleTest):
+    VARY = {"pump.tilt_deg": "25:42", "pump.bore_diameter_mm": "20:26"}
+
+    def search(self, the_case=None, **options):
+        return bentaxis.optimise(the_case or self.case(operation__samples_per_revolution=36), self.VARY, "peak:Rb1", "displacement_cm3",
+                                 "peak:Rs <= 13000", population=16, generations=4, restarts=1, **options)
+
+    def test_results_are_those_of_the_program(self):
+        try:
+            found = self.search(outputs="mean:Td")
+        except bentaxis.InputError as error:
+            if "without pagmo" in str(error):
+                self.skipTest(str(error))
+            raise
+        self.run_program("optimise", CASES / "bap63_rated.toml", "--set", "operation.samples_per_revolution=36", "--vary",
+                         "pump.tilt_deg=25:42", "--vary", "pump.bore_diameter_mm=20:26", "--minimise", "peak:Rb1", "--maximise",
+                         "displacement_cm3", "--subject-to", "peak:Rs <= 13000", "--output", "mean:Td", "--population", "16",
+                         "--generations", "4", "--restarts", "1", "--out", "out")
+        found.write_csv(self.folder / "mine.csv")
+        self.assertEqual((self.folder / "mine.csv").read_text(), (self.folder / "out/evaluations.csv").read_text())
+        self.assertEqual(found.names[:3], ["pump.tilt_deg", "pump.bore_diameter_mm", "peak:Rb1"])
+        with open(self.folder / "out/front.csv", newline="") as file:
+            self.assertEqual([int(row["design"]) for row in csv.DictReader(file)], list(found.front))
+        self.assertEqual([one.why for one in found.chosen], ["least peak:Rb1", "largest displacement_cm3", "balanced"])
+        best = found.chosen[0].design
+        self.assertEqual(found["peak:Rb1"][best], min(found["peak:Rb1"][row] for row in found.front))
+        table = bentaxis.run(found.case(best))
+        self.assertAlmostEqual(max(table["Rb1_x1"]**2 + table["Rb1_y1"]**2 + table["Rb1_z1"]**2)**0.5, found["peak:Rb1"][best], 6)
+        for row, reason in found.infeasible.items():
+            self.assertIn("peak:Rs <= 13000", reason)
+            self.assertNotIn(row, found.front)
+        self.assertEqual(found.answers, json.loads((self.folder / "out/report.json").read_text())["verdict"]["answers"])
+        with self.assertRaises(IndexError):
+            found.case(len(found))
+        found.report(self.folder / "report")
+        self.assertTrue((self.folder / "report/chosen_3.toml").exists())
+        for options, text in (({"population": 10}, "multiple of 4"), ({"comparison": "some"}, "fast, yes or no"),
+                              ({"samples": 0}, "samples = 0"), ({"threads": -1}, "threads"), ({"model": "none"}, "model")):
+            with self.subTest(text):
+                options = {"population": 16, "generations": 4, "restarts": 1, **options}
+                self.assertIn(text, self.refused(bentaxis.InputError, lambda o=options: bentaxis.optimise(
+                    self.case(), self.VARY, "peak:Rb1", **o)))
+
+
 class SweepTest(ModuleTest):
     VARY = {"pump.tilt_deg": "20:40:5", "pressure.delivery_bar": numpy.array([100.0, 200.0, 300.0])}
 

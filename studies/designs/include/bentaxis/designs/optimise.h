@@ -19,8 +19,18 @@
 
 namespace bentaxis::designs {
 
+/// Whether the search is compared with random and grid search at as many evaluations.
+enum class SearchComparisonChoice {
+  fast,  ///< where designs are evaluated by the kernel of the closed form
+  yes,
+  no,
+};
+
+inline constexpr int kMaxSamples = 100000;  ///< of [uncertainty], for a quantile
+
 /// What a command line says of an optimisation. Outputs by name; with "@N" behind it, "peak:Rb1@2",
-/// at the operating point of row N of the conditions alone.
+/// at the operating point of row N of the conditions alone; with "q95:" before it, "q95:peak:Rb1",
+/// the value that 95 % of the pumps of a design stay below under [uncertainty].
 struct OptimiseRequest {
   std::vector<std::pair<std::string, std::string>> vary;  ///< name; FROM:TO or a list
   std::vector<std::string> minimise, maximise, outputs;
@@ -28,6 +38,8 @@ struct OptimiseRequest {
   study::Model model = study::Model::analytic;
   std::filesystem::path conditions;  ///< a duty cycle, or empty
   SearchOptions search;
+  std::size_t samples = 100;  ///< of [uncertainty], for each quantile of each design
+  SearchComparisonChoice comparison = SearchComparisonChoice::fast;
 };
 
 /// The same from a study file (docs/optimisation.md); a file it names is beside it.
@@ -49,6 +61,9 @@ struct OptimisePlan {
   /// What is computed at every operating point, and of each output of the designs where it is taken
   /// from: which of these, at which row; without a row all of them count.
   std::vector<Output> computed;
+  /// Of each of these the share of a quantile under [uncertainty]; nothing: of the case as it is.
+  std::vector<std::optional<double>> quantiles = {};
+  std::size_t samples = 100;  ///< of [uncertainty]
   struct Taken {
     std::size_t from = 0;
     std::optional<std::size_t> row = std::nullopt;
@@ -57,7 +72,10 @@ struct OptimisePlan {
   std::vector<Constraint> constraints;
   DutyCycle conditions;
   SearchOptions search;
+  SearchComparisonChoice comparison = SearchComparisonChoice::fast;
 
+  /// Whether a quantile under [uncertainty] is among the outputs.
+  bool robust() const;
   /// "timing.backflow.excess <= 0"
   std::string text(const Constraint& constraint) const;
   /// Of designs that the searches evaluate, without refinements.
@@ -71,6 +89,18 @@ OptimisePlan optimise_plan(const OptimiseRequest& request, const Case& base);
 struct ChosenDesign {
   std::string why;
   std::size_t design = 0;
+};
+
+/// Another way to spend as many evaluations.
+struct SearchComparison {
+  std::string name;  ///< "random", "grid"
+  std::size_t evaluations = 0, feasible = 0;
+  std::vector<double> best;  ///< of each objective, in its unit; not_computed() without a feasible
+                             ///< design
+  /// Volume that its front dominates over that of the search, below the worst point of the search's
+  /// front; above 1 where it is better. Of up to three objectives, else not_computed().
+  double share_of_front = 0;
+  double seconds = 0;  ///< of its evaluations
 };
 
 /// What came out. Outputs are means over the operating points, weighted by their shares of the
@@ -87,6 +117,8 @@ struct Optimisation {
   SearchResult search;
   double evaluation_seconds = 0;  ///< of designs.seconds, without what the search itself takes
   std::size_t kept = 0;           ///< batches that an earlier run had computed
+  std::size_t kept_singles = 0;   ///< designs outside of batches likewise: of gradients
+  std::vector<SearchComparison> comparisons;  ///< empty where not asked for
 
   std::size_t evaluated() const { return designs.designs; }
   std::size_t feasible() const { return designs.designs - designs.infeasible.size(); }

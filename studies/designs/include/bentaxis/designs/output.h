@@ -35,6 +35,7 @@ enum class Source {
   life,          ///< of the bearings, h (study/bearing_life.h)
   timing,        ///< a verdict on the timing of the ports (study/timing.h)
   plausibility,  ///< number of plausibility warnings
+  motion,        ///< what `simulate` answers with (study/motion_answers.h), by one model
 };
 
 /// A number asked for. Names:
@@ -52,6 +53,7 @@ enum class Source {
 ///   timing.warnings        number of these verdicts beyond their limits, without a stated reason
 ///   plausibility.warnings  number of plausibility warnings without a stated reason
 ///   life.NAME              of the bearings: life.system_h, life.tapered_P_N, ..
+///   motion.NAME            of the simulation of a case with [drive]: motion.reached_s, ..
 struct Output {
   std::string name;  ///< as asked for, complete: "max:Rb1_z1_N"
   std::string unit;
@@ -84,5 +86,9 @@ double derived_value(const Output& output, const Geometry& geometry);
 /// @throws InputError, ComputationError
 std::vector<double> outputs_of(const std::vector<Output>& outputs, const study::PreparedCase& ready,
                                study::Model model);
+/// The same of a case.
+/// @param ready  of it; prepared here where an output needs that and it is empty
+std::vector<double> outputs_of(const std::vector<Output>& outputs, const Case& the_case,
+                               std::optional<study::PreparedCase>& ready, study::Model model);
 
 }  // namespace bentaxis::designs

@@ -78,6 +78,13 @@ std::string search_libraries();
 SearchResult search(const SearchProblem& problem, std::span<const double> start,
                     const SearchOptions& options);
 
+/// Points to compare a search with, row by row: independent ones, and a grid that fills the ranges
+/// evenly, both ends among them, of at most `count` points and as many values of each variable as
+/// that allows.
+std::vector<double> random_search_points(const SearchProblem& problem, std::size_t count,
+                                         std::uint64_t seed);
+std::vector<double> grid_search_points(const SearchProblem& problem, std::size_t count);
+
 /// Volume that points dominate below a reference, of costs: the larger the better the front.
 /// @param costs  points x objectives, row by row; points beyond the reference do not count
 double hypervolume(std::span<const double> costs, std::span<const double> reference);

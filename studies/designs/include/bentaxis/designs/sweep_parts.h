@@ -19,6 +19,7 @@ struct BlockLayout {
   std::size_t designs = 0;     ///< of all blocks
   std::size_t block_size = 1;  ///< designs of every block but the last
   std::size_t variables = 0, outputs = 0;
+  bool singles = false;  ///< behind these blocks there may be any number of blocks of one design
 
   std::size_t blocks() const { return (designs + block_size - 1) / block_size; }
   /// Whether a block holds exactly the designs of this number, and as many values of each as the
@@ -68,14 +69,17 @@ class SweepParts {
   std::optional<SweepBlock> read(std::size_t block) const;
   /// Of these blocks those whose files are whole but hold another block of the sweep.
   std::vector<std::size_t> misplaced(const std::vector<std::size_t>& among) const;
-  /// Number of blocks in the folder, whole or not.
+  /// Number of blocks in the folder, whole or not, without those of one design behind the others.
   std::size_t count() const;
+  /// Number of these.
+  std::size_t count_singles() const;
   /// Removes blocks, record and what killed runs have left unfinished, and the folder if nothing
   /// else is in it.
   void remove(std::size_t blocks) const;
 
  private:
   void must_be_own() const;
+  std::vector<std::size_t> numbers() const;  // of the blocks in the folder
 
   std::vector<std::filesystem::path> folders_;  // to look in
   std::filesystem::path folder_;                // to write to

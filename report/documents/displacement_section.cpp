@@ -1,0 +1,204 @@
+#include "bentaxis/study/displacement_section.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bentaxis/pump/number.h"
+#include "bentaxis/pump/units.h"
+#include "bentaxis/study/failed_points.h"
+#include "document_parts.h"
+
+namespace bentaxis::study {
+namespace {
+
+constexpr double kCubicCentimetre = 1e-6;  // m3
+constexpr double kRpm = 1.0 / 60;          // rev/s
+
+std::string bias_text(const DerivedDisplacement& derived) {
+  return fmt::format("{:+.2f} %", 100 * derived.bias);
+}
+
+std::string place_of(const FlowPoint& point) {
+  return fmt::format("{:.6g} rpm and {:.6g} bar", point.speed / kRpm,
+                     point.delivery / kPascalPerBar);
+}
+
+// Points above 100 %, by speed: "1500 rpm at 13.75, 55 bar; 1200 rpm at 13.75 bar".
+std::string places_above(const std::vector<FlowPoint>& points, const DerivedDisplacement& derived) {
+  std::string text;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(derived.efficiency[i] > 1 + kFlowRounding)) continue;
+    const bool same =
+        !text.empty() && i > 0 && points[i - 1].speed == points[i].speed && text.ends_with(" bar");
+    if (same)
+      text.replace(text.size() - 4, 4, ", ");
+    else
+      text += fmt::format("{}{:.6g} rpm at ", text.empty() ? "" : "; ", points[i].speed / kRpm);
+    text += fmt::format("{:.6g} bar", points[i].delivery / kPascalPerBar);
+  }
+  return text;
+}
+
+report::Cell percent(double share) {
+  return is_computed(share) ? report::Cell(100 * share) : report::Cell();
+}
+
+report::Section methods_section(const DisplacementStudy& study) {
+  report::Section section{
+      "Derived displacement",
+      "The displacement as a test rig derives it from the flows of this pump, against the "
+      "geometric displacement, which the model knows. ISO 8426: flow over speed at zero pressure "
+      "difference, by a line over the pressure at one speed (here the highest). Toet: slope of the "
+      "flow over the speed at each pressure, then its value at zero pressure difference. Wilson: V "
+      "of q = V n - k p, all points at once. Zero-pressure line: flow at zero pressure difference "
+      "at each speed, then V of q = V n. Bias: derived less geometric, of the geometric. The flow "
+      "is read at delivery pressure, as ISO 4409 defines the volumetric efficiency, or in the "
+      "low-pressure line. Efficiency: q / (n V); of a motor n V / q.",
+      {{"geometric displacement", fmt::format("{:.6g} cm3", study.geometric / kCubicCentimetre)},
+       {"points", fmt::format("{} of {} computed", study.meters.at(0).points.size(), study.asked)}},
+      {{"method", "flow read", "displacement, cm3", "bias, %", "points above 100 %",
+        "highest efficiency, %", "at speed, rpm", "at delivery, bar"},
+       {}}};
+  for (const MeteredDisplacement& meter : study.meters)
+    for (const DerivedDisplacement& derived : meter.derived) {
+      auto& rows = section.table.rows;
+      rows.push_back({name_of(derived.method), meter.meter});
+      if (is_computed(derived.volume)) {
+        const FlowPoint& highest = meter.points[derived.highest];
+        report::append(rows.back(), {derived.volume / kCubicCentimetre, 100 * derived.bias,
+                                     static_cast<long>(derived.above_one),
+                                     percent(derived.efficiency[derived.highest]),
+                                     highest.speed / kRpm, highest.delivery / kPascalPerBar});
+      } else {
+        section.facts.emplace_back(std::string(name_of(derived.method)) + ", " + meter.meter,
+                                   "not determined: " + derived.reason);
+      }
+      rows.back().resize(section.table.columns.size());
+      if (derived.above_one > 0)
+        section.facts.emplace_back(
+            fmt::format("above 100 % by {}, {}", name_of(derived.method), meter.meter),
+            places_above(meter.points, derived));
+    }
+  return section;
+}
+
+report::Section points_section(const DisplacementStudy& study) {
+  const MeteredDisplacement& meter = study.meters.at(0);
+  report::Section section{
+      "Volumetric efficiency by derived displacement",
+      "Each point of the test, flow at delivery pressure: the efficiency by the geometric "
+      "displacement and by each derived one. A value above 100 % comes from a derived "
+      "displacement that is too small, not from the pump.",
+      {},
+      {{"speed, rpm", "delivery, bar", "flow, l/min", "geometric, %"}, {}}};
+  for (const DerivedDisplacement& derived : meter.derived)
+    section.table.columns.push_back(std::string(name_of(derived.method)) + ", %");
+  for (std::size_t i = 0; i < meter.points.size(); ++i) {
+    const FlowPoint& point = meter.points[i];
+    std::vector<report::Cell> row = {
+        point.speed / kRpm, point.delivery / kPascalPerBar, point.flow / kLitrePerMinute,
+        percent(volumetric_efficiency(study.geometric, point, study.motor))};
+    for (const DerivedDisplacement& derived : meter.derived)
+      row.push_back(derived.efficiency.empty() ? report::Cell() : percent(derived.efficiency[i]));
+    section.table.rows.push_back(std::move(row));
+  }
+  for (const FailedPoint& failed : study.failed)
+    section.facts.emplace_back(failed.point + ": not computed", failed.reason);
+  return section;
+}
+
+// Flow over speed: a line over the pressure difference for each speed.
+report::Figure flow_figure(const DisplacementStudy& study) {
+  const MeteredDisplacement& meter = study.meters.at(0);
+  report::XyFigure figure{
+      {"pressure difference", "bar", false, 0.0}, {"flow at delivery pressure / speed", "cm3"}, {}};
+  double greatest = 0;
+  for (const FlowPoint& point : meter.points) {
+    const std::string label = fmt::format("{:.6g} rpm", point.speed / kRpm);
+    if (figure.series.empty() || figure.series.back().label != label)
+      figure.series.push_back({label, {}, {}});
+    const double bar = point.difference / kPascalPerBar;
+    figure.series.back().x.push_back(bar);
+    figure.series.back().y.push_back(point.flow / point.speed / kCubicCentimetre);
+    greatest = std::max(greatest, bar);
+  }
+  const double geometric = study.geometric / kCubicCentimetre;
+  figure.series.push_back({"geometric displacement", {0, greatest}, {geometric, geometric}, true});
+  return {"displacement_flow", "Flow per turn over the pressure difference", "", std::move(figure),
+          "The methods extrapolate these points to zero pressure difference."};
+}
+
+// Bias of ISO 8426 over the speed of its test, and of the others.
+report::Figure bias_figure(const DisplacementStudy& study) {
+  report::XyFigure figure{{"speed of the test", "rpm"}, {"bias of the displacement", "%"}, {}};
+  const auto percent_of = [&](double volume) { return 100 * (volume / study.geometric - 1); };
+  for (const MeteredDisplacement& meter : study.meters) {
+    report::XySeries series{"ISO 8426 at this speed, flow " + meter.meter, {}, {}};
+    for (const auto& [speed, volume] : meter.iso_by_speed) {
+      series.x.push_back(speed / kRpm);
+      series.y.push_back(percent_of(volume));
+    }
+    figure.series.push_back(std::move(series));
+  }
+  const MeteredDisplacement& meter = study.meters.at(0);
+  const double from = meter.points.front().speed / kRpm, to = meter.points.back().speed / kRpm;
+  for (const DerivedDisplacement& derived : meter.derived)
+    if (derived.method != DisplacementMethod::iso_8426 && is_computed(derived.bias))
+      figure.series.push_back({std::string(name_of(derived.method)) + ", all speeds",
+                               {from, to},
+                               {100 * derived.bias, 100 * derived.bias},
+                               true});
+  return {"displacement_bias", "Bias of the derived displacement", "", std::move(figure),
+          "Of the geometric displacement. ISO 8426 derives it at one speed, the others from all; "
+          "they are drawn for the flow at delivery pressure."};
+}
+
+}  // namespace
+
+std::vector<std::string> displacement_answers(const DisplacementStudy& study) {
+  const MeteredDisplacement& meter = study.meters.at(0);
+  std::string values, above;
+  for (const DerivedDisplacement& derived : meter.derived) {
+    if (!is_computed(derived.volume)) continue;
+    values +=
+        fmt::format("{}{} {:.5g} cm3 ({})", values.empty() ? "" : ", ", name_of(derived.method),
+                    derived.volume / kCubicCentimetre, bias_text(derived));
+    if (derived.above_one > 0)
+      above += fmt::format("{}by {} at {} of {} points (up to {:.2f} % at {})",
+                           above.empty() ? "" : "; ", name_of(derived.method), derived.above_one,
+                           meter.points.size(), 100 * derived.efficiency[derived.highest],
+                           place_of(meter.points[derived.highest]));
+  }
+  return {fmt::format("Derived displacement, flow {}: {}; the geometric one is {:.5g} cm3.",
+                      meter.meter, values, study.geometric / kCubicCentimetre),
+          above.empty() ? std::string("No method gives a volumetric efficiency above 100 %.")
+                        : "The volumetric efficiency exceeds 100 % " + above + "."};
+}
+
+void add_displacement(report::Document& document, const DisplacementStudy& study) {
+  if (document.verdict) report::append(document.verdict->answers, displacement_answers(study));
+  report::append(document.runs, methods_section(study));
+  report::append(document.runs, points_section(study));
+  report::append(document.figures, flow_figure(study));
+  report::append(document.figures, bias_figure(study));
+  add_warnings(document, study.failed);
+}
+
+std::string displacement_text(const DisplacementStudy& study) {
+  std::string text =
+      fmt::format("{:<20} {:<22} {:>17} {:>8} {:>18} {:>21}\n", "method", "flow read",
+                  "displacement, cm3", "bias, %", "points above 100 %", "highest efficiency, %");
+  for (const MeteredDisplacement& meter : study.meters)
+    for (const DerivedDisplacement& derived : meter.derived)
+      text += is_computed(derived.volume)
+                  ? fmt::format("{:<20} {:<22} {:>17.6g} {:>+8.3f} {:>18} {:>21.2f}\n",
+                                name_of(derived.method), meter.meter,
+                                derived.volume / kCubicCentimetre, 100 * derived.bias,
+                                derived.above_one, 100 * derived.efficiency[derived.highest])
+                  : fmt::format("{:<20} {:<22} not determined: {}\n", name_of(derived.method),
+                                meter.meter, derived.reason);
+  return text;
+}
+
+}  // namespace bentaxis::study
