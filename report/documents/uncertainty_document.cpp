@@ -43,6 +43,12 @@ std::string headline(const UncertaintyResult& result) {
   return text;
 }
 
+// Two significant digits, also of 100 %: never in powers of ten.
+std::string percent_text(double share) {
+  return std::abs(share) >= 0.0995 ? fmt::format("{:.0f} %", 100 * share)
+                                   : fmt::format("{:.2g} %", 100 * share);
+}
+
 // The parameters that make most of an output's variance, to first order: "pump.tilt_deg 78 %".
 std::string largest_shares(const UncertaintyResult& result, std::size_t o) {
   constexpr std::size_t kNamed = 2;
@@ -61,9 +67,9 @@ std::string largest_shares(const UncertaintyResult& result, std::size_t o) {
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::string text;
   for (std::size_t i = 0; i < std::min(kNamed, n); ++i)
-    text += fmt::format("{}{} {:.2g} %", i == 0 ? "" : ", ",
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ",
                         result.variables.variables[squares[i].second].name(),
-                        100 * squares[i].first / sum);
+                        percent_text(squares[i].first / sum));
   return text;
 }
 
@@ -425,8 +431,9 @@ std::string uncertainty_text(const UncertaintyResult& result) {
     if (b.peak > 0 && (widest == nullptr || b.widest / b.peak > widest->widest / widest->peak))
       widest = &b;
   if (widest != nullptr)
-    text += fmt::format("widest band: {}, +-{:.3g} {}, {:.2g} % of peak\n", widest->channel.name,
-                        widest->widest, widest->channel.unit, 100 * widest->widest / widest->peak);
+    text += fmt::format("widest band: {}, +-{:.3g} {}, {} of peak\n", widest->channel.name,
+                        widest->widest, widest->channel.unit,
+                        percent_text(widest->widest / widest->peak));
   if (!result.sampled.infeasible.empty())
     text += left_out_text(result) +
             "; the first reason: " + result.sampled.infeasible.front().second + "\n";
