@@ -1,5 +1,5 @@
-// Rating life of the bearings: worked examples of manufacturers, quoted from memory and therefore checks of
-// the arithmetic only (docs/bearing_life.md), and what must hold of any.
+// Rating life of the bearings: worked examples of manufacturers, quoted from memory and therefore
+// checks of the arithmetic only (docs/bearing_life.md), and what must hold of any.
 //
 // Examples compute with factors of three digits: f_n for the speed, f_h = f_n C / P, L = 500
 // f_h^(10/3) hours. A half of the last digit of f_h is allowed: (10/3) 0.005 / f_h of the life.

@@ -461,8 +461,8 @@ TEST(BudgetSection, SaysWhatIsNotModelled) {
   }
   EXPECT_NEAR(named(budget.efficiency, "hydraulic-mechanical").values[1], 95.3, 0.1);
   EXPECT_FALSE(is_computed(named(budget.block, "separating force of the lands").values[0]));
-  EXPECT_FALSE(
-      is_computed(named(budget.block, "balance, separating over pressing force, minimum").values[0]));
+  EXPECT_FALSE(is_computed(
+      named(budget.block, "balance, separating over pressing force, minimum").values[0]));
 
   the_case.operation.speed_rpm = -1500;  // a motor
   budget = of(the_case);
