@@ -70,7 +70,7 @@ struct DerivativeModel::Prepared {
 
 DerivativeModel::DerivativeModel(const PumpParameters& pump, const Assumptions& assumptions,
                                  std::span<const PumpParameters> directions)
-    : layout_(validate(pump).geometry.pistons), directions_(directions.size()) {
+    : layout_(validate(pump)), directions_(directions.size()) {
   if (pump.gear.contact == ToothContact::teeth)
     throw InputError("derivatives: [gear] contact = \"teeth\": must be \"rigid\" or \"compliant\"");
   Prepared prepared{prepare(pump, assumptions), {}};

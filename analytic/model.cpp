@@ -87,7 +87,7 @@ Model::Model(const PumpParameters& pump, const Assumptions& assumptions)
 
 Model::Model(const PumpParameters& pump, const Assumptions& assumptions, Unchecked)
     : pump_(pump),
-      layout_(pump.geometry.pistons),
+      layout_(pump),
       prepared_(std::make_shared<const PreparedPump>(prepare(pump, assumptions))) {}
 
 namespace {

@@ -18,6 +18,9 @@ void prepare(const PumpParameters& pump, const Assumptions& assumptions, Prepare
   const PistonInertia inertia = assumptions.inertia;
   if (const std::string why = piston_inertia_refusal(inertia, pump); !why.empty())
     throw InputError(to_string(inertia) + " pistons: " + why);
+  if (pump.transfer.kind != TransferKind::gear)
+    throw InputError("[transfer] kind = \"" + to_string(pump.transfer.kind) +
+                     "\": must be \"gear\" in the analytic model, which has no other transfer yet");
   result.friction = prepare_numbers(closed_form::raw(pump), pump, assumptions, result.numbers);
   result.tooth_law = closed_form::tooth_law(pump.gear);
   result.teeth.reset();

@@ -58,7 +58,7 @@ IntegratedRun run_integrated(const Case& the_case, const Assumptions& assumption
   IntegratedRun result;
   translate_simbody_errors([&] {
     TimeRun run(the_case, assumptions, samples, pressure, options, Drive::constant_speed);
-    const ChannelLayout layout(samples.pistons);
+    const ChannelLayout layout(the_case.pump);
     std::vector<std::vector<double>> rows;
     run.run(progress, [&](std::size_t row) {
       rows.emplace_back(layout.size(), not_computed());

@@ -37,7 +37,7 @@ AxisMotion turned_back(const AxisMotion& motion, int k, int n) {
 struct Model::Implementation {
   Implementation(const PumpParameters& pump, const Assumptions& assumptions, double omega_sign,
                  Scene the_scene, std::optional<Method> asked)
-      : layout(validate(pump).geometry.pistons),
+      : layout(validate(pump)),
         scene(the_scene),
         method(method_for(pump, asked)),
         method_is_given(asked.has_value()),

@@ -54,7 +54,7 @@ Trajectory simulate(const Case& the_case, const Assumptions& assumptions,
                                        options.accuracy.value_or(accuracy_for(options.error))};
   Trajectory trajectory;
   translate_simbody_errors([&] {
-    const ChannelLayout layout(the_case.pump.geometry.pistons);
+    const ChannelLayout layout(the_case.pump);
     trajectory.table = trajectory_table("multibody", layout, *the_case.drive);
     MotionRun run(the_case, assumptions, pressure, integration, method.most_steps,
                   options.body_loads);

@@ -266,7 +266,7 @@ const PumpParameters& without_teeth(const PumpParameters& pump) {
 }  // namespace
 
 BatchModel::BatchModel(const PumpParameters& pump, const Assumptions& assumptions)
-    : layout_(without_teeth(pump).geometry.pistons),
+    : layout_(without_teeth(pump)),
       pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
 BatchModel::~BatchModel() = default;
 BatchModel::BatchModel(BatchModel&&) noexcept = default;
@@ -334,11 +334,11 @@ void BatchModel::statistics(const BatchInstants& instants, std::span<const Measu
 
 void BatchModel::set_pump(const PumpParameters& pump, const Assumptions& assumptions) {
   prepare(without_teeth(pump), assumptions, *pump_);
-  if (pump.geometry.pistons != layout_.pistons()) layout_ = ChannelLayout(pump.geometry.pistons);
+  if (pump.geometry.pistons != layout_.pistons()) layout_ = ChannelLayout(pump);
 }
 
 PumpBatch::PumpBatch(const std::vector<PumpParameters>& pumps, const Assumptions& assumptions)
-    : layout_(pumps.empty() ? 1 : without_teeth(pumps.front()).geometry.pistons),
+    : layout_(pumps.empty() ? ChannelLayout(1) : ChannelLayout(without_teeth(pumps.front()))),
       size_(pumps.size()) {
   if (pumps.empty()) throw InputError("batch of pumps: there is none");
   numbers_.resize(kNumbers * size_);

@@ -132,7 +132,7 @@ Table run_states(const PythonCase& the_case, const Motion& states, const std::st
   return shown(unlocked([&](const study::PartProgress& progress_of) {
     Warned<MotionTable> found;
     found.implausible = plausibility_texts(copy);
-    std::vector<Channel> there = ChannelLayout(copy.pump.geometry.pistons).channels();
+    std::vector<Channel> there = ChannelLayout(copy.pump).channels();
     for (const Channel& channel : motion_channels()) there.push_back(channel);
     wanted.of(there);  // refuses unknown names
     const study::PreparedCase ready = study::prepare(copy, progress_of);

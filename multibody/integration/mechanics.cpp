@@ -48,7 +48,7 @@ class MultibodyMechanics : public Mechanics {
         placement_(system_),
         free_motion_(system_, placement_),
         load_reader_(system_),
-        layout_(pump_.geometry.pistons),
+        layout_(pump_),
         arm_(system_.gear().arm()) {
     system_.inputs().chamber_pressure = [this](double, double, std::vector<double>& p) {
       p = loads_.chamber_pressure;

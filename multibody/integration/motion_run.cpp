@@ -340,7 +340,7 @@ void MotionRun::read(double time, Trajectory& trajectory) {
   require_accurate_forces(estimated_force_error(system_, state), radians(theta));
 
   const int n = case_.pump.geometry.pistons;
-  const ChannelLayout layout(n);
+  const ChannelLayout layout(system_.pump());
   std::vector<double> values(layout.size(), not_computed());
   std::vector<double> pressure(static_cast<std::size_t>(n));
   system_.inputs().chamber_pressure(0, system_.bodies().block.getOneQ(state, 0), pressure);

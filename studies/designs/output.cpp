@@ -357,7 +357,7 @@ class Turn {
     return not_computed();
   }
   double efficiency(const Output& o) {
-    const std::size_t column = ChannelLayout(ready_.the_case.pump.geometry.pistons).Td();
+    const std::size_t column = ChannelLayout(ready_.the_case.pump).Td();
     std::vector<double> torque;
     for (std::size_t row = 0; row < run_.table.rows(); ++row)
       torque.push_back(run_.table.at(row, column));

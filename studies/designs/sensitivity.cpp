@@ -354,7 +354,7 @@ std::vector<std::size_t> find_exact(Sensitivities& s, const std::vector<std::siz
   std::vector<StatisticRates> statistics;
   for (const std::size_t o : outputs)
     statistics.emplace_back(s.outputs[o], s.scales[o], turn.directions());
-  const std::size_t reactions = ChannelLayout(s.base.pump.geometry.pistons).reactions();
+  const std::size_t reactions = ChannelLayout(s.base.pump).reactions();
   turn.for_each_row([&](std::size_t, const auto& values, const auto& derivatives) {
     for (StatisticRates& statistic : statistics) statistic.add(values, derivatives, reactions);
   });

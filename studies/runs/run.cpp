@@ -53,7 +53,7 @@ double copies_of(Kept kept) {
 
 void require_rows(const Case& the_case, Kept kept, double rows, const std::string& because,
                   const std::string& advice) {
-  const double columns = static_cast<double>(ChannelLayout(the_case.pump.geometry.pistons).size());
+  const double columns = static_cast<double>(ChannelLayout(the_case.pump).size());
   const double needed = copies_of(kept) * rows * columns * sizeof(double);
   constexpr double kLittle = 5e7;  // not worth asking the system, which takes its time
   if (needed < kLittle) return;
@@ -113,6 +113,7 @@ PreparedCase prepare(Case the_case, const PartProgress& progress_of) {
   require_mesh(the_case);
   std::optional<hydraulics::SteadyState> state;
   if (the_case.pressure.kind == PressureKind::hydraulic) {
+    require_constant_speed(the_case);
     state = hydraulics::steady_state(the_case, {}, progress_of("hydraulics"));
     hydraulics::give_to(the_case, *state);
   }

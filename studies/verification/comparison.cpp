@@ -256,7 +256,7 @@ bool Maker::may_be_missing(const Channel& channel, std::size_t row) const {
       !computes(multibody_run(0), r.second.the_case.multibody, channel))
     return true;
   if (channel.quantity != "xh" && channel.quantity != "yh") return false;
-  const std::size_t fh = ChannelLayout(r.first.the_case.pump.geometry.pistons).Fh();
+  const std::size_t fh = ChannelLayout(r.first.the_case.pump).Fh();
   return r.analytic.at(row, fh) == 0 || r.multibody.at(row, fh) == 0;
 }
 

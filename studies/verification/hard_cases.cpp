@@ -165,7 +165,7 @@ std::vector<HardOutcome> run_hard_case(const HardCase& hard, const PartProgress&
   const PressureTrace pressure(the_case.pressure);
   const Samples samples = sample_case(the_case, pressure);
   const ResultTable reference =
-      read_reference(hard, ChannelLayout(the_case.pump.geometry.pistons), samples);
+      read_reference(hard, ChannelLayout(the_case.pump), samples);
   compare::Options options;
   options.zero_scales = zero_scales(the_case, samples);
   const Progress progress = progress_of(hard.name);
