@@ -18,14 +18,14 @@ void prepare(const PumpParameters& pump, const Assumptions& assumptions, Prepare
   const PistonInertia inertia = assumptions.inertia;
   if (const std::string why = piston_inertia_refusal(inertia, pump); !why.empty())
     throw InputError(to_string(inertia) + " pistons: " + why);
-  if (pump.transfer.kind != TransferKind::gear)
-    throw InputError("[transfer] kind = \"" + to_string(pump.transfer.kind) +
-                     "\": must be \"gear\" in the analytic model, which has no other transfer yet");
   result.friction = prepare_numbers(closed_form::raw(pump), pump, assumptions, result.numbers);
   result.tooth_law = closed_form::tooth_law(pump.gear);
   result.teeth.reset();
   if (pump.gear.contact == ToothContact::teeth)
     result.teeth = BevelTeeth(pump, BevelTeeth::Unchecked{});
+  if (const std::string why = imposed_refusal(assumptions.gear, pump); !why.empty())
+    throw InputError("gear = \"imposed\": " + why);
+  result.transfer = pump.transfer.kind;
   result.imposed = assumptions.gear == BlockDrive::imposed;
   const auto pistons = static_cast<std::size_t>(pump.geometry.pistons);
   if (result.phase_sin.size() == pistons) return;

@@ -55,7 +55,7 @@ Warned<ResultTable> turn(const Case& the_case, study::Model model,
                          const study::PartProgress& progress_of) {
   Warned<ResultTable> found;
   found.implausible = plausibility_texts(the_case);
-  const ChannelLayout layout(the_case.pump.geometry.pistons);
+  const ChannelLayout layout(the_case.pump);
   study::RunOptions options;
   options.model = model;
   if (model == study::Model::multibody)

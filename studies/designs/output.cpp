@@ -231,7 +231,7 @@ Output output(const std::string& name, const Case& base) {
     const bool budget = of.starts_with("budget.");
     if (budget) of = of.substr(7);
     o.source = budget ? Source::budget : Source::curve;
-    const ChannelLayout layout(base.pump.geometry.pistons);
+    const ChannelLayout layout(base.pump);
     const auto& channels = budget ? budget_channels(base) : layout.channels();
     if (!find_channels(of, channels, o)) unknown(name, base);
     o.name = *found + ":" + (budget ? "budget." : "") + o.item;
@@ -247,7 +247,7 @@ Output output(const std::string& name, const Case& base) {
 
 std::vector<std::string> output_names(const Case& base) {
   std::vector<std::string> names;
-  const ChannelLayout layout(base.pump.geometry.pistons);
+  const ChannelLayout layout(base.pump);
   for (const Channel& c : layout.channels())
     if (can_be_asked_for(c) && c.piston <= 1) names.push_back("max:" + c.name);
   for (const Channel& c : layout.channels()) {  // vectors

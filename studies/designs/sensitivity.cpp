@@ -45,6 +45,10 @@ bool is_of_closed_form(const Variable& variable, const Case& base) {
 
 bool is_exact(const Variable& variable, const Case& base) {
   if (base.pump.gear.contact == ToothContact::teeth) return false;
+  // Where psi differs from theta the chambers' pressures follow the block.
+  if (base.pump.transfer.kind != TransferKind::gear &&
+      base.pump.transfer.kind != TransferKind::constant_velocity)
+    return false;
   // A spline through points of a computed curve is another curve.
   if (base.pressure.kind == PressureKind::hydraulic) return base.pressure.points == 0;
   return is_of_closed_form(variable, base);
@@ -562,7 +566,7 @@ Sensitivities sensitivities(const Case& base, const std::vector<Variable>& varia
                             const study::PartProgress& progress_of) {
   study::require_memory(base, study::Kept::table, study::Way::driven);
   Sensitivities s = begin(base, variables, outputs, model);
-  const ChannelLayout layout(base.pump.geometry.pistons);
+  const ChannelLayout layout(base.pump);
   const bool analytic = model == study::Model::analytic;
   const auto exact_output = [&](std::size_t o) {
     return analytic && is_exact(s.outputs[o], layout) && is_computed(s.values[o]);

@@ -7,6 +7,7 @@
 
 #include "bentaxis/analytic/body_loads.h"
 #include "bentaxis/analytic/budget.h"
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/analytic/teeth.h"
 #include "bentaxis/files/csv.h"
@@ -219,9 +220,12 @@ void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
   out.write(csv_header(channels));
   std::string line;
   std::vector<double> values(columns.size());
+  analytic::PlacedSamples placed(model, ready.the_case);
   stream_rows(
       "analytic", model.layout(), ready.the_case, ready.pressure,
-      [&](const Instant& instant, std::vector<double>& row) { model.evaluate(instant, row); },
+      [&](const Instant& instant, std::vector<double>& row) {
+        analytic::evaluate_at_constant_speed(model, placed.at(instant), row);
+      },
       [&](double theta_deg, const std::vector<double>& row) {
         line.clear();
         for (std::size_t i = 0; i < columns.size(); ++i) values[i] = row[columns[i]];

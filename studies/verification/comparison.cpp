@@ -93,7 +93,7 @@ class Maker {
            result_.options.scene.scene == multibody::Scene::full;
   }
   bool has_budget() const {
-    const ChannelLayout layout(result_.first.the_case.pump.geometry.pistons);
+    const ChannelLayout layout(result_.first.the_case.pump);
     return !integrated() && result_.options.scene.scene == multibody::Scene::full &&
            result_.options.channels.wants(layout.channels()[layout.Td()]);
   }
@@ -211,7 +211,7 @@ double Maker::torque_driven_speed_error(const multibody::IntegrationOptions& int
 // allowed of these two leaves it.
 void Maker::note_film_point_errors() {
   const ComparisonResult& r = result_;
-  const ChannelLayout layout(r.first.the_case.pump.geometry.pistons);
+  const ChannelLayout layout(r.first.the_case.pump);
   const std::vector<Channel>& channels = layout.channels();
   const auto allowed = [&](std::size_t column) {
     return r.tolerance * compare::scale_of(r.analytic, channels[column], zero_scales_);
