@@ -111,11 +111,12 @@ class Balance {
                                                           m.ring_velocity(1), state_.omega);
       const double chamber = pressure(lag, k);
       auto f = closed_form::piston_forces(p.piston, m, 1.0, 0.0, friction, chamber);
+      if (walls) {
+        const auto at = closed_form::wall_approach(p.wall, m);
+        const double wall = closed_form::wall_force(p.wall, at, closed_form::WallMode::by_law);
+        closed_form::add_wall(p.wall, m, wall * at.x, wall * at.y, f, load);
+      }
       closed_form::add_piston(p.block, m, f, friction, chamber, load);
-      if (!walls) continue;
-      const auto at = closed_form::wall_approach(p.wall, m);
-      const double wall = closed_form::wall_force(p.wall, at, closed_form::WallMode::by_law);
-      closed_form::add_wall(p.wall, m, wall * at.x, wall * at.y, f, load);
     }
     return -closed_form::carrying_torque(p.block, load, state_.block_omega, 0.0);
   }

@@ -45,7 +45,7 @@ double wall_rounding(const Case& the_case) {
 // ---- What a case may say
 
 TEST(TransferCase, IsReadWrittenAndReadAgain) {
-  for (const std::string& name : {"constant_velocity", "cardan", "pistons_seven"}) {
+  for (const std::string name : {"constant_velocity", "cardan", "pistons_seven"}) {
     const Case first = transfer_case(name);
     const Case again = parse_case(case_text(first), first.file);
     EXPECT_EQ(case_text(first), case_text(again));
@@ -74,8 +74,15 @@ TEST(TransferCase, RefusesWhatContradictsTheKind) {
   EXPECT_THAT(refused("cardan", {"transfer.phase_deg=181"}), HasSubstr("[-180, 180]"));
   EXPECT_THAT(refused("cardan", {"transfer.clearance_mm=-1"}), HasSubstr("clearance_mm"));
   EXPECT_EQ(refused("cardan", {"transfer.clearance_mm=1"}), "accepted");
-  EXPECT_THAT(refused("cardan", {"pump.piston_length_mm=3.1"}),
-              HasSubstr("cannot be assembled"));
+  // Too short for the joint alone: a gear's block would take it.
+  const PumpParameters pump = transfer_case("cardan").pump;
+  const double locked = assembly_margin(pump.geometry).longest_distance;
+  const double behind_joint = assembly_margin(pump).longest_distance;
+  ASSERT_GT(behind_joint, locked);
+  const std::string length =
+      "pump.piston_length_mm=" + number_text((locked + behind_joint) / 2 * 1e3);
+  EXPECT_THAT(refused("cardan", {length}), HasSubstr("a piston cannot be assembled at theta"));
+  EXPECT_EQ(refused("cardan", {length, "transfer.kind=constant_velocity"}), "accepted");
   EXPECT_THAT(refused("constant_velocity", {"transfer.kind=pistons"}),
               HasSubstr("contact_from_joint_mm"));
   EXPECT_THAT(refused("pistons_seven", {"transfer.contact_from_joint_mm=46"}),
@@ -187,7 +194,7 @@ std::vector<Case> various(const std::string& kind) {
                            "transfer.stiffness_exponent=1.5"});
   return {make({}), make(real_reversed), make(even),
           make({"piston.contact_mm=44", "pump.axis_offset_mm=0", "pump.tilt_deg=25",
-                "transfer.clearance_mm=0.8"})};
+                "pump.bore_circle_radius_mm=23.7", "transfer.clearance_mm=0.8"})};
 }
 const std::vector<std::string> kKinds = {"constant_velocity", "cardan", "pistons"};
 
@@ -236,7 +243,7 @@ TEST(TransferProperties, ConstantVelocityGivesTheGearsPistonsAndTorque) {
 }
 
 TEST(TransferProperties, CardanBecomesConstantVelocityWithoutTilt) {
-  // The joints differ by alpha squared.
+  // The joints differ by alpha squared: most by the block's inertia, Nm.
   double before = 0;
   for (const double tilt : {4.0, 2.0, 1.0}) {
     const auto at = [&](const char* kind) {
@@ -246,13 +253,14 @@ TEST(TransferProperties, CardanBecomesConstantVelocityWithoutTilt) {
     const ResultTable a = at("cardan"), b = at("constant_velocity");
     double worst = 0;
     for (std::size_t row = 0; row < a.rows(); ++row)
-      worst = std::max(worst, std::abs(a.at(row, a.find("Td_z1_Nm")) -
-                                       b.at(row, b.find("Td_z1_Nm"))) /
-                                  b.peak("Td"));
-    if (before > 0) EXPECT_NEAR(before / worst, 4, 0.8) << tilt;
+      worst = std::max(
+          worst, std::abs(a.at(row, a.find("Td_z1_Nm")) - b.at(row, b.find("Td_z1_Nm"))));
+    if (before > 0) {
+      EXPECT_NEAR(before / worst, 4, 0.8) << tilt;
+    }
     before = worst;
   }
-  EXPECT_LT(before, 5e-3);
+  EXPECT_LT(before, 0.1);
 }
 
 // The joint's arms by their definition, with differences for the rates.
@@ -272,13 +280,13 @@ TEST(TransferProperties, CardanKeepsItsArmsAcross) {
     EXPECT_NEAR(block.acceleration,
                 9 * (psi(theta + h) - 2 * psi(theta) + psi(theta - h)) / (h * h) -
                     5 * (psi(theta + h) - psi(theta - h)) / (2 * h),
-                1e-6);
+                1e-5);  // the quotient's own round-off: 9 eps |psi| / h^2 is 1.4e-6
   }
 }
 
 // Without mass and friction the drive torque is that of virtual work along psi(theta).
 TEST(TransferProperties, DriveTorqueIsTheWorkOfThePressures) {
-  for (const std::string& kind : {"constant_velocity", "cardan"}) {
+  for (const std::string kind : {"constant_velocity", "cardan"}) {
     const Case the_case = transfer_case(
         "cardan", {"transfer.kind=" + kind, "piston.inertia=lumped", "piston.mass_kg=0",
                    "block.mass_kg=0", "shaft.mass_kg=0", "friction.piston_coulomb_N=0",
@@ -371,7 +379,7 @@ TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
     const Case the_case = transfer_case("pistons_seven", changes);
     const Geometry& g = the_case.pump.geometry;
     const bool odd = pistons % 2 == 1;
-    int hand_overs = 0, last = -1;
+    int hand_overs = 0, first = -1, last = -1;
     double least = 1, most = 0;
     const int rows = 1440;
     const Model model(the_case.pump, the_case.analytic);
@@ -382,6 +390,7 @@ TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
       const Touch touch = first_touch(the_case, radians(theta_deg));
       const int carrier = odd ? touch.piston : touch.piston % (pistons / 2);
       if (last >= 0 && carrier != last) ++hand_overs;
+      if (first < 0) first = carrier;
       last = carrier;
       const double d = 2 * g.bore_circle_radius * std::sin(touch.lag / 2);
       least = std::min(least, d);
@@ -402,9 +411,12 @@ TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
         }
       }
       EXPECT_GT(largest, 100);
-      if (odd) EXPECT_EQ(carries, touch.piston) << theta_deg;
+      if (odd) {
+        EXPECT_EQ(carries, touch.piston) << theta_deg;
+      }
     }
-    EXPECT_EQ(hand_overs, odd ? 2 * pistons - 1 : pistons - 1) << "but for the turn's end";
+    hand_overs += first != last;  // at the end of the turn
+    EXPECT_EQ(hand_overs, odd ? 2 * pistons : pistons);
     // Extremes of |D| (docs/transfer.md).
     const WallContact& wall = *the_case.pump.transfer.wall;
     const double reach = wall.clearance / (1 - wall.from_joint / g.piston_length);
@@ -426,7 +438,9 @@ TEST(FrozenLagOfPistons, GoesToTheRigidLimitAsOneOverTheStiffness) {
     EXPECT_EQ(lag.rule, FrozenLag::Rule::one_side);
     const double beyond = lag.angle - lag.high;
     EXPECT_GT(beyond, 0);
-    if (before > 0) EXPECT_NEAR(before / beyond, 2, 0.02);
+    if (before > 0) {
+      EXPECT_NEAR(before / beyond, 2, 0.02);
+    }
     before = beyond;
   }
 }
@@ -482,7 +496,7 @@ TEST(FrozenLagOfPistons, FailsWhereAPistonLeavesItsBoreFirst) {
 
 TEST(TransferStates, JointsPrescribeTheBlock) {
   const Scratch scratch;
-  for (const std::string& name : {"constant_velocity", "cardan"}) {
+  for (const std::string name : {"constant_velocity", "cardan"}) {
     const Case the_case = transfer_case(name);
     const PressureTrace pressure(the_case.pressure);
     const auto file = scratch.file(
@@ -544,7 +558,7 @@ TEST(TransferStates, OfPistonsNeedATorqueOnTheBlock) {
 // ---- The kernel of many instants
 
 TEST(TransferBatch, IsTheModelAtOneInstant) {
-  for (const std::string& name : {"constant_velocity", "cardan"}) {
+  for (const std::string name : {"constant_velocity", "cardan"}) {
     const Case the_case = transfer_case(name);
     const Model model(the_case.pump, the_case.analytic);
     const analytic::BatchModel batch(the_case.pump, the_case.analytic);
