@@ -10,6 +10,7 @@
 #include "bentaxis/analytic/body_loads.h"
 #include "bentaxis/analytic/budget.h"
 #include "bentaxis/analytic/constant_speed.h"
+#include "bentaxis/analytic/simulation.h"
 #include "bentaxis/files/case_writer.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/pump/validate.h"
@@ -553,6 +554,75 @@ TEST(TransferStates, OfPistonsNeedATorqueOnTheBlock) {
   for (const MotionTable* table : {&frozen, &moved, &free})
     EXPECT_NEAR(table->results.at(0, table->results.find("power_balance_W")), 0, 1e-7);
   EXPECT_THAT(to_csv(frozen), HasSubstr("Rw_7_y2_N,lag_deg,Tb_z2_Nm,")) << "psi_deg stands first";
+}
+
+// ---- Motion
+
+Trajectory simulated(const Case& the_case, const analytic::SimulationOptions& options = {}) {
+  return analytic::simulate(the_case, the_case.analytic, PressureTrace(the_case.pressure), options);
+}
+
+double column_difference(const MotionTable& table, const NumericTable& curve,
+                         const std::string& name) {
+  const auto place = std::find(curve.header.begin(), curve.header.end(), name);
+  const auto theirs = static_cast<std::size_t>(place - curve.header.begin());
+  const auto state = std::find(table.state_names.begin(), table.state_names.end(), name);
+  double worst = 0;
+  for (std::size_t row = 0; row < curve.rows.size(); ++row) {
+    const double ours =
+        state != table.state_names.end()
+            ? table.state(row, static_cast<std::size_t>(state - table.state_names.begin()))
+            : table.results.at(row, table.results.find(name));
+    worst = std::max(worst, std::abs(ours - curve.rows[row][theirs]));
+  }
+  return worst;
+}
+
+TEST(TransferMotion, OfPistonsFollowsTheStoredTrajectory) {
+  const Case the_case = transfer_case("pistons_seven_free");
+  const NumericTable curve = read_numeric_csv(folder_of("pistons_seven_free") / "reference.csv");
+  const Trajectory run = simulated(the_case);
+  ASSERT_EQ(run.table.results.rows(), curve.rows.size());
+  EXPECT_LE(column_difference(run.table, curve, "psi_deg") * kRadPerDegree, scaled(1e-9));
+  EXPECT_LE(column_difference(run.table, curve, "block_rpm"), scaled(2e-5));
+  std::size_t compared = 0;
+  for (const std::string& name : curve.header) {
+    const std::size_t column = run.table.results.find(name);
+    if (column == run.table.results.columns()) continue;
+    ++compared;
+    EXPECT_LE(column_difference(run.table, curve, name),
+              scaled(1e-7) * run.table.results.peak(run.table.results.channels[column].group))
+        << name;
+  }
+  EXPECT_EQ(compared + 4, curve.header.size()) << "all but time, theta and both speeds";
+  std::size_t touches = 0;
+  for (const ToothEvent& event : run.record.events) {
+    touches += event.touch;
+    EXPECT_GE(event.piston, 1);
+  }
+  EXPECT_EQ(touches, 21u);
+  EXPECT_LE(run.record.worst_work_residual, scaled(1e-8) * std::abs(run.record.work_of_loads));
+}
+
+TEST(TransferMotion, OfJointsHasTheShaftsStateAlone) {
+  const std::vector<std::string> torque = {"drive.kind=torque", "drive.torque_Nm=150",
+                                           "drive.duration_s=0.02", "drive.samples=20",
+                                           "friction.regularization_m_per_s=0.01"};
+  for (const std::string name : {"constant_velocity", "cardan"}) {
+    const Case the_case = transfer_case(name, torque);
+    const Model model(the_case.pump, the_case.analytic);
+    const Trajectory run = simulated(the_case);
+    for (std::size_t row = 0; row < run.table.results.rows(); ++row) {
+      const double theta = run.state(row, StateColumn::theta);
+      const AxisMotion block =
+          model.block_motion({radians(theta), rad_per_second(run.state(row, StateColumn::shaft_speed)), 0});
+      EXPECT_NEAR(run.state(row, StateColumn::psi), block.angle / kRadPerDegree, 1e-9);
+      EXPECT_NEAR(run.state(row, StateColumn::block_speed), block.speed / kRadPerSecondPerRpm, 1e-7);
+    }
+    EXPECT_LE(run.record.worst_work_residual, scaled(1e-7) * std::abs(run.record.work_of_loads))
+        << name;
+    EXPECT_TRUE(run.record.events.empty());
+  }
 }
 
 // ---- The kernel of many instants
