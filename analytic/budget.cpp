@@ -40,7 +40,7 @@ template <class State>
 closed_form::Vec3<double> play(const closed_form::Pump<double>& p, const State& state, double s,
                                double c, double shaft, double block) {
   closed_form::FreeState<double> turning = {};
-  if constexpr (std::is_same_v<State, closed_form::FreeState<double>>) turning = state;
+  if constexpr (std::is_base_of_v<closed_form::FreeState<double>, State>) turning = state;
   turning.omega = shaft;
   turning.block_omega = block;
   turning.omega_dot = turning.block_omega_dot = 0;

@@ -146,6 +146,8 @@ void DerivativeModel::reactions(const Instant& instant, std::span<const Instant>
     if (transfer == TransferKind::cardan) {
       closed_form::turn_block(prepared_->numbers[chunk].joint, state);
       evaluate(state);
+    } else if (transfer == TransferKind::constant_velocity) {
+      evaluate(closed_form::JointState<Dual>{state});
     } else {
       evaluate(static_cast<const closed_form::State<Dual>&>(state));
     }

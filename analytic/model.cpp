@@ -255,7 +255,7 @@ template <class State>
 MotionChecks judge(const PreparedPump& pump, const PumpParameters& parameters,
                    const ChannelLayout& at, const Instant& instant, const State& state,
                    const BevelTeeth::Wrench* teeth, std::vector<double>& values) {
-  constexpr bool kLocked = std::is_same_v<State, closed_form::State<double>>;
+  constexpr bool kLocked = !std::is_base_of_v<closed_form::FreeState<double>, State>;
   constexpr bool kWalls = std::is_same_v<State, closed_form::WallState<double>>;
   const closed_form::Pump<double>& numbers = pump.numbers;
   const closed_form::PistonNumbers<double>& p = numbers.piston;

@@ -8,8 +8,8 @@
 namespace bentaxis::analytic {
 
 /// Calls `use` with the state of an instant that the transfer has: closed_form::State where the block
-/// is locked to the shaft; FreeState where it moves on its own; CardanState, whose block follows from
-/// the shaft alone; or WallState. The block's motion of an instant is not looked at where a joint
+/// is locked to the shaft; FreeState where it moves on its own; JointState or CardanState, whose block
+/// follows from the shaft alone; or WallState. The block's motion of an instant is not looked at where a joint
 /// prescribes it.
 /// @param modes  of the walls, where pistons carry the block; null: all by their law
 template <class Real, class Use>
@@ -46,9 +46,15 @@ BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<R
     use(state);
     return;
   }
+  if (transfer == TransferKind::constant_velocity) {
+    closed_form::JointState<Real> state;
+    turn_shaft(state);
+    use(state);
+    return;
+  }
   closed_form::FreeState<Real> state;
   turn_shaft(state);
-  if (transfer == TransferKind::constant_velocity || instant.locked()) {
+  if (instant.locked()) {
     use(static_cast<const closed_form::State<Real>&>(state));
     return;
   }

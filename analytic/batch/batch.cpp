@@ -93,6 +93,19 @@ struct LoopOrder {
 
 BatchJob::Column column(const Varying& v) { return {v.each, v.all}; }
 
+BatchJob::Block block_of(TransferKind transfer) {
+  switch (transfer) {
+    case TransferKind::constant_velocity:
+      return BatchJob::Block::joint;
+    case TransferKind::cardan:
+      return BatchJob::Block::cardan;
+    case TransferKind::gear:
+    case TransferKind::pistons:
+      break;
+  }
+  return BatchJob::Block::locked;
+}
+
 // What the kernel is given; points to `pressures`, which is filled in, and to what it is made of.
 using Pressures = std::array<BatchJob::Column, kMaxPistons>;
 BatchJob job_of(const PreparedPump& pump, const double* pumps, const ChannelLayout& layout,
@@ -117,9 +130,7 @@ BatchJob job_of(const PreparedPump& pump, const double* pumps, const ChannelLayo
           .omega_dot = column(instants.omega_dot),
           .suction = column(instants.suction),
           .delivery = column(instants.delivery),
-          .block = instants.block                            ? BatchJob::Block::free
-                   : pump.transfer == TransferKind::cardan ? BatchJob::Block::cardan
-                                                           : BatchJob::Block::locked,
+          .block = instants.block ? BatchJob::Block::free : block_of(pump.transfer),
           .psi = column(block.psi),
           .block_omega = column(block.omega),
           .block_omega_dot = column(block.omega_dot),

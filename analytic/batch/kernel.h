@@ -48,7 +48,7 @@ struct Lanes {
 };
 
 // `used` lanes from instant `at` on; results to put(column, value). Turning: State of one lane, or
-// FreeState where the block moves on its own, CardanState where a universal joint turns it.
+// FreeState where the block moves on its own, JointState or CardanState where a joint turns it.
 template <class Real, template <class> class Turning, class Par, class Put>
 BENTAXIS_INLINE void evaluate_lanes(const BatchJob& job, const closed_form::Pump<Par>& pump,
                                     std::size_t at, std::size_t used, const Put& put) {
@@ -196,6 +196,8 @@ void run_batch(const BatchJob& job, std::size_t begin, std::size_t end) {
   switch (job.block) {
     case BatchJob::Block::free:
       return run_turning<Real, closed_form::FreeState>(job, begin, end);
+    case BatchJob::Block::joint:
+      return run_turning<Real, closed_form::JointState>(job, begin, end);
     case BatchJob::Block::cardan:
       return run_turning<Real, closed_form::CardanState>(job, begin, end);
     case BatchJob::Block::locked:
@@ -296,6 +298,9 @@ void tally_batch(const BatchJob& job, const BatchTally& tally, std::size_t begin
   switch (job.block) {
     case BatchJob::Block::free:
       tally_turning<Real, closed_form::FreeState>(job, tally, begin, end);
+      break;
+    case BatchJob::Block::joint:
+      tally_turning<Real, closed_form::JointState>(job, tally, begin, end);
       break;
     case BatchJob::Block::cardan:
       tally_turning<Real, closed_form::CardanState>(job, tally, begin, end);

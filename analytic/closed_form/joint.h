@@ -21,6 +21,10 @@ struct JointNumbers {
 template <class T>
 void prepare(const RawPump<T>& pump, JointNumbers<T>& p);
 
+/// Instant of a block that a constant-velocity joint turns as the shaft (T1).
+template <class Real>
+struct JointState : State<Real> {};
+
 /// Instant of a block that a universal joint turns (T4), (T5).
 template <class Real>
 struct CardanState : FreeState<Real> {
