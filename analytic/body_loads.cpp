@@ -45,8 +45,9 @@ struct BodyLoads::Implementation {
                  std::vector<BodyLoad>& on) const;
   void add_shaft(const Instant& instant, const std::vector<double>& row,
                  std::vector<BodyLoad>& on) const;
-  void add_transfer(const Instant& instant, const std::vector<double>& row, const TeethAction& acting,
-                std::vector<BodyLoad>& block, std::vector<BodyLoad>& shaft) const;
+  void add_transfer(const Instant& instant, const std::vector<double>& row,
+                    const TeethAction& acting, std::vector<BodyLoad>& block,
+                    std::vector<BodyLoad>& shaft) const;
   double centre_of_mass() const;
   Inertia piston_inertia(const Vector& axis, const Vector& axis_rate, const Vector& joint,
                          const Vector& axis_acceleration) const;
@@ -178,13 +179,13 @@ void BodyLoads::Implementation::add_pistons(const Instant& instant, const State&
 }
 
 void BodyLoads::Implementation::add_transfer(const Instant& instant, const std::vector<double>& row,
-                                         const TeethAction& acting, std::vector<BodyLoad>& block,
-                                         std::vector<BodyLoad>& shaft) const {
+                                             const TeethAction& acting,
+                                             std::vector<BodyLoad>& block,
+                                             std::vector<BodyLoad>& shaft) const {
   const closed_form::GearNumbers<double>& gear = prepared.numbers.gear;
   const ChannelLayout& at = model.layout();
   if (at.has(Quantity::TcsJoint)) {
-    const Vector couple =
-        turned({row[at.TcsJoint(0)], row[at.TcsJoint(1)], row[at.TcsJoint(2)]});
+    const Vector couple = turned({row[at.TcsJoint(0)], row[at.TcsJoint(1)], row[at.TcsJoint(2)]});
     add(block, "block", "shaft", "Tcs", "about O2", ForceKind::reaction, o2(), kNone, couple);
     add(shaft, "shaft", "block", "Tcs", "about O2", ForceKind::reaction, o2(), kNone,
         -1.0 * couple);
@@ -291,8 +292,9 @@ std::vector<BodyLoad> BodyLoads::Implementation::all(const Instant& given,
   std::vector<BodyLoad> loads;
   std::vector<BodyLoad> block;
   std::vector<BodyLoad> shaft;
-  with_state<double>(
-      prepared.transfer, prepared.numbers, instant, [&](const auto& state) { add_pistons(instant, state, row, loads, block, shaft); });
+  with_state<double>(prepared.transfer, prepared.numbers, instant, [&](const auto& state) {
+    add_pistons(instant, state, row, loads, block, shaft);
+  });
   // The transfer's stand behind those of the pistons on either body.
   add_transfer(instant, row, acting, block, shaft);
   add_block(instant, row, block);

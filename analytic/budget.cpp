@@ -75,8 +75,8 @@ struct BudgetModel::Implementation {
   PreparedPump prepared;
   double block_weight_and_spring;
   double torque_factor;
-  // Of a transfer without a gear at the instant: torque about z1 on the shaft per torque about z2 on
-  // the block.
+  // Of a transfer without a gear at the instant: torque about z1 on the shaft per torque about z2
+  // on the block.
   double shaft_per_block = 0;
   std::vector<double> values;
 };

@@ -1,9 +1,10 @@
 // A block that does not turn as the shaft does, at constant speed: behind a universal joint, and
 // carried by pistons, where its lag is frozen at each angle (docs/transfer.md).
+#include "bentaxis/analytic/constant_speed.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
 #include "bentaxis/numerics/root.h"
 #include "bentaxis/pump/error.h"
@@ -71,13 +72,13 @@ FreePlay free_play(const PreparedPump& pump, double theta) {
 [[noreturn]] void refuse_play(const PumpParameters& pump, double theta) {
   const WallContact& wall = *pump.transfer.wall;
   const double share = 1 - wall.from_joint / pump.geometry.piston_length;
-  const double needed = share * pump.geometry.joint_circle_radius *
-                        (1 - std::cos(pump.geometry.tilt)) / 2;
-  throw InputError("[transfer] clearance_mm = " + rounded_text(wall.clearance * 1e3, 6) +
-                   ": the block has no free play at theta = " +
-                   rounded_text(theta / kRadPerDegree, 6) +
-                   " deg: must exceed about (1 - l_c/b1) Ra (1 - cos alpha)/2 = " +
-                   rounded_text(needed * 1e3, 6) + " mm, and leave a piston that can touch");
+  const double needed =
+      share * pump.geometry.joint_circle_radius * (1 - std::cos(pump.geometry.tilt)) / 2;
+  throw InputError(
+      "[transfer] clearance_mm = " + rounded_text(wall.clearance * 1e3, 6) +
+      ": the block has no free play at theta = " + rounded_text(theta / kRadPerDegree, 6) +
+      " deg: must exceed about (1 - l_c/b1) Ra (1 - cos alpha)/2 = " +
+      rounded_text(needed * 1e3, 6) + " mm, and leave a piston that can touch");
 }
 
 // The block's balance at a lag: all torques about z2, with frozen rates.
@@ -94,7 +95,8 @@ class Balance {
   /// Pressure of a chamber, Pa.
   double pressure(double lag, std::size_t k) const {
     const int pistons = static_cast<int>(pump_.phase_sin.size());
-    return pressure_(piston_angle_deg((theta_ - lag) / kRadPerDegree, static_cast<int>(k) + 1, pistons));
+    return pressure_(
+        piston_angle_deg((theta_ - lag) / kRadPerDegree, static_cast<int>(k) + 1, pistons));
   }
 
   /// NaN where a piston does not reach its bore.
@@ -103,12 +105,12 @@ class Balance {
     state_.lead(std::sin(-lag / 2), std::cos(lag / 2));
     closed_form::BlockLoad<double> load = {0, 0, 0, {0, 0, 0}};
     for (std::size_t k = 0; k < pump_.phase_sin.size(); ++k) {
-      const auto m = closed_form::piston_motion(
-          p.frame, p.piston, state_, sine_of(pump_, state_.sine, state_.cosine, k),
-          cosine_of(pump_, state_.sine, state_.cosine, k));
+      const auto m = closed_form::piston_motion(p.frame, p.piston, state_,
+                                                sine_of(pump_, state_.sine, state_.cosine, k),
+                                                cosine_of(pump_, state_.sine, state_.cosine, k));
       if (!(m.axis.z > 0)) return std::nan("");
-      const double friction = closed_form::friction_force(pump_.friction, p.friction,
-                                                          m.ring_velocity(1), state_.omega);
+      const double friction =
+          closed_form::friction_force(pump_.friction, p.friction, m.ring_velocity(1), state_.omega);
       const double chamber = pressure(lag, k);
       auto f = closed_form::piston_forces(p.piston, m, 1.0, 0.0, friction, chamber);
       if (walls) {
@@ -128,9 +130,9 @@ class Balance {
     for (std::size_t k = 0; k < pump_.phase_sin.size(); ++k)
       pressure = std::max(pressure, std::abs(this->pressure(0, k)));
     const double radius = p.piston.joint_radius;
-    return radius * std::max({p.piston.area * pressure,
-                              p.piston.mass * state_.omega * state_.omega * radius,
-                              p.piston.mass * std::hypot(p.piston.gravity_y, p.piston.gravity_z)});
+    return radius *
+           std::max({p.piston.area * pressure, p.piston.mass * state_.omega * state_.omega * radius,
+                     p.piston.mass * std::hypot(p.piston.gravity_y, p.piston.gravity_z)});
   }
 
   [[noreturn]] void fail() const {
@@ -212,7 +214,7 @@ FrozenLag Model::frozen_lag(const Instant& instant, const PressureTrace& pressur
     lag.angle = middle;
     return lag;
   }
-  const bool upper = above < 0, lower = below > 0;
+  const bool upper = above<0, lower = below> 0;
   if (!upper && !lower) {
     lag.rule = FrozenLag::Rule::free;
     lag.angle = balance.root_within(play.low, play.high);

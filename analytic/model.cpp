@@ -1,4 +1,3 @@
-#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/analytic/model.h"
 
 #include <Eigen/Geometry>
@@ -10,6 +9,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "bentaxis/analytic/constant_speed.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/validate.h"
@@ -129,9 +129,8 @@ std::optional<Model::Settled> Model::find(const Instant& instant, std::vector<do
                                           const closed_form::WallMode* modes) const {
   require_sizes(instant, values, layout_.pistons(), layout_.reactions());
   if (!prepared_->has_tooth_force()) values[layout_.Rcs()] = not_computed();
-  all_reactions(
-      values.size() < layout_.size() ? prepared_->common() : prepared_->common(layout_),
-      prepared_->numbers, instant, values.data(), modes);
+  all_reactions(values.size() < layout_.size() ? prepared_->common() : prepared_->common(layout_),
+                prepared_->numbers, instant, values.data(), modes);
   if (!has_teeth()) return {};
   return resolve_tooth_contact(instant, values);
 }
@@ -158,10 +157,9 @@ AxisMotion Model::block_motion(const AxisMotion& shaft) const {
   instant.shaft = shaft;
   AxisMotion block;
   with_state<double>(prepared_->transfer, prepared_->numbers, instant, [&](const auto& state) {
-    if constexpr (std::is_base_of_v<closed_form::FreeState<double>,
-                                    std::decay_t<decltype(state)>>)
-      block = {shaft.angle + std::atan2(state.lead_sine, 1 - state.lead_versine),
-               state.block_omega, state.block_omega_dot};
+    if constexpr (std::is_base_of_v<closed_form::FreeState<double>, std::decay_t<decltype(state)>>)
+      block = {shaft.angle + std::atan2(state.lead_sine, 1 - state.lead_versine), state.block_omega,
+               state.block_omega_dot};
   });
   return block;
 }
@@ -366,9 +364,8 @@ void Model::evaluate(const Instant& instant, std::vector<double>& values, Motion
   evaluate_held(instant, values, checks, teeth, nullptr);
 }
 
-void Model::evaluate_held(const Instant& instant, std::vector<double>& values,
-                          MotionChecks* checks, TeethAction* teeth,
-                          const closed_form::WallMode* modes) const {
+void Model::evaluate_held(const Instant& instant, std::vector<double>& values, MotionChecks* checks,
+                          TeethAction* teeth, const closed_form::WallMode* modes) const {
   require_sizes(instant, values, layout_.pistons(), layout_.size());
   const auto settled = find(instant, values, modes);
   if (settled && teeth != nullptr) act(instant, settled->lag, *teeth);

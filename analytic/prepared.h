@@ -42,8 +42,12 @@ struct PreparedPump {
   /// Whether a gear's teeth carry the block round.
   bool has_tooth_force() const { return transfer == TransferKind::gear && !imposed; }
   closed_form::Common common() const {
-    return {static_cast<int>(phase_sin.size()), phase_sin.data(), phase_cos.data(), imposed,
-            friction, transfer};
+    return {static_cast<int>(phase_sin.size()),
+            phase_sin.data(),
+            phase_cos.data(),
+            imposed,
+            friction,
+            transfer};
   }
   /// The same where there is room for the transfer's own columns.
   closed_form::Common common(const ChannelLayout& at) const {

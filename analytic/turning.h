@@ -7,10 +7,10 @@
 
 namespace bentaxis::analytic {
 
-/// Calls `use` with the state of an instant that the transfer has: closed_form::State where the block
-/// is locked to the shaft; FreeState where it moves on its own; JointState or CardanState, whose block
-/// follows from the shaft alone; or WallState. The block's motion of an instant is not looked at where a joint
-/// prescribes it.
+/// Calls `use` with the state of an instant that the transfer has: closed_form::State where the
+/// block is locked to the shaft; FreeState where it moves on its own; JointState or CardanState,
+/// whose block follows from the shaft alone; or WallState. The block's motion of an instant is not
+/// looked at where a joint prescribes it.
 /// @param modes  of the walls, where pistons carry the block; null: all by their law
 template <class Real, class Use>
 BENTAXIS_INLINE void with_state(TransferKind transfer, const closed_form::Pump<Real>& pump,

@@ -145,8 +145,7 @@ double over_peak(const Case& the_case, const ResultTable& table, const NumericTa
     const double allowed =
         1e-12 * table.peak(table.channels[column].group) + wall_rounding(the_case);
     for (std::size_t row = 0; row < table.rows(); ++row) {
-      const double share =
-          std::abs(table.at(row, column) - curve.rows[row][c]) / allowed;
+      const double share = std::abs(table.at(row, column) - curve.rows[row][c]) / allowed;
       if (!(share <= worst)) {
         worst = share;
         where = curve.header[c] + " in row " + std::to_string(row);
@@ -168,10 +167,10 @@ TEST(TransferCurves, AreMet) {
     std::string where;
     EXPECT_LE(over_peak(the_case, table, curve, where), scaled(1)) << name << ": " << where;
     // Off by a millionth: it is noticed.
-    const ResultTable wrong = turn(transfer_case(
-        name, {name == "cardan" ? "transfer.phase_deg=30.00003"
-               : name == "constant_velocity" ? "pump.tilt_deg=40.00004"
-                                             : "transfer.clearance_mm=1.550002"}));
+    const ResultTable wrong = turn(
+        transfer_case(name, {name == "cardan"              ? "transfer.phase_deg=30.00003"
+                             : name == "constant_velocity" ? "pump.tilt_deg=40.00004"
+                                                           : "transfer.clearance_mm=1.550002"}));
     EXPECT_GT(over_peak(the_case, wrong, curve, where), 100) << name;
   }
 }
@@ -248,14 +247,14 @@ TEST(TransferProperties, CardanBecomesConstantVelocityWithoutTilt) {
   double before = 0;
   for (const double tilt : {4.0, 2.0, 1.0}) {
     const auto at = [&](const char* kind) {
-      return turn(transfer_case("cardan", {std::string("transfer.kind=") + kind,
-                                           "pump.tilt_deg=" + number_text(tilt)}));
+      return turn(transfer_case(
+          "cardan", {std::string("transfer.kind=") + kind, "pump.tilt_deg=" + number_text(tilt)}));
     };
     const ResultTable a = at("cardan"), b = at("constant_velocity");
     double worst = 0;
     for (std::size_t row = 0; row < a.rows(); ++row)
-      worst = std::max(
-          worst, std::abs(a.at(row, a.find("Td_z1_Nm")) - b.at(row, b.find("Td_z1_Nm"))));
+      worst =
+          std::max(worst, std::abs(a.at(row, a.find("Td_z1_Nm")) - b.at(row, b.find("Td_z1_Nm"))));
     if (before > 0) {
       EXPECT_NEAR(before / worst, 4, 0.8) << tilt;
     }
@@ -319,8 +318,9 @@ TEST(TransferProperties, AtConstantSpeedOnlyTheCardansBlockInertiaCounts) {
   for (const std::string& kind : kKinds) {
     const auto with = [&](const char* shaft, const char* block) {
       return turn(transfer_case(
-          "pistons_seven", {"transfer.kind=" + kind, std::string("shaft.axial_inertia_kg_mm2=") + shaft,
-                            std::string("block.axial_inertia_kg_mm2=") + block}));
+          "pistons_seven",
+          {"transfer.kind=" + kind, std::string("shaft.axial_inertia_kg_mm2=") + shaft,
+           std::string("block.axial_inertia_kg_mm2=") + block}));
     };
     const ResultTable base = with("2000", "1500");
     EXPECT_EQ(worst_difference(base, with("9000", "1500")).over_peak, 0) << kind;
@@ -433,8 +433,8 @@ TEST(FrozenLagOfPistons, HandsOverAsTheGeometrySays) {
 TEST(FrozenLagOfPistons, GoesToTheRigidLimitAsOneOverTheStiffness) {
   double before = 0;
   for (const char* stiffness : {"1000", "2000", "4000"}) {
-    const Case the_case = transfer_case(
-        "pistons_seven", {std::string("transfer.stiffness_N_per_um=") + stiffness});
+    const Case the_case =
+        transfer_case("pistons_seven", {std::string("transfer.stiffness_N_per_um=") + stiffness});
     const FrozenLag lag = lag_at(the_case, 35);
     EXPECT_EQ(lag.rule, FrozenLag::Rule::one_side);
     const double beyond = lag.angle - lag.high;
@@ -448,10 +448,10 @@ TEST(FrozenLagOfPistons, GoesToTheRigidLimitAsOneOverTheStiffness) {
 
 TEST(FrozenLagOfPistons, FollowsItsRules) {
   // Nothing acts: the middle.
-  const Case unloaded = transfer_case(
-      "pistons_seven",
-      {"pressure.delivery_bar=0", "piston.mass_kg=0", "friction.piston_coulomb_N=0",
-       "friction.block_viscous_Nm_per_rpm=0", "block.mass_kg=0"});
+  const Case unloaded =
+      transfer_case("pistons_seven",
+                    {"pressure.delivery_bar=0", "piston.mass_kg=0", "friction.piston_coulomb_N=0",
+                     "friction.block_viscous_Nm_per_rpm=0", "block.mass_kg=0"});
   const FrozenLag middle = lag_at(unloaded, 20);
   EXPECT_EQ(middle.rule, FrozenLag::Rule::no_load);
   EXPECT_DOUBLE_EQ(middle.angle, (middle.low + middle.high) / 2);
@@ -461,8 +461,8 @@ TEST(FrozenLagOfPistons, FollowsItsRules) {
   EXPECT_GT(lag_at(forwards, 35).angle, lag_at(forwards, 35).high);
   EXPECT_LT(lag_at(backwards, 35).angle, lag_at(backwards, 35).low);
   // Struts under pressure push off the middle: roots on both sides without drag.
-  const Case struts = transfer_case("pistons_seven", {"friction.block_viscous_Nm_per_rpm=0",
-                                                      "friction.piston_coulomb_N=0"});
+  const Case struts = transfer_case(
+      "pistons_seven", {"friction.block_viscous_Nm_per_rpm=0", "friction.piston_coulomb_N=0"});
   analytic::LagRules rules;
   const Model model(struts.pump, struts.analytic);
   const PressureTrace pressure(struts.pressure);
@@ -474,8 +474,8 @@ TEST(FrozenLagOfPistons, FollowsItsRules) {
   EXPECT_EQ(rules.rows[0] + rules.rows[1] + rules.rows[2] + rules.rows[3], 72u);
   EXPECT_THAT(rules.text(), HasSubstr("rows by rule"));
   // Small loads: within the free play, where no wall pushes.
-  const Case light = transfer_case("pistons_seven", {"pressure.delivery_bar=0",
-                                                     "friction.block_viscous_Nm_per_rpm=0"});
+  const Case light = transfer_case(
+      "pistons_seven", {"pressure.delivery_bar=0", "friction.block_viscous_Nm_per_rpm=0"});
   int free = 0;
   for (int i = 0; i < 72; ++i) {
     const FrozenLag lag = lag_at(light, 5.0 * i);
@@ -520,7 +520,8 @@ TEST(TransferStates, JointsPrescribeTheBlock) {
              number_text(block.acceleration) + "\n";
     };
     const auto read = [&](double more) {
-      return refusal([&] { read_states(scratch.file("given.csv", row(more)), the_case, pressure); });
+      return refusal(
+          [&] { read_states(scratch.file("given.csv", row(more)), the_case, pressure); });
     };
     EXPECT_EQ(read(0), "accepted");
     EXPECT_EQ(read(5e-10), "accepted");
@@ -533,12 +534,11 @@ TEST(TransferStates, OfPistonsNeedATorqueOnTheBlock) {
   const Case the_case = transfer_case("pistons_seven");
   const PressureTrace pressure(the_case.pressure);
   const auto row = [&](double psi_deg, double acceleration) {
-    const auto file = scratch.file(
-        "states.csv",
-        "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n35," +
-            number_text(psi_deg) + ",1500,1500,0," + number_text(acceleration) + "\n");
-    return analytic::run_states(the_case, the_case.analytic,
-                                read_states(file, the_case, pressure));
+    const auto file =
+        scratch.file("states.csv",
+                     "theta_deg,psi_deg,theta_rpm,psi_rpm,theta_rad_per_s2,psi_rad_per_s2\n35," +
+                         number_text(psi_deg) + ",1500,1500,0," + number_text(acceleration) + "\n");
+    return analytic::run_states(the_case, the_case.analytic, read_states(file, the_case, pressure));
   };
   const ResultTable driven = turn(the_case);
   const double psi = driven.at(7, driven.find("psi_deg"));
@@ -614,10 +614,11 @@ TEST(TransferMotion, OfJointsHasTheShaftsStateAlone) {
     const Trajectory run = simulated(the_case);
     for (std::size_t row = 0; row < run.table.results.rows(); ++row) {
       const double theta = run.state(row, StateColumn::theta);
-      const AxisMotion block =
-          model.block_motion({radians(theta), rad_per_second(run.state(row, StateColumn::shaft_speed)), 0});
+      const AxisMotion block = model.block_motion(
+          {radians(theta), rad_per_second(run.state(row, StateColumn::shaft_speed)), 0});
       EXPECT_NEAR(run.state(row, StateColumn::psi), block.angle / kRadPerDegree, 1e-9);
-      EXPECT_NEAR(run.state(row, StateColumn::block_speed), block.speed / kRadPerSecondPerRpm, 1e-7);
+      EXPECT_NEAR(run.state(row, StateColumn::block_speed), block.speed / kRadPerSecondPerRpm,
+                  1e-7);
     }
     EXPECT_LE(run.record.worst_work_residual, scaled(1e-7) * std::abs(run.record.work_of_loads))
         << name;
@@ -645,7 +646,8 @@ TEST(TransferBatch, IsTheModelAtOneInstant) {
     instants.chamber_pressure = pressures;
     for (const auto set : analytic::available_instruction_sets()) {
       analytic::BatchColumns columns(model.layout().reactions(), kCount);
-      batch.reactions(instants, analytic::outputs_of(model.layout(), analytic::ChannelGroup::all, columns),
+      batch.reactions(instants,
+                      analytic::outputs_of(model.layout(), analytic::ChannelGroup::all, columns),
                       {set, 1});
       std::vector<double> values(model.layout().size());
       Instant instant;

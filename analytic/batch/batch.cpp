@@ -286,8 +286,7 @@ const PumpParameters& by_kernel(const PumpParameters& pump) {
 }  // namespace
 
 BatchModel::BatchModel(const PumpParameters& pump, const Assumptions& assumptions)
-    : layout_(by_kernel(pump)),
-      pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
+    : layout_(by_kernel(pump)), pump_(std::make_unique<PreparedPump>(prepare(pump, assumptions))) {}
 BatchModel::~BatchModel() = default;
 BatchModel::BatchModel(BatchModel&&) noexcept = default;
 BatchModel& BatchModel::operator=(BatchModel&&) noexcept = default;
@@ -347,7 +346,8 @@ void BatchModel::statistics(const BatchInstants& instants, std::span<const Measu
     results[i].mean /= count;
     results[i].mean_square /= count;
     const std::size_t first = measured[i].reaction;
-    if (!pump_->has_tooth_force() && first <= layout_.Rcs() && layout_.Rcs() < first + measured[i].components)
+    if (!pump_->has_tooth_force() && first <= layout_.Rcs() &&
+        layout_.Rcs() < first + measured[i].components)
       results[i] = {not_computed(), not_computed(), not_computed(), not_computed()};
   }
 }

@@ -155,10 +155,9 @@ BENTAXIS_INLINE std::size_t stream_lines(const BatchJob& job, std::size_t at, st
     }
   } else {
     const int reactions = kReactionsEnd.per_piston * job.common.pistons + kReactionsEnd.single;
-    const int absent =
-        job.common.imposed || job.common.transfer != TransferKind::gear
-            ? closed_form::column<Quantity::Rcs>(job.common.pistons, 0, 0)
-            : -1;
+    const int absent = job.common.imposed || job.common.transfer != TransferKind::gear
+                           ? closed_form::column<Quantity::Rcs>(job.common.pistons, 0, 0)
+                           : -1;
     alignas(64) double lines[kMaxReactions][kDoublesPerLine];
     for (; at + kDoublesPerLine <= end; at += kDoublesPerLine) {
       for (std::size_t part = 0; part < kDoublesPerLine; part += kLanes) {

@@ -53,8 +53,8 @@ BENTAXIS_INLINE void turn_block(const JointNumbers<Par>& p, CardanState<Real>& t
       ratio * (t.omega_dot + 2.0 * (bent * p.sine * c) * (t.omega * t.omega) * t.inverse_q);
 }
 
-/// Couple on the block in S2 and on the shaft in S1 that carries the block round with `torque` about
-/// z2: along the bisector of both axes (T2), (T3).
+/// Couple on the block in S2 and on the shaft in S1 that carries the block round with `torque`
+/// about z2: along the bisector of both axes (T2), (T3).
 template <class Real>
 struct Couple {
   Vec3<Real> on_block, on_shaft;

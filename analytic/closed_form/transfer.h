@@ -1,5 +1,5 @@
-// What each transfer carries: the torque that turns the block, as it acts on block and shaft, and the
-// columns of its own. Which one it is says the type of the state that it constrains.
+// What each transfer carries: the torque that turns the block, as it acts on block and shaft, and
+// the columns of its own. Which one it is says the type of the state that it constrains.
 #pragma once
 
 #include "bentaxis/results/quantities.h"

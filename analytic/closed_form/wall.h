@@ -13,10 +13,10 @@ namespace bentaxis::analytic::closed_form {
 
 template <class T>
 struct WallNumbers {
-  T share;      // w = 1 - l_c / b1
-  T along;      // l_c / b1: from A to D along AB
-  T on_bore;    // l_c / s_C: part of Rw that Rc balances; Rs the rest
-  T clearance;  // h
+  T share;                             // w = 1 - l_c / b1
+  T along;                             // l_c / b1: from A to D along AB
+  T on_bore;                           // l_c / s_C: part of Rw that Rc balances; Rs the rest
+  T clearance;                         // h
   T stiffness, exponent, dissipation;  // k x0, e, c_d; force k x0 (x/x0)^e (1 + c_d x')
 };
 

@@ -50,8 +50,7 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
       ring_off_(the_case.pump.piston.contact.has_value()),
       law_(closed_form::tooth_law(the_case.pump.gear)),
       arm_(the_case.pump.transfer.kind == TransferKind::gear
-               ? the_case.pump.gear.pitch_diameter / 2 *
-                     std::cos(the_case.pump.gear.pressure_angle)
+               ? the_case.pump.gear.pitch_diameter / 2 * std::cos(the_case.pump.gear.pressure_angle)
                : 1),
       curve_(curve_of(drive_)) {
   if (assumptions.gear == BlockDrive::imposed)
@@ -98,9 +97,10 @@ Equations::Equations(const Case& the_case, const Assumptions& assumptions,
   if (drive_.kind != DriveKind::speed && !(shaft_inertia_ > kMinInertia))
     throw InputError("[shaft] axial_inertia_kg_mm2: must be > 0 where a torque moves the shaft");
   if (compliant() && !(block_inertia_ > kMinInertia))
-    throw InputError(walls_ ? "[block] axial_inertia_kg_mm2: must be > 0 where pistons carry the block"
-                            : "[block] axial_inertia_kg_mm2: must be > 0 where the teeth are "
-                              "compliant");
+    throw InputError(walls_
+                         ? "[block] axial_inertia_kg_mm2: must be > 0 where pistons carry the block"
+                         : "[block] axial_inertia_kg_mm2: must be > 0 where the teeth are "
+                           "compliant");
   probe_ = torque_scale_ / std::max(shaft_inertia_, kMinInertia);
 }
 
@@ -395,9 +395,9 @@ void Equations::add_rates(const State& y, const Motion& m, State& dy) {
       const auto [distance, rate, rate_dot] = paths_[k];
       if (!(distance > 0)) continue;
       const double spring = walls_->spring(distance);
-      const bool pushes = wall_modes[k] == closed_form::WallMode::pressing ||
-                          (wall_modes[k] == closed_form::WallMode::by_law &&
-                           1 + walls_->dissipation() * rate > 0);
+      const bool pushes =
+          wall_modes[k] == closed_form::WallMode::pressing ||
+          (wall_modes[k] == closed_form::WallMode::by_law && 1 + walls_->dissipation() * rate > 0);
       loads -= ((pushes ? spring * (1 + walls_->dissipation() * rate) : 0.0) - spring) * rate;
     }
   }

@@ -251,8 +251,8 @@ class Simulation {
     void add(double value, double rate) { all[count++] = {value, rate}; }
   };
 
-  // Of each piston two: touching or leaving its wall, and the end or start of its push within. To be
-  // asked for right after the rates there.
+  // Of each piston two: touching or leaving its wall, and the end or start of its push within. To
+  // be asked for right after the rates there.
   void add_wall_functions(double time, const State& y, EventFunctions& g) {
     const double dissipation = equations_.walls()->dissipation();
     const std::vector<WallPath>& paths = equations_.wall_paths(time, y);
@@ -298,9 +298,7 @@ class Simulation {
     return g;
   }
 
-  double block_speed(double time, const State& y) const {
-    return equations_.block_speed(time, y);
-  }
+  double block_speed(double time, const State& y) const { return equations_.block_speed(time, y); }
 
   double nearness(std::size_t guard, double time) const {
     if (guard < 2) return kOnEdge * (std::abs(equations_.block_angle(time, y_)) + 2 * kPi);
@@ -399,8 +397,9 @@ class Simulation {
 
   bool is_apart() const {
     const auto& modes = equations_.wall_modes;
-    return equations_.walls() ? std::find(modes.begin(), modes.end(), WallMode::pressing) == modes.end()
-                              : equations_.teeth.pressing == 0;
+    return equations_.walls()
+               ? std::find(modes.begin(), modes.end(), WallMode::pressing) == modes.end()
+               : equations_.teeth.pressing == 0;
   }
 
   void note_piece() {

@@ -381,13 +381,12 @@ States states_of(const NumericTable& table, const std::filesystem::path& file,
     if (joint) {
       // The lead alone keeps its digits over many turns.
       const double turned = std::fmod(state.theta_deg, 360.0);
-      const AxisMotion block =
-          joint_motion(the_case.pump, {radians(turned), state.shaft_speed, state.shaft_acceleration});
+      const AxisMotion block = joint_motion(
+          the_case.pump, {radians(turned), state.shaft_speed, state.shaft_acceleration});
       MotionState law = state;
-      law.psi_deg =
-          the_case.pump.transfer.kind == TransferKind::cardan
-              ? state.theta_deg + (block.angle - radians(turned)) / kRadPerDegree
-              : state.theta_deg;
+      law.psi_deg = the_case.pump.transfer.kind == TransferKind::cardan
+                        ? state.theta_deg + (block.angle - radians(turned)) / kRadPerDegree
+                        : state.theta_deg;
       law.block_speed = block.speed;
       law.block_acceleration = block.acceleration;
       constexpr double kMatch = 1e-9;  // deg, and of the shaft's rates

@@ -200,7 +200,8 @@ std::string case_schema(const Registry& registry) {
       // Also where the key is left out, if its default is one of the words.
       const auto& fallback = parameter_of(registry, when.table, when.key).fallback.value;
       const auto* const word = fallback ? std::get_if<std::string>(&*fallback) : nullptr;
-      if (word != nullptr && std::find(when.words.begin(), when.words.end(), *word) != when.words.end()) {
+      if (word != nullptr &&
+          std::find(when.words.begin(), when.words.end(), *word) != when.words.end()) {
         met.erase("required");
         met["properties"][when.table].erase("required");
       }

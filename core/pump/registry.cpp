@@ -326,8 +326,8 @@ std::vector<PumpInput> continuous_inputs(PumpParameters& pump, const Registry& r
     for (const Parameter& parameter : table.parameters) {
       if (parameter.path.empty() || !is_there(parameter, the_case)) continue;
       const Part* const part = parameter.within;
-      const bool needed = part == nullptr ||
-                          (part == table.part && holds(part->needed, registry, the_case));
+      const bool needed =
+          part == nullptr || (part == table.part && holds(part->needed, registry, the_case));
       auto& list = needed ? always : in_parts;
       auto path = parameter.path.begin();
       for (const Access<double>* place : numbers_of(parameter.field))

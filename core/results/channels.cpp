@@ -50,8 +50,7 @@ Channel describe(const QuantityEntry& entry, char component, int piston) {
 }
 
 std::vector<Channel> list_channels(int pistons, TransferKind transfer) {
-  std::vector<Channel> list(
-      quantity_place(std::size(kQuantities), transfer).column(pistons, 0, 0));
+  std::vector<Channel> list(quantity_place(std::size(kQuantities), transfer).column(pistons, 0, 0));
   for (std::size_t q = 0; q < std::size(kQuantities); ++q) {
     if ((kQuantities[q].transfers & transfers::bit(transfer)) == 0) continue;
     const QuantityPlace place = quantity_place(q, transfer);

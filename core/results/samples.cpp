@@ -25,14 +25,13 @@ void require_constant_speed(const Case& the_case) {
   const TransferKind kind = the_case.pump.transfer.kind;
   const auto refuse = [&](const std::string& value, const std::string& why) {
     throw InputError((the_case.file.empty() ? "" : the_case.file.string() + ": ") + "[pressure] " +
-                     value + ": must be " + why + " beside [transfer] kind = \"" +
-                     to_string(kind) + "\" at constant speed");
+                     value + ": must be " + why + " beside [transfer] kind = \"" + to_string(kind) +
+                     "\" at constant speed");
   };
   const bool pistons = kind == TransferKind::pistons;
   if ((pistons || kind == TransferKind::cardan) &&
       the_case.pressure.kind == PressureKind::hydraulic)
-    refuse("kind = \"hydraulic\"",
-           "\"ideal\" or \"curve\"");
+    refuse("kind = \"hydraulic\"", "\"ideal\" or \"curve\"");
   if (pistons && the_case.pressure.kind == PressureKind::ideal &&
       the_case.pressure.transition_deg == 0)
     refuse("transition_deg = 0", "> 0");

@@ -41,8 +41,9 @@ PumpSystem::PumpSystem(const PumpParameters& pump, const Assumptions& assumption
   if (drive == Drive::torque && !(pump.shaft.axial_inertia > 0 && pump.block.axial_inertia > 0))
     throw InputError("a shaft that runs free needs axial inertias of shaft and block above 0");
   if (pump.transfer.kind != TransferKind::gear)
-    throw InputError("[transfer] kind = \"" + to_string(pump.transfer.kind) +
-                     "\": must be \"gear\" in the multibody model, which has no other transfer yet");
+    throw InputError(
+        "[transfer] kind = \"" + to_string(pump.transfer.kind) +
+        "\": must be \"gear\" in the multibody model, which has no other transfer yet");
   inputs_.rest_speed = rest_speed_at(pump.geometry, omega);
   inputs_.chamber_pressure = [](double, double, std::vector<double>& p) {
     std::fill(p.begin(), p.end(), 0.0);

@@ -98,8 +98,7 @@ struct DataModel::Implementation {
   void use_kernel() {
     const ChannelLayout layout(base.pump);
     const auto gives = [&](std::size_t column) {
-      return column < layout.reactions() ||
-             (layout.has(Quantity::Tcs) && column == layout.Tcs());
+      return column < layout.reactions() || (layout.has(Quantity::Tcs) && column == layout.Tcs());
     };
     std::set<std::size_t> all;
     for (State& state : states) {
@@ -157,8 +156,7 @@ struct DataModel::Implementation {
     const Gear& gear = scratch.the_case.pump.gear;
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       double factor = 1 / table.channels[c].unit_in_si;
-      if (is_carrying(wanted[c]))
-        factor *= gear.pitch_diameter / 2 * std::cos(gear.pressure_angle);
+      if (is_carrying(wanted[c])) factor *= gear.pitch_diameter / 2 * std::cos(gear.pressure_angle);
       const double* values = scratch.columns->column(source(wanted[c]));
       for (std::size_t row = 0; row < rows; ++row) {
         if (!std::isfinite(values[row])) return false;

@@ -209,6 +209,7 @@ bool computes(const RunOptions& options, const Assumptions& assumptions, const C
 void stream_analytic(const PreparedCase& ready, const Assumptions& assumptions,
                      const std::function<bool(const Channel&)>& wanted, OutputFolder::Stream& out,
                      const PartProgress& progress_of) {
+  analytic::require_free_play(ready.the_case);
   const analytic::Model model(ready.the_case.pump, assumptions);
   std::vector<Channel> channels;
   std::vector<std::size_t> columns;

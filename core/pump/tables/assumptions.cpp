@@ -22,15 +22,14 @@ Table assumptions_table(const std::string& model) {
                             model +
                                 " model: how the block is carried round: by the tooth force, or by "
                                 "a speed imposed on its own joint, as in the paper's ADAMS run")},
-      .rules = {{.key = "inertia",
-                 .after = "gear",
-                 .broken =
-                     [](const Case& c) {
-                       return piston_inertia_refusal((c.*kModel).inertia, c.pump);
-                     }},
-                {.key = "gear", .after = "gear", .broken = [](const Case& c) {
-                   return imposed_refusal((c.*kModel).gear, c.pump);
-                 }}}};
+      .rules = {
+          {.key = "inertia",
+           .after = "gear",
+           .broken =
+               [](const Case& c) { return piston_inertia_refusal((c.*kModel).inertia, c.pump); }},
+          {.key = "gear", .after = "gear", .broken = [](const Case& c) {
+             return imposed_refusal((c.*kModel).gear, c.pump);
+           }}}};
 }
 
 }  // namespace

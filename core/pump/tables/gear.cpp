@@ -160,8 +160,8 @@ Table gear_table() {
                  [](const Case& c) {
                    const TransferKind kind = c.pump.transfer.kind;
                    return kind != TransferKind::gear && c.pump.gear.is_compliant()
-                              ? "must be \"rigid\" beside [transfer] kind = \"" +
-                                    to_string(kind) + "\", which has no gear"
+                              ? "must be \"rigid\" beside [transfer] kind = \"" + to_string(kind) +
+                                    "\", which has no gear"
                               : std::string();
                  }),
            at_end("contact", [](const Case& c) {

@@ -8,8 +8,7 @@ const When kCardan{"transfer", "kind", {"cardan"}};
 const When kPistons{"transfer", "kind", {"pistons"}};
 
 // All keys of the joint have defaults: it is there where it is needed.
-const Part kCardanJoint{kCardan,
-                        [](const Case& c) { return c.pump.transfer.cardan.has_value(); },
+const Part kCardanJoint{kCardan, [](const Case& c) { return c.pump.transfer.cardan.has_value(); },
                         [](Case& c) {
                           if (c.pump.transfer.kind == TransferKind::cardan)
                             c.pump.transfer.cardan.emplace();
@@ -83,8 +82,9 @@ Table transfer_table() {
       .rules = {after("kind", type_refusal), at_end("kind", cardan_not_assembled),
                 at_end("kind", [](const Case& c) {
                   return c.pump.transfer.kind == TransferKind::pistons && !c.pump.transfer.wall
-                             ? std::string("needs contact_from_joint_mm, clearance_mm and "
-                                           "stiffness_N_per_um")
+                             ? std::string(
+                                   "needs contact_from_joint_mm, clearance_mm and "
+                                   "stiffness_N_per_um")
                              : std::string();
                 })}};
 }

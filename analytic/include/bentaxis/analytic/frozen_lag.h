@@ -15,7 +15,7 @@ struct FrozenLag {
     driving,   ///< roots on both sides: that towards which the shaft drives
     free,      ///< a root within the free play, no wall pushes
   };
-  double angle = 0;  ///< theta - psi, rad
+  double angle = 0;          ///< theta - psi, rad
   double low = 0, high = 0;  ///< ends of the free play, rad
   Rule rule = Rule::one_side;
 };

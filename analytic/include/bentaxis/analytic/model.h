@@ -68,10 +68,10 @@ class Model {
                 TeethAction* teeth = nullptr) const;
   /// How the block turns where a rigid transfer prescribes it, from how the shaft does.
   AxisMotion block_motion(const AxisMotion& shaft) const;
-  /// Sets the block's motion and the chambers' pressures of an instant of constant speed, where they
-  /// differ from those at the shaft's angle: with a universal joint, and with pistons that carry the
-  /// block, where the lag is the root of the block's balance at frozen rates (docs/transfer.md).
-  /// Allocates nothing.
+  /// Sets the block's motion and the chambers' pressures of an instant of constant speed, where
+  /// they differ from those at the shaft's angle: with a universal joint, and with pistons that
+  /// carry the block, where the lag is the root of the block's balance at frozen rates
+  /// (docs/transfer.md). Allocates nothing.
   /// @throws InputError where the block has no free play at this angle; ComputationError where no
   ///         lag balances the block before a piston leaves its bore
   void place_at_constant_speed(Instant& instant, const PressureTrace& pressure,

@@ -12,8 +12,7 @@ namespace bentaxis::numerics {
 /// To a unit in the last place or so (Alefeld, Potra, Shi 1995, algorithm 748). Allocates nothing.
 /// @param at_low, at_high  values there; their signs differ, or one is 0
 template <class Function>
-double root_between(const Function& value, double low, double high, double at_low,
-                    double at_high) {
+double root_between(const Function& value, double low, double high, double at_low, double at_high) {
   if (at_low == 0) return low;
   if (at_high == 0) return high;
   const auto near_enough = [](double a, double b) {

@@ -127,8 +127,8 @@ struct CardanJoint {
 };
 
 /// Contact of a tapered piston with the wall of its bore. At D = A + l_c e the axis of the piston
-/// may be `clearance` away from that of the bore; with the approach x beyond it the wall pushes with
-/// k x0 (x/x0)^e (1 + c_d x'), never negative; x0 is kWallApproach.
+/// may be `clearance` away from that of the bore; with the approach x beyond it the wall pushes
+/// with k x0 (x/x0)^e (1 + c_d x'), never negative; x0 is kWallApproach.
 struct WallContact {
   double from_joint = 0;   ///< l_c, m, from A along the piston's axis to D
   double clearance = 0;    ///< h, m, radial
@@ -287,8 +287,8 @@ inline std::string to_string(BlockDrive gear) {
 /// transverse inertia need the centre of mass strictly between A and B.
 std::string piston_inertia_refusal(PistonInertia inertia, const PumpParameters& pump);
 
-/// Why the block of this pump cannot be driven as `drive` asks, as the end of a message; empty where
-/// it can: an imposed speed replaces the gear and nothing else.
+/// Why the block of this pump cannot be driven as `drive` asks, as the end of a message; empty
+/// where it can: an imposed speed replaces the gear and nothing else.
 std::string imposed_refusal(BlockDrive drive, const PumpParameters& pump);
 
 /// Ideal gap between the longest distance from a joint A to the axis of its bore and the piston

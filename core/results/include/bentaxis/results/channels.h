@@ -28,8 +28,9 @@ struct Channel {
   ChannelKind kind = ChannelKind::reaction;
 };
 
-/// Where each quantity of a pump with N pistons and a kind of transfer stands in a row of results, and its description.
-/// Pistons count from 0 here; axes are 0, 1, 2 for x, y, z. Cheap to make and to copy.
+/// Where each quantity of a pump with N pistons and a kind of transfer stands in a row of results,
+/// and its description. Pistons count from 0 here; axes are 0, 1, 2 for x, y, z. Cheap to make and
+/// to copy.
 class ChannelLayout {
  public:
   explicit ChannelLayout(int pistons, TransferKind transfer = TransferKind::gear);

@@ -114,9 +114,8 @@ struct QuantityEntry {
 inline constexpr QuantityEntry kQuantities[] = {
 #define BENTAXIS_ENTRY(identifier, symbol, of, repeat, components, unit, kind, group, frame, on, \
                        by, point, equation, meaning)                                             \
-  {symbol, transfers::of, Repeat::repeat, components, unit,     ChannelKind::kind,               \
-   group,  frame,         on,             by,         point,    equation,                        \
-   meaning},
+  {symbol, transfers::of, Repeat::repeat, components, unit, ChannelKind::kind, group, frame, on, \
+   by,     point,         equation,       meaning},
     BENTAXIS_QUANTITIES(BENTAXIS_ENTRY)
 #undef BENTAXIS_ENTRY
 };
@@ -131,8 +130,8 @@ struct QuantityPlace {
   }
 };
 
-/// Place of entry `wanted` of kQuantities in a row of a pump with this transfer, which has it; of one
-/// beyond the last: the length of the row.
+/// Place of entry `wanted` of kQuantities in a row of a pump with this transfer, which has it; of
+/// one beyond the last: the length of the row.
 constexpr QuantityPlace quantity_place(std::size_t wanted,
                                        TransferKind transfer = TransferKind::gear) {
   constexpr std::size_t kCount = sizeof(kQuantities) / sizeof(kQuantities[0]);
@@ -186,14 +185,13 @@ inline constexpr QuantityPlace kPlaces[kTransferKinds] = {
     quantity_place(static_cast<std::size_t>(quantity), TransferKind::cardan),
     quantity_place(static_cast<std::size_t>(quantity), TransferKind::pistons)};
 template <Quantity quantity>
-inline constexpr QuantityPlace kPlace =
-    quantity_place(static_cast<std::size_t>(quantity),
-                   (kQuantities[static_cast<std::size_t>(quantity)].transfers & transfers::gear) != 0
-                       ? TransferKind::gear
-                   : (kQuantities[static_cast<std::size_t>(quantity)].transfers &
-                      transfers::cardan) != 0
-                       ? TransferKind::cardan
-                       : TransferKind::pistons);
+inline constexpr QuantityPlace kPlace = quantity_place(
+    static_cast<std::size_t>(quantity),
+    (kQuantities[static_cast<std::size_t>(quantity)].transfers & transfers::gear) != 0
+        ? TransferKind::gear
+    : (kQuantities[static_cast<std::size_t>(quantity)].transfers & transfers::cardan) != 0
+        ? TransferKind::cardan
+        : TransferKind::pistons);
 inline constexpr QuantityPlace kReactionsEnd = quantity_place(count_reactions());
 
 }  // namespace bentaxis
