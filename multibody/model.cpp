@@ -165,6 +165,7 @@ void Model::Implementation::place(const AxisMotion& shaft, const AxisMotion& blo
 void Model::Implementation::place_and_solve(const AxisMotion& shaft, const AxisMotion& block,
                                             const Instant& instant) {
   place(shaft, block, instant.ports);
+  reactions.block_is_given = true;
   SimTK::State& state = system.dynamics();
   if (system.bevel() != nullptr) settle_teeth(instant);
   if (method == Method::multipliers) {
@@ -233,6 +234,7 @@ LagRule Model::Implementation::evaluate_at_frozen_lag(double theta_deg, double s
   system.wall_setting().apart = false;
   turn_to(found.lag);
   evaluate(instant, values, nullptr);
+  reactions.block_is_given = false;
   values[layout.lag()] = found.lag;
   values[layout.Tb()] = not_computed();  // none is left but round-off
   return found.rule;

@@ -21,16 +21,21 @@ namespace {
 std::vector<std::pair<std::string, std::string>> facts_of(const Case& the_case,
                                                           const Assumptions& assumptions) {
   const DriveKind drive = the_case.drive->kind;
-  const bool rigid = the_case.pump.gear.contact == ToothContact::rigid;
+  const TransferKind transfer = the_case.pump.transfer.kind;
+  const bool gear = transfer == TransferKind::gear;
+  const bool rigid = gear && the_case.pump.gear.contact == ToothContact::rigid;
   auto facts = scene_facts(the_case.pump, assumptions);
   for (auto& [name, fact] : facts) {
-    if (name == "scene" && !rigid)
+    if (name == "scene" && gear && !rigid)
       fact = "full pump, compliant teeth pushing each other at O4 by a force element";
     if (name == "bodies" && drive == DriveKind::motor) fact += " and the motor's rotor";
     if (name == "constraints")
       fact = std::string("cylindrical bearing inline at C2 (2), ") +
              (drive == DriveKind::speed ? "angle of the shaft over time (1), " : "") +
-             (rigid ? "gear (1), " : "") + "B on its bore axis (2 per piston)";
+             (the_case.pump.transfer.is_joint() ? "joint (1), "
+              : rigid                           ? "gear (1), "
+                                                : "") +
+             "B on its bore axis (2 per piston)";
   }
   const char* const drives[] = {"angle of the shaft given over time", "torque on the shaft",
                                 "rotor on a pin about z1, coupling as a force element"};

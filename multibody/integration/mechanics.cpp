@@ -434,6 +434,11 @@ MotionVector MultibodyMechanics::find_scales(const Case& the_case) {
 
 std::unique_ptr<Mechanics> mechanics(const Case& the_case, const Assumptions& assumptions) {
   require_simulable(the_case, assumptions);
+  if (the_case.pump.transfer.kind == TransferKind::pistons)
+    throw InputError(
+        (the_case.file.empty() ? "" : the_case.file.string() + ": ") +
+        "[transfer] kind = \"pistons\": the multibody model has no equations of motion "
+        "for oil or a motor of others beside them; simulate with a given pressure");
   require_smooth_friction(the_case);
   std::unique_ptr<Mechanics> mechanics;
   translate_simbody_errors(

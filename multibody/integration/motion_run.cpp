@@ -295,9 +295,9 @@ void MotionRun::leave_wall(std::size_t piston) {
 
 void MotionRun::note_wall(std::size_t piston, bool touch) {
   const State& state = stepper_.state();
-  tooth_events_.push_back({stepper_.time(), touch, system_.walls()->side(state, piston),
-                           shaft_speed(state), block_speed(state),
-                           system_.walls()->touch(state, piston).rate, 0});
+  tooth_events_.push_back({stepper_.time(), touch, lag(state) < 0 ? -1 : 1, shaft_speed(state),
+                           block_speed(state), system_.walls()->touch(state, piston).rate, 0,
+                           static_cast<int>(piston) + 1});
 }
 
 void MotionRun::guard_against_chatter(double time) {

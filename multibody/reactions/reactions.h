@@ -30,6 +30,9 @@ struct Reactions {
   SimTK::Vec3 couple = SimTK::Vec3(0);  ///< on the block by a joint, Nm
   double imposed = 0;  ///< torque about z2 that an imposed motion applies to the block; beside
                        ///< bevel teeth what they do not give of what its motion takes
+  /// Whether `imposed` is what given motion needs; false where the motion was chosen so that it
+  /// needs none.
+  bool block_is_given = true;
 };
 
 /// Realizes a dynamics state to Acceleration with that flank of the gear in mesh that can carry the

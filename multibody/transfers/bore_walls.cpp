@@ -88,24 +88,9 @@ Vec3 BoreWalls::force_on_piston(const State& state, std::size_t piston) const {
   return found.force == 0 ? Vec3(0) : Vec3(-found.force * found.outward);
 }
 
-int BoreWalls::side(const State& state, std::size_t piston) const {
-  const WallTouch found = touch(state, piston);
-  const SimTK::Transform& block = block_.getBodyTransform(state);
-  return dot(Vec3(block.z()), (found.centre - block.p()) % found.outward) < 0 ? -1 : 1;
-}
-
 WallBranch BoreWalls::branch_at(const State& state, std::size_t piston) const {
   const WallTouch found = touch(state, piston);
   return {found.approach > 0, found.approach > 0 && !(1 + law_.dissipation * found.rate > 0)};
-}
-
-double BoreWalls::power(const State& state) const {
-  double power = 0;
-  for (std::size_t k = 0; k < size(); ++k) {
-    const WallTouch found = touch(state, k);
-    power -= found.force * found.rate;
-  }
-  return power;
 }
 
 double BoreWalls::elastic_energy(const State& state) const {

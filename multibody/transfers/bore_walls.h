@@ -49,12 +49,9 @@ class BoreWalls {
   WallTouch touch(const SimTK::State& state, std::size_t piston) const;
   /// Force on a piston at D, N in Ground.
   SimTK::Vec3 force_on_piston(const SimTK::State& state, std::size_t piston) const;
-  /// +1 where the piston would push the block towards +psi, -1 towards -psi.
-  int side(const SimTK::State& state, std::size_t piston) const;
   /// The branch that holds at a state.
   WallBranch branch_at(const SimTK::State& state, std::size_t piston) const;
-  /// Power of all walls on pistons and block, W; and energy that their springs hold, J.
-  double power(const SimTK::State& state) const;
+  /// Energy that their springs hold, J.
   double elastic_energy(const SimTK::State& state) const;
   /// The element, for what it applies.
   const SimTK::Force& force() const { return force_; }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bentaxis/numerics/bisection.h"
+#include "bentaxis/numerics/root.h"
 #include "bentaxis/pump/error.h"
 #include "bentaxis/pump/number.h"
 #include "bentaxis/pump/units.h"
@@ -30,38 +31,13 @@ constexpr double kStepGrowth = 2;
 constexpr double kLargestStep = 5e-4;
 // Steps from the middle of the free play to one of its ends.
 constexpr int kStepsInside = 64;
-// Steps of the secant method after which a bracket is closed in any case, since every third halves.
-constexpr int kMaxTrials = 200;
-// Lags nearer to each other than that are one, rad: the round-off of an angle of some turns.
-constexpr double kSameLag = 4e-16;
 
-// The root between two lags at whose ends the moment has different signs, to round-off: the secant
-// of the last two looks, or the middle where that does not halve the bracket.
+// The root between two lags at whose ends the moment has different signs.
 double root_between(double a, double fa, double b, double fb, const BlockMoment& moment,
                     bool walls) {
-  double last = b, f_last = fb, before = a, f_before = fa;
-  for (int i = 0; i < kMaxTrials; ++i) {
-    if (fa == 0) return a;
-    if (fb == 0) return b;
-    const double middle = (a + b) / 2;
-    if (std::abs(b - a) <= kSameLag || middle == a || middle == b) break;
-    double next = last - f_last * (last - before) / (f_last - f_before);
-    // Every third step halves, so that the bracket closes whatever the curve.
-    if (!(next > std::min(a, b) && next < std::max(a, b)) || i % 3 == 2) next = middle;
-    const double f = moment(next, walls);
-    before = last;
-    f_before = f_last;
-    last = next;
-    f_last = f;
-    if ((f < 0) == (fa < 0)) {
-      a = next;
-      fa = f;
-    } else {
-      b = next;
-      fb = f;
-    }
-  }
-  return std::abs(fa) < std::abs(fb) ? a : b;
+  const auto at = [&](double lag) { return moment(lag, walls); };
+  return a < b ? numerics::root_between(at, a, b, fa, fb)
+               : numerics::root_between(at, b, a, fb, fa);
 }
 
 // Goes outwards from an end of the free play, way = +1 or -1, to the first root.
