@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "bentaxis/files/csv.h"
@@ -13,6 +14,7 @@
 #include "bentaxis/pump/error.h"
 #include "bentaxis/results/max_abs.h"
 #include "support.h"
+#include "transfers/frozen_lag.h"
 
 namespace bentaxis::test {
 namespace {
@@ -285,6 +287,70 @@ TEST(MultibodyTransfer, lag_tends_to_the_end_of_the_free_play_as_walls_grow_stif
   EXPECT_GT(first, 0);
   // In proportion but for the curvature of the geometry.
   EXPECT_NEAR(first / second, 100, 1);
+}
+
+// The rules that choose a lag, on moments made for them: one falls within the free play, walls push
+// back beyond it.
+TEST(MultibodyTransfer, follows_the_rules_for_the_lag) {
+  using multibody::LagRule;
+  const multibody::FreePlay play{-0.01, 0.02};
+  const auto found = [&](const std::function<double(double)>& load, double omega = 1) {
+    const auto moment = [&](double lag, bool walls) {
+      const double pressed = lag - std::clamp(lag, play.low, play.high);
+      return load(lag) + (walls ? 1e5 * pressed : 0);
+    };
+    return multibody::find_frozen_lag(play, moment, 100, omega);
+  };
+  const auto expect = [](const multibody::FrozenLag& lag, LagRule rule, double value) {
+    EXPECT_EQ(lag.rule, rule);
+    EXPECT_NEAR(lag.lag, value, 1e-14);
+  };
+  // A load below the round-off of its scale is none, where it is so everywhere.
+  expect(found([](double) { return 1e-11; }), LagRule::unloaded, 0.005);
+  // A drag pushes back, to the driving side; reversed, the same push is to the trailing side.
+  expect(found([](double) { return -40; }), LagRule::driving_side, 0.0204);
+  expect(found([](double) { return -40; }, -1), LagRule::trailing_side, 0.0204);
+  expect(found([](double) { return 30; }), LagRule::trailing_side, -0.0103);
+  expect(found([](double) { return 30; }, -1), LagRule::driving_side, -0.0103);
+  // Struts under pressure push away from the middle: both sides have a root, omega chooses.
+  const auto struts = [](double lag) { return -2000 * (lag - 0.003); };
+  EXPECT_GT(found(struts).lag, play.high);
+  EXPECT_LT(found(struts, -1).lag, play.low);
+  EXPECT_GT(found(struts, 0).lag, play.high);
+  // A load that centres the block: the root in the free play that is nearest to its middle.
+  expect(found([](double lag) { return 2000 * (lag - 0.003); }), LagRule::within_play, 0.003);
+  const auto three = [](double lag) {
+    return 1e9 * (lag + 0.004) * (lag - 0.0071) * (lag - 0.018);
+  };
+  expect(found(three), LagRule::within_play, 0.0071);
+  // The first root outwards counts, not a later one.
+  const auto twice = [](double lag) { return lag < 0.03 ? -100 : -100 - 1e6 * (lag - 0.03); };
+  expect(found(twice), LagRule::driving_side, 0.021);
+}
+
+// The ends of the free play are where the first piston on either side touches.
+TEST(MultibodyTransfer, finds_the_free_play_and_refuses_what_has_none) {
+  Case c = Stored("pistons_seven").the_case;
+  const multibody::FreePlay play = multibody::free_play(c.pump, radians(50));
+  multibody::Model model(c.pump, c.multibody, 1);
+  const ChannelLayout& at = model.layout();
+  const auto touching = [&](double lag) {
+    Instant instant = at_angle(c, 50);
+    instant.block.angle -= lag;
+    std::vector<double> row(at.size());
+    model.evaluate(instant, row);
+    int walls = 0;
+    for (int k = 0; k < at.pistons(); ++k) walls += row[at.Rw(k, 0)] != 0 || row[at.Rw(k, 1)] != 0;
+    return walls;
+  };
+  constexpr double kNear = 1e-9;
+  EXPECT_EQ(touching(play.high - kNear) + touching(play.low + kNear), 0);
+  EXPECT_EQ(touching(play.high + kNear), 1);
+  EXPECT_EQ(touching(play.low - kNear), 1);
+  c.pump.transfer.wall->clearance = 1e-4;
+  EXPECT_THROW(multibody::free_play(c.pump, radians(50)), InputError);
+  c.pump.transfer.wall->clearance = 0.1;
+  EXPECT_THROW(multibody::free_play(c.pump, radians(50)), InputError);
 }
 
 // Each parameter of the table, off by a millionth in this model's case, is noticed by the curves.

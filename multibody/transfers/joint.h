@@ -16,7 +16,7 @@ namespace bentaxis::multibody {
 ///   a couple is given: it is the gradient of this equation by the rotation of either body.
 /// - Universal: the cross holds the arm of the shaft's fork at a right angle to that of the block's
 ///   fork. This is Simbody's own constraint of a constant angle. The cross has no mass, and no body
-///   stands for it: tests/multibody_transfer_test.cpp holds the equation to a universal mobilizer.
+///   stands for it: tests/simbody_conventions_test.cpp holds the equation to a universal mobilizer.
 class BlockJoint {
  public:
   /// @param pump  with a joint as its transfer
