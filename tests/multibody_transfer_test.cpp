@@ -7,7 +7,9 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <random>
 
+#include "bentaxis/analytic/model.h"
 #include "bentaxis/files/csv.h"
 #include "bentaxis/multibody/model.h"
 #include "bentaxis/multibody/simulation.h"
@@ -351,6 +353,99 @@ TEST(MultibodyTransfer, finds_the_free_play_and_refuses_what_has_none) {
   EXPECT_THROW(multibody::free_play(c.pump, radians(50)), InputError);
   c.pump.transfer.wall->clearance = 0.1;
   EXPECT_THROW(multibody::free_play(c.pump, radians(50)), InputError);
+}
+
+// Cases without a stored curve, against the closed form.
+double worst_difference(const ResultTable& a, const ResultTable& b, double round_off) {
+  double worst = 0;
+  for (std::size_t c = 0; c < a.columns(); ++c) {
+    const Channel& channel = a.channels[c];
+    if (channel.kind == ChannelKind::check || channel.group == "xh_yh") continue;
+    const std::size_t other = b.find(channel.name);
+    for (std::size_t row = 0; row < a.rows(); ++row) {
+      EXPECT_EQ(is_computed(a.at(row, c)), is_computed(b.at(row, other))) << channel.name;
+      if (!is_computed(a.at(row, c)) || a.at(row, c) == b.at(row, other)) continue;
+      const double off = std::max(0.0, std::abs(a.at(row, c) - b.at(row, other)) - round_off);
+      EXPECT_LE(off, kDriven * a.peak(channel.group)) << channel.name << " at " << a.theta_deg[row];
+      update_max_abs(worst, off / a.peak(channel.group));
+    }
+  }
+  return worst;
+}
+
+TEST(MultibodyTransfer, agrees_with_the_closed_form_on_unseen_cases) {
+  std::vector<Case> cases = joints();
+  cases.push_back(unseen("pistons_seven", 6, true, -0.4));
+  cases.push_back(unseen("pistons_seven", 8, false, 0.6));
+  cases.back().pump.geometry.bore_circle_radius = 21.8e-3;
+  cases.push_back(unseen("pistons_seven", 9, false, -0.2));
+  cases.back().pump.transfer.wall->exponent = 1.5;
+  for (const Case& c : cases) {
+    const Samples samples = sample_case(c, PressureTrace(c.pressure));
+    Case real = c;
+    real.analytic = c.multibody;
+    const double worst = worst_difference(analytic::run(real, real.analytic, samples), turn(c),
+                                          10 * wall_round_off(c.pump));
+    if (std::getenv("BENTAXIS_SHOW_RESIDUALS") != nullptr)
+      std::cout << to_string(c.pump.transfer.kind) << " " << c.pump.geometry.pistons
+                << " pistons: " << worst << " of peak\n";
+  }
+}
+
+// Given states: walls in and out of contact, on either side, approaching and leaving; accelerating.
+TEST(MultibodyTransfer, agrees_with_the_closed_form_at_given_states) {
+  for (const char* const name : {"constant_velocity", "cardan", "pistons_seven"}) {
+    const Case c = unseen(name, 7, false, 0.3);
+    multibody::Model multibody(c.pump, c.multibody, 1);
+    const analytic::Model closed(c.pump, c.multibody);
+    const ChannelLayout& at = closed.layout();
+    std::vector<double> a(at.size()), b(at.size());
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> any(-1, 1);
+    std::map<std::string, double> off, peak;
+    for (int i = 0; i < 40; ++i) {
+      Instant instant = at_angle(c, 180 + 180 * any(random));
+      instant.shaft.speed *= 1 + 0.3 * any(random);
+      instant.shaft.acceleration = 3000 * any(random);
+      instant.block = multibody.block_beside(instant.shaft);
+      if (c.pump.transfer.kind == TransferKind::pistons) {
+        instant.block.angle -= 0.02 * any(random);
+        instant.block.speed *= 1 + 0.05 * any(random);
+        instant.block.acceleration = 3000 * any(random);
+      }
+      closed.evaluate(instant, a);
+      multibody.evaluate(instant, b);
+      for (std::size_t k = 0; k < at.size(); ++k) {
+        const Channel& channel = at.channels()[k];
+        if (channel.kind == ChannelKind::check || channel.group == "xh_yh") continue;
+        ASSERT_EQ(is_computed(a[k]), is_computed(b[k])) << channel.name;
+        if (!is_computed(a[k])) continue;
+        update_max_abs(off[channel.group], a[k] - b[k]);
+        update_max_abs(peak[channel.group], a[k]);
+      }
+    }
+    for (const auto& [group, difference] : off)
+      EXPECT_LE(difference, kDriven * peak[group] + 10 * wall_round_off(c.pump))
+          << name << " " << group;
+  }
+}
+
+// A joint in time, at constant speed: the turn of the driven mode, found by integration.
+TEST(MultibodyTransfer, simulates_joints) {
+  for (const char* const name : {"constant_velocity", "cardan"}) {
+    const Stored stored(name);
+    Case c = stored.the_case;
+    c.drive.emplace();
+    c.drive->duration = 0.04;
+    c.drive->samples = 72;
+    SimulationOptions options;
+    options.error = 1e-6;
+    const Trajectory run = multibody::simulate(c, c.multibody, PressureTrace(c.pressure), options);
+    Trajectory turn = run;  // without its last row, which begins the next turn
+    turn.table.results.theta_deg.pop_back();
+    for (const auto& [group, off] : stored.differences(turn.table.results))
+      EXPECT_LE(off.difference, kSimulated * off.peak) << name << " " << group;
+  }
 }
 
 // Each parameter of the table, off by a millionth in this model's case, is noticed by the curves.
